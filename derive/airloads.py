@@ -1,0 +1,367 @@
+"""Quasi-steady airloads of one blade by virtual work, linearised about trim (Eqs. 14-16, and what they leave out).
+
+At a section the air comes with u_T along i', u_P against n and u_R against d. The section forces f = (f_x, f_n, f_d) and
+the moment m depend on them and on the pitch; row i of the virtual work is the integral of f . w_i + m t_i, with w_i the
+row's virtual displacement in section axes and t_i its rotation about d.
+
+A blade is straight on each segment between its hinges, so w_i = w0 + w1 r and u = u0 + u1 r there. With the
+seven-vector motions (w0, w1, t) and (u0, u1, pitch) a segment's airloads are seven generalised loads that depend on
+seven motions through radial moments of the section's derivatives only:
+
+    C = - sum W^T L U_rate        K = - sum W^T L U_displacement - G        (sum over the segments)
+
+G holds the steady loads times the change of w and t.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import sympy as sp
+
+from derive import kinematics as kin
+from derive import symbols as s
+from derive.polynomials import SEGMENT_ANGLES, PolynomialRing, cos_lag, name_trigonometry
+
+SECTION_AXES = ("x", "n", "d")
+VELOCITIES = ("ut", "up", "ur")
+
+# u_T, u_P, u_R are these multiples of the section's own velocity along i', n, d.
+SENSE = {"x": -1, "n": 1, "d": 1}
+
+# Geometry of a segment at trim: the line p = anchor + r d, and its flap arm, whose slope is h_beta cos(lag).
+anchor = [
+    s.quantity(f"anchor_{axis}", f"a_{axis}", "m", f"where the segment's line meets r = 0, along {axis}") for axis in "ijk"
+]
+flap_arm_at_center = s.quantity("flap_arm_at_center", "b_0", "m", "flap arm of the segment's line at r = 0")
+
+# Section loads per unit span, their moments with powers of r, and their derivatives.
+LOADS = {
+    "fx": ("f_x", "N/m", "force along i'"),
+    "fn": ("f_n", "N/m", "force along n"),
+    "fd": ("f_d", "N/m", "force along d"),
+    "m": ("m", "N", "moment about d, nose up"),
+}
+ARGUMENTS = {
+    "": ("", "", ""),
+    "_ut": ("u_T", " s/m", " per u_T"),
+    "_up": ("u_P", " s/m", " per u_P"),
+    "_ur": ("u_R", " s/m", " per u_R"),
+    "_theta": (r"\theta", "", " per rad of pitch"),
+}
+POWERS = range(3)
+
+
+def _moment_unit(unit: str, per: str, power: int) -> str:
+    lengths = power + 1
+    numerator, _, denominator = unit.partition("/")
+    per_speed = per == " s/m"
+    lengths -= (denominator == "m") + per_speed
+    speed = " s" if per_speed else ""
+    length = f" m^{lengths}" if lengths > 0 else ("/m" if lengths < 0 else "")
+    return f"{numerator}{speed}{length}"
+
+
+MOMENTS = {
+    (load + argument, power): s.quantity(
+        f"{load}{argument}_{power}",
+        rf"\int r^{power} {latex}{{}}_{{,{by}}}" if by else rf"\int r^{power} {latex}",
+        _moment_unit(unit, per, power),
+        f"integral of r^{power} times the {meaning}{by_meaning}",
+    )
+    for load, (latex, unit, meaning) in LOADS.items()
+    for argument, (by, per, by_meaning) in ARGUMENTS.items()
+    for power in POWERS
+}
+
+
+def segment_line() -> sp.Matrix:
+    """Trim position along a segment, in r (which the arms of the two hinges make linear)."""
+    return _on_segment(kin.at_trim(kin.blade_line()))
+
+
+def _on_segment(expression):
+    """The arms as they are on a segment that lies on one side of each hinge; trim angles count only beyond theirs."""
+    flap, lag = kin.beyond_flap_hinge, kin.beyond_lag_hinge
+    outboard = flap * (s.radial_station - s.flap_hinge_offset)
+    arms = {
+        kin.outboard_arm: outboard,
+        kin.inboard_arm: s.radial_station - outboard,
+        kin.lag_arm: lag * (s.radial_station - s.lag_hinge_offset),
+    }
+    return expression.subs(arms).subs({s.coning: flap * s.coning, s.lag: lag * s.lag})
+
+
+Taylor = dict[tuple[str, ...], list]  # derivatives at trim by the coordinates they are taken along; () is the value
+
+
+class SegmentKinematics:
+    """A straight segment: its line and axes, and how both move with the blade's coordinates.
+
+    All is polynomial in the perturbations, to second order, and linear in r: derivatives are taken in the ring.
+    """
+
+    def __init__(self):
+        trig = [symbol for pair in SEGMENT_ANGLES.values() for symbol in pair]
+        steps = [kin.beyond_flap_hinge, kin.beyond_lag_hinge]
+        geometry = [*anchor, flap_arm_at_center, s.flap_hinge_offset, s.lag_hinge_offset, s.radial_station]
+        operation = [s.rotor_speed, s.airspeed, s.pitch_gimbal_coupling, s.pitch]
+        loads = [MOMENTS[load, 0] for load in LOADS]
+        self.ring = PolynomialRing([*trig, *steps, *geometry, *operation, *loads])
+        turn = [self._taylor(kin.BLADE_TO_ROTATING[i, :]) for i in range(3)]
+        axes = [self._taylor(self._named(column)) for column in self._to_second_order(kin.blade_axes())]
+        self.axes = dict(zip(SECTION_AXES, (_turned(turn, axis) for axis in axes), strict=True))
+        self.about_hub = _turned(turn, self._taylor(self._named(self._line())))
+        hub = self._taylor(kin.HUB)
+        self.position = {key: _add(self.about_hub.get(key), hub.get(key)) for key in {*self.about_hub, *hub}}
+        pitch = self._taylor(sp.Matrix([kin.pitch_angles()[1]]))
+        self.pitch_to_yoke = {key: value[0] for key, value in pitch.items()}
+        self.zero = self.ring.ring.zero
+
+    def _taylor(self, vector) -> Taylor:
+        """Value, first and second derivatives at trim of a vector that is polynomial in the perturbations."""
+        perturbations = list(kin.q.values())
+        names = {symbol: name for name, symbol in zip(kin.COORDINATES, perturbations, strict=True)}
+        parts: dict[tuple, list] = {}
+        for place, component in enumerate(vector):
+            for powers, coefficient in sp.Poly(component, *perturbations).terms():
+                if sum(powers) > 2:
+                    continue
+                key = tuple(names[x] for x, n in zip(perturbations, powers, strict=True) for _ in range(n))
+                factor = 2 if any(n == 2 for n in powers) else 1
+                values = parts.setdefault(key, [self.ring(0)] * len(vector))
+                values[place] = self.ring(coefficient * factor)
+                parts[key[::-1]] = values
+        return parts
+
+    @staticmethod
+    def _to_second_order(axes: sp.Matrix) -> list[sp.Matrix]:
+        """Columns as polynomials in the hinge angles."""
+        expansion = kin.at_trim(axes)
+        for a in ("flap", "lag"):
+            expansion += kin.q[a] * kin.at_trim(sp.diff(axes, kin.q[a]))
+            for b in ("flap", "lag"):
+                expansion += kin.q[a] * kin.q[b] * kin.at_trim(sp.diff(axes, kin.q[a], kin.q[b])) / 2
+        return [expansion[:, place] for place in range(3)]
+
+    @staticmethod
+    def _line() -> sp.Matrix:
+        """The deflected line on the segment: its arms are linear in r."""
+        r, flap, lag = s.radial_station, kin.beyond_flap_hinge, kin.beyond_lag_hinge
+        outward = kin.at_trim(kin.blade_axes()[:, SECTION_AXES.index("d")])
+        arms = (kin.chordwise_arm, kin.radial_arm, kin.axial_arm)
+        line = {arm: a + r * d for arm, a, d in zip(arms, anchor, outward, strict=True)}
+        line |= {kin.flap_arm: flap * (flap_arm_at_center + r * sp.cos(lag * s.lag))}
+        return kin.deflected_line().subs(line | {kin.lag_arm: lag * (r - s.lag_hinge_offset)})
+
+    @staticmethod
+    def _named(expression):
+        """Sines and cosines by name; a trim angle counts only beyond its hinge."""
+        flap, lag = kin.beyond_flap_hinge, kin.beyond_lag_hinge
+        on_segment = expression.expand().subs({s.coning: flap * s.coning, s.lag: lag * s.lag})
+        on_segment = on_segment.subs({flap**2: flap, lag**2: lag})
+        return name_trigonometry(on_segment, SEGMENT_ANGLES)
+
+    def _derivative(self, taylor: Taylor, *along: str) -> list:
+        return taylor.get(along, [self.zero] * 3)
+
+    def virtual_displacement(self, row: str, *along: str) -> list:
+        """As `kinematics.virtual_displacements`: hub rotation turns about fixed axes through the hub point."""
+        if row in kin.HUB_ROTATION:
+            return _cross(self._fixed_axis(row), self._derivative(self.about_hub, *along))
+        return self._derivative(self.position, row, *along)
+
+    def virtual_rotation(self, row: str, *along: str) -> list:
+        """Rotation of the section as a vector, and its derivative; rotation by pitch not included."""
+        if row in kin.HUB_ROTATION:
+            return [self.zero] * 3 if along else self._fixed_axis(row)
+        # E,i E^T is skew; its derivative is E,ij E^T + E,i E,j^T.
+        parts = [((row, *along), ())] + ([((row,), along)] if along else [])
+        total = [[self.zero] * 3 for _ in range(3)]
+        for turned, still in parts:
+            for axis in self.axes.values():
+                left, right = self._derivative(axis, *turned), self._derivative(axis, *still)
+                total = [[total[i][j] + left[i] * right[j] for j in range(3)] for i in range(3)]
+        return [total[2][1], total[0][2], total[1][0]]
+
+    def _fixed_axis(self, row: str) -> list:
+        return self.ring.vector((kin.I_AXIS, kin.J_AXIS, kin.K_AXIS)[kin.HUB_ROTATION.index(row)])
+
+    def air_velocity(self, *along: str) -> list:
+        """Inertial velocity of a point at rest in the rotating axes, and its derivative."""
+        spun = _spin(self._derivative(self.position, *along), self.ring(s.rotor_speed))
+        return spun if along else [a + self.ring(b) for a, b in zip(spun, s.airspeed * kin.K_AXIS, strict=True)]
+
+    def velocity(self, axis: str, *along: str):
+        """Velocity of the air along a section axis; along a coordinate the point moves and the axis turns."""
+        total = _dot(self._derivative(self.axes[axis]), self.air_velocity(*along))
+        if along:
+            total += _dot(self._derivative(self.axes[axis], *along), self.air_velocity())
+        return SENSE[axis] * total
+
+    def rate_velocity(self, axis: str, name: str):
+        """Velocity of the air along a section axis per rate of a coordinate."""
+        return SENSE[axis] * _dot(self._derivative(self.axes[axis]), self._derivative(self.position, name))
+
+    def pitch_change(self, *along: str):
+        return self.pitch_to_yoke.get(along, self.zero)
+
+    def work_displacement(self, axis: str, row: str, *along: str):
+        """Virtual displacement of a row along a section axis, and its derivative."""
+        total = _dot(self._derivative(self.axes[axis]), self.virtual_displacement(row, *along))
+        if along:
+            total += _dot(self._derivative(self.axes[axis], *along), self.virtual_displacement(row))
+        return total
+
+    def work_rotation(self, row: str, *along: str):
+        """Rotation of the section about d: with hub, yoke and hinges, and by pitch; and its derivative."""
+        total = _dot(self._derivative(self.axes["d"]), self.virtual_rotation(row, *along))
+        if along:
+            total += _dot(self._derivative(self.axes["d"], *along), self.virtual_rotation(row))
+        return total + self.pitch_change(row, *along)
+
+
+@functools.cache
+def segment_kinematics() -> SegmentKinematics:
+    return SegmentKinematics()
+
+
+def _power(polynomial, power: int) -> sp.Expr:
+    """Coefficient of r^power, reduced."""
+    ring = segment_kinematics().ring
+    place = ring.generators.index(s.radial_station)
+    terms = {
+        (*monomial[:place], 0, *monomial[place + 1 :]): coefficient
+        for monomial, coefficient in ring.reduced(polynomial).terms()
+        if monomial[place] == power
+    }
+    return sp.factor_terms(ring.shortest(ring.ring.from_dict(terms)))
+
+
+SEGMENT_LOADS = ("x_0", "n_0", "d_0", "x_1", "n_1", "d_1", "rotation")
+SEGMENT_MOTION = ("ut_0", "up_0", "ur_0", "ut_1", "up_1", "ur_1", "theta")
+
+
+def virtual_motion(row: str, load: str) -> sp.Expr:
+    """W: displacement at r = 0 and per unit radius in section axes, and rotation, of each row."""
+    kinematics = segment_kinematics()
+    if load == "rotation":
+        return _power(kinematics.work_rotation(row), 0)
+    axis, power = load.split("_")
+    return _power(kinematics.work_displacement(axis, row), int(power))
+
+
+def _motion(velocity, motion: str, *along: str) -> sp.Expr:
+    name, power = motion.split("_")
+    return _power(velocity(SECTION_AXES[VELOCITIES.index(name)], *along), int(power))
+
+
+def rate_motion(motion: str, name: str) -> sp.Expr:
+    """U_rate: velocity of the air at r = 0 and per unit radius for the rate of each coordinate; pitch has none."""
+    if motion == "theta":
+        return sp.Integer(0)
+    return _motion(segment_kinematics().rate_velocity, motion, name)
+
+
+def displacement_motion(motion: str, name: str) -> sp.Expr:
+    """U_displacement: the same for the displacement of each coordinate, and the change of pitch."""
+    if motion == "theta":
+        return _power(segment_kinematics().pitch_change(name), 0)
+    return _motion(segment_kinematics().velocity, motion, name)
+
+
+def trim_velocity(motion: str) -> sp.Expr:
+    """Trim velocity of the air at r = 0 and per unit radius."""
+    return _motion(segment_kinematics().velocity, motion)
+
+
+def geometric_stiffness(row: str, name: str) -> sp.Expr:
+    """G: change of the steady loads' virtual work when the blade moves under them, in moments of the loads."""
+    kinematics = segment_kinematics()
+    changes = {f"f{axis}": kinematics.work_displacement(axis, row, name) for axis in SECTION_AXES}
+    changes["m"] = kinematics.work_rotation(row, name)
+    return sum(MOMENTS[load, power] * _power(change, power) for load, change in changes.items() for power in POWERS)
+
+
+def load_derivative(load: str, motion: str) -> sp.Expr:
+    """L: moments of the section's derivatives; a load at power a meets a velocity at power b in the moment a + b."""
+    if load == "rotation":
+        name, load_power = "m", 0
+    else:
+        axis, load_power = load.split("_")
+        name = f"f{axis}"
+    argument, motion_power = ("theta", 0) if motion == "theta" else motion.split("_")
+    return MOMENTS[f"{name}_{argument}", int(load_power) + int(motion_power)]
+
+
+def steady_load(load: str) -> sp.Expr:
+    """The steady generalised loads of a segment."""
+    if load == "rotation":
+        return MOMENTS["m", 0]
+    axis, power = load.split("_")
+    return MOMENTS[f"f{axis}", int(power)]
+
+
+def products() -> dict[str, sp.MatrixExpr]:
+    """What each segment adds to a blade's airload damping and stiffness, and to the virtual work of its steady airloads."""
+    loads, motions, coordinates = len(SEGMENT_LOADS), len(SEGMENT_MOTION), len(kin.COORDINATES)
+    virtual = sp.MatrixSymbol("virtual_motion", loads, coordinates)
+    derivatives = sp.MatrixSymbol("load_derivatives", loads, motions)
+    rate = sp.MatrixSymbol("rate_motion", motions, coordinates)
+    displacement = sp.MatrixSymbol("displacement_motion", motions, coordinates)
+    geometric = sp.MatrixSymbol("geometric_stiffness", coordinates, coordinates)
+    steady = sp.MatrixSymbol("steady_loads", loads, 1)
+    # The virtual work of the airloads stands on the right of the equations of motion, so it leaves with a minus.
+    return {
+        "damping": -virtual.T * derivatives * rate,
+        "stiffness": -virtual.T * derivatives * displacement - geometric,
+        "steady_work": virtual.T * steady,
+    }
+
+
+def segment_geometry() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Anchor and flap arm of a segment in hinge offsets and trim angles."""
+    flap, lag = kin.beyond_flap_hinge, kin.beyond_lag_hinge
+    r = s.radial_station
+    ring = PolynomialRing(
+        [symbol for pair in SEGMENT_ANGLES.values() for symbol in pair]
+        + [flap, lag, r, s.flap_hinge_offset, s.lag_hinge_offset]
+    )
+
+    def linear(expression):
+        polynomial = ring.reduced(ring(name_trigonometry(_on_segment(expression), SEGMENT_ANGLES)))
+        return [sp.factor_terms(polynomial.as_expr().expand().coeff(r, power)) for power in (0, 1)]
+
+    steps = [(symbol, linear(component)[0]) for symbol, component in zip(anchor, kin.at_trim(kin.blade_line()), strict=True)]
+    return [*steps, (flap_arm_at_center, linear(kin.deflected_flap_arm())[0])]
+
+
+def _turned(turn: list[Taylor], vector: Taylor) -> Taylor:
+    """Taylor coefficients of the product of a matrix, given by rows, and a vector."""
+    product: Taylor = {}
+    keys = {key for taylor in (*turn, vector) for key in taylor}
+    for key in keys | {a + b for a in keys for b in keys if len(a) + len(b) <= 2}:
+        ways = {(): [((), ())]}.get(key) or [(key, ()), ((), key)]
+        if len(key) == 2:
+            ways += [(key[:1], key[1:]), (key[1:], key[:1])]
+        product[key] = [
+            sum(_dot(row[a], vector[b]) for a, b in ways if a in row and b in vector) for row in turn
+        ]
+    return product
+
+
+def _add(a, b):
+    return [x + y for x, y in zip(a, b, strict=True)] if a and b else a or b
+
+
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def _spin(vector, rate):
+    """rate k x vector."""
+    return [-rate * vector[1], rate * vector[0], 0 * vector[2]]

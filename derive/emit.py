@@ -1,0 +1,224 @@
+"""Print the intermediate form and render it: derivation in, `generated/proprotor_equations` out.
+
+Expressions are printed here, by one printer; the templates only lay them out; the formatter makes lines readable.
+"""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import jinja2
+import sympy as sp
+from sympy.printing.numpy import NumPyPrinter
+
+from derive import kinematics as kin
+from derive import multiblade
+from derive.equations import STEPS, Function
+from derive.symbols import QUANTITIES
+
+ROOT = Path(__file__).resolve().parent.parent
+TEMPLATES = ROOT / "templates"
+GENERATED = ROOT / "generated" / "proprotor_equations"
+
+MODULE_TITLES = {
+    "inertia": "Inertia of one blade in rotating axes",
+    "flap_lag_springs": "Flap-lag springs of one blade, which turn with its pitch",
+    "pitch": "Blade pitch, control system, dampers and gimbal restraint",
+    "section": "Loads of a blade section",
+    "airloads": "Airloads of one blade, segment by segment",
+    "trim": "Trim balance of one blade",
+    "multiblade": "From one blade to N blades in the fixed frame",
+}
+
+
+class ArrayPrinter(NumPyPrinter):
+    """NumPy code with ``np.`` in front; entries of blade matrices broadcast over leading axes."""
+
+    _module = "np"
+    _kf = {name: f"np.{path.rpartition('.')[2]}" for name, path in NumPyPrinter._kf.items()}  # noqa: RUF012
+    _kc = {name: f"np.{path.rpartition('.')[2]}" for name, path in NumPyPrinter._kc.items()}  # noqa: RUF012
+
+    def _print_Indexed(self, expr):
+        row, column = expr.indices
+        return f"{expr.base.label}[..., {row}, {column}]"
+
+    def _print_Transpose(self, expr):
+        return f"np.swapaxes({self._print(expr.arg)}, -1, -2)"
+
+    def _print_MatMul(self, expr):
+        sign, factors = expr.as_coeff_matrices()
+        product = " @ ".join(self._print(factor) for factor in factors)
+        return f"-({product})" if sign == -1 else product
+
+
+def print_code(expression: sp.Expr) -> str:
+    printed = ArrayPrinter({"fully_qualified_modules": True}).doprint(expression)
+    if "Not supported" in printed:
+        raise ValueError(f"cannot print {expression}")
+    return printed
+
+
+def argument_lines(function: Function) -> list[dict[str, str]]:
+    """Name, unit and meaning of each argument, for the docstring."""
+    lines = []
+    for symbol in function.arguments:
+        if function.product is not None:
+            shape = f"(..., segments, {symbol.shape[0]}, {symbol.shape[1]})"
+            lines.append({"name": symbol.name, "unit": shape, "meaning": f"see `{symbol.name}`"})
+        else:
+            quantity = QUANTITIES[symbol]
+            lines.append({"name": symbol.name, "unit": quantity.unit or "-", "meaning": quantity.meaning})
+    return lines
+
+
+def printed_entries(function: Function) -> list[dict[str, str]]:
+    """Assignments of a matrix; an entry equal or opposite to an earlier one refers to it."""
+    first: dict[sp.Expr, str] = {}
+    lines, equation = [], None
+    for (row, column), entry in function.entries.items():
+        place = f"matrix[..., {row.upper()}, {column.upper()}]"
+        value = sp.expand(entry.value)
+        if value in first and not value.is_Symbol:
+            code = first[value]
+        elif -value in first and not value.is_Symbol:
+            code = f"-{first[-value]}"
+        else:
+            code = print_code(entry.value)
+            first[value] = place
+        lines.append({"place": place, "code": code, "equation": entry.equation if entry.equation != equation else ""})
+        equation = entry.equation
+    return lines
+
+
+def operations(function: Function) -> int:
+    """Arithmetic operations per point, equal entries counted once."""
+    distinct = {sp.expand(entry.value) for entry in function.entries.values()}
+    expressions = [value for _, value in function.steps] + [value for value in distinct if -value not in distinct]
+    return int(sum(sp.count_ops(expression) for expression in expressions))
+
+
+def describe(function: Function) -> dict:
+    """Everything the template needs, printed."""
+    return {
+        "name": function.name,
+        "summary": function.summary,
+        "origin": function.origin,
+        "arguments": argument_lines(function),
+        "steps": [{"name": str(symbol), "code": print_code(value)} for symbol, value in function.steps],
+        "values": [
+            {"name": str(v), "unit": QUANTITIES[v].unit or "-", "meaning": QUANTITIES[v].meaning} for v in function.values
+        ],
+        "tuple_name": "".join(part.capitalize() for part in function.name.split("_")),
+        "rows": function.rows,
+        "columns": function.columns,
+        "entries": printed_entries(function),
+        "blade_matrices": function.blade_matrices,
+        "product": print_code(function.product) if function.product is not None else "",
+        "shape": (len(function.rows), len(function.columns)),
+    }
+
+
+def index_groups(functions: list[Function]) -> list[dict]:
+    """Row and column names of a module's matrices as index constants, one group per list of names."""
+    groups: dict[tuple[str, ...], None] = {}
+    for function in functions:
+        groups |= dict.fromkeys(names for names in (function.rows, function.columns) if names)
+    constants: dict[str, int] = {}
+    for names in groups:
+        for place, name in enumerate(names):
+            if constants.setdefault(name, place) != place:
+                raise ValueError(f"{name} would be two indices in one module")
+    if any(function.blade_matrices for function in functions):
+        constants |= {name: place for place, name in enumerate(kin.COORDINATES)}
+    return [{"name": name.upper(), "place": place} for name, place in constants.items()]
+
+
+def derivation_hash() -> str:
+    """Digest of the derivation and the templates, so that a file says what made it."""
+    digest = hashlib.sha256()
+    for path in sorted([*(ROOT / "derive").glob("*.py"), *TEMPLATES.glob("*.jinja")]):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def formatted(source: str, name: str) -> str:
+    """The source as the formatter lays it out."""
+    command = [sys.executable, "-m", "ruff", "format", "--isolated", "--line-length", "110", "--stdin-filename", name, "-"]
+    return subprocess.run(command, input=source, capture_output=True, text=True, check=True).stdout
+
+
+def render() -> Iterator[tuple[str, str]]:
+    """File name and text of every generated module, one step of the derivation after another."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    header = {"sympy_version": sp.__version__, "derivation": derivation_hash()}
+    for module, derive_functions in STEPS.items():
+        functions = list(derive_functions())
+        for function in functions:
+            function.check_dimensions()
+        text = environment.get_template("module.py.jinja").render(
+            title=MODULE_TITLES[module],
+            functions=[describe(function) for function in functions],
+            indices=index_groups(functions),
+            operations=sum(operations(function) for function in functions),
+            **header,
+        )
+        yield f"{module}.py", formatted(text, f"{module}.py")
+    text = environment.get_template("package.py.jinja").render(
+        modules=list(STEPS),
+        blade_coordinates=kin.COORDINATES,
+        fixed_coordinates=multiblade.FIXED_COORDINATES,
+        **header,
+    )
+    yield "__init__.py", formatted(text, "__init__.py")
+
+
+def derive_files(progress=print) -> dict[str, str]:
+    """All generated files, with a progress line per step."""
+    files, total = {}, len(STEPS) + 1
+    start = time.perf_counter()
+    for count, (name, text) in enumerate(render(), start=1):
+        files[name] = text
+        progress(f"[{count}/{total}] {name:<24} {len(text.splitlines()):>5} lines  {time.perf_counter() - start:6.1f} s")
+    return files
+
+
+def generated_paths(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir() if path.name != "__pycache__"} if folder.is_dir() else set()
+
+
+def update(folder: Path = GENERATED, progress=print) -> None:
+    """Rewrite the generated package; files that nothing generates any more are removed."""
+    files = derive_files(progress)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    for orphan in generated_paths(folder) - set(files):
+        (folder / orphan).unlink()
+
+
+def differences(folder: Path = GENERATED, progress=print) -> list[str]:
+    """What a check finds: a diff for each stale or hand-edited file, a line for each missing or orphan one."""
+    files = derive_files(progress)
+    found = [f"missing: {name}" for name in sorted(set(files) - generated_paths(folder))]
+    found += [f"orphan: {name}" for name in sorted(generated_paths(folder) - set(files))]
+    for name in sorted(set(files) & generated_paths(folder)):
+        present = (folder / name).read_text(encoding="utf-8")
+        if present != files[name]:
+            diff = difflib.unified_diff(
+                present.splitlines(), files[name].splitlines(), f"generated/{name}", f"derived/{name}", lineterm=""
+            )
+            found.append("\n".join(diff))
+    return found

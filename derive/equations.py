@@ -1,0 +1,474 @@
+"""The intermediate form: every function to be generated, its entries with their equation, unit and dimension.
+
+Nothing is printed here and nothing is derived here. `derive.emit` turns these records into NumPy modules; the audit and
+the notebooks read the same records.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from derive import airloads, flap_lag_springs, inertia, multiblade, pitch, section, trim
+from derive import kinematics as kin
+from derive import symbols as s
+from derive.polynomials import SEGMENT_ANGLES, WHOLE_BLADE_ANGLES, temporaries
+from derive.symbols import NUMBER, QUANTITIES, Dimension
+
+FORCE: Dimension = (1, 1, -2)
+MOMENT: Dimension = (1, 2, -2)
+LENGTH: Dimension = (0, 1, 0)
+PER_SECOND: Dimension = (0, 0, -1)
+
+# Where the paper has the equation of each row (AIAA-2002-1604).
+ROW_EQUATION = {
+    **dict.fromkeys(kin.HUB_TRANSLATION, "hub force, Eqs. 4-11"),
+    **dict.fromkeys(kin.HUB_ROTATION, "hub moment, Eqs. 4-11"),
+    "flap": "flap, Eqs. 12-13",
+    "lag": "lag, as Eqs. 12-13",
+    "pitch": "pitch, Eqs. 32-34",
+    "azimuth": "rotor torque, Eq. 17",
+    "gimbal_flap": "gimbal, Eqs. 1-3",
+    "gimbal_roll": "gimbal, Eqs. 1-3",
+    "hub_k": "hub force, Eqs. 4-11",
+}
+FIXED_EQUATION = dict.fromkeys(multiblade.FIXED_COORDINATES, "Eq. 17")
+
+
+class DimensionError(ValueError):
+    """A term whose dimension is not that of its entry."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One entry of a matrix or one value: the expression, where it comes from, and its dimension."""
+
+    value: sp.Expr
+    equation: str
+    dimension: Dimension
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function to generate: temporaries, then named values, the entries of a matrix, or a matrix product.
+
+    `blade_matrices` are whole-matrix arguments whose entries the expressions index; a `product` is summed over the
+    blade's segments.
+    """
+
+    module: str
+    name: str
+    summary: str
+    origin: str
+    steps: list[tuple[sp.Symbol, sp.Expr]] = field(default_factory=list)
+    values: tuple[sp.Symbol, ...] = ()
+    rows: tuple[str, ...] = ()
+    columns: tuple[str, ...] = ()
+    entries: dict[tuple[str, str], Entry] = field(default_factory=dict)
+    blade_matrices: tuple[str, ...] = ()
+    product: sp.MatrixExpr | None = None
+
+    @property
+    def arguments(self) -> list[sp.Symbol]:
+        """Free symbols in the order of their declaration; one that is no declared quantity is refused."""
+        if self.product is not None:
+            return sorted(self.product.atoms(sp.MatrixSymbol), key=lambda matrix: matrix.name)
+        known = {symbol for symbol, _ in self.steps}
+        expressions = [value for _, value in self.steps] + [entry.value for entry in self.entries.values()]
+        free = set().union(*(expression.free_symbols for expression in expressions)) if expressions else set()
+        if self.blade_matrices:
+            free = {symbol for symbol in free if symbol in QUANTITIES}
+        free -= known
+        unknown = free - set(QUANTITIES)
+        if unknown:
+            raise ValueError(f"{self.module}.{self.name} uses symbols that are no argument: {sorted(map(str, unknown))}")
+        return [symbol for symbol in QUANTITIES if symbol in free]
+
+    def check_dimensions(self) -> None:
+        """Raise DimensionError unless every step and entry has its symbol's or its entry's dimension."""
+        for symbol, value in self.steps:
+            _require(value, QUANTITIES[symbol].dimension, f"{self.module}.{self.name}: {symbol}")
+        for place, entry in self.entries.items():
+            if not self.blade_matrices:
+                _require(entry.value, entry.dimension, f"{self.module}.{self.name}: {place}")
+
+
+def _require(expression: sp.Expr, dimension: Dimension, where: str) -> None:
+    found = dimension_of(expression, where)
+    if expression != 0 and found != dimension:
+        raise DimensionError(f"{where} has dimension {found}, not {dimension}: {expression}")
+
+
+def dimension_of(expression: sp.Expr, where: str = "") -> Dimension:
+    """Dimension of an expression; all terms of a sum must agree and functions take numbers."""
+    if expression.is_number:
+        return NUMBER
+    if expression.is_Symbol:
+        return QUANTITIES[expression].dimension
+    if expression.is_Add:
+        dimensions = {dimension_of(term, where) for term in expression.args}
+        if len(dimensions) != 1:
+            raise DimensionError(f"{where}: terms of different dimension in {expression}")
+        return dimensions.pop()
+    if expression.is_Mul:
+        return tuple(sum(parts) for parts in zip(*(dimension_of(a, where) for a in expression.args), strict=True))
+    if expression.is_Pow:
+        exponent = expression.exp
+        return tuple(int(d * exponent) for d in dimension_of(expression.base, where))
+    for argument in expression.args:
+        _require(argument, NUMBER, where)
+    return NUMBER
+
+
+def _plus(*dimensions: Dimension, minus: Dimension = NUMBER) -> Dimension:
+    return tuple(sum(parts) - m for *parts, m in zip(*dimensions, minus, strict=True))
+
+
+def coordinate_dimension(name: str) -> Dimension:
+    return LENGTH if name in kin.HUB_TRANSLATION or name in ("x", "y", "z") else NUMBER
+
+
+def row_dimension(name: str) -> Dimension:
+    """Virtual work per unit of the row's coordinate."""
+    return FORCE if coordinate_dimension(name) == LENGTH else MOMENT
+
+
+def _per_time(order: int) -> Dimension:
+    return (0, 0, order)
+
+
+def _entries(rows, columns, value: Callable, dimension: Callable, equation: dict | str) -> dict[tuple[str, str], Entry]:
+    entries = {}
+    for row in rows:
+        for column in columns:
+            expression = value(row, column)
+            if expression != 0:
+                origin = equation if isinstance(equation, str) else equation[row]
+                entries[row, column] = Entry(expression, origin, dimension(row, column))
+    return entries
+
+
+def blade_matrix(module, name, summary, value, order: int, rows=kin.COORDINATES, columns=kin.COORDINATES, steps=()):
+    """A matrix of one blade in rotating axes; `order` counts the time derivatives of the column's coordinate."""
+
+    def dimension(row, column):
+        return _plus(row_dimension(row), _per_time(order), minus=coordinate_dimension(column))
+
+    entries = _entries(rows, columns, value, dimension, ROW_EQUATION)
+    origin = "AIAA-2002-1604: " + "; ".join(dict.fromkeys(ROW_EQUATION[row] for row, _ in entries))
+    return Function(module, name, summary, origin, list(steps), rows=tuple(rows), columns=tuple(columns), entries=entries)
+
+
+def values(module, name, summary, origin, steps, returned=None):
+    """A function that returns named values."""
+    returned = tuple(symbol for symbol, _ in steps) if returned is None else returned
+    return Function(module, name, summary, origin, list(steps), values=returned)
+
+
+def inertia_functions() -> Iterator[Function]:
+    blade = inertia.blade_inertia()
+    yield values(
+        "inertia",
+        "dependent_inertias",
+        "Three mass integrals that follow from the others and the hinge offsets.",
+        "AIAA-2002-1604, nomenclature: integrals over the blade outboard of each hinge",
+        list(inertia.dependent_inertias().items()),
+    )
+    yield values(
+        "inertia",
+        "trim_integrals",
+        "Sines and cosines of the trim angles, and the mass integrals over the arms of the deflected blade.",
+        "the blade's reference line with finite precone, coning and lag, Eq. 2",
+        temporaries(WHOLE_BLADE_ANGLES) + list(inertia.trim_integrals().items()),
+    )
+    yield blade_matrix("inertia", "mass", "Mass matrix of one blade in rotating axes.", blade.mass, 2)
+    yield blade_matrix(
+        "inertia", "gyroscopic", "Gyroscopic (Coriolis) matrix of one blade in rotating axes.", blade.gyroscopic, 1
+    )
+    yield blade_matrix(
+        "inertia", "centrifugal_stiffness", "Centrifugal stiffness of one blade in rotating axes.", blade.centrifugal, 0
+    )
+
+
+def spring_functions() -> Iterator[Function]:
+    steps = flap_lag_springs.effective_stiffness()
+    yield values(
+        "flap_lag_springs",
+        "effective_stiffness",
+        "Hub and blade springs in series, and their derivatives with structural pitch.",
+        "AIAA-2002-1604, Eqs. 18-24",
+        steps,
+        tuple(flap_lag_springs.STIFFNESS.values()),
+    )
+    yield blade_matrix(
+        "flap_lag_springs",
+        "stiffness",
+        "Stiffness of one blade's flap and lag springs, which turn with its pitch.",
+        flap_lag_springs.stiffness,
+        0,
+    )
+
+
+def pitch_functions() -> Iterator[Function]:
+    yield blade_matrix("pitch", "mass", "Pitch inertia of one blade, lumped.", pitch.mass, 2)
+    yield blade_matrix("pitch", "damping", "Dampers of one blade and its share of the gimbal's.", pitch.damping, 1)
+    yield blade_matrix(
+        "pitch",
+        "stiffness",
+        "Control system, propeller moment, and one blade's share of the gimbal spring and damper.",
+        pitch.stiffness,
+        0,
+    )
+    yield values(
+        "pitch",
+        "couplings",
+        "Pitch-flap and pitch-lag coupling of the control system's flexibility.",
+        "AIAA-2002-1604, Eqs. 33-37",
+        list(pitch.couplings().items()),
+    )
+
+
+def section_functions() -> Iterator[Function]:
+    yield values(
+        "section",
+        "air_at_section",
+        "Speed, inflow angle, angle of attack and Mach number of a section.",
+        "quasi-steady strip theory, as NASA TN D-7677",
+        section.air_at_section(),
+    )
+    yield values(
+        "section",
+        "prandtl_glauert",
+        "Prandtl-Glauert factor and its derivative with Mach number; Mach below 1.",
+        "Prandtl-Glauert similarity rule",
+        section.prandtl_glauert(),
+    )
+    half_pressure = [(section.pressure_chord, s.density * s.chord / 2)]
+    yield values(
+        "section",
+        "loads",
+        "Section loads per unit span and their derivatives with the air's velocity and the pitch.",
+        "quasi-steady strip theory, as NASA TN D-7677",
+        half_pressure + list(section.load_derivatives().items()),
+        tuple(section.SECTION_LOADS.values()),
+    )
+
+
+_SEGMENT_ROW = {"x_0": LENGTH, "n_0": LENGTH, "d_0": LENGTH, "rotation": NUMBER}
+_SEGMENT_MOTION_DIMENSION = {
+    motion: NUMBER if motion == "theta" else ((0, 1, -1) if motion.endswith("_0") else PER_SECOND)
+    for motion in airloads.SEGMENT_MOTION
+}
+
+
+def _segment_matrix(name, summary, rows, columns, value, dimension, origin):
+    return Function(
+        "airloads",
+        name,
+        summary,
+        origin,
+        rows=tuple(rows),
+        columns=tuple(columns),
+        entries=_entries(rows, columns, value, dimension, origin),
+    )
+
+
+def _virtual_motion(name: str, rows) -> Function:
+    return _segment_matrix(
+        name,
+        "W: displacement at r = 0 and per unit radius along i', n, d, and rotation about d, of a segment for each row.",
+        airloads.SEGMENT_LOADS,
+        rows,
+        lambda load, row: airloads.virtual_motion(row, load),
+        lambda load, row: _plus(_SEGMENT_ROW.get(load, NUMBER), minus=coordinate_dimension(row)),
+        "virtual displacements of the sections, Eqs. 2-11",
+    )
+
+
+def _motion_matrix(name: str, summary: str, columns, value, order: int) -> Function:
+    return _segment_matrix(
+        name,
+        summary,
+        airloads.SEGMENT_MOTION,
+        columns,
+        value,
+        lambda motion, column: _plus(
+            _SEGMENT_MOTION_DIMENSION[motion], _per_time(order), minus=coordinate_dimension(column)
+        ),
+        "perturbation velocities and pitch, Eqs. 14-16",
+    )
+
+
+def _unknowns(value: Callable) -> Callable:
+    return lambda motion, unknown: value(motion, trim.blade_coordinate(unknown))
+
+
+def airload_functions() -> Iterator[Function]:
+    yield values(
+        "airloads",
+        "segment_geometry",
+        "Trim geometry of a straight segment between hinges: sines and cosines, its line and its flap arm.",
+        "the blade's reference line with finite precone, coning and lag, Eq. 2",
+        temporaries(SEGMENT_ANGLES) + airloads.segment_geometry(),
+    )
+    yield _segment_matrix(
+        "trim_velocity",
+        "Trim velocity of the air at r = 0 and per unit radius, along a segment.",
+        airloads.SEGMENT_MOTION[:-1],
+        ("trim",),
+        lambda motion, _: airloads.trim_velocity(motion),
+        lambda motion, _: _SEGMENT_MOTION_DIMENSION[motion],
+        "u_T = Omega r and u_P = V with finite trim angles",
+    )
+    yield _virtual_motion("virtual_motion", kin.COORDINATES)
+    yield _motion_matrix(
+        "rate_motion",
+        "U for rates: velocity of the air along a segment for the rate of each coordinate.",
+        kin.COORDINATES,
+        airloads.rate_motion,
+        1,
+    )
+    yield _motion_matrix(
+        "displacement_motion",
+        "U for displacements: velocity of the air along a segment, and pitch, for each coordinate.",
+        kin.COORDINATES,
+        airloads.displacement_motion,
+        0,
+    )
+    yield _segment_matrix(
+        "load_derivatives",
+        "L: generalised loads of a segment per unit of its motions, from radial moments of the section's derivatives.",
+        airloads.SEGMENT_LOADS,
+        airloads.SEGMENT_MOTION,
+        _load_derivative,
+        lambda load, motion: _plus(
+            FORCE if load.endswith("_0") else MOMENT, minus=_SEGMENT_MOTION_DIMENSION[motion]
+        ),
+        "strip theory on a straight segment, as NASA TN D-7677",
+    )
+    yield _segment_matrix(
+        "steady_loads",
+        "Steady generalised loads of a segment.",
+        airloads.SEGMENT_LOADS,
+        ("trim",),
+        lambda load, _: airloads.steady_load(load),
+        lambda load, _: FORCE if load.endswith("_0") else MOMENT,
+        "strip theory on a straight segment",
+    )
+    yield _segment_matrix(
+        "geometric_stiffness",
+        "G: change of the steady airloads' virtual work with each coordinate, of one segment.",
+        kin.COORDINATES,
+        kin.COORDINATES,
+        airloads.geometric_stiffness,
+        lambda row, column: _plus(row_dimension(row), minus=coordinate_dimension(column)),
+        "steady loads on the moving blade, beyond Eqs. 14-16",
+    )
+
+
+    summaries = {
+        "damping": "Airload damping of one blade in rotating axes, C = - sum W^T L U.",
+        "stiffness": "Airload stiffness of one blade in rotating axes, K = - sum W^T L U - G.",
+        "steady_work": "Virtual work of the steady airloads of one blade, one column.",
+    }
+    for name, product in airloads.products().items():
+        yield Function("airloads", name, summaries[name], "virtual work of Eqs. 12 and 32", product=product)
+
+
+def _load_derivative(load: str, motion: str) -> sp.Expr:
+    """The moment that L holds, or nothing where the section has no such derivative."""
+    name = "m" if load == "rotation" else f"f{load[0]}"
+    argument = "_theta" if motion == "theta" else f"_{motion[:2]}"
+    if section.load_derivatives()[section.SECTION_LOADS[name, argument]] == 0:
+        return sp.Integer(0)
+    return airloads.load_derivative(load, motion)
+
+
+def trim_functions() -> Iterator[Function]:
+    columns = {"flap": "flap", "lag": "lag", "pitch": "pitch", "collective": "pitch"}
+    yield Function(
+        "trim",
+        "residual",
+        "Steady balance of one blade without airloads: flap, lag, pitch moment and torque.",
+        "AIAA-2002-1604, Eqs. 12 and 32, steady part",
+        rows=trim.BALANCES,
+        columns=("trim",),
+        entries=_entries(
+            trim.BALANCES, ("trim",), lambda row, _: trim.residual(row), lambda row, _: MOMENT, ROW_EQUATION
+        ),
+    )
+    yield Function(
+        "trim",
+        "jacobian",
+        "Derivative of the residual with coning, lag, elastic pitch and collective, without airloads.",
+        "AIAA-2002-1604, Eqs. 12 and 32, differentiated",
+        rows=trim.BALANCES,
+        columns=tuple(columns),
+        entries=_entries(trim.BALANCES, columns, trim.jacobian, lambda row, _: MOMENT, ROW_EQUATION),
+    )
+    for function in (
+        _virtual_motion("virtual_motion", trim.STEADY_ROWS),
+        _motion_matrix(
+            "displacement_motion",
+            "U for the unknowns: velocity of the air along a segment, and pitch.",
+            tuple(columns),
+            _unknowns(airloads.displacement_motion),
+            0,
+        ),
+        _segment_matrix(
+            "geometric_stiffness",
+            "G for the unknowns: change of the steady airloads' virtual work, of one segment.",
+            trim.BALANCES,
+            tuple(columns),
+            _unknowns(airloads.geometric_stiffness),
+            lambda row, _: row_dimension(row),
+            "steady loads on the moving blade",
+        ),
+    ):
+        yield Function(**{**function.__dict__, "module": "trim"})
+
+
+def multiblade_functions() -> Iterator[Function]:
+    places = {name: place for place, name in enumerate(multiblade.FIXED_COORDINATES)}
+
+    def placed(value):
+        return lambda row, column: value(places[row], places[column])
+
+    for name, value, order, summary in (
+        ("mass", multiblade.mass, 2, "Mass matrix of the rotor in the fixed frame."),
+        ("damping", multiblade.damping, 1, "Damping and gyroscopic matrix of the rotor in the fixed frame."),
+        ("stiffness", multiblade.stiffness, 0, "Stiffness matrix of the rotor in the fixed frame."),
+    ):
+        entries = _entries(
+            multiblade.FIXED_COORDINATES,
+            multiblade.FIXED_COORDINATES,
+            placed(value),
+            lambda row, column, order=order: _plus(
+                row_dimension(row), _per_time(order), minus=coordinate_dimension(column)
+            ),
+            FIXED_EQUATION,
+        )
+        yield Function(
+            "multiblade",
+            name,
+            summary,
+            "AIAA-2002-1604, Eqs. 7-9 and 17: sum over N blades, any N of at least 3",
+            rows=multiblade.FIXED_COORDINATES,
+            columns=multiblade.FIXED_COORDINATES,
+            entries=entries,
+            blade_matrices=("mass", "damping", "stiffness")[: 3 - order],
+        )
+
+
+# In the order of the derivation; each step prints a progress line.
+STEPS = {
+    "inertia": inertia_functions,
+    "flap_lag_springs": spring_functions,
+    "pitch": pitch_functions,
+    "section": section_functions,
+    "airloads": airload_functions,
+    "trim": trim_functions,
+    "multiblade": multiblade_functions,
+}

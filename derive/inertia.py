@@ -1,0 +1,180 @@
+"""Inertia of one blade in rotating axes: M, C and K of the inertia forces, and their steady part (Eqs. 2-13).
+
+The virtual work of the inertia forces, row i, is the integral of m W_i . a with W_i the row's virtual displacement and
+a = p'' + 2 Omega k x p' + Omega² k x (k x p) in rotating axes. Linearised about trim, with commas for derivatives,
+
+    M_ij = int m W_i . p,j        C_ij = 2 Omega int m W_i . (k x p,j)
+    K_ij = Omega² int m [ W_i . (k x (k x p,j)) + W_i,j . (k x (k x p)) ]
+
+Every vector is linear in the arms of the deflected blade, so the mass enters through integrals of products of two arms.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import sympy as sp
+
+from derive import kinematics as kin
+from derive import symbols as s
+from derive.polynomials import WHOLE_BLADE_ANGLES, PolynomialRing, name_trigonometry
+
+ARMS = (kin.radial_arm, kin.axial_arm, kin.flap_arm, kin.lag_arm)
+
+# Integrals of m times one or two arms of the blade at trim.
+radial_moment = s.quantity("radial_moment", "S_j", "kg m", "mass times radial arm")
+axial_moment = s.quantity("axial_moment", "S_k", "kg m", "mass times axial arm")
+flap_moment = s.quantity("flap_moment", r"S_b", "kg m", "mass times flap arm")
+radial_inertia = s.quantity("radial_inertia", "I_{jj}", "kg m^2", "mass times radial arm squared")
+axial_inertia = s.quantity("axial_inertia", "I_{kk}", "kg m^2", "mass times axial arm squared")
+radial_axial_inertia = s.quantity("radial_axial_inertia", "I_{jk}", "kg m^2", "mass times radial and axial arm")
+radial_flap_inertia = s.quantity("radial_flap_inertia", "I_{jb}", "kg m^2", "mass times radial and flap arm")
+axial_flap_inertia = s.quantity("axial_flap_inertia", "I_{kb}", "kg m^2", "mass times axial and flap arm")
+radial_lag_inertia = s.quantity("radial_lag_inertia", r"I_{j\zeta}", "kg m^2", "mass times radial and lag arm")
+axial_lag_inertia = s.quantity("axial_lag_inertia", r"I_{k\zeta}", "kg m^2", "mass times axial and lag arm")
+deflected_flap_inertia = s.quantity("deflected_flap_inertia", "I_{bb}", "kg m^2", "mass times flap arm squared")
+deflected_flap_lag_inertia = s.quantity(
+    "deflected_flap_lag_inertia", r"I_{b\zeta}", "kg m^2", "mass times flap and lag arm"
+)
+
+TRIM_INTEGRALS = {
+    (): s.blade_mass,
+    (kin.radial_arm,): radial_moment,
+    (kin.axial_arm,): axial_moment,
+    (kin.flap_arm,): flap_moment,
+    (kin.lag_arm,): s.lag_first_moment,
+    (kin.radial_arm, kin.radial_arm): radial_inertia,
+    (kin.radial_arm, kin.axial_arm): radial_axial_inertia,
+    (kin.axial_arm, kin.axial_arm): axial_inertia,
+    (kin.radial_arm, kin.flap_arm): radial_flap_inertia,
+    (kin.axial_arm, kin.flap_arm): axial_flap_inertia,
+    (kin.flap_arm, kin.flap_arm): deflected_flap_inertia,
+    (kin.radial_arm, kin.lag_arm): radial_lag_inertia,
+    (kin.axial_arm, kin.lag_arm): axial_lag_inertia,
+    (kin.flap_arm, kin.lag_arm): deflected_flap_lag_inertia,
+    (kin.lag_arm, kin.lag_arm): s.lag_inertia,
+}
+
+# Integrals over the arms of the deflected blade, between the mass data and the integrals at trim.
+inboard_moment = s.quantity("inboard_moment", "S_a", "kg m", "mass times inboard arm")
+inboard_inertia = s.quantity("inboard_inertia", "I_{aa}", "kg m^2", "mass times inboard arm squared")
+inboard_flap_inertia = s.quantity("inboard_flap_inertia", "I_{ab}", "kg m^2", "mass times inboard and flap arm")
+inboard_lag_inertia = s.quantity("inboard_lag_inertia", r"I_{a\zeta}", "kg m^2", "mass times inboard and lag arm")
+
+DEFLECTED_INTEGRALS = {
+    (): s.blade_mass,
+    (kin.inboard_arm,): inboard_moment,
+    (kin.flap_arm,): flap_moment,
+    (kin.lag_arm,): s.lag_first_moment,
+    (kin.inboard_arm, kin.inboard_arm): inboard_inertia,
+    (kin.inboard_arm, kin.flap_arm): inboard_flap_inertia,
+    (kin.inboard_arm, kin.lag_arm): inboard_lag_inertia,
+    (kin.flap_arm, kin.flap_arm): deflected_flap_inertia,
+    (kin.flap_arm, kin.lag_arm): deflected_flap_lag_inertia,
+    (kin.lag_arm, kin.lag_arm): s.lag_inertia,
+}
+
+# Integrals over the arms of the undeflected blade: the blade's mass data.
+MASS_INTEGRALS = {
+    (): s.blade_mass,
+    (kin.inboard_arm,): s.blade_first_moment - s.flap_first_moment,
+    (kin.outboard_arm,): s.flap_first_moment,
+    (kin.lag_arm,): s.lag_first_moment,
+    (kin.inboard_arm, kin.inboard_arm): s.blade_inertia - 2 * s.flap_hub_inertia + s.flap_inertia,
+    (kin.inboard_arm, kin.outboard_arm): s.flap_hub_inertia - s.flap_inertia,
+    (kin.inboard_arm, kin.lag_arm): s.lag_hub_inertia - s.flap_lag_inertia,
+    (kin.outboard_arm, kin.outboard_arm): s.flap_inertia,
+    (kin.outboard_arm, kin.lag_arm): s.flap_lag_inertia,
+    (kin.lag_arm, kin.lag_arm): s.lag_inertia,
+}
+
+
+def integrate_mass(integrand, integrals) -> sp.Expr:
+    """Integral over the blade of m times a polynomial of at most second degree in the arms of `integrals`."""
+    arms = sorted({arm for product in integrals for arm in product}, key=lambda arm: arm.name)
+    by_powers = {tuple(product.count(arm) for arm in arms): value for product, value in integrals.items()}
+    terms = sp.Poly(integrand, *arms).terms() if integrand != 0 else []
+    return sum((coefficient * by_powers[powers] for powers, coefficient in terms), sp.Integer(0))
+
+
+def trim_integrals() -> dict[sp.Symbol, sp.Expr]:
+    """The integrals at trim: first over the arms of the deflected blade, then over those of its position."""
+    to_deflected = _redefine(DEFLECTED_INTEGRALS, MASS_INTEGRALS, {kin.flap_arm: kin.deflected_flap_arm()})
+    return to_deflected | _redefine(TRIM_INTEGRALS, DEFLECTED_INTEGRALS, kin.trim_arms())
+
+
+def _redefine(integrals, known, arms) -> dict[sp.Symbol, sp.Expr]:
+    """Integrals of products of arms, in the known integrals of the arms they are made of."""
+    definitions = {}
+    for product, symbol in integrals.items():
+        integrand = sp.expand(sp.prod(arms.get(arm, arm) for arm in product))
+        integral = name_trigonometry(integrate_mass(integrand, known), WHOLE_BLADE_ANGLES)
+        if integral != symbol:
+            definitions[symbol] = integral
+    return definitions
+
+
+def dependent_inertias() -> dict[sp.Symbol, sp.Expr]:
+    """The three integrals that follow from the others.
+
+    Outboard of the flap hinge r = rho_beta + e_beta; outboard of the lag hinge rho_beta = rho_zeta + e_zeta - e_beta.
+    """
+    radius = {s.flap_hub_inertia: kin.outboard_arm + s.flap_hinge_offset}
+    radius |= {s.lag_hub_inertia: kin.lag_arm + s.lag_hinge_offset}
+    radius |= {s.flap_lag_inertia: kin.lag_arm + s.lag_hinge_offset - s.flap_hinge_offset}
+    hinge_arm = {s.flap_hub_inertia: kin.outboard_arm, s.lag_hub_inertia: kin.lag_arm, s.flap_lag_inertia: kin.lag_arm}
+    return {
+        symbol: integrate_mass(sp.expand(radius[symbol] * hinge_arm[symbol]), MASS_INTEGRALS) for symbol in radius
+    }
+
+
+class BladeInertia:
+    """Virtual displacements and derivatives of the position at trim, and the forms that are made of them."""
+
+    def __init__(self):
+        trig = [symbol for pair in WHOLE_BLADE_ANGLES.values() for symbol in pair]
+        self.ring = PolynomialRing([*trig, *ARMS, *(v for v in TRIM_INTEGRALS.values())])
+        position = kin.position()
+        rows = kin.virtual_displacements(position)
+        self.position = self._at_trim(position)
+        self.derivative = {name: self._at_trim(d) for name, d in kin.gradient(position).items()}
+        self.virtual = {name: self._at_trim(w) for name, w in rows.items()}
+        self.virtual_change = {
+            (i, j): self._at_trim(sp.diff(w, kin.q[j])) for i, w in rows.items() for j in kin.COORDINATES
+        }
+
+    def _at_trim(self, vector):
+        named = name_trigonometry(kin.at_trim(vector), WHOLE_BLADE_ANGLES)
+        return self.ring.vector(named.subs(kin.chordwise_arm, kin.lag_arm * sp.Symbol("sin_lag", real=True)))
+
+    def _integral(self, product) -> sp.Expr:
+        return integrate_mass(self.ring.shortest(product), TRIM_INTEGRALS)
+
+    def mass(self, i: str, j: str) -> sp.Expr:
+        return self._integral(_dot(self.virtual[i], self.derivative[j]))
+
+    def gyroscopic(self, i: str, j: str) -> sp.Expr:
+        return 2 * s.rotor_speed * self._integral(_dot(self.virtual[i], _spin(self.derivative[j])))
+
+    def centrifugal(self, i: str, j: str) -> sp.Expr:
+        moved = _dot(self.virtual[i], _spin(_spin(self.derivative[j])))
+        turned = _dot(self.virtual_change[i, j], _spin(_spin(self.position)))
+        return s.rotor_speed**2 * self._integral(moved + turned)
+
+    def steady(self, i: str) -> sp.Expr:
+        """Virtual work of the steady inertia forces, row i."""
+        return s.rotor_speed**2 * self._integral(_dot(self.virtual[i], _spin(_spin(self.position))))
+
+
+@functools.cache
+def blade_inertia() -> BladeInertia:
+    return BladeInertia()
+
+
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _spin(vector):
+    """k x vector."""
+    return [-vector[1], vector[0], 0 * vector[2]]

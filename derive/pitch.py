@@ -1,0 +1,99 @@
+"""Blade pitch: lumped inertia, control system, propeller moment, dampers, gimbal restraint, and the closed-form couplings.
+
+Pitch inertia is lumped on purpose: it acts on the pitch relative to the shaft alone, and the propeller moment uses the
+steady rotor speed. Both couplings of Eqs. 36 and 37 are the gradient of the spring energy's pitch moment.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import sympy as sp
+
+from derive import flap_lag_springs
+from derive import kinematics as kin
+from derive import symbols as s
+
+RATES = {name: sp.Symbol(f"rate_{name}", real=True) for name in kin.COORDINATES}
+
+pitch_flap_coupling = s.quantity("pitch_flap_coupling", r"K_{P\beta}", "", "pitch-flap coupling, nose down per flap")
+pitch_lag_coupling = s.quantity("pitch_lag_coupling", r"K_{P\zeta}", "", "pitch-lag coupling, nose down per lag")
+
+
+def rate(expression: sp.Expr) -> sp.Expr:
+    """Time derivative of an angle that depends on the coordinates alone."""
+    return sum(sp.diff(expression, kin.q[name]) * RATES[name] for name in kin.COORDINATES)
+
+
+def kinetic_energy() -> sp.Expr:
+    to_shaft, _ = kin.pitch_angles()
+    return s.pitch_inertia * rate(to_shaft) ** 2 / 2
+
+
+def control_energy() -> sp.Expr:
+    """Energy of the control system's flexibility."""
+    return s.control_stiffness * (s.elastic_pitch + kin.q["pitch"]) ** 2 / 2
+
+
+def propeller_energy() -> sp.Expr:
+    """Potential of the propeller moment, which turns a blade's chord into the disk plane."""
+    _, to_yoke = kin.pitch_angles()
+    return s.propeller_moment * s.pitch_inertia * s.rotor_speed**2 * sp.sin(to_yoke) ** 2 / 2
+
+
+def gimbal_tilt_rate() -> sp.Matrix:
+    """Rate of the tilt in the fixed frame, resolved in rotating axes."""
+    tilt = kin.q["gimbal_flap"] * kin.I_AXIS + kin.q["gimbal_roll"] * kin.J_AXIS
+    seen = RATES["gimbal_flap"] * kin.I_AXIS + RATES["gimbal_roll"] * kin.J_AXIS
+    return seen + s.rotor_speed * kin.K_AXIS.cross(tilt)
+
+
+def gimbal_energy() -> sp.Expr:
+    """One blade's share of the hub spring."""
+    return s.gimbal_stiffness / s.n_blades * (kin.q["gimbal_flap"] ** 2 + kin.q["gimbal_roll"] ** 2) / 2
+
+
+def dissipation() -> sp.Expr:
+    """Rayleigh function of the blade's dampers and of its share of the gimbal damper, which does not rotate."""
+    dampers = {"flap": s.flap_damping, "lag": s.lag_damping, "pitch": s.pitch_damping}
+    blade = sum(constant * RATES[name] ** 2 for name, constant in dampers.items())
+    tilt_rate = gimbal_tilt_rate()
+    return (blade + s.gimbal_damping / s.n_blades * tilt_rate.dot(tilt_rate)) / 2
+
+
+def at_rest(expression):
+    return kin.at_trim(expression).subs(dict.fromkeys(RATES.values(), 0))
+
+
+def mass(i: str, j: str) -> sp.Expr:
+    return at_rest(sp.diff(kinetic_energy(), RATES[i], RATES[j]))
+
+
+def damping(i: str, j: str) -> sp.Expr:
+    return at_rest(sp.diff(dissipation(), RATES[i], RATES[j]))
+
+
+def potential() -> sp.Expr:
+    return control_energy() + propeller_energy() + gimbal_energy()
+
+
+def stiffness(i: str, j: str) -> sp.Expr:
+    """Second derivative of the potentials, and what the non-rotating damper feels of a tilt that rotates."""
+    energy = at_rest(sp.diff(potential(), kin.q[i], kin.q[j]))
+    return sp.factor_terms(energy) + at_rest(sp.diff(dissipation(), RATES[i], kin.q[j]))
+
+
+def steady(i: str) -> sp.Expr:
+    return at_rest(sp.diff(potential(), kin.q[i]))
+
+
+@functools.cache
+def couplings() -> dict[sp.Symbol, sp.Expr]:
+    """K_Pbeta = -d theta/d beta and K_Pzeta = -d theta/d zeta of K_theta theta + dU/d theta = 0 (Eqs. 35-37).
+
+    U is the spring energy; the control system alone resists the moment.
+    """
+    return {
+        symbol: flap_lag_springs.stiffness("pitch", name) / s.control_stiffness
+        for symbol, name in ((pitch_flap_coupling, "flap"), (pitch_lag_coupling, "lag"))
+    }

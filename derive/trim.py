@@ -1,0 +1,38 @@
+"""Trim: the steady flap, lag and pitch balance of a blade and its torque, and their Jacobian.
+
+Unknowns are coning, lag, elastic pitch and, for a windmilling rotor, the collective that makes the torque vanish. The
+Jacobian is made of the same entries as the blade's stiffness matrix: elastic pitch and collective add up to the
+section's pitch, and only the control system tells them apart.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derive import flap_lag_springs, pitch
+from derive import symbols as s
+from derive.inertia import blade_inertia
+
+BALANCES = ("flap", "lag", "pitch", "azimuth")
+UNKNOWNS = ("flap", "lag", "pitch", "collective")
+# Rows whose steady airloads are wanted: the balances and the thrust.
+STEADY_ROWS = (*BALANCES, "hub_k")
+
+
+def residual(row: str) -> sp.Expr:
+    """Inertia, springs and control system at trim; airloads are subtracted from it."""
+    return blade_inertia().steady(row) + flap_lag_springs.steady(row) + pitch.steady(row)
+
+
+def blade_coordinate(unknown: str) -> str:
+    """The blade coordinate an unknown changes."""
+    return "pitch" if unknown == "collective" else unknown
+
+
+def jacobian(row: str, unknown: str) -> sp.Expr:
+    """Derivative of the residual with an unknown; the collective does not load the control system."""
+    name = blade_coordinate(unknown)
+    control_system = pitch.stiffness(row, name)
+    if unknown == "collective":
+        control_system = control_system.subs(s.control_stiffness, 0)
+    return blade_inertia().centrifugal(row, name) + flap_lag_springs.stiffness(row, name) + control_system
