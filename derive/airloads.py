@@ -75,9 +75,9 @@ MOMENTS = {
 }
 
 
-def segment_line() -> sp.Matrix:
-    """Trim position along a segment, in r (which the arms of the two hinges make linear)."""
-    return _on_segment(kin.at_trim(kin.blade_line()))
+def elastic_coupling() -> sp.Expr:
+    """What Eq. 16 adds to the pitch of the airloads when the pitch equation is left out."""
+    return -s.pitch_flap_coupling * kin.q["flap"] - s.pitch_lag_coupling * kin.q["lag"]
 
 
 def _on_segment(expression):
@@ -105,7 +105,8 @@ class SegmentKinematics:
         trig = [symbol for pair in SEGMENT_ANGLES.values() for symbol in pair]
         steps = [kin.beyond_flap_hinge, kin.beyond_lag_hinge]
         geometry = [*anchor, flap_arm_at_center, s.flap_hinge_offset, s.lag_hinge_offset, s.radial_station]
-        operation = [s.rotor_speed, s.airspeed, s.pitch_gimbal_coupling, s.pitch]
+        operation = [s.rotor_speed, s.airspeed, s.pitch, s.pitch_gimbal_coupling]
+        operation += [s.pitch_flap_coupling, s.pitch_lag_coupling]
         loads = [MOMENTS[load, 0] for load in LOADS]
         self.ring = PolynomialRing([*trig, *steps, *geometry, *operation, *loads])
         turn = [self._taylor(kin.BLADE_TO_ROTATING[i, :]) for i in range(3)]
@@ -114,8 +115,9 @@ class SegmentKinematics:
         self.about_hub = _turned(turn, self._taylor(self._named(self._line())))
         hub = self._taylor(kin.HUB)
         self.position = {key: _add(self.about_hub.get(key), hub.get(key)) for key in {*self.about_hub, *hub}}
-        pitch = self._taylor(sp.Matrix([kin.pitch_angles()[1]]))
-        self.pitch_to_yoke = {key: value[0] for key, value in pitch.items()}
+        _, to_yoke = kin.pitch_angles()
+        self.pitch_to_yoke = self._taylor_of_one(to_yoke)
+        self.pitch_in_air = self._taylor_of_one(to_yoke + elastic_coupling())
         self.zero = self.ring.ring.zero
 
     def _taylor(self, vector) -> Taylor:
@@ -133,6 +135,9 @@ class SegmentKinematics:
                 values[place] = self.ring(coefficient * factor)
                 parts[key[::-1]] = values
         return parts
+
+    def _taylor_of_one(self, scalar: sp.Expr) -> dict:
+        return {key: value[0] for key, value in self._taylor(sp.Matrix([scalar])).items()}
 
     @staticmethod
     def _to_second_order(axes: sp.Matrix) -> list[sp.Matrix]:
@@ -204,7 +209,8 @@ class SegmentKinematics:
         return SENSE[axis] * _dot(self._derivative(self.axes[axis]), self._derivative(self.position, name))
 
     def pitch_change(self, *along: str):
-        return self.pitch_to_yoke.get(along, self.zero)
+        """Change of the section's pitch in the airloads, where a coupling may stand for the pitch equation."""
+        return self.pitch_in_air.get(along, self.zero)
 
     def work_displacement(self, axis: str, row: str, *along: str):
         """Virtual displacement of a row along a section axis, and its derivative."""
@@ -218,7 +224,7 @@ class SegmentKinematics:
         total = _dot(self._derivative(self.axes["d"]), self.virtual_rotation(row, *along))
         if along:
             total += _dot(self._derivative(self.axes["d"], *along), self.virtual_rotation(row))
-        return total + self.pitch_change(row, *along)
+        return total + self.pitch_to_yoke.get((row, *along), self.zero)
 
 
 @functools.cache

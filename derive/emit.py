@@ -129,13 +129,13 @@ def index_groups(functions: list[Function]) -> list[dict]:
     groups: dict[tuple[str, ...], None] = {}
     for function in functions:
         groups |= dict.fromkeys(names for names in (function.rows, function.columns) if names)
+    if any(function.blade_matrices for function in functions):
+        groups[tuple(symbol.name for symbol in multiblade.BLADE_INDEX.values())] = None
     constants: dict[str, int] = {}
     for names in groups:
         for place, name in enumerate(names):
             if constants.setdefault(name, place) != place:
                 raise ValueError(f"{name} would be two indices in one module")
-    if any(function.blade_matrices for function in functions):
-        constants |= {name: place for place, name in enumerate(kin.COORDINATES)}
     return [{"name": name.upper(), "place": place} for name, place in constants.items()]
 
 

@@ -302,7 +302,9 @@ def _motion_matrix(name: str, summary: str, columns, value, order: int) -> Funct
 
 
 def _unknowns(value: Callable) -> Callable:
-    return lambda motion, unknown: value(motion, trim.blade_coordinate(unknown))
+    """The same for trim unknowns; couplings act on perturbations from trim alone."""
+    no_coupling = {s.pitch_flap_coupling: 0, s.pitch_lag_coupling: 0}
+    return lambda motion, unknown: value(motion, trim.blade_coordinate(unknown)).subs(no_coupling)
 
 
 def airload_functions() -> Iterator[Function]:

@@ -87,15 +87,22 @@ def groups() -> dict[sp.Symbol, sp.Expr]:
     sine_squared = sp.sin(s.structural_pitch) ** 2
     return {
         outboard_stiffness_difference: numerators["flap", "flap"].coeff(sine_squared),
-        series_softening: determinant.coeff(sine_squared),
+        series_softening: _by_ratio(determinant.coeff(sine_squared)),
     }
+
+
+def _by_ratio(expression: sp.Expr) -> sp.Expr:
+    """Coefficients of the stiffness ratios factored, so that R (1 - R) = 0 removes a ratio that has no bound."""
+    ratio = sp.Symbol("ratio")
+    polynomial = sp.expand(sp.expand(expression).subs(s.lag_stiffness, ratio * s.flap_stiffness))
+    in_ratio = sum(sp.factor(polynomial.coeff(ratio, power)) * ratio**power for power in (-1, 0, 1))
+    return in_ratio.subs(ratio, s.lag_stiffness / s.flap_stiffness)
 
 
 def _grouped(expression: sp.Expr) -> sp.Expr:
     """The same with the groups' names in place of their constants."""
     outboard_lag = s.flap_outboard_fraction * s.lag_stiffness
     difference = outboard_stiffness_difference - groups()[outboard_stiffness_difference] + outboard_lag
-    expression = expression.subs(groups()[series_softening], series_softening)
     return sp.expand(sp.expand(expression).subs(outboard_lag, difference))
 
 
@@ -105,7 +112,8 @@ def effective_stiffness() -> list[tuple[sp.Symbol, sp.Expr]]:
     angle = s.structural_pitch
     determinants = (series_determinant, series_determinant_slope, series_determinant_curvature)
     steps = [(name, value) for name, value in groups().items()]
-    steps += [(symbol, sp.diff(_grouped(determinant), angle, order)) for order, symbol in enumerate(determinants)]
+    softened = determinant.subs(sp.sin(angle), 0) + series_softening * sp.sin(angle) ** 2
+    steps += [(symbol, sp.diff(softened, angle, order)) for order, symbol in enumerate(determinants)]
     stiffness, divisor = sp.Function("stiffness")(angle), sp.Function("divisor")(angle)
     for order in range(3):
         for (a, b), numerator in numerators.items():

@@ -41,7 +41,7 @@ FIXED_COORDINATES = (
 
 psi = sp.Symbol("psi", real=True)
 MASS, DAMPING, STIFFNESS = sp.IndexedBase("mass"), sp.IndexedBase("damping"), sp.IndexedBase("stiffness")
-BLADE_INDEX = {name: sp.Symbol(name.upper()) for name in kin.COORDINATES}
+BLADE_INDEX = {name: sp.Symbol(f"BLADE_{name.upper()}") for name in kin.COORDINATES}
 
 I_AZIMUTH = sp.Matrix([sp.sin(psi), -sp.cos(psi), 0])  # i and j in I, J, K
 J_AZIMUTH = sp.Matrix([sp.cos(psi), sp.sin(psi), 0])

@@ -16,9 +16,6 @@ from derive import symbols as s
 
 RATES = {name: sp.Symbol(f"rate_{name}", real=True) for name in kin.COORDINATES}
 
-pitch_flap_coupling = s.quantity("pitch_flap_coupling", r"K_{P\beta}", "", "pitch-flap coupling, nose down per flap")
-pitch_lag_coupling = s.quantity("pitch_lag_coupling", r"K_{P\zeta}", "", "pitch-lag coupling, nose down per lag")
-
 
 def rate(expression: sp.Expr) -> sp.Expr:
     """Time derivative of an angle that depends on the coordinates alone."""
@@ -95,5 +92,5 @@ def couplings() -> dict[sp.Symbol, sp.Expr]:
     """
     return {
         symbol: flap_lag_springs.stiffness("pitch", name) / s.control_stiffness
-        for symbol, name in ((pitch_flap_coupling, "flap"), (pitch_lag_coupling, "lag"))
+        for symbol, name in ((s.pitch_flap_coupling, "flap"), (s.pitch_lag_coupling, "lag"))
     }

@@ -108,3 +108,5 @@ pitch = quantity("pitch", r"\Theta", "rad", "trim pitch at 0.75R: collective and
 structural_pitch = quantity(
     "structural_pitch", r"\Theta + \delta_s", "rad", "trim angle of the blade's structural axes"
 )
+pitch_flap_coupling = quantity("pitch_flap_coupling", r"K_{P\beta}", "", "pitch-flap coupling, nose down per flap")
+pitch_lag_coupling = quantity("pitch_lag_coupling", r"K_{P\zeta}", "", "pitch-lag coupling, nose down per lag")

@@ -1,0 +1,22 @@
+"""Whirl-flutter stability of gimballed tiltrotors, with equations derived from first principles."""
+
+from proprotor.airfoil import Airfoil
+from proprotor.case import Case, list_cases, load_case
+from proprotor.errors import InputError
+from proprotor.model import LinearModel, rotor_model
+from proprotor.operation import Operation
+from proprotor.rotor import Rotor
+from proprotor.support import NormalModes
+
+__all__ = [
+    "Airfoil",
+    "Case",
+    "InputError",
+    "LinearModel",
+    "NormalModes",
+    "Operation",
+    "Rotor",
+    "list_cases",
+    "load_case",
+    "rotor_model",
+]

@@ -1,0 +1,83 @@
+"""What a blade section makes of its angle of attack and Mach number."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from proprotor.errors import InputError
+
+
+class SectionCoefficients(NamedTuple):
+    """Lift, drag and moment coefficients and their derivatives with angle of attack (rad) and Mach number."""
+
+    lift_coefficient: ArrayLike
+    lift_coefficient_alpha: ArrayLike
+    lift_coefficient_mach: ArrayLike
+    drag_coefficient: ArrayLike
+    drag_coefficient_alpha: ArrayLike
+    drag_coefficient_mach: ArrayLike
+    moment_coefficient: ArrayLike
+    moment_coefficient_alpha: ArrayLike
+    moment_coefficient_mach: ArrayLike
+
+
+class SectionModel(Protocol):
+    """Anything that can stand for an airfoil."""
+
+    def coefficients(self, alpha: NDArray, mach: NDArray) -> SectionCoefficients:
+        """Coefficients and derivatives at angles of attack (rad) and Mach numbers of the same shape."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Airfoil:
+    """Constant lift slope and zero-lift line, constant drag and moment; any Mach number.
+
+    Parameters
+    ----------
+    lift_slope : float
+        c_lα, 1/rad, not negative.
+    zero_lift_angle : float
+        Angle of attack without lift, rad.
+    drag : float
+        c_d, not negative.
+    moment : float
+        c_m about the reference line, nose up.
+
+    Raises
+    ------
+    InputError
+        When a value is not finite, or lift slope or drag is negative.
+    """
+
+    lift_slope: float
+    zero_lift_angle: float = 0.0
+    drag: float = 0.0
+    moment: float = 0.0
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            value = getattr(self, entry.name)
+            if not np.all(np.isfinite(value)):
+                raise InputError(entry.name, value, "must be finite")
+        for name in ("lift_slope", "drag"):
+            if np.any(np.asarray(getattr(self, name)) < 0):
+                raise InputError(name, getattr(self, name), "must not be negative")
+
+    def coefficients(self, alpha: NDArray, mach: NDArray) -> SectionCoefficients:
+        """Linear lift, constant drag and moment; shapes as `alpha`."""
+        return SectionCoefficients(
+            lift_coefficient=self.lift_slope * (alpha - self.zero_lift_angle),
+            lift_coefficient_alpha=self.lift_slope,
+            lift_coefficient_mach=0.0,
+            drag_coefficient=self.drag,
+            drag_coefficient_alpha=0.0,
+            drag_coefficient_mach=0.0,
+            moment_coefficient=self.moment,
+            moment_coefficient_alpha=0.0,
+            moment_coefficient_mach=0.0,
+        )

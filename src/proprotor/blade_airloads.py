@@ -1,0 +1,91 @@
+"""Section loads along the blade, gathered into the radial moments the generated airload functions take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from proprotor_equations import airloads, section
+
+from proprotor.airfoil import SectionCoefficients
+from proprotor.evaluation import evaluate
+from proprotor.rotor import Rotor
+
+Quantities = Mapping[str, Any]
+
+
+def along_segments(quantities: Quantities) -> dict[str, Any]:
+    """The same quantities with a last axis for the segments of the blade."""
+    return {name: np.asarray(value)[..., None] for name, value in quantities.items()}
+
+
+def segment_quantities(rotor: Rotor, quantities: Quantities) -> dict[str, Any]:
+    """Quantities of each segment at trim: what holds for the whole blade, and the segment's geometry."""
+    quadrature = rotor.quadrature
+    pool = along_segments(quantities)
+    pool |= {"beyond_flap_hinge": quadrature.beyond_flap_hinge, "beyond_lag_hinge": quadrature.beyond_lag_hinge}
+    return pool | evaluate(airloads.segment_geometry, pool)._asdict()
+
+
+def _velocities(rotor: Rotor, segments: Quantities) -> dict[str, NDArray]:
+    """Trim velocity of the air at the stations."""
+    quadrature = rotor.quadrature
+    line = evaluate(airloads.trim_velocity, segments)[..., 0]
+    names = ("tangential_velocity", "axial_velocity", "radial_velocity")
+    return {
+        name: quadrature.at_stations(line[..., place]) + quadrature.at_stations(line[..., place + 3]) * quadrature.stations
+        for place, name in enumerate(names)
+    }
+
+
+def _compressible(coefficients: SectionCoefficients, mach: NDArray) -> SectionCoefficients:
+    """Prandtl-Glauert on lift and moment, and on their derivatives."""
+    factor, slope = section.prandtl_glauert(mach=mach)
+    scaled = {}
+    for name in ("lift", "moment"):
+        value, alpha, by_mach = (getattr(coefficients, f"{name}_coefficient{d}") for d in ("", "_alpha", "_mach"))
+        scaled |= {f"{name}_coefficient": factor * value, f"{name}_coefficient_alpha": factor * alpha}
+        scaled |= {f"{name}_coefficient_mach": factor * by_mach + slope * value}
+    return coefficients._replace(**scaled)
+
+
+def _lift_slope_alone(coefficients: SectionCoefficients) -> SectionCoefficients:
+    kept = coefficients.lift_coefficient_alpha
+    return SectionCoefficients(*([0.0] * len(SectionCoefficients._fields)))._replace(lift_coefficient_alpha=kept)
+
+
+def load_moments(
+    rotor: Rotor, segments: Quantities, *, compressibility: bool, lift_slope_only: bool = False
+) -> dict[str, NDArray]:
+    """Radial moments of the section loads and their derivatives, by name and power of r, (..., segments).
+
+    Parameters
+    ----------
+    rotor : Rotor
+    segments : mapping
+        `segment_quantities` at trim.
+    compressibility : bool
+        Prandtl-Glauert factor on lift and moment.
+    lift_slope_only : bool
+        Keep the terms proportional to the lift slope and no others.
+    """
+    stations = {name: segments[name] for name in ("density", "speed_of_sound", "rotor_speed")}
+    stations |= _velocities(rotor, segments)
+    stations |= {"chord": rotor.station_chord, "section_pitch": segments["pitch"] + rotor.station_twist}
+    stations |= evaluate(section.air_at_section, stations)._asdict()
+    coefficients = rotor.airfoil.coefficients(stations["angle_of_attack"], stations["mach"])
+    if compressibility:
+        coefficients = _compressible(coefficients, stations["mach"])
+    if lift_slope_only:
+        coefficients = _lift_slope_alone(coefficients)
+    loads = evaluate(section.loads, stations | coefficients._asdict())
+    shape = np.broadcast_shapes(*(np.shape(load) for load in loads), rotor.quadrature.stations.shape)
+    table = np.stack([np.broadcast_to(load, shape) for load in loads], axis=-2)
+    moments = rotor.quadrature.moments(table)
+    return {
+        f"{name}_{power}": moments[..., place, :, power]
+        for place, name in enumerate(loads._fields)
+        for power in range(moments.shape[-1])
+    }

@@ -1,0 +1,216 @@
+"""An analysis case: rotor, operation and support, with the source of every number."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.airfoil import Airfoil
+from proprotor.assembly import mount
+from proprotor.datum import PER_REV, Datum
+from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
+from proprotor.errors import InputError
+from proprotor.model import LinearModel, rotor_model
+from proprotor.operation import Operation
+from proprotor.rotor import Rotor
+from proprotor.support import HUB_AXES, NormalModes
+from proprotor.sweep import sweep
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.deck import Section, SupportSection
+
+__all__ = ["Case", "list_cases", "load_case"]
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A rotor, how it is operated, and what carries it.
+
+    Attributes
+    ----------
+    name, title, description : str
+        What the case is.
+    rotor : Rotor
+    operation : Operation
+    support : NormalModes
+    calibration : str
+        What was calibrated to which published result; empty when nothing was.
+    warnings : tuple of str
+        What a reader of results should know about the input.
+    sources : mapping of str to Datum
+        Every number of the deck by its field (``rotor.radius``, ``support.modes[beam].frequency``): the
+        value as written, its SI value and unit, status and source. What follows from the deck's
+        numbers, such as a stiffness from a frequency, stands here as well.
+    """
+
+    name: str
+    rotor: Rotor
+    operation: Operation
+    support: NormalModes
+    title: str = ""
+    description: str = ""
+    calibration: str = ""
+    warnings: tuple[str, ...] = ()
+    sources: Mapping[str, Datum] = field(default_factory=dict)
+
+    def linearize(self, airspeed: Any, **options: Any) -> LinearModel:
+        """Equations of motion of the rotor on its support.
+
+        Parameters
+        ----------
+        airspeed : float, array (...) in m/s, text such as "250 kt", or pint quantity
+        **options
+            See `proprotor.options.Options`.
+        """
+        return mount(self.rotor, rotor_model(self.rotor, self.operation, airspeed, **options), self.support)
+
+    def sweep(self, airspeeds: Any, **options: Any) -> xarray.Dataset:
+        """Modes along a list of airspeeds, tracked and named: see `proprotor.sweep.sweep`."""
+        return sweep(self.linearize(airspeeds, **options))
+
+
+def load_case(name_or_path: str | os.PathLike[str]) -> Case:
+    """The case of a deck.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        A bundled deck (`list_cases`) or a TOML file; `proprotor.deck` describes its fields.
+
+    Raises
+    ------
+    InputError
+        When the deck cannot be found or read, or a field is missing, unknown or not physical: one line for
+        each problem, with the field, the value as written and the rule.
+    """
+    from proprotor.deck import validate  # here, because pydantic is slow to import
+
+    deck = validate(read_tables(name_or_path))
+    numbers = {path: _per_second(n, deck.operation.rotor_speed.si) for path, n in _numbers(deck)}
+    with _told_as_written("operation", numbers):
+        trim = deck.operation.trim
+        operation = Operation(
+            **_values(numbers, "operation"),
+            trim=trim if isinstance(trim, str) else _values(numbers, "operation.trim"),
+        )
+    with _told_as_written("rotor.airfoil", numbers):
+        airfoil = Airfoil(**_values(numbers, "rotor.airfoil"))
+    with _told_as_written("rotor", numbers):
+        given = {"airfoil": airfoil, "propeller_moment": deck.rotor.propeller_moment}
+        rotor, derived = _rotor(_values(numbers, "rotor") | given, operation.density)
+    with _told_as_written("support", numbers):
+        support = _normal_modes(deck.support, numbers)
+    return Case(
+        name=deck.case.name,
+        title=deck.case.title,
+        description=deck.case.description,
+        calibration=deck.case.calibration,
+        warnings=tuple(deck.case.warnings),
+        rotor=rotor,
+        operation=operation,
+        support=support,
+        sources=numbers | derived,
+    )
+
+
+def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
+    """Every number of a section and those within it, by its path."""
+    for name in type(section).model_fields:
+        entry, here = getattr(section, name), f"{path}.{name}" if path else name
+        if isinstance(entry, Datum):
+            yield here, entry
+        elif name == "modes":
+            for mode in entry:
+                yield from _numbers(mode, f"{here}[{mode.name}]")
+        elif hasattr(type(entry), "model_fields"):
+            yield from _numbers(entry, here)
+
+
+def _per_second(number: Datum, rotor_speed: float) -> Datum:
+    """A frequency per revolution in rad/s: n cycles per revolution are n Ω."""
+    return replace(number, si=number.si * rotor_speed, unit="rad/s") if number.unit == PER_REV else number
+
+
+def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
+    """The SI values of a section's own numbers by field; a distribution as (r in m, values)."""
+    own = {
+        path.removeprefix(f"{section}."): n for path, n in numbers.items() if path.startswith(f"{section}.")
+    }
+    return {name: _value(n, numbers) for name, n in own.items() if "." not in name}
+
+
+def _value(number: Datum, numbers: Mapping[str, Datum]) -> Any:
+    if number.r_over_R is None:
+        return number.si
+    return np.array(number.r_over_R) * numbers["rotor.radius"].si, np.array(number.si)
+
+
+def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datum]]:
+    """The rotor, and the numbers that follow from those given."""
+    omega = {name: given.pop(f"{name}_frequency") for name in ("flap", "lag") if f"{name}_frequency" in given}
+    lock_number = given.pop("lock_number", None)
+    build = Rotor
+    if "mass_distribution" in given:
+        build = partial(Rotor.from_mass_distribution, *given.pop("mass_distribution"))
+    # Springs and chord may follow from inertias that only the rotor knows: hence the stand-ins.
+    bare = build(**{"flap_stiffness": 0.0, "lag_stiffness": 0.0, "chord": 1.0} | given)
+    derived = {f"{name}_stiffness": _spring(bare, name, frequency) for name, frequency in omega.items()}
+    if lock_number is not None:
+        derived["chord"] = _chord(bare, lock_number, density)
+    rotor = replace(bare, **{name: number.si for name, number in derived.items()})
+    return rotor, {f"rotor.{name}": number for name, number in derived.items()}
+
+
+def _spring(rotor: Rotor, hinge: str, frequency: float) -> Datum:
+    stiffness = getattr(rotor, f"{hinge}_inertia") * frequency**2
+    return Datum(
+        "I ω²", stiffness, "N*m/rad", "derived", f"{hinge}_inertia, {hinge}_frequency (non-rotating)"
+    )
+
+
+def _chord(rotor: Rotor, lock_number: float, density: float) -> Datum:
+    if density == 0:
+        raise InputError("lock_number", lock_number, "needs a density above zero; give chord instead")
+    chord = lock_number * rotor.blade_inertia / (density * rotor.airfoil.lift_slope * rotor.radius**4)
+    return Datum(
+        "γ I_b / (ρ c_lα R⁴)", chord, "m", "derived", "lock_number, density, lift_slope, blade_inertia"
+    )
+
+
+def _normal_modes(section: SupportSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    names = [mode.name for mode in section.modes]
+    modes = [_values(numbers, f"support.modes[{name}]") for name in names]
+    return NormalModes.from_frequencies(
+        names=names,
+        generalized_mass=[mode["generalized_mass"] for mode in modes],
+        frequency=[mode["frequency"] for mode in modes],
+        damping_ratio=[mode["damping_ratio"] for mode in modes],
+        hub=[[mode.get(axis, 0.0) for mode in modes] for axis in HUB_AXES],
+        includes_rotor=section.includes_rotor,
+    )
+
+
+@contextmanager
+def _told_as_written(section: str, numbers: Mapping[str, Datum]) -> Iterator[None]:
+    """Errors about an SI value told with the deck's field, and the value as the deck has it."""
+    try:
+        yield
+    except InputError as error:
+        name = error.field.rpartition(".")[2]
+        for written_as in (name, *_instead_of(name)):
+            if number := numbers.get(f"{section}.{written_as}"):
+                raise InputError(f"{section}.{written_as}", number.written, error.rule) from None
+        raise error.within(section) from None
+
+
+def _instead_of(name: str) -> tuple[str, ...]:
+    """The fields that may be given in place of one."""
+    return tuple(other for left, right in ALTERNATIVES if name in left for other in right)

@@ -1,0 +1,186 @@
+"""One number of a deck: what was written, its SI value, and where it comes from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.units import factor_to_si, meaning, to_si
+
+STATUSES = ("published", "derived", "recalled", "calibrated", "assumed")
+PER_REV = "1/rev"
+
+_MOST_STATIONS = 10_000
+
+
+@dataclass(frozen=True)
+class Datum:
+    """A number, or a distribution along the blade, with its provenance.
+
+    Attributes
+    ----------
+    written : str
+        The value as the deck gives it.
+    si : float, int or tuple of float
+        The value in `unit`; a tuple for a distribution.
+    unit : str
+        SI unit, ``""`` for a plain number.
+    status : str
+        published, derived, recalled, calibrated or assumed; ``"unstated"`` when the deck does not say.
+    source : str
+        Where the number was read, or how it was found.
+    r_over_R : tuple of float or None
+        Stations of a distribution.
+    """
+
+    written: str
+    si: float | tuple[float, ...]
+    unit: str
+    status: str = "unstated"
+    source: str = ""
+    r_over_R: tuple[float, ...] | None = None
+
+
+class Bound(NamedTuple):
+    """A condition on the SI value, and how a message states it."""
+
+    holds: Callable[[float], bool]
+    rule: str
+
+
+ANY = Bound(lambda x: True, "")
+POSITIVE = Bound(lambda x: x > 0, "must be positive")
+NOT_NEGATIVE = Bound(lambda x: x >= 0, "must not be negative")
+FRACTION = Bound(lambda x: 0 <= x <= 1, "must lie between 0 and 1")
+BELOW_CRITICAL = Bound(lambda x: 0 <= x < 1, 'must be at least 0 and below 1; write one percent as "1 %"')
+
+
+def read_quantity(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
+    """A value, or a table ``{ value, status, source }``, as a `Datum`.
+
+    Raises
+    ------
+    InputError
+        With the field name relative to the value ("" for the value itself).
+    """
+    table = _as_table(raw, ("value",))
+    return _datum(table, str(table["value"]), _bounded(table["value"], unit, bound), unit)
+
+
+def read_count(raw: Any, least: int) -> Datum:
+    """A whole number, or a table holding one."""
+    table = _as_table(raw, ("value",))
+    value = table["value"]
+    if not _is_number(value) or not isinstance(value, int) or value < least:
+        raise InputError("", value, f"must be a whole number, at least {least}")
+    return _datum(table, str(value), value, "")
+
+
+def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
+    """A frequency; one written per revolution (``"0.42/rev"``) keeps the unit `PER_REV`."""
+    table = _as_table(raw, ("value",))
+    value = table["value"]
+    if not isinstance(value, str) or not value.endswith("/rev"):
+        return read_quantity(raw, "rad/s", bound)
+    try:
+        return _datum(table, value, _bounded(value.removesuffix("/rev"), "", bound), PER_REV)
+    except InputError as error:
+        raise InputError(error.field, value, error.rule) from None
+
+
+def read_distribution(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
+    """A table ``{ r_over_R, value, unit, status, source }`` of two equally long lists."""
+    if not isinstance(raw, dict):
+        raise InputError("", raw, "must be a table with r_over_R, value and unit")
+    table = _as_table(raw, ("r_over_R", "value", "unit"))
+    stations, values, written_unit = table["r_over_R"], table["value"], table["unit"]
+    _check_stations(stations)
+    _check_numbers("value", values)
+    if len(values) != len(stations):
+        rule = f"must have one value for each of the {len(stations)} r_over_R"
+        raise InputError("value", f"{len(values)} values", rule)
+    if not isinstance(written_unit, str):
+        raise InputError("unit", written_unit, f"must be the unit of {meaning(unit)}")
+    try:
+        factor = factor_to_si(written_unit, written_unit, unit)
+    except InputError as error:
+        raise error.within("unit") from None
+    si = tuple(float(value) * factor for value in values)
+    for value, converted in zip(values, si, strict=True):
+        if not math.isfinite(converted):
+            raise InputError("value", value, "must be finite")
+        if not bound.holds(converted):
+            raise InputError("value", value, bound.rule)
+    written = f"{len(values)} values in {written_unit}"
+    return _datum(table, written, si, unit, tuple(float(station) for station in stations))
+
+
+def read_profile(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
+    """One number for the whole blade, or a distribution along it."""
+    is_distribution = isinstance(raw, dict) and ("r_over_R" in raw or isinstance(raw.get("value"), list))
+    return read_distribution(raw, unit, bound) if is_distribution else read_quantity(raw, unit, bound)
+
+
+def _datum(
+    table: Mapping[str, Any],
+    written: str,
+    si: float | tuple[float, ...],
+    unit: str,
+    r_over_R: tuple[float, ...] | None = None,
+) -> Datum:
+    status, source = table.get("status", "unstated"), table.get("source", "")
+    if "status" in table and status not in STATUSES:
+        raise InputError("status", status, f"must be one of {', '.join(STATUSES)}")
+    if not isinstance(source, str):
+        raise InputError("source", source, "must be text")
+    return Datum(written, si, unit, status, source, r_over_R)
+
+
+def _as_table(raw: Any, required: Collection[str]) -> dict[str, Any]:
+    table = raw if isinstance(raw, dict) else {"value": raw}
+    known = (*required, "status", "source")
+    for key in table:
+        if key not in known:
+            raise InputError(key, table[key], unknown_name(key, known))
+    for key in required:
+        if key not in table:
+            raise InputError(key, None, "is missing")
+    return table
+
+
+def _bounded(value: Any, unit: str, bound: Bound) -> float:
+    if not isinstance(value, str) and not _is_number(value):
+        raise InputError("", value, f"must be {meaning(unit)}")
+    si = to_si(value, unit)
+    if not bound.holds(si):
+        raise InputError("", value, bound.rule)
+    return si
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _check_stations(stations: Any) -> None:
+    _check_numbers("r_over_R", stations)
+    if len(stations) < 2:
+        raise InputError("r_over_R", stations, "must have two stations or more")
+    if stations[0] < 0 or stations[-1] > 1:
+        raise InputError("r_over_R", stations, "must lie between 0 (centre of rotation) and 1 (tip)")
+    for inboard, outboard in pairwise(stations):
+        if outboard <= inboard:
+            raise InputError("r_over_R", f"{inboard}, {outboard}", "must increase from station to station")
+
+
+def _check_numbers(key: str, values: Any) -> None:
+    if not isinstance(values, list) or not all(_is_number(value) for value in values):
+        raise InputError(key, values, "must be a list of numbers")
+    if len(values) > _MOST_STATIONS:
+        raise InputError(key, f"{len(values)} values", f"must have at most {_MOST_STATIONS} values")
+    for value in values:
+        if not abs(value) < float("inf"):  # an integer may be too large for math.isfinite
+            raise InputError(key, value, "must be finite")

@@ -1,0 +1,321 @@
+"""The sections and fields of a deck, and what each must be.
+
+A deck is a TOML file. A number with a dimension is text, ``radius = "12.5 ft"``, US and SI units as one
+likes; a plain number has none. Either may be a table that says where it comes from::
+
+    radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
+
+with a status of published, derived, recalled, calibrated or assumed. Chord and twist take one value (twist:
+the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
+linear between its stations and constant beyond them.
+
+``base``
+    Above all sections: the deck this one alters, a bundled name or a file beside it. A field given here
+    replaces the base's; one of two alternatives removes the other.
+``[case]``
+    name, title, description, calibration (what was calibrated to what), warnings.
+``[rotor]``
+    The arguments of `proprotor.Rotor`, or instead of flap_stiffness and lag_stiffness: flap_frequency and
+    lag_frequency, non-rotating, K = I ω²; of chord: lock_number γ, chord = γ I_b / (ρ c_lα R⁴) at the
+    deck's density; of the seven mass integrals: mass_distribution.
+``[rotor.airfoil]``
+    The arguments of `proprotor.Airfoil`.
+``[operation]``
+    rotor_speed, density, speed_of_sound, trim = "windmill" or { collective = "30 deg" }.
+``[support]``
+    kind = "normal-modes"; includes_rotor, whether the generalised masses hold the rotor's rigid-body share.
+``[[support.modes]]``
+    name; coordinate, "length" or "angle"; generalized_mass, frequency, damping_ratio; and the motion of the
+    hub per unit of the coordinate, x, y, z, alpha_x, alpha_y, alpha_z, zero where left out.
+
+A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution at the deck's rotor
+speed. `proprotor.units` lists the units.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    StringConstraints,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
+
+from proprotor.datum import (
+    ANY,
+    BELOW_CRITICAL,
+    FRACTION,
+    NOT_NEGATIVE,
+    POSITIVE,
+    Bound,
+    Datum,
+    read_count,
+    read_distribution,
+    read_frequency,
+    read_profile,
+    read_quantity,
+)
+from proprotor.deck_file import ALTERNATIVES
+from proprotor.errors import InputError, unknown_name
+from proprotor.support import HUB_AXES
+
+
+def _field(reader: Any, *args: Any) -> Any:
+    return Annotated[Datum | None, PlainValidator(lambda raw: reader(raw, *args))]
+
+
+_quantity = partial(_field, read_quantity)
+
+Number = _quantity("", ANY)
+NotNegative = _quantity("", NOT_NEGATIVE)
+Positive = _quantity("", POSITIVE)
+Fraction = _quantity("", FRACTION)
+Angle = _quantity("rad", ANY)
+Length = _quantity("m", NOT_NEGATIVE)
+PositiveLength = _quantity("m", POSITIVE)
+Mass = _quantity("kg", POSITIVE)
+FirstMoment = _quantity("kg*m", NOT_NEGATIVE)
+Inertia = _quantity("kg*m**2", POSITIVE)
+InertiaOrNone = _quantity("kg*m**2", NOT_NEGATIVE)
+Stiffness = _quantity("N*m/rad", NOT_NEGATIVE)
+Damping = _quantity("N*m*s/rad", NOT_NEGATIVE)
+Slope = _quantity("1/rad", POSITIVE)
+RotorSpeed = _quantity("rad/s", POSITIVE)
+Density = _quantity("kg/m**3", NOT_NEGATIVE)
+Speed = _quantity("m/s", POSITIVE)
+DampingRatio = _quantity("", BELOW_CRITICAL)
+Frequency = _field(read_frequency)
+Count = _field(read_count, 3)
+Chord = _field(read_profile, "m", POSITIVE)
+Twist = _field(read_profile, "rad", ANY)
+MassDistribution = _field(read_distribution, "kg/m", NOT_NEGATIVE)
+
+Text = Annotated[str, StringConstraints(min_length=1, max_length=2000)]
+Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]*$", max_length=60)]
+
+
+def _by_coordinate(of_length: str, of_angle: str, bound: Bound = ANY) -> Any:
+    """A quantity whose unit follows the mode's coordinate, a field that must be read before it."""
+
+    def read(raw: Any, info: ValidationInfo) -> Datum | None:
+        if "coordinate" not in info.data:  # itself wrong, and reported
+            return None
+        return read_quantity(raw, of_length if info.data["coordinate"] == "length" else of_angle, bound)
+
+    return Annotated[Datum | None, PlainValidator(read)]
+
+
+GeneralizedMass = _by_coordinate("kg", "kg*m**2", POSITIVE)
+HubDisplacement = _by_coordinate("", "m/rad")
+HubRotation = _by_coordinate("rad/m", "")
+
+
+class Section(BaseModel):
+    """A table of a deck: no field of another type, none unknown."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+
+class CaseSection(Section):
+    name: Name
+    title: Text
+    description: str = ""
+    calibration: str = ""
+    warnings: list[Text] = []
+
+
+class AirfoilSection(Section):
+    lift_slope: Slope
+    zero_lift_angle: Angle = None
+    drag: NotNegative = None
+    moment: Number = None
+
+
+class RotorSection(Section):
+    n_blades: Count
+    radius: PositiveLength
+    root_cutout: Length
+    flap_hinge_offset: Length
+    lag_hinge_offset: Length
+    precone: Angle
+    blade_mass: Mass = None
+    blade_first_moment: FirstMoment = None
+    blade_inertia: Inertia = None
+    flap_first_moment: FirstMoment = None
+    flap_inertia: Inertia = None
+    lag_first_moment: FirstMoment = None
+    lag_inertia: Inertia = None
+    mass_distribution: MassDistribution = None
+    flap_stiffness: Stiffness = None
+    flap_frequency: Frequency = None
+    lag_stiffness: Stiffness = None
+    lag_frequency: Frequency = None
+    flap_outboard_fraction: Fraction
+    lag_outboard_fraction: Fraction
+    structural_pitch_offset: Angle = None
+    gimbal_stiffness: Stiffness
+    pitch_gimbal_coupling: Number
+    pitch_inertia: InertiaOrNone
+    control_stiffness: Stiffness
+    flap_damping: Damping = None
+    lag_damping: Damping = None
+    pitch_damping: Damping = None
+    gimbal_damping: Damping = None
+    propeller_moment: bool = True
+    chord: Chord = None
+    lock_number: Positive = None
+    twist: Twist
+    airfoil: AirfoilSection
+
+    @model_validator(mode="after")
+    def _one_side_of_each_pair(self) -> RotorSection:
+        for pair in ALTERNATIVES:
+            sides = [side for side in pair if self.model_fields_set.intersection(side)]
+            both = " or ".join(_listed(side) for side in pair)
+            if not sides:
+                raise InputError(pair[0][0], None, f"is missing; give {both}")
+            if len(sides) > 1:
+                raise InputError(sides[1][0], None, f"must not be given twice over; give {both}")
+            for name in sides[0]:
+                if name not in self.model_fields_set:
+                    raise InputError(name, None, "is missing")
+        return self
+
+
+class FixedTrim(Section):
+    collective: Angle
+
+
+def _read_trim(raw: Any) -> str | FixedTrim:
+    if raw == "windmill":
+        return raw
+    if not isinstance(raw, dict) or set(raw) != {"collective"}:
+        raise InputError("", raw, 'must be "windmill" or { collective = "30 deg" }')
+    try:
+        return FixedTrim.model_construct(collective=read_quantity(raw["collective"], "rad"))
+    except InputError as error:
+        raise error.within("collective") from None
+
+
+class OperationSection(Section):
+    rotor_speed: RotorSpeed
+    density: Density
+    speed_of_sound: Speed
+    trim: Annotated[Any, PlainValidator(_read_trim)] = "windmill"
+
+
+class ModeSection(Section):
+    name: Name
+    coordinate: Literal["length", "angle"]
+    generalized_mass: GeneralizedMass
+    frequency: Frequency
+    damping_ratio: DampingRatio
+    x: HubDisplacement = None
+    y: HubDisplacement = None
+    z: HubDisplacement = None
+    alpha_x: HubRotation = None
+    alpha_y: HubRotation = None
+    alpha_z: HubRotation = None
+
+    @model_validator(mode="after")
+    def _moves_the_hub(self) -> ModeSection:
+        if not self.model_fields_set.intersection(HUB_AXES):
+            raise InputError("", None, f"must move the hub; give one or more of {', '.join(HUB_AXES)}")
+        return self
+
+
+class SupportSection(Section):
+    kind: Literal["normal-modes"]
+    includes_rotor: bool
+    modes: Annotated[list[ModeSection], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _names_differ(self) -> SupportSection:
+        names = [mode.name for mode in self.modes]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError("modes.name", name, "must not name two modes")
+        return self
+
+
+class Deck(Section):
+    case: CaseSection
+    rotor: RotorSection
+    operation: OperationSection
+    support: SupportSection
+
+
+_SECTIONS: dict[tuple[str, ...], type[Section]] = {
+    (): Deck,
+    ("case",): CaseSection,
+    ("rotor",): RotorSection,
+    ("rotor", "airfoil"): AirfoilSection,
+    ("operation",): OperationSection,
+    ("support",): SupportSection,
+    ("support", "modes"): ModeSection,
+}
+
+# How a message states what pydantic found, by pydantic's name for it.
+_RULES = {
+    "model_type": "must be a table",
+    "list_type": "must be a list",
+    "string_type": "must be text",
+    "bool_type": "must be true or false",
+    "too_short": "must not be empty",
+    "string_too_short": "must not be empty",
+    "string_pattern_mismatch": "must be letters, digits, spaces, dots, dashes and underscores",
+}
+
+
+def validate(tables: dict[str, Any]) -> Deck:
+    """The tables of a TOML file as a deck.
+
+    Raises
+    ------
+    InputError
+        With every problem found, one line each.
+    """
+    try:
+        return Deck.model_validate(tables)
+    except ValidationError as error:
+        first, *others = [_input_error(problem, tables) for problem in error.errors(include_url=False)]
+        raise InputError(first.field, first.value, first.rule, others) from None
+
+
+def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
+    place, kind = problem["loc"], problem["type"]
+    field = field_name(place, tables)
+    if kind == "value_error":
+        return problem["ctx"]["error"].within(field)
+    if kind == "extra_forbidden":
+        known = _SECTIONS[tuple(part for part in place[:-1] if isinstance(part, str))].model_fields
+        return InputError(field, problem["input"], unknown_name(str(place[-1]), known))
+    if kind == "literal_error":
+        return InputError(field, problem["input"], f"must be {problem['ctx']['expected']}")
+    if kind == "missing":
+        return InputError(field, None, "is missing")
+    return InputError(field, problem["input"], _RULES.get(kind, problem["msg"]))
+
+
+def field_name(place: tuple[str | int, ...], tables: Any) -> str:
+    """``("support", "modes", 0, "x")`` as ``support.modes[beam].x``, an entry of a list by its name."""
+    text = ""
+    for part in place:
+        tables = tables[part] if not isinstance(tables, dict) or part in tables else None
+        if isinstance(part, str):
+            text += f".{part}" if text else part
+        else:
+            name = tables.get("name") if isinstance(tables, dict) else None
+            text += f"[{name if isinstance(name, str) and name else part}]"
+    return text
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return names[0] if len(names) == 1 else f"({', '.join(names)})"

@@ -1,0 +1,59 @@
+"""What a user is told when an input is wrong: the field, the value, and the rule it breaks."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Collection, Iterable
+
+_WIDEST_VALUE = 60  # characters of a value worth repeating in a message
+
+
+class InputError(ValueError):
+    """An input that cannot be used, told in one line: ``field = value: rule``.
+
+    Parameters
+    ----------
+    field : str
+        Name of the input, dotted inside a deck (``rotor.lag_hinge_offset``).
+    value : object
+        The value as the user gave it; None when it was not given at all.
+    rule : str
+        What the value must be, as the end of a sentence (``must not be negative``).
+    others : iterable of InputError
+        Further problems found in the same input; each adds a line to the message.
+
+    Examples
+    --------
+    >>> print(InputError("rotor.lag_hinge_offset", "0.5 ft", "must not be inboard of the flap hinge"))
+    rotor.lag_hinge_offset = 0.5 ft: must not be inboard of the flap hinge
+    """
+
+    def __init__(self, field: str, value: object, rule: str, others: Iterable[InputError] = ()) -> None:
+        self.field, self.value, self.rule, self.others = field, value, rule, tuple(others)
+        super().__init__(field, value, rule, self.others)  # all of them, so that the error can be pickled
+
+    def __str__(self) -> str:
+        shown = "" if self.value is None else f" = {_on_one_line(self.value)}"
+        return "\n".join([f"{_on_one_line(self.field)}{shown}: {self.rule}", *map(str, self.others)])
+
+    def within(self, path: str) -> InputError:
+        """The same error, with the field named from further outside."""
+        return InputError(".".join(filter(None, (path, self.field))), self.value, self.rule, self.others)
+
+
+def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
+    """The rule an unknown name breaks, with the nearest known name, or else all of them."""
+    by_lower_case = {k.lower(): k for k in known}
+    nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1)
+    hint = f"did you mean {by_lower_case[nearest[0]]}?" if nearest else f"known: {', '.join(known)}"
+    return f"unknown {what} {_on_one_line(name)!r}; {hint}"
+
+
+def _on_one_line(value: object) -> str:
+    if isinstance(value, bool):
+        value = str(value).lower()  # as TOML has it
+    if isinstance(value, dict):
+        value = "{ … }"
+    text = str(value) or '""'
+    text = "".join(c if c.isprintable() else " " for c in text)
+    return text if len(text) <= _WIDEST_VALUE else f"{text[: _WIDEST_VALUE - 1]}…"

@@ -1,0 +1,27 @@
+"""Calling generated functions by the names of their quantities."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+
+@cache
+def _keywords(function: Callable) -> tuple[str, ...]:
+    parameters = inspect.signature(function).parameters.values()
+    return tuple(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
+
+
+def evaluate(function: Callable, quantities: Mapping[str, Any], *matrices: Any) -> Any:
+    """Result of a generated function whose keyword arguments are looked up by name.
+
+    A quantity has one name throughout the derivation, so the names are the interface.
+
+    Raises
+    ------
+    KeyError
+        When a quantity the function needs is not there.
+    """
+    return function(*matrices, **{name: quantities[name] for name in _keywords(function)})

@@ -1,0 +1,132 @@
+"""Eigenvalues and mode shapes of a linear model.
+
+Signs: s = -ζω ± iω√(1 - ζ²), damping ratio ζ = -Re s / |s|, so a negative ratio is an instability. The rotor's azimuth has
+no stiffness and enters as a rate: n coordinates have 2n - 1 states.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor.model import ROTOR_SPEED, LinearModel
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Eigensystem(NamedTuple):
+    """All eigenvalues of a batch of models, with vectors in the state space.
+
+    values (..., states), right (..., states, states) in columns, left (..., states, states) in rows with
+    left @ right = 1; displacement (..., n, states) is each mode's motion of the model's n coordinates.
+    NaN at failed points.
+    """
+
+    values: NDArray
+    right: NDArray
+    left: NDArray
+    displacement: NDArray
+
+
+def state_matrix(model: LinearModel) -> NDArray:
+    """A of ẋ = A x with x the displacements without the azimuth, then all velocities; (..., 2n - 1, 2n - 1)."""
+    n = len(model.dofs)
+    held = [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED]
+    acceleration = -np.linalg.solve(model.M, np.concatenate([model.K[..., held], model.C], axis=-1))
+    matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
+    matrix[..., np.arange(len(held)), len(held) + np.array(held)] = 1
+    matrix[..., len(held) :, :] = acceleration
+    return matrix
+
+
+def _good(model: LinearModel) -> NDArray:
+    return np.isfinite(model.M).all(axis=(-2, -1))
+
+
+def eigensystem(model: LinearModel) -> Eigensystem:
+    """All eigenvalues and vectors; eigenvalues of a point in no particular order."""
+    good = _good(model)
+    shape, n = model.M.shape[:-2], len(model.dofs)
+    states = 2 * n - (ROTOR_SPEED in model.dofs)
+    values = np.full((*shape, states), np.nan, dtype=complex)
+    right, left = (np.full((*shape, states, states), np.nan, dtype=complex) for _ in range(2))
+    if good.any():
+        part = LinearModel(model.M[good], model.C[good], model.K[good], model.dofs, model.trim, model.airspeed)
+        values[good], right[good] = np.linalg.eig(state_matrix(part))
+        left[good] = np.linalg.inv(right[good])
+    return Eigensystem(values, right, left, _displacement(model.dofs, values, right))
+
+
+def _displacement(dofs: tuple[str, ...], values: NDArray, right: NDArray) -> NDArray:
+    """Motion of the coordinates: the azimuth's is its rate divided by the eigenvalue."""
+    n = len(dofs)
+    velocities = right[..., -n:, :]
+    with np.errstate(all="ignore"):
+        shapes = velocities / np.where(values == 0, np.nan, values)[..., None, :]
+    held = [place for place, name in enumerate(dofs) if name != ROTOR_SPEED]
+    shapes[..., held, :] = right[..., : len(held), :]
+    return shapes
+
+
+def participation(dofs: tuple[str, ...], system: Eigensystem) -> NDArray:
+    """Share of each coordinate in each mode (..., n, states), from left times right vector; sums to 1.
+
+    Free of units and of how vectors are scaled, unlike the largest component of a mode that mixes lengths and angles.
+    """
+    n = len(dofs)
+    products = np.abs(np.swapaxes(system.left, -1, -2) * system.right)
+    shares = products[..., -n:, :].copy()
+    held = [place for place, name in enumerate(dofs) if name != ROTOR_SPEED]
+    shares[..., held, :] += products[..., : len(held), :]
+    return shares / shares.sum(axis=-2, keepdims=True)
+
+
+def modes(model: LinearModel) -> xarray.Dataset:
+    """Modes with frequency at or above zero, by frequency.
+
+    Returns
+    -------
+    xarray.Dataset
+        eigenvalue (rad/s), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
+        largest component 1), dominant (name of the coordinate with the largest participation); dimensions (..., mode)
+        and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN.
+    """
+    system = eigensystem(model)
+    values = system.values
+    kept = np.where(values.imag >= 0, np.abs(values.imag), np.inf)
+    order = np.argsort(kept, axis=-1, kind="stable")
+    count = int(np.isfinite(kept).sum(axis=-1).max(initial=0))
+    order = order[..., :count]
+    values = np.where(np.isfinite(np.take_along_axis(kept, order, -1)), np.take_along_axis(values, order, -1), np.nan)
+    shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
+    shares = np.take_along_axis(participation(model.dofs, system), order[..., None, :], -1)
+    return mode_dataset(model, values, shapes, shares)
+
+
+def mode_dataset(model: LinearModel, values: NDArray, shapes: NDArray, shares: NDArray) -> xarray.Dataset:
+    """The dataset of `modes` from eigenvalues (..., mode), motions and participations (..., n, mode)."""
+    import xarray  # here, because it takes long to import
+
+    leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim)) if model.airspeed.ndim != 1 else ("airspeed",)
+    by_mode = (*leading, "mode")
+    with np.errstate(all="ignore"):
+        ratio = -values.real / np.abs(values)
+        largest = np.take_along_axis(shapes, np.abs(np.nan_to_num(shapes)).argmax(axis=-2)[..., None, :], -2)
+        shapes = np.where(np.isnan(values)[..., None, :], np.nan, shapes / largest)
+    dominant = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-2)]
+    dominant = np.where(np.isnan(values), "", dominant)
+    data = {
+        "eigenvalue": (by_mode, values, {"units": "rad/s"}),
+        "frequency": (by_mode, np.abs(values.imag), {"units": "rad/s", "long_name": "damped frequency"}),
+        "natural_frequency": (by_mode, np.abs(values), {"units": "rad/s"}),
+        "damping_ratio": (by_mode, ratio, {"units": "1", "long_name": "fraction of critical damping"}),
+        "shape": ((*by_mode, "dof"), np.moveaxis(shapes, -1, -2)),
+        "participation": ((*by_mode, "dof"), np.moveaxis(shares, -1, -2)),
+        "dominant": (by_mode, dominant.astype(str)),
+        "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
+    }
+    coordinates = {"dof": list(model.dofs), "airspeed": (leading, model.airspeed, {"units": "m/s"})}
+    return xarray.Dataset(data, coords=coordinates)

@@ -1,0 +1,64 @@
+"""How the rotor is run: speed, air, and what it is trimmed to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from proprotor.errors import InputError, unknown_name
+
+TRIM_TARGETS = ("collective",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Operation:
+    """Rotor speed, air and trim.
+
+    Parameters
+    ----------
+    rotor_speed : float
+        Ω, rad/s, above zero.
+    density : float
+        kg/m³, not negative; 0 is a vacuum.
+    speed_of_sound : float
+        m/s, above zero.
+    trim : "windmill" or {"collective": float}
+        A windmilling rotor finds the collective at which its torque vanishes; else the collective is given, in rad.
+
+    Raises
+    ------
+    InputError
+        When a value is not finite or out of its range, or the trim is unknown.
+    """
+
+    rotor_speed: float
+    density: float
+    speed_of_sound: float
+    trim: str | Mapping[str, float] = "windmill"
+
+    def __post_init__(self) -> None:
+        for name in ("rotor_speed", "density", "speed_of_sound"):
+            value = np.asarray(getattr(self, name), dtype=float)
+            if not np.all(np.isfinite(value)):
+                raise InputError(name, getattr(self, name), "must be finite")
+            if np.any(value < 0) or (name != "density" and np.any(value == 0)):
+                rule = "must not be negative" if name == "density" else "must be above zero"
+                raise InputError(name, getattr(self, name), rule)
+        if isinstance(self.trim, str):
+            if self.trim != "windmill":
+                raise InputError("trim", self.trim, unknown_name(self.trim, ("windmill", *TRIM_TARGETS), "trim"))
+        elif not isinstance(self.trim, Mapping) or len(self.trim) != 1:
+            raise InputError("trim", self.trim, 'must be "windmill" or one target such as {"collective": 0.6}')
+        else:
+            (name, value), *_ = self.trim.items()
+            if name not in TRIM_TARGETS:
+                raise InputError("trim", name, unknown_name(name, TRIM_TARGETS, "trim"))
+            if not np.all(np.isfinite(np.asarray(value, dtype=float))):
+                raise InputError(f"trim.{name}", value, "must be finite")
+
+    @property
+    def windmilling(self) -> bool:
+        """Whether the collective follows from zero torque."""
+        return self.trim == "windmill"

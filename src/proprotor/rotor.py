@@ -1,0 +1,284 @@
+"""A proprotor: geometry, mass, springs, control system and blade sections, in SI units."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from proprotor_equations import inertia
+
+from proprotor.airfoil import SectionModel
+from proprotor.errors import InputError
+from proprotor.evaluation import evaluate
+from proprotor.quadrature import RadialQuadrature, gauss_panels
+
+MASS_INTEGRALS = (
+    "blade_mass",
+    "blade_first_moment",
+    "blade_inertia",
+    "flap_first_moment",
+    "flap_inertia",
+    "lag_first_moment",
+    "lag_inertia",
+)
+_POSITIVE = ("radius", "blade_inertia", "flap_inertia", "lag_inertia", "blade_mass")
+_NOT_NEGATIVE = (
+    "flap_hinge_offset",
+    "root_cutout",
+    "flap_first_moment",
+    "lag_first_moment",
+    "flap_stiffness",
+    "lag_stiffness",
+    "gimbal_stiffness",
+    "pitch_inertia",
+    "control_stiffness",
+    "flap_damping",
+    "lag_damping",
+    "pitch_damping",
+    "gimbal_damping",
+)
+_FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
+
+Distribution = float | tuple[ArrayLike, ArrayLike]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rotor:
+    """A gimballed rotor of equal blades, each with a flap and a lag hinge and a flexible control system.
+
+    All values in SI units and radians. The mass integrals are over the whole blade (blade_*, about the centre of
+    rotation) and over what lies outboard of a hinge (flap_*, lag_*, about that hinge). Any number may be an array that
+    broadcasts with the airspeeds, for many designs at once.
+
+    Parameters
+    ----------
+    n_blades : int
+        At least 3.
+    radius, root_cutout, flap_hinge_offset, lag_hinge_offset : float
+        m from the centre of rotation; the lag hinge is not inboard of the flap hinge.
+    precone : float
+        rad.
+    blade_mass, blade_first_moment, blade_inertia : float
+        Integrals of m, m r and m r²: kg, kg m, kg m².
+    flap_first_moment, flap_inertia, lag_first_moment, lag_inertia : float
+        Integrals of m (r - e) and m (r - e)² outboard of each hinge: kg m, kg m².
+    flap_stiffness, lag_stiffness : float
+        Hub and blade spring in series, N m/rad (Eq. 18 of AIAA-2002-1604).
+    flap_outboard_fraction, lag_outboard_fraction : float
+        Share of that flexibility outboard of the pitch bearing, 0 to 1 (Eq. 19).
+    gimbal_stiffness : float
+        Hub spring, N m/rad.
+    pitch_gimbal_coupling : float
+        K_PG = tan δ3 (Eq. 16).
+    pitch_inertia, control_stiffness : float
+        Of one blade: kg m², N m/rad.
+    flap_damping, lag_damping, pitch_damping, gimbal_damping : float
+        Viscous dampers, N m s/rad; the gimbal's does not rotate.
+    structural_pitch_offset : float
+        From the collective reference to the blade's structural axes, rad.
+    propeller_moment : bool
+        Whether the propeller moment acts on the blade's pitch.
+    chord, twist : float or (r, values)
+        m and rad. A number is a constant chord and a linear twist over the radius; a pair of arrays is interpolated
+        linearly between its stations. Twist counts from the pitch at 0.75 R.
+    airfoil : SectionModel
+        Such as `Airfoil`.
+
+    Raises
+    ------
+    InputError
+        With the field, its value and the rule, when a value is missing, not finite or not physical.
+    """
+
+    n_blades: int
+    radius: float
+    root_cutout: float = 0.0
+    flap_hinge_offset: float = 0.0
+    lag_hinge_offset: float = 0.0
+    precone: float = 0.0
+    blade_mass: float
+    blade_first_moment: float
+    blade_inertia: float
+    flap_first_moment: float
+    flap_inertia: float
+    lag_first_moment: float
+    lag_inertia: float
+    flap_stiffness: float
+    lag_stiffness: float
+    flap_outboard_fraction: float = 0.0
+    lag_outboard_fraction: float = 0.0
+    gimbal_stiffness: float = 0.0
+    pitch_gimbal_coupling: float = 0.0
+    pitch_inertia: float = 0.0
+    control_stiffness: float = 0.0
+    flap_damping: float = 0.0
+    lag_damping: float = 0.0
+    pitch_damping: float = 0.0
+    gimbal_damping: float = 0.0
+    structural_pitch_offset: float = 0.0
+    propeller_moment: bool = True
+    chord: Distribution
+    twist: Distribution = 0.0
+    airfoil: SectionModel = field(repr=False)
+
+    def __post_init__(self) -> None:
+        for name in (entry.name for entry in fields(self) if entry.name != "airfoil"):
+            self._check_number(name)
+        if np.any(np.asarray(self.n_blades) < 3) or np.any(np.asarray(self.n_blades) % 1 != 0):
+            raise InputError("n_blades", self.n_blades, "must be a whole number of at least 3")
+        self._check_signs()
+        self._check_hinges()
+        self._check_mass()
+
+    def _check_number(self, name: str) -> None:
+        value = getattr(self, name)
+        if isinstance(value, tuple):
+            _check_distribution(name, value)
+            return
+        try:
+            finite = np.all(np.isfinite(np.asarray(value, dtype=complex)))
+        except (TypeError, ValueError):
+            raise InputError(name, value, "must be a number") from None
+        if not finite:
+            raise InputError(name, value, "must be finite")
+
+    def _check_signs(self) -> None:
+        for name in _POSITIVE:
+            if np.any(np.real(getattr(self, name)) <= 0):
+                raise InputError(name, getattr(self, name), "must be above zero")
+        for name in _NOT_NEGATIVE:
+            if np.any(np.real(getattr(self, name)) < 0):
+                raise InputError(name, getattr(self, name), "must not be negative")
+        for name in _FRACTIONS:
+            if np.any((np.real(getattr(self, name)) < 0) | (np.real(getattr(self, name)) > 1)):
+                raise InputError(name, getattr(self, name), "must lie between 0 and 1")
+        chord = self.chord[1] if isinstance(self.chord, tuple) else self.chord
+        if np.any(np.real(chord) <= 0):
+            raise InputError("chord", chord, "must be above zero")
+        if np.any(np.abs(np.real(self.precone)) >= np.pi / 2):
+            raise InputError("precone", self.precone, "must lie within 90 deg")
+
+    def _check_hinges(self) -> None:
+        if np.any(np.real(self.root_cutout) >= np.real(self.radius)):
+            raise InputError("root_cutout", self.root_cutout, f"must lie inboard of the tip ({self.radius:g} m)")
+        if np.any(np.real(self.lag_hinge_offset) < np.real(self.flap_hinge_offset)):
+            rule = f"must not lie inboard of the flap hinge ({self.flap_hinge_offset:g} m)"
+            raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
+        if np.any(np.real(self.lag_hinge_offset) >= np.real(self.radius)):
+            rule = f"must lie inboard of the tip ({self.radius:g} m)"
+            raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
+
+    def _check_mass(self) -> None:
+        """The integrals of m times two of the arms 1, r, ρβ, ρζ are inner products: their Gram matrix is not negative."""
+        i_beta_alpha = np.real(self.flap_hub_inertia)
+        if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
+            rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {i_beta_alpha:g} kg m²"
+            raise InputError("flap_inertia", self.flap_inertia, rule)
+        gram = np.real(self._gram_matrix())
+        scale = np.sqrt(np.diagonal(gram, axis1=-2, axis2=-1))
+        correlation = gram / (scale[..., :, None] * scale[..., None, :])
+        if np.any(np.linalg.eigvalsh(correlation) < -1e-9):
+            rule = "cannot belong to one blade with the other mass integrals: their Gram matrix has a negative eigenvalue"
+            raise InputError("blade_inertia", self.blade_inertia, rule)
+
+    def _gram_matrix(self) -> np.ndarray:
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ."""
+        entries = (
+            (self.blade_mass, self.blade_first_moment, self.flap_first_moment, self.lag_first_moment),
+            (self.blade_first_moment, self.blade_inertia, self.flap_hub_inertia, self.lag_hub_inertia),
+            (self.flap_first_moment, self.flap_hub_inertia, self.flap_inertia, self.flap_lag_inertia),
+            (self.lag_first_moment, self.lag_hub_inertia, self.flap_lag_inertia, self.lag_inertia),
+        )
+        flat = np.broadcast_arrays(*(entry for row in entries for entry in row))
+        return np.stack(flat, axis=-1).reshape(*np.shape(flat[0]), 4, 4)
+
+    @functools.cached_property
+    def _dependent(self) -> Any:
+        return evaluate(inertia.dependent_inertias, {entry.name: getattr(self, entry.name) for entry in fields(self)})
+
+    @property
+    def flap_hub_inertia(self) -> float:
+        """I_βα = ∫ m r (r - e_β), kg m²; follows from the flap inertia, first moment and hinge offset."""
+        return self._dependent.flap_hub_inertia
+
+    @property
+    def lag_hub_inertia(self) -> float:
+        """I_ζα = ∫ m r (r - e_ζ), kg m²."""
+        return self._dependent.lag_hub_inertia
+
+    @property
+    def flap_lag_inertia(self) -> float:
+        """I_βζ = ∫ m (r - e_β)(r - e_ζ), kg m²."""
+        return self._dependent.flap_lag_inertia
+
+    @functools.cached_property
+    def quadrature(self) -> RadialQuadrature:
+        """Radial stations and weights from cutout to tip, split at hinges and tabulated stations."""
+        knots = [np.asarray(d[0], dtype=float) for d in (self.chord, self.twist) if isinstance(d, tuple)]
+        return gauss_panels(
+            root_cutout=self.root_cutout,
+            radius=self.radius,
+            flap_hinge_offset=self.flap_hinge_offset,
+            lag_hinge_offset=self.lag_hinge_offset,
+            knots=np.unique(np.concatenate(knots)) if knots else np.empty(0),
+        )
+
+    @functools.cached_property
+    def station_chord(self) -> np.ndarray:
+        """Chord at the stations of the quadrature, m."""
+        if isinstance(self.chord, tuple):
+            return _interpolate(self.chord, self.quadrature.stations)
+        return np.asarray(self.chord)[..., None]
+
+    @functools.cached_property
+    def station_twist(self) -> np.ndarray:
+        """Twist at the stations of the quadrature, from the pitch at 0.75 R, rad."""
+        r = self.quadrature.stations
+        reference = 0.75 * np.asarray(self.radius)[..., None]
+        if isinstance(self.twist, tuple):
+            return _interpolate(self.twist, r) - _interpolate(self.twist, reference)
+        return np.asarray(self.twist)[..., None] * (r - reference) / np.asarray(self.radius)[..., None]
+
+    @classmethod
+    def from_mass_distribution(cls, r: ArrayLike, mass_per_length: ArrayLike, **fields_: Any) -> Rotor:
+        """A rotor whose seven mass integrals come from mass per length (kg/m), linear between the stations r (m).
+
+        Exact for that distribution: each interval between stations and hinges is integrated as the cubic it is.
+
+        Raises
+        ------
+        InputError
+            When the distribution is not increasing in r or negative, or a field is wrong.
+        """
+        r, mass = np.asarray(r, dtype=float), np.asarray(mass_per_length, dtype=float)
+        _check_distribution("mass_distribution", (r, mass))
+        if np.any(mass < 0):
+            raise InputError("mass_distribution", float(mass.min()), "must not be negative")
+        flap, lag = fields_.get("flap_hinge_offset", 0.0), fields_.get("lag_hinge_offset", 0.0)
+        edges = np.unique(np.concatenate([r, [e for e in (flap, lag) if r[0] < e < r[-1]]]))
+        nodes, weights = np.polynomial.legendre.leggauss(2)
+        half = np.diff(edges)[:, None] / 2
+        stations = (edges[:-1, None] + half * (1 + nodes)).ravel()
+        m = (half * weights).ravel() * np.interp(stations, r, mass)
+        arms = {"blade": stations, "flap": np.maximum(stations - flap, 0), "lag": np.maximum(stations - lag, 0)}
+        integrals = {"blade_mass": m.sum()}
+        for name, arm in arms.items():
+            integrals |= {f"{name}_first_moment": m @ arm, f"{name}_inertia": m @ arm**2}
+        return cls(**{name: float(value) for name, value in integrals.items()}, **fields_)
+
+
+def _check_distribution(name: str, distribution: tuple[ArrayLike, ArrayLike]) -> None:
+    r, values = (np.asarray(part, dtype=float) for part in distribution)
+    if r.ndim != 1 or r.shape != values.shape or r.size < 2:
+        raise InputError(name, f"arrays of shape {r.shape} and {values.shape}", "must be two lists of equal length")
+    if not (np.isfinite(r).all() and np.isfinite(values).all()):
+        raise InputError(name, values.tolist(), "must be finite")
+    if np.any(np.diff(r) <= 0):
+        raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
+
+
+def _interpolate(distribution: tuple[ArrayLike, ArrayLike], r: np.ndarray) -> np.ndarray:
+    return np.interp(np.real(r), *(np.asarray(part, dtype=float) for part in distribution))

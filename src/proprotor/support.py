@@ -1,0 +1,114 @@
+"""What carries the rotor: a wing given by normal modes and their motion at the hub."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from proprotor.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
+
+
+@dataclass(frozen=True, eq=False)
+class NormalModes:
+    """Generalised coordinates p of a support: M p̈ + C ṗ + K p = Φᵀ f, where Φ p is the motion of the hub.
+
+    Parameters
+    ----------
+    names : sequence of str
+        One name per coordinate, all different.
+    mass, damping, stiffness : array_like, shape (n, n)
+        Symmetric, SI (kg or kg m² and so on, as the coordinate is a length in m or an angle in rad).
+        The mass must have no negative eigenvalue.
+    hub : array_like, shape (6, n)
+        Φ: displacement (x, y, z) and rotation (αx, αy, αz) of the hub per unit of each coordinate, in the
+        inertial axes I, J, K of the rotor, K along the shaft.
+    includes_rotor : bool
+        True when `mass` was measured or computed with the rotor on, so that it already holds the
+        rotor's rigid-body share Φᵀ M_hub Φ, which must then not be counted a second time.
+
+    Raises
+    ------
+    InputError
+        When sizes differ or a matrix is not finite, not symmetric, or (mass) negative.
+    """
+
+    names: Sequence[str]
+    mass: ArrayLike
+    damping: ArrayLike
+    stiffness: ArrayLike
+    hub: ArrayLike
+    includes_rotor: bool
+
+    def __post_init__(self) -> None:
+        names = tuple(self.names)
+        if len(set(names)) < len(names) or not names:
+            raise InputError("names", ", ".join(names), "must name each mode, all differently")
+        n = len(names)
+        object.__setattr__(self, "names", names)
+        object.__setattr__(self, "hub", _finite("hub", self.hub, (6, n)))
+        for field in ("mass", "damping", "stiffness"):
+            matrix = _finite(field, getattr(self, field), (n, n))
+            if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-12 * np.abs(matrix).max()):
+                raise InputError(field, matrix.tolist(), "must be symmetric")
+            object.__setattr__(self, field, matrix)
+        if not _nowhere_negative(self.mass):
+            raise InputError("mass", self.mass.tolist(), "must not be negative in any direction")
+
+    @classmethod
+    def from_frequencies(
+        cls,
+        names: Sequence[str],
+        generalized_mass: ArrayLike,
+        frequency: ArrayLike,
+        damping_ratio: ArrayLike,
+        hub: ArrayLike,
+        includes_rotor: bool,
+    ) -> NormalModes:
+        """Uncoupled modes: stiffness m ω², damping 2 ζ ω m, with the whole generalised mass m.
+
+        Parameters
+        ----------
+        generalized_mass, frequency, damping_ratio : array_like, shape (n,)
+            m in kg or kg m², ω in rad/s, ζ as a fraction of critical.
+        names, hub, includes_rotor
+            As for `NormalModes`.
+        """
+        n = (len(names),)
+        m = _finite("generalized_mass", generalized_mass, n)
+        omega = _finite("frequency", frequency, n)
+        zeta = _finite("damping_ratio", damping_ratio, n)
+        return cls(
+            names=names,
+            mass=np.diag(m),
+            damping=np.diag(2 * zeta * omega * m),
+            stiffness=np.diag(m * omega**2),
+            hub=hub,
+            includes_rotor=includes_rotor,
+        )
+
+
+def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    array = np.array(value, dtype=float)
+    if array.shape != shape:
+        raise InputError(field, f"array of shape {array.shape}", f"must have the shape {shape}")
+    if not np.isfinite(array).all():
+        raise InputError(field, array.tolist(), "must be finite")
+    array.flags.writeable = False
+    return array
+
+
+def _nowhere_negative(matrix: NDArray[np.float64]) -> bool:
+    # Scaled to a unit diagonal, so that slug and slug·ft² in one matrix do not set the tolerance.
+    diagonal = np.diag(matrix)
+    if (diagonal < 0).any():
+        return False
+    scale = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    return bool(np.linalg.eigvalsh(matrix / np.outer(scale, scale)).min() > -1e-9)

@@ -1,0 +1,253 @@
+"""Physical units: text such as ``"12.5 ft"`` or ``"50:400:5kt"`` to SI numbers.
+
+The registry holds the units listed below and no others. An angle is a dimension of its own here, which
+pint's usual registry does not do: a stiffness that has lost its "per degree", or 3.2 Hz taken
+for 3.2 rad/s, is then an error and not a factor of 57 or of 6.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from proprotor.errors import InputError, unknown_name
+
+if TYPE_CHECKING:
+    import pint
+    from numpy.typing import ArrayLike, NDArray
+
+_DEFINITIONS = """
+kilo- = 1e3 = k-
+centi- = 1e-2 = c-
+milli- = 1e-3 = m-
+
+radian = [angle] = rad
+degree = 3.141592653589793 / 180 * radian = deg
+turn = 2 * 3.141592653589793 * radian = _ = rev = revolution = cycle
+percent = 0.01 = %
+
+second = [time] = s
+minute = 60 * second = min
+hour = 3600 * second = h
+hertz = turn / second = Hz
+rpm = turn / minute
+
+meter = [length] = m = metre
+inch = 0.0254 * meter = in
+foot = 0.3048 * meter = ft = feet
+yard = 3 * foot = yd
+furlong = 220 * yard
+mile = 5280 * foot = mi
+nautical_mile = 1852 * meter = nmi
+knot = nautical_mile / hour = kt = kts
+mph = mile / hour
+
+gram = [mass] = g
+pound = 0.45359237 * kilogram = lb = lbm
+newton = kilogram * meter / second ** 2 = N
+pound_force = 9.80665 * pound * meter / second ** 2 = lbf
+slug = pound_force * second ** 2 / foot
+"""
+
+# What each SI unit measures, and how a user would write one; for messages.
+_MEANINGS = {
+    "": ("a plain number", '0.0065 or "1 %"'),
+    "m": ("a length", '"12.5 ft"'),
+    "rad": ("an angle", '"2.5 deg"'),
+    "1/rad": ("a slope per angle", '"5.7/rad"'),
+    "rad/m": ("an angle per length", '"-0.09 rad/ft"'),
+    "m/rad": ("a length per angle", '"4.3 ft/rad"'),
+    "m/s": ("a speed", '"300 kt"'),
+    "rad/s": ("a rotational speed or frequency", '"458 rpm", "60 rad/s" or "9.5 Hz"'),
+    "kg": ("a mass", '"4.1 slug"'),
+    "kg*m": ("a first moment of mass", '"14 slug*ft"'),
+    "kg*m**2": ("a moment of inertia", '"105 slug*ft**2"'),
+    "kg/m": ("a mass per length", '"0.2 slug/ft"'),
+    "kg/m**3": ("a density", '"1.225 kg/m**3"'),
+    "N*m/rad": ("a moment per angle", '"2700 in*lbf/deg"'),
+    "N*m*s/rad": ("a moment per rate of angle", '"12 N*m*s/rad"'),
+}
+
+_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_NUMBER_AND_UNIT = re.compile(rf"\s*({_NUMBER}|[+-]?(?:nan|inf)\b)\s*(.*?)\s*", re.IGNORECASE)
+_RANGE_AND_UNIT = re.compile(rf"\s*({_NUMBER})(?:\s*:\s*({_NUMBER})\s*:\s*({_NUMBER}))?\s*(.*?)\s*")
+_LONGEST = 80  # characters in a quantity
+_MOST_SPEEDS = 100_000
+
+# A unit is a product of names, each with at most a one-digit power: nothing else ever reaches a parser, so
+# no text can become a costly power such as 10**10**10.
+_UNIT_TOKEN = re.compile(
+    r"[A-Za-z_][A-Za-z0-9_]*(?:\s*(?:\*\*|\^)\s*-?[0-9](?![0-9]))?|[%()/]|\*(?!\*)|1(?=\s*/)"
+)
+
+
+@cache
+def unit_registry() -> pint.UnitRegistry:
+    """The registry of the units a deck may use (a `pint.UnitRegistry`, made on first use)."""
+    import pint  # here, because it is slow to import
+
+    registry = pint.UnitRegistry(None)
+    registry.load_definitions(_DEFINITIONS.strip().splitlines())
+    return registry
+
+
+def to_si(text: str | float, unit: str) -> float:
+    """The SI value of a quantity written as text.
+
+    Parameters
+    ----------
+    text : str or float
+        ``"12.5 ft"``, ``"2700 in*lbf/deg"``; a number, or a text without unit, is dimensionless.
+    unit : str
+        SI unit of the result, such as ``"m"`` or ``"N*m/rad"``; ``""`` for a plain number.
+
+    Raises
+    ------
+    InputError
+        With an empty field name, when the text is no quantity, not finite or of another dimension.
+    """
+    number, written_unit = _split(text)
+    if not math.isfinite(number):
+        raise InputError("", text, "must be finite")
+    return _finite(text, number * factor_to_si(text, written_unit, unit))
+
+
+def factor_to_si(text: object, written_unit: str, unit: str) -> float:
+    """How many SI units one `written_unit` is; `text` is what the user wrote, for the message.
+
+    Raises
+    ------
+    InputError
+        With an empty field name, when the unit is unknown or of another dimension.
+    """
+    import pint
+
+    try:
+        return float(unit_registry().Quantity(1.0, _parse_unit(text, written_unit)).to(unit).magnitude)
+    except pint.DimensionalityError:
+        raise InputError("", text, _dimension_rule(written_unit, unit)) from None
+
+
+def as_si(value: ArrayLike | str | pint.Quantity, unit: str, field: str = "value") -> NDArray[np.float64]:
+    """An argument in SI: numbers and arrays are SI already, text and pint quantities are converted.
+
+    Parameters
+    ----------
+    value : array_like, str or pint.Quantity
+        A quantity may come from any pint registry.
+    unit : str
+        SI unit of the result.
+    field : str
+        Name of the argument, for the message.
+
+    Raises
+    ------
+    InputError
+        When the value has another dimension or is not numeric.
+    """
+    if isinstance(value, str):
+        try:
+            return np.asarray(to_si(value, unit))
+        except InputError as error:
+            raise error.within(field) from None
+    try:
+        return np.asarray(value.to(unit).magnitude if hasattr(value, "to") else value, dtype=float)
+    except (TypeError, ValueError):  # pint's DimensionalityError is a TypeError
+        raise InputError(field, value, f"must be {meaning(unit)}") from None
+
+
+def speeds(text: str, field: str = "airspeed") -> NDArray[np.float64]:
+    """Speeds in m/s from ``"300 kt"`` or a range ``"50:400:5kt"``, start:stop:step, the stop included.
+
+    Returns
+    -------
+    numpy.ndarray
+        One dimension, increasing, m/s.
+
+    Raises
+    ------
+    InputError
+        When the text is no speed or range of speeds, with the reason.
+    """
+    match = _RANGE_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
+    if match is None:
+        raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
+    try:
+        factor = factor_to_si(text, match[4], "m/s")
+        written = _steps(
+            text, *(None if number is None else float(number) for number in match.group(1, 2, 3))
+        )
+    except InputError as error:
+        raise error.within(field) from None
+    return written * factor
+
+
+def _steps(text: str, start: float, stop: float | None, step: float | None) -> NDArray[np.float64]:
+    if _finite(text, start) < 0:
+        raise InputError("", text, "must not be negative")
+    if stop is None or step is None:
+        return np.array([start])
+    if _finite(text, step) <= 0 or stop < start:
+        raise InputError("", text, "must rise from start to stop, start:stop:step, by a positive step")
+    # a hair more than the quotient, so that 0:1:0.1 has its 1
+    n = _finite(text, (stop - start) / step) * (1 + 1e-12) + 1
+    if n > _MOST_SPEEDS:
+        raise InputError("", text, f"must have at most {_MOST_SPEEDS} speeds")
+    return start + step * np.arange(int(n))
+
+
+def _split(text: str | float) -> tuple[float, str]:
+    if isinstance(text, str):
+        match = _NUMBER_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
+        if match is None:
+            raise InputError("", text, 'must be a number and a unit, such as "12.5 ft"')
+        return float(match[1]), match[2]
+    try:
+        return float(text), ""
+    except OverflowError:  # an integer beyond the floating-point range
+        return math.inf, ""
+
+
+def _parse_unit(text: object, unit: str) -> pint.Unit:
+    import pint
+
+    product = f"1{unit}" if unit.startswith("/") else unit  # "5.7/rad"
+    product = re.sub(r"(?<=[A-Za-z0-9])[-·](?=[A-Za-z])", "*", product)  # in-lbf, as reports write it
+    if len(unit) <= _LONGEST and not _UNIT_TOKEN.sub("", product).strip():
+        try:
+            return unit_registry().parse_units(product)
+        except pint.UndefinedUnitError as error:
+            name = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
+            raise InputError("", text, f"has an {unknown_name(name, _unit_names(), 'unit')}") from None
+        except Exception:  # whatever a third-party parser raises, the text is at fault
+            pass
+    raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')
+
+
+def _unit_names() -> list[str]:
+    lines = [line.split(" = ") for line in _DEFINITIONS.splitlines() if " = " in line and "- = " not in line]
+    return [name for first, _, *aliases in lines for name in (first, *aliases) if name != "_"]
+
+
+def _dimension_rule(written_unit: str, unit: str) -> str:
+    if not written_unit:
+        return f"needs a unit; it is {meaning(unit)}"
+    # the commonest slip in US units
+    hint = " (lb is a mass, lbf a force)" if "N" in unit and re.search(r"\blb\b", written_unit) else ""
+    return f"must be {meaning(unit)}{hint}"
+
+
+def meaning(unit: str) -> str:
+    """What an SI unit measures, with an example, as the end of a sentence."""
+    name, example = _MEANINGS[unit]
+    return f"{name}, such as {example}"
+
+
+def _finite(text: object, number: float) -> float:
+    if not math.isfinite(number):
+        raise InputError("", text, "must be finite")
+    return number

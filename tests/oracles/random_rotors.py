@@ -1,0 +1,127 @@
+"""Rotors drawn at random around a full-scale tiltrotor (the XV-15 of AIAA-2002-1604), every parameter switched on.
+
+Each is a set of fields for the package, which sees mass integrals, and a set for the oracle, which sees point masses.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+import proprotor as pp
+from tests.oracles.nonlinear_rotor import NonlinearRotor, trim_coordinates
+from tests.oracles.virtual_work import Aerodynamics
+
+SPEED_OF_SOUND = 340.3
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The same rotor twice."""
+
+    package: pp.Rotor
+    fields: dict  # of the rotor, as given to the package
+    station: np.ndarray
+    mass: np.ndarray
+    rotor_speed: float
+
+    def oracle(self, trim):
+        """The nonlinear rotor at the collective of a trim, and its steady coordinates."""
+        names = {field.name for field in fields(NonlinearRotor)} & set(self.fields)
+        rotor = NonlinearRotor(
+            **{name: self.fields[name] for name in names},
+            station=self.station,
+            mass=self.mass,
+            rotor_speed=self.rotor_speed,
+            collective=float(trim.collective),
+        )
+        return rotor, trim_coordinates(float(trim.coning), float(trim.lag), float(trim.elastic_pitch))
+
+    def air(self, airspeed, density, compressibility=True):
+        airfoil = self.fields["airfoil"]
+        return Aerodynamics(
+            airspeed=airspeed,
+            density=density,
+            speed_of_sound=SPEED_OF_SOUND,
+            radius=self.fields["radius"],
+            root_cutout=self.fields["root_cutout"],
+            chord=_table(self.fields["chord"], lambda r: np.full_like(r, self.fields["chord"]), self.fields["radius"]),
+            twist=self._twist_table(),
+            lift_slope=airfoil.lift_slope,
+            zero_lift_angle=airfoil.zero_lift_angle,
+            drag=airfoil.drag,
+            moment=airfoil.moment,
+            compressibility=compressibility,
+        )
+
+    def _twist_table(self):
+        """A twist is measured from three quarters of the radius, however it is given."""
+        radius = self.fields["radius"]
+        station, twist = _table(self.fields["twist"], lambda r: self.fields["twist"] * r / radius, radius)
+        return station, twist - np.interp(0.75 * radius, station, twist)
+
+
+def _table(given, along, radius):
+    """A table as it is, or one made of the two ends of a number spread `along` the radius."""
+    ends = np.array([0.0, radius])
+    return tuple(np.asarray(column) for column in given) if isinstance(given, tuple) else (ends, along(ends))
+
+
+def mass_integrals(station, mass, flap_hinge_offset, lag_hinge_offset):
+    """The seven the package asks for."""
+    flap_arm = np.maximum(station - flap_hinge_offset, 0.0)
+    lag_arm = np.maximum(station - lag_hinge_offset, 0.0)
+    return {
+        "blade_mass": mass.sum(),
+        "blade_first_moment": mass @ station,
+        "blade_inertia": mass @ station**2,
+        "flap_first_moment": mass @ flap_arm,
+        "flap_inertia": mass @ flap_arm**2,
+        "lag_first_moment": mass @ lag_arm,
+        "lag_inertia": mass @ lag_arm**2,
+    }
+
+
+def random_rotor(seed, n_blades=None, tables=False, **changes):
+    """A rotor with hinges outboard of the cutout and no parameter at zero."""
+    rng = np.random.default_rng(seed)
+    radius = 3.81
+    flap_hinge_offset, gap = rng.uniform(0.3, 0.5), rng.uniform(0.0, 0.3)
+    station = np.sort(rng.uniform(0.03, 0.98, 7)) * radius
+    mass = rng.uniform(4.0, 12.0, 7)
+    given = {
+        "n_blades": n_blades or int(rng.integers(3, 6)),
+        "radius": radius,
+        "flap_hinge_offset": flap_hinge_offset,
+        "lag_hinge_offset": flap_hinge_offset + gap,
+        "precone": rng.uniform(0.02, 0.08),
+        "flap_stiffness": rng.uniform(2e5, 5e5),
+        "lag_stiffness": rng.uniform(8e5, 1.5e6),
+        "flap_outboard_fraction": rng.uniform(0.1, 0.9),
+        "lag_outboard_fraction": rng.uniform(0.1, 0.9),
+        "gimbal_stiffness": rng.uniform(1e4, 4e4),
+        "pitch_gimbal_coupling": rng.uniform(-0.4, -0.1),
+        "pitch_inertia": rng.uniform(1.0, 2.0),
+        "control_stiffness": rng.uniform(3e4, 6e4),
+        "flap_damping": rng.uniform(100.0, 400.0),
+        "lag_damping": rng.uniform(100.0, 400.0),
+        "pitch_damping": rng.uniform(2.0, 9.0),
+        "gimbal_damping": rng.uniform(50.0, 200.0),
+        "structural_pitch_offset": rng.uniform(-0.3, 0.3),
+        "propeller_moment": True,
+        "chord": rng.uniform(0.3, 0.4),
+        "twist": rng.uniform(-0.8, -0.5),
+        "root_cutout": rng.uniform(0.15, 0.25),
+        "airfoil": pp.Airfoil(
+            lift_slope=rng.uniform(5.5, 6.2),
+            zero_lift_angle=rng.uniform(-0.04, -0.01),
+            drag=rng.uniform(0.006, 0.02),
+            moment=rng.uniform(-0.03, -0.01),
+        ),
+    }
+    if tables:
+        given["chord"] = (np.array([0.0, 0.35, 1.0]) * radius, np.array([0.45, 0.4, 0.25]))
+        given["twist"] = (np.array([0.0, 0.25, 0.6, 1.0]) * radius, np.array([0.7, 0.3, 0.1, -0.1]))
+    given |= changes
+    given |= mass_integrals(station, mass, given["flap_hinge_offset"], given["lag_hinge_offset"])
+    rotor_speed = rng.uniform(40.0, 55.0)
+    return Pair(pp.Rotor(**given), given, station, mass, rotor_speed)

@@ -1,0 +1,140 @@
+"""Airloads of the nonlinear rotor by virtual work: quasi-steady blade elements in axial flight.
+
+Section by section the flow is resolved in axes turned with the hub, the yoke and the blade. Blade rows are the virtual
+work of the section forces and moments; hub rows are their resultants about the displaced hub in inertial axes. All of
+it changes sign: the equations of motion have the airloads on their left-hand side.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.oracles.motion import Motion, scaled
+from tests.oracles.nonlinear_rotor import (
+    DOFS,
+    HUB_FORCE,
+    HUB_MOMENT,
+    NonlinearRotor,
+    blades,
+    clock,
+    virtual_displacements,
+)
+
+
+@dataclass(frozen=True)
+class Aerodynamics:
+    """The air, and what it acts on. `chord` and `twist` are tables (radius, value), linear in between."""
+
+    airspeed: float
+    density: float
+    speed_of_sound: float
+    radius: float
+    root_cutout: float
+    chord: tuple
+    twist: tuple
+    lift_slope: float
+    zero_lift_angle: float
+    drag: float
+    moment: float
+    compressibility: bool = True
+
+
+def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=20):
+    """Gauss–Legendre stations and weights on panels split wherever the integrand has a corner.
+
+    Twenty points integrate the smooth panels to rounding; the nearest singularities (V/Ω off the axis, sonic speed)
+    are about a panel length away.
+    """
+    corners = {rotor.flap_hinge_offset, rotor.lag_hinge_offset, *air.chord[0], *air.twist[0]}
+    edges = [air.root_cutout, *sorted(c for c in corners if air.root_cutout < c < air.radius), air.radius]
+    node, weight = np.polynomial.legendre.leggauss(order)
+    middle, half = (np.add(edges[1:], edges[:-1]) / 2)[:, None], (np.diff(edges) / 2)[:, None]
+    return (middle + half * node).ravel(), (half * weight).ravel()
+
+
+@dataclass(frozen=True)
+class Flow:
+    """The flow a section meets: speed U and inflow angle φ across the span, u_R along it."""
+
+    speed: np.ndarray
+    inflow: np.ndarray
+    radial: np.ndarray
+    angle_of_attack: np.ndarray
+    prandtl_glauert: np.ndarray | float
+
+
+def section_flow(air, station, motion):
+    """φ is written arctan(u_P/u_T): atan2 where the flow meets the leading edge, and analytic there."""
+    velocity = motion.position.rate + air.airspeed * np.array([0.0, 0.0, 1.0])
+    u_T = -(velocity * motion.chordwise.value).sum(-1)
+    u_P = (velocity * motion.normal.value).sum(-1)
+    u_R = (velocity * motion.spanwise.value).sum(-1)
+    assert (u_T.real > 0).all(), "reversed flow"
+    speed, inflow = np.sqrt(u_T**2 + u_P**2), np.arctan(u_P / u_T)
+    mach = speed / air.speed_of_sound
+    return Flow(
+        speed=speed,
+        inflow=inflow,
+        radial=u_R,
+        angle_of_attack=motion.pitch.value + np.interp(station, *air.twist) - inflow,
+        prandtl_glauert=1 / np.sqrt(1 - mach**2) if air.compressibility else 1.0,
+    )
+
+
+def section_loads(air, station, motion):
+    """Force and nose-up moment per length on every section, from its own velocity and pitch."""
+    flow, chord = section_flow(air, station, motion), np.interp(station, *air.chord)
+    pressure_chord = 0.5 * air.density * chord * flow.speed**2
+    lift_coefficient = air.lift_slope * flow.prandtl_glauert * (flow.angle_of_attack - air.zero_lift_angle)
+    lift, drag = pressure_chord * lift_coefficient, pressure_chord * air.drag
+    radial_drag = 0.5 * air.density * chord * flow.speed * air.drag * flow.radial
+    force = (
+        scaled(lift * np.sin(flow.inflow) + drag * np.cos(flow.inflow), motion.chordwise.value)
+        + scaled(lift * np.cos(flow.inflow) - drag * np.sin(flow.inflow), motion.normal.value)
+        - scaled(radial_drag, motion.spanwise.value)
+    )
+    return force, pressure_chord * chord * air.moment * flow.prandtl_glauert
+
+
+def lift_slope_loads(air, station, motion, trim):
+    """What a change of angle of attack alone does: c_lα in the flow and the axes of `trim`, nothing else."""
+    flow, chord = section_flow(air, station, trim), np.interp(station, *air.chord)
+    change = section_flow(air, station, motion).angle_of_attack - flow.angle_of_attack
+    lift = 0.5 * air.density * chord * flow.speed**2 * air.lift_slope * flow.prandtl_glauert * change
+    chordwise, normal = motion.chordwise.value, motion.normal.value
+    return scaled(lift * np.sin(flow.inflow), chordwise) + scaled(lift * np.cos(flow.inflow), normal), 0.0 * lift
+
+
+def virtual_nose_up_rotation(displacement):
+    """The part about d of the rotation of the section axes, and the pitch of the section in them."""
+    axes_about_span = (displacement.normal.rate * displacement.chordwise.value).sum(-1)
+    return axes_about_span + displacement.pitch.rate
+
+
+def airload_rows(air, rotor, q, time, order=20):
+    """What the airloads add to the left-hand side of the equations of motion."""
+    station, weight = quadrature(air, rotor, order)
+    motion = blades(rotor, station, q, clock(rotor, time))
+    force, moment = section_loads(air, station, motion)
+    return -assembled(rotor, station, q, time, motion, force * weight[:, None], moment * weight)
+
+
+def lift_slope_rows(air, rotor, trim, q, time):
+    """The same with only the terms proportional to c_lα: they vanish at the trim, so no steady load is turned."""
+    station, weight = quadrature(air, rotor)
+    shaft = clock(rotor, time)
+    motion, steady = (blades(rotor, station, state, shaft) for state in (q, Motion(trim)))
+    force, moment = lift_slope_loads(air, station, motion, steady)
+    return -assembled(rotor, station, q, time, motion, force * weight[:, None], moment)
+
+
+def assembled(rotor, station, q, time, motion, force, moment):
+    """Resultants on the hub and virtual work on everything else of forces and nose-up moments at the stations."""
+    rows = np.zeros(force.shape[:-3] + (len(DOFS),), dtype=complex)
+    rows[..., HUB_FORCE] = force.sum((-3, -2))
+    about_hub = np.cross(motion.arm.value, force) + moment[..., None] * motion.spanwise.value
+    rows[..., HUB_MOMENT] = about_hub.sum((-3, -2))
+    for row, displacement in virtual_displacements(rotor, station, q.value, time):
+        work = (force * displacement.position.rate).sum((-3, -2, -1))
+        rows[..., row] = work + (moment * virtual_nose_up_rotation(displacement)).sum((-2, -1))
+    return rows

@@ -1,0 +1,179 @@
+"""Airload matrices and the trim against the nonlinear airloads by virtual work.
+
+Tolerance: the oracle is exact to rounding (a complex step, and quadrature converged to 1e-13), so what is left is the
+package's own quadrature. A block is held to 1e-9 of its largest entry; see `comparison` for those that vanish.
+"""
+
+import numpy as np
+import pytest
+
+import proprotor as pp
+from tests.oracles.comparison import assert_matrices_match, picked
+from tests.oracles.motion import Motion
+from tests.oracles.nonlinear_rotor import (
+    AZIMUTH,
+    DOFS,
+    FLAP,
+    LAG,
+    PITCH,
+    hinge_spring_energy,
+    inertia_rows,
+    linearised,
+    spring_rows,
+)
+from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
+from tests.oracles.virtual_work import airload_rows, lift_slope_rows
+
+DENSITY = 1.1
+POWERED = {"collective": 0.8}
+
+CASES = {
+    "windmilling": {"seed": 1, "n_blades": 3, "airspeed": 90.0, "trim": "windmill"},
+    "windmilling, tables": {"seed": 2, "n_blades": 4, "tables": True, "airspeed": 130.0, "trim": "windmill"},
+    "powered": {"seed": 3, "n_blades": 4, "airspeed": 110.0, "trim": POWERED},
+    "powered, tables": {"seed": 4, "n_blades": 3, "tables": True, "airspeed": 120.0, "trim": POWERED},
+    "five blades": {"seed": 5, "n_blades": 5, "airspeed": 100.0, "trim": POWERED},
+    "incompressible": {"seed": 6, "airspeed": 110.0, "trim": "windmill", "compressibility": False},
+    "incompressible, powered, tables": {
+        "seed": 7,
+        "tables": True,
+        "airspeed": 110.0,
+        "trim": POWERED,
+        "compressibility": False,
+    },
+    "hinges inboard of the cutout": {"seed": 8, "airspeed": 110.0, "trim": POWERED, "root_cutout": 0.9},
+    "hover-like, fast rotor": {"seed": 9, "airspeed": 20.0, "trim": {"collective": 0.2}},
+}
+
+
+class Case:
+    """A rotor in the air, in the package and in the oracle."""
+
+    def __init__(self, seed, airspeed, trim, compressibility=True, **rotor):
+        self.pair = random_rotor(seed, **rotor)
+        self.airspeed, self.compressibility = airspeed, compressibility
+        self.operation = pp.Operation(
+            rotor_speed=self.pair.rotor_speed, density=DENSITY, speed_of_sound=SPEED_OF_SOUND, trim=trim
+        )
+        self.air = self.pair.air(airspeed, DENSITY, compressibility)
+
+    def model(self, **options):
+        model = pp.rotor_model(
+            self.pair.package, self.operation, self.airspeed, compressibility=self.compressibility, **options
+        )
+        assert model.trim.converged, model.trim.reason
+        return model
+
+    def airloads(self, kind="full", **options):
+        """(the model with airloads, what they add to its matrices)."""
+        loaded, bare = self.model(airloads=kind, **options), self.model(airloads="none", **options)
+        assert loaded.dofs == bare.dofs
+        return loaded, [getattr(loaded, name) - getattr(bare, name) for name in "MCK"]
+
+    def oracle(self, model):
+        return self.pair.oracle(model.trim)
+
+    def assert_match(self, actual, expected, model, relative=1e-9):
+        rotor, trim = self.oracle(model)
+        inertia, _, _ = linearised(lambda q, time: inertia_rows(rotor, q, time), trim, 0.0)
+        assert_matrices_match(
+            actual,
+            [picked(matrix, model.dofs) for matrix in expected],
+            picked(inertia, model.dofs),
+            self.pair.rotor_speed,
+            model.dofs,
+            relative,
+        )
+
+
+@pytest.fixture(params=CASES)
+def case(request):
+    return Case(**CASES[request.param])
+
+
+def steady_rows(case, model):
+    """The terms of the static equations, each on the left-hand side."""
+    rotor, trim = case.oracle(model)
+    steady = Motion(trim, np.zeros(len(DOFS)), np.zeros(len(DOFS)))
+    return (
+        inertia_rows(rotor, steady, 0.0).real,
+        spring_rows(rotor, steady, 0.0).real,
+        airload_rows(case.air, rotor, steady, 0.0).real,
+    )
+
+
+def test_airload_matrices_are_derivatives_of_virtual_work(case):
+    model, airloads = case.airloads()
+    rotor, trim = case.oracle(model)
+    expected = linearised(lambda q, time: airload_rows(case.air, rotor, q, time), trim, 0.017)
+    case.assert_match(airloads, expected, model)
+
+
+def test_the_trim_is_an_equilibrium(case):
+    model = case.model()
+    terms = np.array(steady_rows(case, model))
+    balanced = [FLAP, LAG, PITCH]
+    if case.operation.trim == "windmill":
+        balanced.append(AZIMUTH)
+    # The airloads cancel along the blade: without torque the largest term is the lag moment they could have.
+    largest = np.abs(terms).max(axis=0)
+    largest[AZIMUTH] = largest[FLAP]
+    residual = np.abs(terms.sum(axis=0))
+    assert (residual[balanced] < 1e-9 * largest[balanced]).all()
+
+
+def test_thrust_and_torque_are_the_steady_loads_of_the_hub(case):
+    model = case.model()
+    _, _, airloads = steady_rows(case, model)
+    thrust, torque = -airloads[2], -airloads[AZIMUTH]
+    scale = np.abs(airloads[FLAP])
+    assert abs(model.trim.thrust - thrust) < 1e-9 * abs(thrust)
+    assert abs(model.trim.torque - torque) < 1e-9 * max(abs(torque), scale)
+    if case.operation.trim != "windmill":
+        assert abs(torque) > 0.1 * scale, "a powered trim must carry a steady torque"
+
+
+@pytest.mark.parametrize("name", ["windmilling", "powered, tables", "incompressible"])
+def test_lift_slope_airloads_keep_the_change_of_incidence_alone(name):
+    """At the trim of the full airloads."""
+    case = Case(**CASES[name])
+    model, airloads = case.airloads("lift-slope")
+    assert np.isclose(model.trim.thrust, case.model().trim.thrust, rtol=1e-12)
+    rotor, trim = case.oracle(model)
+    expected = linearised(lambda q, time: lift_slope_rows(case.air, rotor, trim, q, time), trim, 0.0)
+    case.assert_match(airloads, expected, model)
+
+
+@pytest.mark.parametrize("name", ["windmilling", "powered, tables"])
+def test_airloads_without_pitch_dynamics(name):
+    case = Case(**CASES[name])
+    model, airloads = case.airloads(pitch="rigid")
+    rotor, trim = case.oracle(model)
+    expected = linearised(lambda q, time: airload_rows(case.air, rotor, q, time), trim, 0.0)
+    case.assert_match(airloads, expected, model)
+
+
+def pitch_flap_and_pitch_lag_coupling(rotor, trim):
+    """K_Pβ and K_Pζ: the control spring against the spring moment −∂U/∂θ of a blade bent a little further."""
+    step = 1e-30
+
+    def pitch_moment(flap, lag):
+        turn = Motion(rotor.collective + rotor.structural_pitch_offset, 1.0)
+        return -hinge_spring_energy(rotor, Motion(flap), Motion(lag), turn).rate
+
+    bent = (trim[FLAP] + 1j * step, trim[LAG]), (trim[FLAP], trim[LAG] + 1j * step)
+    return [-np.imag(pitch_moment(*angles)) / step / rotor.control_stiffness for angles in bent]
+
+
+@pytest.mark.parametrize("name", ["windmilling", "powered, tables"])
+def test_quasi_static_pitch_couples_flap_and_lag_into_the_airloads(name):
+    """Pitch follows −K_Pβ δβ − K_Pζ δζ of each blade in the airloads only."""
+    case = Case(**CASES[name])
+    model, airloads = case.airloads(pitch="coupling")
+    rotor, trim = case.oracle(model)
+    flap_coupling, lag_coupling = pitch_flap_and_pitch_lag_coupling(rotor, trim)
+    _, C, K = linearised(lambda q, time: airload_rows(case.air, rotor, q, time), trim, 0.0)
+    pitch = K[:, PITCH : PITCH + 3].copy()
+    K[:, FLAP : FLAP + 3] -= flap_coupling * pitch
+    K[:, LAG : LAG + 3] -= lag_coupling * pitch
+    case.assert_match(airloads, (np.zeros_like(C), C, K), model)
