@@ -1,11 +1,13 @@
 """Rotors simple enough for a formula: rotating and fixed-frame frequencies, ground resonance, a rigid disk.
 
-All in vacuum. Where the formula is exact the tolerance is rounding, 1e-12 of the frequency or of the largest entry.
+All in vacuum. Where the formula is exact the tolerance is rounding, 1e-12 of one per rev or of the largest entry.
 """
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.linalg import eigvals
+from scipy.linalg import cholesky, eigvals, inv
 from scipy.optimize import brentq
 
 import proprotor as pp
@@ -29,9 +31,15 @@ def part(model, *dofs):
 
 
 def roots(M, C, K):
-    """Eigenvalues of M q̈ + C q̇ + K q = 0 with positive frequency, slowest first."""
+    """Eigenvalues of M q̈ + C q̇ + K q = 0 with positive frequency, slowest first.
+
+    Coordinates are scaled to unit inertia and time to the stiffest spring: rounding is that of numbers near 1.
+    """
+    whiten = inv(cholesky(M, lower=True))
+    C, K = whiten @ C @ whiten.T, whiten @ K @ whiten.T
+    rate = np.sqrt(np.abs(K).max())
     zero, one = np.zeros_like(M), np.eye(len(M))
-    s = eigvals(np.block([[zero, one], [-K, -C]]), np.block([[one, zero], [zero, M]]))
+    s = rate * eigvals(np.block([[zero, one], [-K / rate**2, -C / rate]]))
     return sorted(s[s.imag > 0], key=lambda root: (root.imag, root.real))
 
 
@@ -39,7 +47,7 @@ def frequencies(M, C, K):
     return np.imag(roots(M, C, K))
 
 
-# One blade motion at a time ------------------------------------------------------------------------------------
+# One blade motion at a time
 
 N_BLADES, RADIUS, ROTOR_SPEED = 4, 3.8, 48.0
 FLAP = ("flap_0", "flap_1c", "flap_1s")
@@ -77,13 +85,13 @@ def uniform_blade_inertia(hinge_offset=0.0):
 
 
 def per_rev_in_fixed_frame(nu, collective):
-    """A rotating mode at ν/rev is seen at |ν − 1| and ν + 1 by the cyclic coordinates, and at ν by the collective."""
+    """Cyclic coordinates see a blade mode of ν per rev at |ν − 1| and ν + 1, the collective at ν."""
     return sorted([abs(nu - 1), nu + 1] + [nu] * collective)
 
 
 @pytest.mark.parametrize("gimbal_stiffness", [1.0, 2e4, 3e5])
 def test_gimbal_is_a_tilting_disk(gimbal_stiffness):
-    """ν² = 1 + K_G/((N/2) I_b Ω²). Its slow mode nears zero frequency with the spring: the root is worth less there."""
+    """ν² = 1 + K_G/((N/2) I_b Ω²)."""
     model = vacuum_model(uniform_rotor(gimbal_stiffness=gimbal_stiffness), ROTOR_SPEED, ("flap", "lag"))
     spring = gimbal_stiffness / (N_BLADES / 2 * uniform_blade_inertia() * ROTOR_SPEED**2)
     expected = per_rev_in_fixed_frame(np.sqrt(1 + spring), collective=False)
@@ -118,19 +126,20 @@ def test_pitch_feels_the_control_spring_and_the_propeller_moment(collective):
     model = vacuum_model(rotor, ROTOR_SPEED, ("flap", "lag", "gimbal"), collective, pitch="dynamic")
     twist = float(model.trim.elastic_pitch)
     total = collective + twist
-    assert abs(3e4 * twist + 0.7 * ROTOR_SPEED**2 * np.sin(2 * total)) < 1e-9 * 3e4 * max(abs(twist), 1e-6)
+    propeller_moment = 0.7 * ROTOR_SPEED**2  # largest
+    assert abs(3e4 * twist + propeller_moment * np.sin(2 * total)) < 1e-11 * propeller_moment
     nu = np.sqrt(3e4 / 1.4 / ROTOR_SPEED**2 + np.cos(2 * total))
     expected = per_rev_in_fixed_frame(nu, collective=True)
     pitch = frequencies(*part(model, "pitch_0", "pitch_1c", "pitch_1s"))
     assert np.allclose(pitch / ROTOR_SPEED, expected, rtol=0, atol=1e-12)
 
 
-# A rigid rotor --------------------------------------------------------------------------------------------------
+# A rigid rotor
 
 
 @pytest.mark.parametrize("precone", [0.0, 0.05])
 def test_rigid_rotor_is_a_gyroscope(precone):
-    """Coned rods: their inertia tensor about the hub, their mass centre above it, and the moment Ω × (I_zz ω)."""
+    """Coned rods: their inertia tensor about the hub, their raised mass centre and gyroscopic moment."""
     model = vacuum_model(uniform_rotor(precone=precone), ROTOR_SPEED, ("flap", "lag", "gimbal"))
     hub = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
     assert model.dofs == hub
@@ -157,7 +166,7 @@ def test_a_free_shaft_spins_all_the_polar_inertia():
     assert np.abs(K).max() < 1e-12 * polar * ROTOR_SPEED**2
 
 
-# Lagging blades on a hub that moves in its plane ------------------------------------------------------------------
+# Lagging blades on a hub that moves in its plane
 
 
 def lagging_rotor(n_blades, mass, length, lag_stiffness, lag_damping=0.0):
@@ -203,8 +212,9 @@ def on_in_plane_support(model, mass, damping, stiffness):
     return M, C, K
 
 
+AT_REST = 1e-6  # the model asks for a turning rotor; this moves no frequency by more than itself
 GROUND_RESONANCE = {
-    0.0: [0.62311, 1.96807, 5.06413, 5.07023],
+    AT_REST: [0.62311, 1.96807, 5.06413, 5.07023],
     3.0: [0.62306, 1.93997, 2.06423, 8.12449],
     4.0: [0.62289, 1.02747, 1.97204, 9.14955],
     7.0: [0.62326, 1.96817, 1.96817, 12.24220],
@@ -213,7 +223,7 @@ HALF_A_DIGIT = 5e-6
 
 
 def three_lagging_blades(rotor_speed):
-    """Hub 50000 with springs 2e5 and 2e4; three point masses 500 at 30, whose lag spring gives 1.6π rad/s at rest."""
+    """Hub 50000 on springs 2e5 and 2e4; three point masses 500 at 30, lagging at 1.6π rad/s at rest."""
     rotor = lagging_rotor(3, 500.0, 30.0, 500.0 * 30.0**2 * (1.6 * np.pi) ** 2)
     model = vacuum_model(rotor, rotor_speed, ("flap", "gimbal"))
     return roots(*on_in_plane_support(model, [50000.0] * 2, [0.0] * 2, [2e5, 2e4]))
@@ -229,8 +239,70 @@ def test_ground_resonance_of_three_lagging_blades(rotor_speed):
 
 def test_ground_resonance_is_unstable_where_lag_and_hub_meet():
     growth = {speed: np.real(three_lagging_blades(speed)) for speed in GROUND_RESONANCE}
-    for speed in (0.0, 3.0, 4.0):
-        assert np.abs(growth[speed]).max() < 1e-8  # undamped: rounding alone
-    unstable = three_lagging_blades(7.0)[1:3]
-    assert np.allclose(unstable, [-0.05239 + 1.96817j, 0.05239 + 1.96817j], rtol=0, atol=HALF_A_DIGIT)
-    assert np.abs(np.delete(growth[7.0], [1, 2])).max() < 1e-8
+    rounding = 1e-10  # nothing is damped
+    for speed in (AT_REST, 3.0, 4.0):
+        assert np.abs(growth[speed]).max() < rounding
+    assert np.allclose(sorted(growth[7.0][1:3]), [-0.05239, 0.05239], rtol=0, atol=HALF_A_DIGIT)
+    assert np.abs(np.delete(growth[7.0], [1, 2])).max() < rounding
+
+
+class Deutsch:
+    """Blades that lag on a damped hub whose frequency meets the regressing lag mode: ω_x = (1 − ν_ζ)Ω.
+
+    Deutsch: for weak coupling and one hub axis, c_x c_ζ = (N/4) S_ζ² ω_x² (1 − ν_ζ)/ν_ζ just holds ground
+    resonance down. The mass ratio of blades to hub is the strength of the coupling; the damping is split so
+    that the hub and the blades decay alike.
+    """
+
+    n_blades, rotor_speed, blade_mass, length = 4, 20.0, 5.0, 4.0
+
+    def __init__(self, nu, mass_ratio, axes):
+        self.axes = axes
+        self.hub_mass = self.n_blades * self.blade_mass / mass_ratio
+        self.hub_frequency = (1 - nu) * self.rotor_speed
+        self.first_moment, self.inertia = self.blade_mass * self.length, self.blade_mass * self.length**2
+        self.lag_stiffness = self.inertia * (nu * self.rotor_speed) ** 2
+        self.closed_form = self.n_blades / 4 * self.first_moment**2 * self.hub_frequency**2 * (1 - nu) / nu
+
+    def growth(self, product):
+        """Largest growth rate with a damping product of `product` closed forms, per radian of the rotor."""
+        root_product = np.sqrt(product * self.closed_form)
+        lag_damping = root_product * np.sqrt(self.inertia / self.hub_mass)
+        hub_damping = root_product * np.sqrt(self.hub_mass / self.inertia)
+        rotor = lagging_rotor(self.n_blades, self.blade_mass, self.length, self.lag_stiffness, lag_damping)
+        model = vacuum_model(rotor, self.rotor_speed, ("flap", "gimbal"))
+        support_mass = self.hub_mass - self.n_blades * self.blade_mass
+        matrices = on_in_plane_support(
+            model,
+            [support_mass] * self.axes,
+            [hub_damping] * self.axes,
+            [self.hub_mass * self.hub_frequency**2] * self.axes,
+        )
+        return max(np.real(roots(*matrices))) / self.rotor_speed
+
+    def neutral_product(self):
+        """Exact c_x c_ζ of neutral stability, in closed forms."""
+        return brentq(self.growth, 0.5, 3.0, xtol=1e-14, rtol=1e-14)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.6])
+def test_deutsch_criterion_is_the_limit_of_weak_coupling(nu):
+    """At a mass ratio μ the exact product is 1 + aμ + bμ² + cμ³ + … closed forms.
+
+    Extrapolating twice from μ = 1e-2, 1e-3 and 1e-4 leaves 1e-9 c, where c is small (a is a few 1e-2, b a few
+    1e-3 at most). At μ = 1e-4 the growth rate changes by 1e-3 per unit of the product; good to some 1e-16, it
+    gives the product to some 1e-13. Both stay within 1e-11.
+    """
+    ratios = (1e-2, 1e-3, 1e-4)
+    first = [Deutsch(nu, ratio, axes=1).neutral_product() for ratio in ratios]
+    second = [(10 * weaker - stronger) / 9 for stronger, weaker in pairwise(first)]
+    third = (100 * second[1] - second[0]) / 99
+    assert 1e-3 < (first[0] - 1) / ratios[0] < 1e-1
+    assert abs(third - 1) < 1e-11
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.6])
+@pytest.mark.parametrize("mass_ratio", [0.3, 1e-2, 1e-4])
+def test_isotropic_hub_needs_twice_the_product_at_any_coupling(nu, mass_ratio):
+    """Forward and backward whirl part ways, and the backward pair is neutral at ω_x itself: it is exact."""
+    assert abs(Deutsch(nu, mass_ratio, axes=2).neutral_product() - 2) < 1e-11

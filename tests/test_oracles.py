@@ -1,7 +1,7 @@
 """The oracles against each other and against first principles: a wrong oracle proves nothing.
 
-Everything here is exact but for rounding and the eighth-order differences of the Lagrangian (truncation and rounding
-near 1e-13 of the largest entry), so the tolerances are 1e-12 and 1e-11.
+Everything here is exact but for rounding and the eighth-order differences of the Lagrangian (truncation and
+rounding near 1e-13 of the largest entry), so the tolerances are 1e-12 and 1e-11.
 """
 
 from dataclasses import replace
@@ -18,7 +18,6 @@ from tests.oracles.nonlinear_rotor import (
     lagrange_rows,
     linearised,
     rows_in_vacuum,
-    trim_coordinates,
 )
 from tests.oracles.random_rotors import random_rotor
 from tests.oracles.virtual_work import airload_rows, quadrature
@@ -40,7 +39,8 @@ def oracle(seed, **changes):
 
 def close(actual, expected, tolerance):
     """To `tolerance` of the largest entry of each matrix."""
-    return all(np.abs(a - b).max() <= tolerance * np.abs(b).max() for a, b in zip(actual, expected, strict=True))
+    pairs = zip(actual, expected, strict=True)
+    return all(np.abs(a - b).max() <= tolerance * np.abs(b).max() for a, b in pairs)
 
 
 def test_motions_are_the_derivatives_of_what_they_say():
@@ -96,14 +96,14 @@ def test_conservative_rotor_is_symmetric_and_gyroscopic():
 def test_a_steady_rotor_pulls_its_hub_neither_way():
     """The condition under which moments about the hub equal generalised forces of its rotation."""
     rotor, trim, _ = oracle(3)
-    at_rest = Motion(trim, np.zeros(len(DOFS)), np.zeros(len(DOFS)))
+    at_rest = Motion(trim)
     rows = inertia_rows(rotor, at_rest, 0.0).real
     assert np.abs(rows[:6]).max() < 1e-12 * np.abs(rows).max()
 
 
 def test_tilting_a_flying_rotor_is_a_sideslip_and_turns_its_loads():
     rotor, trim, air = oracle(4)
-    at_rest = Motion(trim, np.zeros(len(DOFS)), np.zeros(len(DOFS)))
+    at_rest = Motion(trim)
     steady = -airload_rows(air, rotor, at_rest, 0.0).real
     _, C, K = linearised(lambda q, time: airload_rows(air, rotor, q, time), trim, 0.0)
     thrust, torque = steady[2], steady[5]
@@ -117,7 +117,7 @@ def test_tilting_a_flying_rotor_is_a_sideslip_and_turns_its_loads():
 
 def test_axial_motion_is_a_change_of_airspeed():
     rotor, trim, air = oracle(5)
-    at_rest = Motion(trim, np.zeros(len(DOFS)), np.zeros(len(DOFS)))
+    at_rest = Motion(trim)
     _, C, _ = linearised(lambda q, time: airload_rows(air, rotor, q, time), trim, 0.0)
     faster = central_difference(
         lambda dV: airload_rows(replace(air, airspeed=AIRSPEED + dV), rotor, at_rest, 0.0).real, 1.0
@@ -127,7 +127,7 @@ def test_axial_motion_is_a_change_of_airspeed():
 
 def test_quadrature_has_converged():
     rotor, trim, air = oracle(6, tables=True)
-    at_rest = Motion(trim, np.zeros(len(DOFS)), np.zeros(len(DOFS)))
+    at_rest = Motion(trim)
     station, weight = quadrature(air, rotor)
     finer_station, finer_weight = quadrature(air, rotor, order=30)
     assert np.isclose(weight @ station**4, finer_weight @ finer_station**4, rtol=1e-14)

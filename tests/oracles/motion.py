@@ -1,8 +1,8 @@
 """A quantity that moves in time: its value, rate and acceleration, carried through the chain rule exactly.
 
-The oracles state positions only. Velocities and accelerations follow from this arithmetic, and so do virtual
-displacements: a virtual displacement is the rate of a motion with the clock stopped. Everything in it is analytic,
-so a complex step through it is exact too.
+The oracles state positions only. Velocities and accelerations follow from this arithmetic, and so do
+virtual displacements: a virtual displacement is the rate of a motion with the clock stopped. Everything in
+it is analytic, so a complex step through it is exact too.
 """
 
 import numpy as np
@@ -20,8 +20,8 @@ class Motion:
         return Motion(self.value[index], self.rate[index], self.acceleration[index])
 
     def __add__(self, other):
-        other = still(other)
-        return Motion(self.value + other.value, self.rate + other.rate, self.acceleration + other.acceleration)
+        pairs = zip(_parts(self), _parts(still(other)), strict=True)
+        return Motion(*(mine + its for mine, its in pairs))
 
     def __neg__(self):
         return Motion(-self.value, -self.rate, -self.acceleration)

@@ -1,8 +1,8 @@
 """A rotor of N blades, written down nonlinearly in its eighteen fixed-frame coordinates.
 
-Nothing is expanded and no mode shape, frame or row is chosen by hand: positions come from rotations of the hub, the
-yoke and the blade, and everything else from `motion`. Blade angles are those of a multiblade transform,
-q0 + q1c cos ψm + q1s sin ψm, so the equations have constant coefficients once linearised (tested, not assumed).
+Nothing is expanded: positions come from rotations of the hub, the yoke and the blade, and everything else
+from `motion`. Blade angles are those of a multiblade transform, q0 + q1c cos ψm + q1s sin ψm, so the
+equations have constant coefficients once linearised (tested, not assumed).
 """
 
 from dataclasses import dataclass
@@ -19,6 +19,7 @@ DOFS = (
 HUB_FORCE, HUB_MOMENT = slice(0, 3), slice(3, 6)
 FLAP, LAG, PITCH = (DOFS.index(name) for name in ("flap_0", "lag_0", "pitch_0"))
 AZIMUTH, GIMBAL_C, GIMBAL_S = (DOFS.index(name) for name in ("azimuth", "gimbal_1c", "gimbal_1s"))
+UNIT = np.eye(len(DOFS))
 GENERALISED = range(6, 18)  # the rows of virtual work; the six hub rows are resultants
 
 
@@ -94,9 +95,8 @@ def blades(rotor, station, q, shaft):
 
     def inertial(along_i, along_j, along_k):
         """Components in the spinning axes i, j, k of the yoke to inertial axes."""
-        in_yoke = vector(
-            along_i * sin(azimuth) + along_j * cos(azimuth), along_j * sin(azimuth) - along_i * cos(azimuth), along_k
-        )
+        s, c = sin(azimuth), cos(azimuth)
+        in_yoke = vector(along_i * s + along_j * c, along_j * s - along_i * c, along_k)
         return turned(hub_rotation, turned(tilt, in_yoke))
 
     flap_arm = np.maximum(station - rotor.flap_hinge_offset, 0.0)
@@ -131,27 +131,27 @@ def blades(rotor, station, q, shaft):
 
 
 def virtual_displacements(rotor, station, q, time):
-    """(row, the motion of the blades whose rates are the derivatives by that coordinate), hub rows left out."""
+    """Row by row, the motion of the blades whose rates are the derivatives by that coordinate."""
+    shaft = clock(rotor, time, running=False)
     for row in GENERALISED:
-        yield row, blades(rotor, station, Motion(q, np.eye(len(DOFS))[row]), clock(rotor, time, running=False))
+        yield row, blades(rotor, station, Motion(q, UNIT[row]), shaft)
 
 
 def spring_energy(rotor, motion, coordinates):
     """Energy of the hinge springs, the control springs, the propeller moment and the gimbal spring."""
     gimbal = coordinates[..., GIMBAL_C : GIMBAL_S + 1]
-    of_blades = (
-        hinge_spring_energy(rotor, motion.flap, motion.lag, motion.pitch + rotor.structural_pitch_offset)
-        + 0.5 * rotor.control_stiffness * motion.elastic_pitch * motion.elastic_pitch
-        + 0.5 * rotor.propeller_moment * rotor.pitch_inertia * rotor.rotor_speed**2 * sin(motion.pitch) * sin(motion.pitch)
-    )
-    return over_blades(of_blades) + 0.5 * rotor.gimbal_stiffness * dot(gimbal, gimbal)
+    hinges = hinge_spring_energy(rotor, motion.flap, motion.lag, motion.pitch + rotor.structural_pitch_offset)
+    control = 0.5 * rotor.control_stiffness * motion.elastic_pitch * motion.elastic_pitch
+    propeller_stiffness = rotor.propeller_moment * rotor.pitch_inertia * rotor.rotor_speed**2
+    propeller = 0.5 * propeller_stiffness * sin(motion.pitch) * sin(motion.pitch)
+    return over_blades(hinges + control + propeller) + 0.5 * rotor.gimbal_stiffness * dot(gimbal, gimbal)
 
 
 def hinge_spring_energy(rotor, flap, lag, turn):
     """Springs inboard of the pitch bearing and, turned with the blade, outboard of it, in series.
 
-    Flexibilities add. The outboard springs bend along the blade's own axes: nose up by `turn`, the blade has its
-    normal along n cos + i sin and its chord along i cos − n sin.
+    Flexibilities add. The outboard springs bend along the blade's own axes: nose up by `turn`, the blade
+    has its normal along n cos + i sin and its chord along i cos − n sin.
     """
     inboard_flap = (1 - rotor.flap_outboard_fraction) / rotor.flap_stiffness
     inboard_lag = (1 - rotor.lag_outboard_fraction) / rotor.lag_stiffness
@@ -180,44 +180,42 @@ def lagrangian(rotor, q, q_rate, time):
     return kinetic + pitching - spring_energy(rotor, motion, coordinates).value
 
 
-_STENCIL = [(k, weight) for k, weight in zip((1, 2, 3, 4), (4 / 5, -1 / 5, 4 / 105, -1 / 280), strict=True)]
+_STENCIL = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
 
 
 def central_difference(function, step):
     """Derivative of a function of one real number at zero, of eighth order.
 
-    Steps of one hundredth of a radian leave a truncation below 1e-12 for the harmonics of a rotor and as little
-    rounding. The steps are real, so a complex step may pass through.
+    Steps of one hundredth of a radian leave a truncation below 1e-12 for the harmonics of a rotor and as
+    little rounding. The steps are real, so a complex step may pass through.
     """
-    return sum(weight * (function(k * step) - function(-k * step)) for k, weight in _STENCIL) / step
+    return sum(weight * (function(k * step) - function(-k * step)) for k, weight in _STENCIL.items()) / step
 
 
 def lagrange_rows(rotor, q, time):
     """d/dt ∂L/∂q̇ − ∂L/∂q along the motion q, with the dampers: (..., 18).
 
-    With no steady moment on the hub (inertia forces of a steady rotor have none) the generalised forces of the hub
-    rotations and the moments about the hub agree to first order.
+    With no steady moment on the hub (the inertia forces of a steady rotor have none) the generalised forces
+    of the hub rotations and the moments about the hub agree to first order.
     """
-    unit = np.eye(len(DOFS))
-    step = 0.01
+    step, rate_step = 0.01, rotor.rotor_speed
 
-    def momentum(coordinates, rates, instant):
-        # L is quadratic in the rates: a central difference over any step is exact.
-        forward, backward = (
-            lagrangian(rotor, coordinates[..., None, :], rates[..., None, :] + sign * rotor.rotor_speed * unit, instant)
-            for sign in (1, -1)
-        )
-        return (forward - backward) / (2 * rotor.rotor_speed)
-
-    def momentum_along_the_motion(elapsed):
+    def momentum(elapsed):
         coordinates = q.value + q.rate * elapsed + q.acceleration * elapsed**2 / 2
-        return momentum(coordinates, q.rate + q.acceleration * elapsed, time + elapsed)
+        rates = q.rate + q.acceleration * elapsed
 
-    def displaced(by):
-        return lagrangian(rotor, q.value[..., None, :] + by * unit, q.rate[..., None, :], time)
+        def with_rates(change):
+            changed = rates[..., None, :] + change * UNIT
+            return lagrangian(rotor, coordinates[..., None, :], changed, time + elapsed)
 
-    rows = central_difference(momentum_along_the_motion, step / rotor.rotor_speed) - central_difference(displaced, step)
-    return rows + damper_rows(rotor, q, time)
+        # L is quadratic in the rates, so this difference is exact whatever the step.
+        return (with_rates(rate_step) - with_rates(-rate_step)) / (2 * rate_step)
+
+    def displaced(change):
+        return lagrangian(rotor, q.value[..., None, :] + change * UNIT, q.rate[..., None, :], time)
+
+    momentum_rate = central_difference(momentum, step / rotor.rotor_speed)
+    return momentum_rate - central_difference(displaced, step) + damper_rows(rotor, q, time)
 
 
 def damper_rows(rotor, q, time):
@@ -241,7 +239,7 @@ def inertia_rows(rotor, q, time):
     motion = blades(rotor, rotor.station, q, clock(rotor, time))
     inertia_force = rotor.mass[:, None] * motion.position.acceleration
     pitching_moment = rotor.pitch_inertia * motion.shaft_pitch.acceleration
-    rows = np.zeros(inertia_force.shape[:-3] + (len(DOFS),), dtype=complex)
+    rows = np.zeros((*inertia_force.shape[:-3], len(DOFS)), dtype=complex)
     rows[..., HUB_FORCE] = inertia_force.sum((-3, -2))
     rows[..., HUB_MOMENT] = np.cross(motion.arm.value, inertia_force).sum((-3, -2))
     for row, displacement in virtual_displacements(rotor, rotor.station, q.value, time):
@@ -254,7 +252,7 @@ def spring_rows(rotor, q, time):
     """Gradient of the spring energy."""
     rows = np.zeros(q.value.shape, dtype=complex)
     for row, displacement in virtual_displacements(rotor, np.zeros(1), q.value, time):
-        rows[..., row] = spring_energy(rotor, displacement, Motion(q.value, np.eye(len(DOFS))[row])).rate
+        rows[..., row] = spring_energy(rotor, displacement, Motion(q.value, UNIT[row])).rate
     return rows
 
 
@@ -264,16 +262,11 @@ def rows_in_vacuum(rotor, q, time):
 
 
 def linearised(rows, trim, time):
-    """M, C, K of rows(q: Motion, time) about the coordinates `trim` at rest, by a complex step (exact to rounding)."""
-    step = 1e-30j
-    still_there = np.zeros((len(DOFS), len(DOFS)))
-    moved = step * np.eye(len(DOFS))
-    matrices = (
-        rows(Motion(trim, 0.0, moved), time),
-        rows(Motion(trim, moved, still_there), time),
-        rows(Motion(trim + moved, still_there, still_there), time),
-    )
-    return tuple(np.imag(columns).T / abs(step) for columns in matrices)
+    """M, C, K of rows(q: Motion, time) about the steady coordinates `trim`, by a complex step."""
+    step = 1e-30
+    moved = 1j * step * UNIT
+    changes = (Motion(trim, 0.0, moved), Motion(trim, moved), Motion(trim + moved))
+    return tuple(np.imag(rows(change, time)).T / step for change in changes)
 
 
 def trim_coordinates(coning, lag, elastic_pitch):

@@ -1,6 +1,6 @@
-"""Rotors drawn at random around a full-scale tiltrotor (the XV-15 of AIAA-2002-1604), every parameter switched on.
+"""Random rotors around a full-scale tiltrotor (the XV-15 of AIAA-2002-1604), every parameter at work.
 
-Each is a set of fields for the package, which sees mass integrals, and a set for the oracle, which sees point masses.
+Each is built twice: for the package of mass integrals, and for the oracle of the point masses behind them.
 """
 
 from dataclasses import dataclass, fields
@@ -37,15 +37,16 @@ class Pair:
         return rotor, trim_coordinates(float(trim.coning), float(trim.lag), float(trim.elastic_pitch))
 
     def air(self, airspeed, density, compressibility=True):
-        airfoil = self.fields["airfoil"]
+        airfoil, radius = self.fields["airfoil"], self.fields["radius"]
+        station, twist = tabulated(self.fields["twist"], radius, linear=True)
         return Aerodynamics(
             airspeed=airspeed,
             density=density,
             speed_of_sound=SPEED_OF_SOUND,
-            radius=self.fields["radius"],
+            radius=radius,
             root_cutout=self.fields["root_cutout"],
-            chord=_table(self.fields["chord"], lambda r: np.full_like(r, self.fields["chord"]), self.fields["radius"]),
-            twist=self._twist_table(),
+            chord=tabulated(self.fields["chord"], radius),
+            twist=(station, twist - np.interp(0.75 * radius, station, twist)),
             lift_slope=airfoil.lift_slope,
             zero_lift_angle=airfoil.zero_lift_angle,
             drag=airfoil.drag,
@@ -53,17 +54,12 @@ class Pair:
             compressibility=compressibility,
         )
 
-    def _twist_table(self):
-        """A twist is measured from three quarters of the radius, however it is given."""
-        radius = self.fields["radius"]
-        station, twist = _table(self.fields["twist"], lambda r: self.fields["twist"] * r / radius, radius)
-        return station, twist - np.interp(0.75 * radius, station, twist)
 
-
-def _table(given, along, radius):
-    """A table as it is, or one made of the two ends of a number spread `along` the radius."""
-    ends = np.array([0.0, radius])
-    return tuple(np.asarray(column) for column in given) if isinstance(given, tuple) else (ends, along(ends))
+def tabulated(given, radius, linear=False):
+    """A table (radius, value): as given, or of a number, constant or growing linearly from the centre."""
+    if isinstance(given, tuple):
+        return given
+    return np.array([0.0, radius]), given * np.array([0.0 if linear else 1.0, 1.0])
 
 
 def mass_integrals(station, mass, flap_hinge_offset, lag_hinge_offset):

@@ -1,8 +1,8 @@
 """Airloads of the nonlinear rotor by virtual work: quasi-steady blade elements in axial flight.
 
-Section by section the flow is resolved in axes turned with the hub, the yoke and the blade. Blade rows are the virtual
-work of the section forces and moments; hub rows are their resultants about the displaced hub in inertial axes. All of
-it changes sign: the equations of motion have the airloads on their left-hand side.
+Section by section the flow is resolved in axes turned with the hub, the yoke and the blade. Blade rows are
+the virtual work of the section forces and moments; hub rows are their resultants about the displaced hub in
+inertial axes. All of it changes sign: the equations of motion have the airloads on their left-hand side.
 """
 
 from dataclasses import dataclass
@@ -42,8 +42,8 @@ class Aerodynamics:
 def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=20):
     """Gauss–Legendre stations and weights on panels split wherever the integrand has a corner.
 
-    Twenty points integrate the smooth panels to rounding; the nearest singularities (V/Ω off the axis, sonic speed)
-    are about a panel length away.
+    Twenty points integrate the smooth panels to rounding; the nearest singularities (V/Ω off the real axis,
+    and sonic speed) are about a panel length away.
     """
     corners = {rotor.flap_hinge_offset, rotor.lag_hinge_offset, *air.chord[0], *air.twist[0]}
     edges = [air.root_cutout, *sorted(c for c in corners if air.root_cutout < c < air.radius), air.radius]
@@ -102,7 +102,8 @@ def lift_slope_loads(air, station, motion, trim):
     change = section_flow(air, station, motion).angle_of_attack - flow.angle_of_attack
     lift = 0.5 * air.density * chord * flow.speed**2 * air.lift_slope * flow.prandtl_glauert * change
     chordwise, normal = motion.chordwise.value, motion.normal.value
-    return scaled(lift * np.sin(flow.inflow), chordwise) + scaled(lift * np.cos(flow.inflow), normal), 0.0 * lift
+    force = scaled(lift * np.sin(flow.inflow), chordwise) + scaled(lift * np.cos(flow.inflow), normal)
+    return force, 0.0 * lift
 
 
 def virtual_nose_up_rotation(displacement):
@@ -120,7 +121,7 @@ def airload_rows(air, rotor, q, time, order=20):
 
 
 def lift_slope_rows(air, rotor, trim, q, time):
-    """The same with only the terms proportional to c_lα: they vanish at the trim, so no steady load is turned."""
+    """The same with only the terms proportional to c_lα: they vanish at the trim and turn no load."""
     station, weight = quadrature(air, rotor)
     shaft = clock(rotor, time)
     motion, steady = (blades(rotor, station, state, shaft) for state in (q, Motion(trim)))
@@ -129,8 +130,8 @@ def lift_slope_rows(air, rotor, trim, q, time):
 
 
 def assembled(rotor, station, q, time, motion, force, moment):
-    """Resultants on the hub and virtual work on everything else of forces and nose-up moments at the stations."""
-    rows = np.zeros(force.shape[:-3] + (len(DOFS),), dtype=complex)
+    """Resultants on the hub, virtual work on the rest, of forces and nose-up moments at the stations."""
+    rows = np.zeros((*force.shape[:-3], len(DOFS)), dtype=complex)
     rows[..., HUB_FORCE] = force.sum((-3, -2))
     about_hub = np.cross(motion.arm.value, force) + moment[..., None] * motion.spanwise.value
     rows[..., HUB_MOMENT] = about_hub.sum((-3, -2))

@@ -1,0 +1,30 @@
+"""What a result rests on that was not read in a source."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+    from proprotor.datum import Datum
+
+_READ_IN_A_SOURCE = ("published", "derived")
+
+
+def doubtful_inputs(case: Case) -> dict[str, Datum]:
+    """Inputs by field that are assumed, recalled, calibrated or of unstated origin."""
+    return {path: n for path, n in case.sources.items() if n.status not in _READ_IN_A_SOURCE}
+
+
+def reservations(case: Case) -> list[str]:
+    """Sentences to stand with every number and figure of the case: doubtful inputs, and the calibration."""
+    doubtful = doubtful_inputs(case)
+    counts = Counter(number.status for number in doubtful.values())
+    sentences = []
+    if counts:
+        told = ", ".join(f"{count} {status}" for status, count in sorted(counts.items()))
+        sentences.append(f"Not from a source: {told} of {len(case.sources)} inputs.")
+    if case.calibration:
+        sentences.append(f"Calibration: {case.calibration.rstrip('.')}.")
+    return sentences

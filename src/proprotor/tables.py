@@ -1,0 +1,180 @@
+"""A sweep as a table on a terminal, as CSV and as JSON."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor import units
+from proprotor.sweep_summary import (
+    UnstableRange,
+    damping_percent,
+    growth_rate,
+    support_share,
+    unstable_ranges,
+)
+
+if TYPE_CHECKING:
+    import xarray
+    from rich.text import Text
+
+CONVENTION = (
+    "Frequency |Im s| per revolution (/rev); damping -Re s/|s| in percent of critical (%), "
+    "negative and marked * where a mode is unstable."
+)
+_SPEED_WIDTH = 8
+_MODE_WIDTH = 14
+
+
+@dataclass(frozen=True, eq=False)
+class SweepTable:
+    """The numbers of a sweep in the units people read.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        Of `Case.sweep`.
+    rotor_speed : float
+        rad/s, for frequencies per revolution.
+    unit : str
+        Unit of airspeeds, such as "kt".
+
+    Raises
+    ------
+    InputError
+        When the unit is not one of speed.
+    """
+
+    sweep: xarray.Dataset
+    rotor_speed: float
+    unit: str = "kt"
+
+    @cached_property
+    def airspeed(self) -> NDArray:
+        """Airspeed (airspeed,) in the unit, free of the rounding of conversion."""
+        factor = units.factor_to_si(self.unit, self.unit, "m/s")
+        return np.array([float(f"{v:.10g}") for v in self.sweep.airspeed.values / factor])
+
+    @cached_property
+    def frequency(self) -> NDArray:
+        """Frequency (airspeed, mode) per revolution."""
+        return self.sweep.frequency.values / self.rotor_speed
+
+    @cached_property
+    def damping(self) -> NDArray:
+        """Damping (airspeed, mode) in percent of critical."""
+        return damping_percent(self.sweep)
+
+    @cached_property
+    def unstable(self) -> NDArray:
+        """Whether a mode is unstable (airspeed, mode)."""
+        return growth_rate(self.sweep) > 0
+
+    @cached_property
+    def failed(self) -> NDArray:
+        """Whether a point could not be analysed (airspeed,)."""
+        return self.sweep.reason.values != ""
+
+    def lines(self, width: int = 80, all_modes: bool = False) -> Iterator[Text]:
+        """Lines of one or more tables no wider than asked for, a row for each airspeed."""
+        fit = max(1, (width - _SPEED_WIDTH) // _MODE_WIDTH)
+        shown = range(len(self.sweep.mode)) if all_modes else self._of_interest(fit)
+        for start in range(0, max(1, len(shown)), fit):
+            yield from self._table(shown[start : start + fit])
+        if left_out := [str(name) for i, name in enumerate(self.sweep.mode.values) if i not in shown]:
+            yield from _wrapped(f"{len(left_out)} more modes (--all-modes): {', '.join(left_out)}.", width)
+
+    def _of_interest(self, count: int) -> list[int]:
+        """Unstable modes, then those that move the support the most, in the order of the sweep."""
+        if self.failed.all():
+            return []
+        ever_unstable = self.unstable.any(axis=0)
+        by_interest = np.lexsort([-support_share(self.sweep), ~ever_unstable])
+        return sorted(by_interest[: max(count, ever_unstable.sum())].tolist())
+
+    def _table(self, modes: Sequence[int]) -> Iterator[Text]:
+        from rich.text import Text  # here, because rich takes long to import
+
+        names = [textwrap.wrap(str(self.sweep.mode.values[i]), _MODE_WIDTH - 2) for i in modes]
+        for row in range(max(map(len, names), default=0)):
+            cells = (name[row] if row < len(name) else "" for name in names)
+            yield Text(" " * _SPEED_WIDTH + "".join(f"{cell:>{_MODE_WIDTH - 1}} " for cell in cells), "bold")
+        yield Text(f"{self.unit:>{_SPEED_WIDTH}}" + f"{'/rev':>6}{'%':>7} " * len(modes), "dim")
+        for point in range(len(self.airspeed)):
+            yield self._row(point, modes)
+        yield Text("")
+
+    def _row(self, point: int, modes: Sequence[int]) -> Text:
+        from rich.text import Text
+
+        row = Text(f"{self.airspeed[point]:>{_SPEED_WIDTH}g}")
+        if self.failed[point]:
+            return row.append(f"  {self.sweep.reason.values[point]}", "yellow")
+        for mode in modes:
+            frequency, damping = self.frequency[point, mode], self.damping[point, mode]
+            mark, style = ("*", "bold red") if self.unstable[point, mode] else (" ", "")
+            row.append(f"{frequency:>6.3f}{damping:>7.2f}{mark}", style)
+        return row
+
+    def verdict(self) -> list[str]:
+        """A sentence on each range of airspeed in which a mode is unstable, or that there is none."""
+        if self.failed.all():
+            return ["No airspeed could be analysed."]
+        return [self._told(found) for found in unstable_ranges(self.sweep)] or [
+            "No mode is unstable at the airspeeds analysed."
+        ]
+
+    def _told(self, found: UnstableRange) -> str:
+        start, stop = (self._speed(speed) for speed in (found.start, found.stop))
+        since = f"at {start}, the first airspeed" if found.open_start else f"from about {start} (interpolated)"
+        until = "" if found.open_stop else f", stable again from about {stop} (interpolated)"
+        return f"{found.mode}: unstable {since}{until}"
+
+    def _speed(self, speed: float) -> str:
+        """A speed to three digits and at least to whole units."""
+        value = speed / units.factor_to_si(self.unit, self.unit, "m/s")
+        digits = 0 if value == 0 else max(0, 2 - math.floor(math.log10(value)))
+        return f"{value:.{digits}f} {self.unit}"
+
+    def records(self) -> Iterator[dict[str, Any]]:
+        """Airspeed by airspeed and mode by mode, with units in the names; None at failed points."""
+        sweep = self.sweep
+        for i, j in np.ndindex(sweep.frequency.shape):
+            yield {
+                f"airspeed ({self.unit})": self.airspeed[i].item(),
+                "airspeed (m/s)": sweep.airspeed.values[i].item(),
+                "mode": str(sweep.mode.values[j]),
+                "frequency (per rev)": _finite(self.frequency[i, j]),
+                "damping (% of critical)": _finite(self.damping[i, j]),
+                "Re s (rad/s)": _finite(sweep.eigenvalue.values[i, j].real),
+                "Im s (rad/s)": _finite(sweep.eigenvalue.values[i, j].imag),
+                "failure": str(sweep.reason.values[i]),
+            }
+
+    def csv(self) -> bytes:
+        """`records` as CSV in UTF-8, with all digits; empty cells at failed points."""
+        text = io.StringIO(newline="")
+        records = list(self.records())
+        writer = csv.DictWriter(text, fieldnames=list(records[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(records)
+        return text.getvalue().encode()
+
+
+def _finite(number: np.floating) -> float | None:
+    return number.item() if np.isfinite(number) else None
+
+
+def _wrapped(text: str, width: int) -> Iterator[Text]:
+    from rich.text import Text
+
+    return (Text(line) for line in textwrap.wrap(text, width))

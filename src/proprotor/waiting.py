@@ -1,0 +1,29 @@
+"""A sign of life on the error stream while something takes more than a second."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Timer
+
+_PATIENCE = 1.0  # seconds
+
+
+@contextmanager
+def waiting(what: str) -> Iterator[None]:
+    """Say what takes so long, once it does: a spinner on a terminal, otherwise a line."""
+    from rich.console import Console  # here, because rich takes long to import
+    from rich.text import Text
+
+    console = Console(stderr=True)
+    spinner = console.status(Text(what), spinner="line")
+    say = spinner.start if console.is_terminal else lambda: console.print(Text(f"{what} ..."))
+    timer = Timer(_PATIENCE, say)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+        timer.join()  # or the spinner could start after it was stopped
+        spinner.stop()
