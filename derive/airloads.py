@@ -21,7 +21,8 @@ import sympy as sp
 
 from derive import kinematics as kin
 from derive import symbols as s
-from derive.polynomials import SEGMENT_ANGLES, PolynomialRing, cos_lag, name_trigonometry
+from derive.polynomials import SEGMENT_ANGLES, SINE_AND_COSINE, PolynomialRing, cos_lag, name_trigonometry, temporaries
+from derive.published import CONSISTENT
 
 SECTION_AXES = ("x", "n", "d")
 VELOCITIES = ("ut", "up", "ur")
@@ -101,7 +102,8 @@ class SegmentKinematics:
     All is polynomial in the perturbations, to second order, and linear in r: derivatives are taken in the ring.
     """
 
-    def __init__(self):
+    def __init__(self, dropped: frozenset[str]):
+        self.dropped = dropped
         trig = [symbol for pair in SEGMENT_ANGLES.values() for symbol in pair]
         steps = [kin.beyond_flap_hinge, kin.beyond_lag_hinge]
         geometry = [*anchor, flap_arm_at_center, s.flap_hinge_offset, s.lag_hinge_offset, s.radial_station]
@@ -115,7 +117,7 @@ class SegmentKinematics:
         self.about_hub = _turned(turn, self._taylor(self._named(self._line())))
         hub = self._taylor(kin.HUB)
         self.position = {key: _add(self.about_hub.get(key), hub.get(key)) for key in {*self.about_hub, *hub}}
-        _, to_yoke = kin.pitch_angles()
+        _, to_yoke = kin.pitch_angles(dropped)
         self.pitch_to_yoke = self._taylor_of_one(to_yoke)
         self.pitch_in_air = self._taylor_of_one(to_yoke + elastic_coupling())
         self.zero = self.ring.ring.zero
@@ -228,65 +230,89 @@ class SegmentKinematics:
 
 
 @functools.cache
-def segment_kinematics() -> SegmentKinematics:
-    return SegmentKinematics()
+def segment_kinematics(dropped: frozenset[str] = CONSISTENT) -> SegmentKinematics:
+    return SegmentKinematics(dropped)
 
 
-def _power(polynomial, power: int) -> sp.Expr:
+def _power(kinematics: SegmentKinematics, polynomial, power: int) -> sp.Expr:
     """Coefficient of r^power, reduced."""
-    ring = segment_kinematics().ring
+    ring = kinematics.ring
     place = ring.generators.index(s.radial_station)
     terms = {
         (*monomial[:place], 0, *monomial[place + 1 :]): coefficient
         for monomial, coefficient in ring.reduced(polynomial).terms()
         if monomial[place] == power
     }
-    return sp.factor_terms(ring.shortest(ring.ring.from_dict(terms)))
+    expression = ring.shortest(ring.ring.from_dict(terms))
+    if "cone_in_airloads" in kinematics.dropped:
+        expression = expression.subs(_STRAIGHT_BLADE)
+    return sp.factor_terms(expression)
+
+
+# A blade along j: no cone and no lag at trim.
+_STRAIGHT_BLADE = dict.fromkeys(anchor, 0) | {sine: 0 for sine, _ in SINE_AND_COSINE}
+_STRAIGHT_BLADE |= {cosine: 1 for _, cosine in SINE_AND_COSINE}
 
 
 SEGMENT_LOADS = ("x_0", "n_0", "d_0", "x_1", "n_1", "d_1", "rotation")
 SEGMENT_MOTION = ("ut_0", "up_0", "ur_0", "ut_1", "up_1", "ur_1", "theta")
 
 
-def virtual_motion(row: str, load: str) -> sp.Expr:
+def _is_dropped(dropped: frozenset[str], *coordinates: str) -> bool:
+    return "yoke_roll" in dropped and "gimbal_roll" in coordinates
+
+
+def virtual_motion(row: str, load: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """W: displacement at r = 0 and per unit radius in section axes, and rotation, of each row."""
-    kinematics = segment_kinematics()
-    if load == "rotation":
-        return _power(kinematics.work_rotation(row), 0)
-    axis, power = load.split("_")
-    return _power(kinematics.work_displacement(axis, row), int(power))
-
-
-def _motion(velocity, motion: str, *along: str) -> sp.Expr:
-    name, power = motion.split("_")
-    return _power(velocity(SECTION_AXES[VELOCITIES.index(name)], *along), int(power))
-
-
-def rate_motion(motion: str, name: str) -> sp.Expr:
-    """U_rate: velocity of the air at r = 0 and per unit radius for the rate of each coordinate; pitch has none."""
-    if motion == "theta":
+    if _is_dropped(dropped, row):
         return sp.Integer(0)
-    return _motion(segment_kinematics().rate_velocity, motion, name)
+    kinematics = segment_kinematics(dropped)
+    if load == "rotation":
+        return _power(kinematics, kinematics.work_rotation(row), 0)
+    axis, power = load.split("_")
+    return _power(kinematics, kinematics.work_displacement(axis, row), int(power))
 
 
-def displacement_motion(motion: str, name: str) -> sp.Expr:
+def _motion(kinematics: SegmentKinematics, velocity, motion: str, *along: str) -> sp.Expr:
+    name, power = motion.split("_")
+    return _power(kinematics, velocity(SECTION_AXES[VELOCITIES.index(name)], *along), int(power))
+
+
+def rate_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    """U_rate: velocity of the air at r = 0 and per unit radius for the rate of each coordinate; pitch has none."""
+    if motion == "theta" or _is_dropped(dropped, name):
+        return sp.Integer(0)
+    kinematics = segment_kinematics(dropped)
+    return _motion(kinematics, kinematics.rate_velocity, motion, name)
+
+
+def displacement_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """U_displacement: the same for the displacement of each coordinate, and the change of pitch."""
+    if _is_dropped(dropped, name):
+        return sp.Integer(0)
+    kinematics = segment_kinematics(dropped)
     if motion == "theta":
-        return _power(segment_kinematics().pitch_change(name), 0)
-    return _motion(segment_kinematics().velocity, motion, name)
+        return _power(kinematics, kinematics.pitch_change(name), 0)
+    return _motion(kinematics, kinematics.velocity, motion, name)
 
 
-def trim_velocity(motion: str) -> sp.Expr:
+def trim_velocity(motion: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Trim velocity of the air at r = 0 and per unit radius."""
-    return _motion(segment_kinematics().velocity, motion)
+    kinematics = segment_kinematics(dropped)
+    return _motion(kinematics, kinematics.velocity, motion)
 
 
-def geometric_stiffness(row: str, name: str) -> sp.Expr:
+def geometric_stiffness(row: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """G: change of the steady loads' virtual work when the blade moves under them, in moments of the loads."""
-    kinematics = segment_kinematics()
+    if "steady_airloads_on_moving_blade" in dropped or _is_dropped(dropped, row, name):
+        return sp.Integer(0)
+    kinematics = segment_kinematics(dropped)
     changes = {f"f{axis}": kinematics.work_displacement(axis, row, name) for axis in SECTION_AXES}
     changes["m"] = kinematics.work_rotation(row, name)
-    return sum(MOMENTS[load, power] * _power(change, power) for load, change in changes.items() for power in POWERS)
+    return sum(
+        (MOMENTS[load, p] * _power(kinematics, change, p) for load, change in changes.items() for p in POWERS),
+        sp.Integer(0),
+    )
 
 
 def load_derivative(load: str, motion: str) -> sp.Expr:
@@ -325,8 +351,15 @@ def products() -> dict[str, sp.MatrixExpr]:
     }
 
 
-def segment_geometry() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Anchor and flap arm of a segment in hinge offsets and trim angles."""
+def segment_geometry(dropped: frozenset[str] = CONSISTENT) -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Sines and cosines, anchor and flap arm of a segment in hinge offsets and trim angles."""
+    steps = temporaries(SEGMENT_ANGLES) + _line_and_arm()
+    if "cone_in_airloads" in dropped:
+        return [(symbol, sp.sympify(_STRAIGHT_BLADE.get(symbol, value)).subs(_STRAIGHT_BLADE)) for symbol, value in steps]
+    return steps
+
+
+def _line_and_arm() -> list[tuple[sp.Symbol, sp.Expr]]:
     flap, lag = kin.beyond_flap_hinge, kin.beyond_lag_hinge
     r = s.radial_station
     ring = PolynomialRing(

@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 
 import jinja2
 import sympy as sp
@@ -19,7 +20,8 @@ from sympy.printing.numpy import NumPyPrinter
 
 from derive import kinematics as kin
 from derive import multiblade
-from derive.equations import STEPS, Function
+from derive.equations import REDUCED_MODULES, STEPS, Function, consistent_functions, reduced_functions
+from derive.published import DROPPED_TERMS, check_names
 from derive.symbols import QUANTITIES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -153,9 +155,8 @@ def formatted(source: str, name: str) -> str:
     return subprocess.run(command, input=source, capture_output=True, text=True, check=True).stdout
 
 
-def render() -> Iterator[tuple[str, str]]:
-    """File name and text of every generated module, one step of the derivation after another."""
-    environment = jinja2.Environment(
+def _environment() -> jinja2.Environment:
+    return jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -163,31 +164,59 @@ def render() -> Iterator[tuple[str, str]]:
         keep_trailing_newline=True,
         autoescape=False,
     )
-    header = {"sympy_version": sp.__version__, "derivation": derivation_hash()}
-    for module, derive_functions in STEPS.items():
-        functions = list(derive_functions())
-        for function in functions:
-            function.check_dimensions()
-        text = environment.get_template("module.py.jinja").render(
-            title=MODULE_TITLES[module],
-            functions=[describe(function) for function in functions],
-            indices=index_groups(functions),
-            operations=sum(operations(function) for function in functions),
-            **header,
-        )
-        yield f"{module}.py", formatted(text, f"{module}.py")
-    text = environment.get_template("package.py.jinja").render(
+
+
+def render_module(functions: list[Function], title: str) -> str:
+    """Text of one generated module, formatted; dimensions are checked on the way."""
+    for function in functions:
+        function.check_dimensions()
+    text = _environment().get_template("module.py.jinja").render(
+        title=title,
+        functions=[describe(function) for function in functions],
+        indices=index_groups(functions),
+        operations=sum(operations(function) for function in functions),
+        **_header(),
+    )
+    return formatted(text, "module.py")
+
+
+def _header() -> dict[str, str]:
+    return {"sympy_version": sp.__version__, "derivation": derivation_hash()}
+
+
+def render() -> Iterator[tuple[str, str]]:
+    """File name and text of every generated module, one step of the derivation after another."""
+    for module in STEPS:
+        yield f"{module}.py", render_module(consistent_functions(module), MODULE_TITLES[module])
+    for module in REDUCED_MODULES:
+        title = f"{MODULE_TITLES[module]}, as published"
+        yield f"published/{module}.py", render_module(reduced_functions(module), title)
+    package = _environment().get_template("package.py.jinja").render(
         modules=list(STEPS),
         blade_coordinates=kin.COORDINATES,
         fixed_coordinates=multiblade.FIXED_COORDINATES,
-        **header,
+        **_header(),
     )
-    yield "__init__.py", formatted(text, "__init__.py")
+    yield "__init__.py", formatted(package, "__init__.py")
+    published = _environment().get_template("published.py.jinja").render(
+        modules=REDUCED_MODULES, terms=[{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()], **_header()
+    )
+    yield "published/__init__.py", formatted(published, "__init__.py")
+
+
+def reduced_modules(dropped: frozenset[str]) -> dict[str, ModuleType]:
+    """Modules without some terms, made in memory: what one dropped term does can be asked for without emitting it."""
+    check_names(dropped)
+    modules = {}
+    for module in REDUCED_MODULES:
+        modules[module] = ModuleType(f"reduced_{module}")
+        exec(render_module(reduced_functions(module, dropped), MODULE_TITLES[module]), vars(modules[module]))
+    return modules
 
 
 def derive_files(progress=print) -> dict[str, str]:
     """All generated files, with a progress line per step."""
-    files, total = {}, len(STEPS) + 1
+    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 2
     start = time.perf_counter()
     for count, (name, text) in enumerate(render(), start=1):
         files[name] = text
@@ -196,14 +225,16 @@ def derive_files(progress=print) -> dict[str, str]:
 
 
 def generated_paths(folder: Path) -> set[str]:
-    return {path.name for path in folder.iterdir() if path.name != "__pycache__"} if folder.is_dir() else set()
+    """Files below the generated package, by their path in it."""
+    files = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    return {path.relative_to(folder).as_posix() for path in files}
 
 
 def update(folder: Path = GENERATED, progress=print) -> None:
     """Rewrite the generated package; files that nothing generates any more are removed."""
     files = derive_files(progress)
-    folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
     for orphan in generated_paths(folder) - set(files):
         (folder / orphan).unlink()

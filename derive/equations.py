@@ -6,6 +6,7 @@ the notebooks read the same records.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
@@ -14,7 +15,7 @@ import sympy as sp
 from derive import airloads, flap_lag_springs, inertia, multiblade, pitch, section, trim
 from derive import kinematics as kin
 from derive import symbols as s
-from derive.polynomials import SEGMENT_ANGLES, WHOLE_BLADE_ANGLES, temporaries
+from derive.published import CONSISTENT, PUBLISHED
 from derive.symbols import NUMBER, QUANTITIES, Dimension
 
 FORCE: Dimension = (1, 1, -2)
@@ -55,7 +56,7 @@ class Function:
     """A function to generate: temporaries, then named values, the entries of a matrix, or a matrix product.
 
     `blade_matrices` are whole-matrix arguments whose entries the expressions index; a `product` is summed over the
-    blade's segments.
+    blade's segments. A `signature` is that of the consistent function a published one stands in for.
     """
 
     module: str
@@ -69,9 +70,15 @@ class Function:
     entries: dict[tuple[str, str], Entry] = field(default_factory=dict)
     blade_matrices: tuple[str, ...] = ()
     product: sp.MatrixExpr | None = None
+    signature: tuple[sp.Symbol, ...] | None = None
 
     @property
     def arguments(self) -> list[sp.Symbol]:
+        """Keyword arguments: those the expressions need, or a wider signature they share with another set."""
+        return list(self.signature) if self.signature is not None else self.needed
+
+    @property
+    def needed(self) -> list[sp.Symbol]:
         """Free symbols in the order of their declaration; one that is no declared quantity is refused."""
         if self.product is not None:
             return sorted(self.product.atoms(sp.MatrixSymbol), key=lambda matrix: matrix.name)
@@ -167,8 +174,7 @@ def values(module, name, summary, origin, steps, returned=None):
     return Function(module, name, summary, origin, list(steps), values=returned)
 
 
-def inertia_functions() -> Iterator[Function]:
-    blade = inertia.blade_inertia()
+def inertia_shared() -> Iterator[Function]:
     yield values(
         "inertia",
         "dependent_inertias",
@@ -176,12 +182,16 @@ def inertia_functions() -> Iterator[Function]:
         "AIAA-2002-1604, nomenclature: integrals over the blade outboard of each hinge",
         list(inertia.dependent_inertias().items()),
     )
+
+
+def inertia_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]:
+    blade = inertia.blade_inertia(dropped)
     yield values(
         "inertia",
         "trim_integrals",
         "Sines and cosines of the trim angles, and the mass integrals over the arms of the deflected blade.",
-        "the blade's reference line with finite precone, coning and lag, Eq. 2",
-        temporaries(WHOLE_BLADE_ANGLES) + list(inertia.trim_integrals().items()),
+        "the blade's reference line with precone, coning and lag, Eq. 2",
+        list(inertia.trim_integrals(dropped).items()),
     )
     yield blade_matrix("inertia", "mass", "Mass matrix of one blade in rotating axes.", blade.mass, 2)
     yield blade_matrix(
@@ -192,35 +202,29 @@ def inertia_functions() -> Iterator[Function]:
     )
 
 
-def spring_functions() -> Iterator[Function]:
-    steps = flap_lag_springs.effective_stiffness()
+def spring_shared() -> Iterator[Function]:
     yield values(
         "flap_lag_springs",
         "effective_stiffness",
         "Hub and blade springs in series, and their derivatives with structural pitch.",
         "AIAA-2002-1604, Eqs. 18-24",
-        steps,
+        flap_lag_springs.effective_stiffness(),
         tuple(flap_lag_springs.STIFFNESS.values()),
     )
+
+
+def spring_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]:
     yield blade_matrix(
         "flap_lag_springs",
         "stiffness",
         "Stiffness of one blade's flap and lag springs, which turn with its pitch.",
-        flap_lag_springs.stiffness,
+        lambda i, j: flap_lag_springs.stiffness(i, j, dropped),
         0,
     )
 
 
-def pitch_functions() -> Iterator[Function]:
-    yield blade_matrix("pitch", "mass", "Pitch inertia of one blade, lumped.", pitch.mass, 2)
+def pitch_shared() -> Iterator[Function]:
     yield blade_matrix("pitch", "damping", "Dampers of one blade and its share of the gimbal's.", pitch.damping, 1)
-    yield blade_matrix(
-        "pitch",
-        "stiffness",
-        "Control system, propeller moment, and one blade's share of the gimbal spring and damper.",
-        pitch.stiffness,
-        0,
-    )
     yield values(
         "pitch",
         "couplings",
@@ -230,7 +234,20 @@ def pitch_functions() -> Iterator[Function]:
     )
 
 
-def section_functions() -> Iterator[Function]:
+def pitch_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]:
+    yield blade_matrix(
+        "pitch", "mass", "Pitch inertia of one blade, lumped.", lambda i, j: pitch.mass(i, j, dropped), 2
+    )
+    yield blade_matrix(
+        "pitch",
+        "stiffness",
+        "Control system, propeller moment, and one blade's share of the gimbal spring and damper.",
+        lambda i, j: pitch.stiffness(i, j, dropped),
+        0,
+    )
+
+
+def section_shared() -> Iterator[Function]:
     yield values(
         "section",
         "air_at_section",
@@ -275,13 +292,13 @@ def _segment_matrix(name, summary, rows, columns, value, dimension, origin):
     )
 
 
-def _virtual_motion(name: str, rows) -> Function:
+def _virtual_motion(name: str, rows, dropped: frozenset[str]) -> Function:
     return _segment_matrix(
         name,
         "W: displacement at r = 0 and per unit radius along i', n, d, and rotation about d, of a segment for each row.",
         airloads.SEGMENT_LOADS,
         rows,
-        lambda load, row: airloads.virtual_motion(row, load),
+        lambda load, row: airloads.virtual_motion(row, load, dropped),
         lambda load, row: _plus(_SEGMENT_ROW.get(load, NUMBER), minus=coordinate_dimension(row)),
         "virtual displacements of the sections, Eqs. 2-11",
     )
@@ -307,47 +324,57 @@ def _unknowns(value: Callable) -> Callable:
     return lambda motion, unknown: value(motion, trim.blade_coordinate(unknown)).subs(no_coupling)
 
 
-def airload_functions() -> Iterator[Function]:
+def airload_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]:
     yield values(
         "airloads",
         "segment_geometry",
         "Trim geometry of a straight segment between hinges: sines and cosines, its line and its flap arm.",
-        "the blade's reference line with finite precone, coning and lag, Eq. 2",
-        temporaries(SEGMENT_ANGLES) + airloads.segment_geometry(),
+        "the blade's reference line with precone, coning and lag, Eq. 2",
+        airloads.segment_geometry(dropped),
     )
     yield _segment_matrix(
         "trim_velocity",
         "Trim velocity of the air at r = 0 and per unit radius, along a segment.",
         airloads.SEGMENT_MOTION[:-1],
         ("trim",),
-        lambda motion, _: airloads.trim_velocity(motion),
+        lambda motion, _: airloads.trim_velocity(motion, dropped),
         lambda motion, _: _SEGMENT_MOTION_DIMENSION[motion],
-        "u_T = Omega r and u_P = V with finite trim angles",
+        "u_T and u_P of Eqs. 14-15 at trim",
     )
-    yield _virtual_motion("virtual_motion", kin.COORDINATES)
+    yield _virtual_motion("virtual_motion", kin.COORDINATES, dropped)
     yield _motion_matrix(
         "rate_motion",
         "U for rates: velocity of the air along a segment for the rate of each coordinate.",
         kin.COORDINATES,
-        airloads.rate_motion,
+        lambda motion, name: airloads.rate_motion(motion, name, dropped),
         1,
     )
     yield _motion_matrix(
         "displacement_motion",
         "U for displacements: velocity of the air along a segment, and pitch, for each coordinate.",
         kin.COORDINATES,
-        airloads.displacement_motion,
+        lambda motion, name: airloads.displacement_motion(motion, name, dropped),
         0,
     )
+    yield _segment_matrix(
+        "geometric_stiffness",
+        "G: change of the steady airloads' virtual work with each coordinate, of one segment.",
+        kin.COORDINATES,
+        kin.COORDINATES,
+        lambda row, name: airloads.geometric_stiffness(row, name, dropped),
+        lambda row, column: _plus(row_dimension(row), minus=coordinate_dimension(column)),
+        "steady loads on the moving blade, beyond Eqs. 14-16",
+    )
+
+
+def airload_shared() -> Iterator[Function]:
     yield _segment_matrix(
         "load_derivatives",
         "L: generalised loads of a segment per unit of its motions, from radial moments of the section's derivatives.",
         airloads.SEGMENT_LOADS,
         airloads.SEGMENT_MOTION,
         _load_derivative,
-        lambda load, motion: _plus(
-            FORCE if load.endswith("_0") else MOMENT, minus=_SEGMENT_MOTION_DIMENSION[motion]
-        ),
+        lambda load, motion: _plus(FORCE if load.endswith("_0") else MOMENT, minus=_SEGMENT_MOTION_DIMENSION[motion]),
         "strip theory on a straight segment, as NASA TN D-7677",
     )
     yield _segment_matrix(
@@ -359,17 +386,6 @@ def airload_functions() -> Iterator[Function]:
         lambda load, _: FORCE if load.endswith("_0") else MOMENT,
         "strip theory on a straight segment",
     )
-    yield _segment_matrix(
-        "geometric_stiffness",
-        "G: change of the steady airloads' virtual work with each coordinate, of one segment.",
-        kin.COORDINATES,
-        kin.COORDINATES,
-        airloads.geometric_stiffness,
-        lambda row, column: _plus(row_dimension(row), minus=coordinate_dimension(column)),
-        "steady loads on the moving blade, beyond Eqs. 14-16",
-    )
-
-
     summaries = {
         "damping": "Airload damping of one blade in rotating axes, C = - sum W^T L U.",
         "stiffness": "Airload stiffness of one blade in rotating axes, K = - sum W^T L U - G.",
@@ -388,7 +404,7 @@ def _load_derivative(load: str, motion: str) -> sp.Expr:
     return airloads.load_derivative(load, motion)
 
 
-def trim_functions() -> Iterator[Function]:
+def trim_shared() -> Iterator[Function]:
     columns = {"flap": "flap", "lag": "lag", "pitch": "pitch", "collective": "pitch"}
     yield Function(
         "trim",
@@ -411,7 +427,7 @@ def trim_functions() -> Iterator[Function]:
         entries=_entries(trim.BALANCES, columns, trim.jacobian, lambda row, _: MOMENT, ROW_EQUATION),
     )
     for function in (
-        _virtual_motion("virtual_motion", trim.STEADY_ROWS),
+        _virtual_motion("virtual_motion", trim.STEADY_ROWS, CONSISTENT),
         _motion_matrix(
             "displacement_motion",
             "U for the unknowns: velocity of the air along a segment, and pitch.",
@@ -429,10 +445,10 @@ def trim_functions() -> Iterator[Function]:
             "steady loads on the moving blade",
         ),
     ):
-        yield Function(**{**function.__dict__, "module": "trim"})
+        yield dataclasses.replace(function, module="trim")
 
 
-def multiblade_functions() -> Iterator[Function]:
+def multiblade_shared() -> Iterator[Function]:
     places = {name: place for place, name in enumerate(multiblade.FIXED_COORDINATES)}
 
     def placed(value):
@@ -464,13 +480,37 @@ def multiblade_functions() -> Iterator[Function]:
         )
 
 
-# In the order of the derivation; each step prints a progress line.
+def _nothing(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]:
+    """A module that is the same in both sets of equations."""
+    return iter(())
+
+
+# In the order of the derivation: what both sets of equations share, and what a dropped term can change.
 STEPS = {
-    "inertia": inertia_functions,
-    "flap_lag_springs": spring_functions,
-    "pitch": pitch_functions,
-    "section": section_functions,
-    "airloads": airload_functions,
-    "trim": trim_functions,
-    "multiblade": multiblade_functions,
+    "inertia": (inertia_shared, inertia_functions),
+    "flap_lag_springs": (spring_shared, spring_functions),
+    "pitch": (pitch_shared, pitch_functions),
+    "section": (section_shared, _nothing),
+    "airloads": (airload_shared, airload_functions),
+    "trim": (trim_shared, _nothing),
+    "multiblade": (multiblade_shared, _nothing),
 }
+
+
+def consistent_functions(module: str) -> list[Function]:
+    """All functions of a module, with every first-order term."""
+    shared, changing = STEPS[module]
+    return [*shared(), *changing()]
+
+
+def reduced_functions(module: str, dropped: frozenset[str] = PUBLISHED) -> list[Function]:
+    """The functions that dropped terms can change, without those terms, and with the signatures of the consistent ones."""
+    _, changing = STEPS[module]
+    signatures = {function.name: tuple(function.arguments) for function in changing()}
+    return [
+        dataclasses.replace(function, signature=signatures[function.name])
+        for function in changing(dropped)
+    ]
+
+
+REDUCED_MODULES = tuple(module for module, (_, changing) in STEPS.items() if changing is not _nothing)

@@ -14,6 +14,7 @@ import sympy as sp
 
 from derive import kinematics as kin
 from derive import symbols as s
+from derive.published import CONSISTENT
 
 FLAP_LAG = ("flap", "lag")
 
@@ -127,10 +128,10 @@ def effective_stiffness() -> list[tuple[sp.Symbol, sp.Expr]]:
     return steps
 
 
-def spring_energy() -> sp.Expr:
+def spring_energy(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """U of the flap and lag springs, K_eff a function of the pitch relative to the yoke."""
     deflection = {"flap": kin.FLAP_ANGLE, "lag": kin.LAG_ANGLE}
-    _, to_yoke = kin.pitch_angles()
+    _, to_yoke = kin.pitch_angles(dropped)
     return sum(
         _stiffness_function(a, b, to_yoke - s.pitch) * deflection[a] * deflection[b] for a in FLAP_LAG for b in FLAP_LAG
     ) / 2
@@ -142,9 +143,13 @@ def _stiffness_function(a: str, b: str, pitch_change: sp.Expr) -> sp.Expr:
     return sum(STIFFNESS[(*pair, order)] * pitch_change**order / sp.factorial(order) for order in range(3))
 
 
-def stiffness(i: str, j: str) -> sp.Expr:
+def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Second derivative of the spring energy at trim."""
-    return sp.factor_terms(sp.expand(kin.at_trim(sp.diff(spring_energy(), kin.q[i], kin.q[j]))))
+    if "springs_follow_pitch" in dropped and not (i in FLAP_LAG and j in FLAP_LAG) and (i != "pitch" or "gimbal" in j):
+        return sp.Integer(0)
+    if "spring_curvature" in dropped and i == j == "pitch":
+        return sp.Integer(0)
+    return sp.factor_terms(sp.expand(kin.at_trim(sp.diff(spring_energy(dropped), kin.q[i], kin.q[j]))))
 
 
 def steady(i: str) -> sp.Expr:

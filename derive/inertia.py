@@ -17,7 +17,18 @@ import sympy as sp
 
 from derive import kinematics as kin
 from derive import symbols as s
-from derive.polynomials import WHOLE_BLADE_ANGLES, PolynomialRing, name_trigonometry
+from derive.polynomials import (
+    SINE_AND_COSINE,
+    WHOLE_BLADE_ANGLES,
+    PolynomialRing,
+    cos_lag,
+    name_trigonometry,
+    sin_cone,
+    sin_lag,
+    sin_precone,
+    temporaries,
+)
+from derive.published import CONSISTENT
 
 ARMS = (kin.radial_arm, kin.axial_arm, kin.flap_arm, kin.lag_arm)
 
@@ -97,10 +108,37 @@ def integrate_mass(integrand, integrals) -> sp.Expr:
     return sum((coefficient * by_powers[powers] for powers, coefficient in terms), sp.Integer(0))
 
 
-def trim_integrals() -> dict[sp.Symbol, sp.Expr]:
-    """The integrals at trim: first over the arms of the deflected blade, then over those of its position."""
+def trim_integrals(dropped: frozenset[str] = CONSISTENT) -> dict[sp.Symbol, sp.Expr]:
+    """Sines and cosines at trim, then the integrals over the arms of the deflected blade and of its position."""
     to_deflected = _redefine(DEFLECTED_INTEGRALS, MASS_INTEGRALS, {kin.flap_arm: kin.deflected_flap_arm()})
-    return to_deflected | _redefine(TRIM_INTEGRALS, DEFLECTED_INTEGRALS, kin.trim_arms())
+    integrals = to_deflected | _redefine(TRIM_INTEGRALS, DEFLECTED_INTEGRALS, kin.trim_arms())
+    angles = dict(temporaries(WHOLE_BLADE_ANGLES))
+    if "finite_trim_angles" in dropped:
+        integrals = {symbol: first_order(value) for symbol, value in integrals.items()}
+        angles = {symbol: sp.series(angle, _argument(angle), n=2).removeO() for symbol, angle in angles.items()}
+    if "trim_lag" in dropped:
+        angles |= {cos_lag: sp.Integer(1), sin_lag: sp.Integer(0)}
+    return angles | integrals
+
+
+def _argument(function: sp.Expr) -> sp.Expr:
+    return function.args[0]
+
+
+# Integrals that are of first or second order in the trim angles: they hold axial arms.
+_ORDER = {
+    **dict.fromkeys((sin_precone, sin_cone, sin_lag), 1),
+    **dict.fromkeys((axial_moment, radial_axial_inertia, axial_flap_inertia, axial_lag_inertia), 1),
+    axial_inertia: 2,
+}
+
+
+def first_order(expression: sp.Expr) -> sp.Expr:
+    """The terms of at most first order in the trim angles, cosines being 1."""
+    small = sp.Symbol("small")
+    scaled = expression.subs({symbol: small**order * symbol for symbol, order in _ORDER.items()})
+    scaled = sp.expand(scaled.subs({cosine: 1 for _, cosine in SINE_AND_COSINE}))
+    return sum(scaled.coeff(small, order) for order in (0, 1))
 
 
 def _redefine(integrals, known, arms) -> dict[sp.Symbol, sp.Expr]:
@@ -128,12 +166,23 @@ def dependent_inertias() -> dict[sp.Symbol, sp.Expr]:
     }
 
 
+# Components (i, j, k) of a coordinate's acceleration that a dropped term takes away, by matrix.
+_EVERY_MATRIX = ("mass", "gyroscopic", "centrifugal")
+_DROPPED_ACCELERATIONS = {
+    "hub_turn_of_raised_blade": (_EVERY_MATRIX, ("turn_i", "turn_j"), (0, 1)),
+    "gimbal_coriolis": (_EVERY_MATRIX, ("gimbal_flap",), (0, 1)),
+    "yoke_roll": (_EVERY_MATRIX, ("gimbal_roll",), (0, 1, 2)),
+    "radial_flap_acceleration": (("mass", "centrifugal"), ("flap",), (1,)),
+}
+
+
 class BladeInertia:
     """Virtual displacements and derivatives of the position at trim, and the forms that are made of them."""
 
-    def __init__(self):
+    def __init__(self, dropped: frozenset[str]):
+        self.dropped = dropped
         trig = [symbol for pair in WHOLE_BLADE_ANGLES.values() for symbol in pair]
-        self.ring = PolynomialRing([*trig, *ARMS, *(v for v in TRIM_INTEGRALS.values())])
+        self.ring = PolynomialRing([*trig, *ARMS, *TRIM_INTEGRALS.values()])
         position = kin.position()
         rows = kin.virtual_displacements(position)
         self.position = self._at_trim(position)
@@ -145,19 +194,42 @@ class BladeInertia:
 
     def _at_trim(self, vector):
         named = name_trigonometry(kin.at_trim(vector), WHOLE_BLADE_ANGLES)
-        return self.ring.vector(named.subs(kin.chordwise_arm, kin.lag_arm * sp.Symbol("sin_lag", real=True)))
+        return self.ring.vector(named.subs(kin.chordwise_arm, kin.lag_arm * sin_lag))
 
     def _integral(self, product) -> sp.Expr:
-        return integrate_mass(self.ring.shortest(product), TRIM_INTEGRALS)
+        integral = integrate_mass(self.ring.shortest(product), TRIM_INTEGRALS)
+        if "trim_lag" in self.dropped:
+            integral = integral.subs({sin_lag: 0, cos_lag: 1})
+        return first_order(integral) if "finite_trim_angles" in self.dropped else integral
+
+    def _kept(self, matrix: str, column: str, acceleration: list) -> list:
+        """The acceleration without the components of dropped terms."""
+        gone = {
+            component
+            for term, (matrices, columns, components) in _DROPPED_ACCELERATIONS.items()
+            if term in self.dropped and matrix in matrices and column in columns
+            for component in components
+        }
+        return [0 * part if place in gone else part for place, part in enumerate(acceleration)]
+
+    def _is_dropped(self, *coordinates: str) -> bool:
+        return "yoke_roll" in self.dropped and "gimbal_roll" in coordinates
 
     def mass(self, i: str, j: str) -> sp.Expr:
-        return self._integral(_dot(self.virtual[i], self.derivative[j]))
+        if self._is_dropped(i):
+            return sp.Integer(0)
+        return self._integral(_dot(self.virtual[i], self._kept("mass", j, self.derivative[j])))
 
     def gyroscopic(self, i: str, j: str) -> sp.Expr:
-        return 2 * s.rotor_speed * self._integral(_dot(self.virtual[i], _spin(self.derivative[j])))
+        if self._is_dropped(i):
+            return sp.Integer(0)
+        coriolis = self._kept("gyroscopic", j, _spin(self.derivative[j]))
+        return 2 * s.rotor_speed * self._integral(_dot(self.virtual[i], coriolis))
 
     def centrifugal(self, i: str, j: str) -> sp.Expr:
-        moved = _dot(self.virtual[i], _spin(_spin(self.derivative[j])))
+        if self._is_dropped(i, j):
+            return sp.Integer(0)
+        moved = _dot(self.virtual[i], self._kept("centrifugal", j, _spin(_spin(self.derivative[j]))))
         turned = _dot(self.virtual_change[i, j], _spin(_spin(self.position)))
         return s.rotor_speed**2 * self._integral(moved + turned)
 
@@ -167,8 +239,8 @@ class BladeInertia:
 
 
 @functools.cache
-def blade_inertia() -> BladeInertia:
-    return BladeInertia()
+def blade_inertia(dropped: frozenset[str] = CONSISTENT) -> BladeInertia:
+    return BladeInertia(dropped)
 
 
 def _dot(a, b):

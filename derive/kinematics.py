@@ -148,10 +148,12 @@ def gimbal_flap_and_roll() -> tuple[sp.Expr, sp.Expr]:
     return seen[0], seen[1]
 
 
-def pitch_angles() -> tuple[sp.Expr, sp.Expr]:
+def pitch_angles(dropped: frozenset[str] = frozenset()) -> tuple[sp.Expr, sp.Expr]:
     """Blade pitch relative to the shaft (Theta_s) and to the yoke (Theta_y); the swashplate follows the shaft."""
     gimbal_flap, gimbal_roll = gimbal_flap_and_roll()
     to_shaft = s.pitch + q["pitch"] - s.pitch_gimbal_coupling * gimbal_flap
+    if "yoke_roll" in dropped:
+        return tuple([to_shaft.subs(q["gimbal_roll"], 0)] * 2)
     return to_shaft, to_shaft - gimbal_roll
 
 

@@ -13,6 +13,7 @@ import sympy as sp
 from derive import flap_lag_springs
 from derive import kinematics as kin
 from derive import symbols as s
+from derive.published import CONSISTENT
 
 RATES = {name: sp.Symbol(f"rate_{name}", real=True) for name in kin.COORDINATES}
 
@@ -22,8 +23,10 @@ def rate(expression: sp.Expr) -> sp.Expr:
     return sum(sp.diff(expression, kin.q[name]) * RATES[name] for name in kin.COORDINATES)
 
 
-def kinetic_energy() -> sp.Expr:
-    to_shaft, _ = kin.pitch_angles()
+def kinetic_energy(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    to_shaft, _ = kin.pitch_angles(dropped)
+    if "gimbal_pitch_inertia" in dropped:
+        to_shaft = to_shaft.subs(s.pitch_gimbal_coupling, 0)
     return s.pitch_inertia * rate(to_shaft) ** 2 / 2
 
 
@@ -32,9 +35,11 @@ def control_energy() -> sp.Expr:
     return s.control_stiffness * (s.elastic_pitch + kin.q["pitch"]) ** 2 / 2
 
 
-def propeller_energy() -> sp.Expr:
+def propeller_energy(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Potential of the propeller moment, which turns a blade's chord into the disk plane."""
-    _, to_yoke = kin.pitch_angles()
+    if "propeller_moment" in dropped:
+        return sp.Integer(0)
+    _, to_yoke = kin.pitch_angles(dropped)
     return s.propeller_moment * s.pitch_inertia * s.rotor_speed**2 * sp.sin(to_yoke) ** 2 / 2
 
 
@@ -62,21 +67,21 @@ def at_rest(expression):
     return kin.at_trim(expression).subs(dict.fromkeys(RATES.values(), 0))
 
 
-def mass(i: str, j: str) -> sp.Expr:
-    return at_rest(sp.diff(kinetic_energy(), RATES[i], RATES[j]))
+def mass(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    return at_rest(sp.diff(kinetic_energy(dropped), RATES[i], RATES[j]))
 
 
 def damping(i: str, j: str) -> sp.Expr:
     return at_rest(sp.diff(dissipation(), RATES[i], RATES[j]))
 
 
-def potential() -> sp.Expr:
-    return control_energy() + propeller_energy() + gimbal_energy()
+def potential(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    return control_energy() + propeller_energy(dropped) + gimbal_energy()
 
 
-def stiffness(i: str, j: str) -> sp.Expr:
+def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Second derivative of the potentials, and what the non-rotating damper feels of a tilt that rotates."""
-    energy = at_rest(sp.diff(potential(), kin.q[i], kin.q[j]))
+    energy = at_rest(sp.diff(potential(dropped), kin.q[i], kin.q[j]))
     return sp.factor_terms(energy) + at_rest(sp.diff(dissipation(), RATES[i], kin.q[j]))
 
 

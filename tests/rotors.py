@@ -1,7 +1,7 @@
-"""Random rotors that could be built, in flight conditions they could meet.
+"""Random rotors that could be built, in flight conditions they could meet, on supports that could carry them.
 
 The blade's mass is any non-negative distribution, so its integrals belong together; springs are sized by the frequency
-they give the blade, so that a rotor is above or below 1/rev on purpose.
+they give the blade, so that a rotor is above 1/rev on purpose.
 """
 
 from dataclasses import dataclass, replace
@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import proprotor as pp
 
 SPEED_OF_SOUND = 340.3
+HUB = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
 DAMPERS = ("flap_damping", "lag_damping", "pitch_damping", "gimbal_damping")
 
 
@@ -23,46 +24,51 @@ class Flight:
     operation: pp.Operation
     airspeed: float
 
+    @property
+    def rotor_speed(self):
+        return self.operation.rotor_speed
+
     def model(self, **options):
         return pp.rotor_model(self.rotor, self.operation, self.airspeed, **options)
 
-    def changed(self, **rotor_fields):
-        return replace(self, rotor=replace(self.rotor, **rotor_fields))
+    def on(self, support, **options):
+        return pp.Case("random", self.rotor, self.operation, support).linearize(self.airspeed, **options)
+
+    def with_rotor(self, **fields):
+        return replace(self, rotor=replace(self.rotor, **fields))
 
     def without_dampers(self):
-        return self.changed(**dict.fromkeys(DAMPERS, 0.0))
+        return self.with_rotor(**dict.fromkeys(DAMPERS, 0.0))
 
 
 def between(low, high):
-    """A number in a range: `low`, and the end points, are drawn more often than by chance."""
+    """A number of four decimals in a range, whose end points are likelier than the rest."""
     return st.floats(low, high).map(lambda value: round(value, 4))
 
 
-def zero_or(strategy):
-    return st.just(0.0) | strategy
+def zero_or(numbers):
+    return st.just(0.0) | numbers
 
 
 @st.composite
 def mass_distributions(draw, radius):
-    """(r, mass per length) from the centre to the tip; bare stretches allowed, but not at the tip."""
-    inner = draw(st.lists(between(0.05, 0.95), min_size=1, max_size=4, unique_by=lambda share: round(share, 2)))
+    """(r, mass per length) from the centre to the tip: bare stretches allowed, but not a bare tip."""
+    inner = draw(st.lists(st.integers(5, 95), min_size=1, max_size=4, unique=True))
     mass = draw(st.lists(zero_or(between(1.0, 15.0)), min_size=len(inner) + 1, max_size=len(inner) + 1))
-    return radius * np.array([0.0, *sorted(inner), 1.0]), np.array([*mass, draw(between(1.0, 10.0))])
+    return radius * np.array([0, *sorted(inner), 100]) / 100, np.array([*mass, draw(between(1.0, 10.0))])
 
 
 def twists(radius):
     """Linear, or a table from the centre to the tip."""
-    root, mid, tip = between(0.3, 0.8), between(0.0, 0.2), between(-0.25, 0.0)
-    table = st.tuples(root, mid, tip).map(lambda twist: (radius * np.array([0.0, 0.6, 1.0]), np.array(twist)))
-    return between(-0.9, -0.3) | table
+    table = st.tuples(between(0.3, 0.8), between(0.0, 0.2), between(-0.25, 0.0))
+    return between(-0.9, -0.3) | table.map(lambda twist: (radius * np.array([0.0, 0.6, 1.0]), np.array(twist)))
 
 
 def chords(radius):
     """Constant, or a table from the centre to the tip."""
-    table = st.tuples(between(0.06, 0.12), between(0.04, 0.08)).map(
-        lambda share: (radius * np.array([0.0, 0.5, 1.0]), radius * np.array([share[0], share[0], share[1]]))
-    )
-    return between(0.05, 0.12).map(lambda share: share * radius) | table
+    table = st.tuples(between(0.06, 0.12), between(0.05, 0.1), between(0.04, 0.08))
+    tapered = table.map(lambda share: (radius * np.array([0.0, 0.4, 1.0]), radius * np.array(share)))
+    return between(0.05, 0.12).map(lambda share: share * radius) | tapered
 
 
 airfoils = st.builds(
@@ -74,18 +80,21 @@ airfoils = st.builds(
 )
 
 
-@st.composite
-def rotors(draw, rotor_speed, radius, hinges_off_centre=False, stiff=None):
-    """Rotors at a given speed and size.
+def hinge_offsets(radius, hinges):
+    """(e_β, e_ζ): coincident or apart, on the centre of rotation or off it."""
+    flap, gap = between(0.01, 0.12), zero_or(between(0.005, 0.1))
+    flap = {"anywhere": zero_or(flap), "off centre": flap, "at centre": st.just(0.0)}[hinges]
+    gap = st.just(0.0) if hinges == "at centre" else gap
+    return st.tuples(flap, gap).map(lambda share: (radius * share[0], radius * sum(share)))
 
-    `stiff` asks for blade springs that put flap and lag above 1/rev; else lag may be soft in-plane.
-    """
-    off_centre = between(0.01, 0.12)
-    flap_hinge = radius * draw(off_centre if hinges_off_centre else zero_or(off_centre))
-    lag_hinge = flap_hinge + radius * draw(zero_or(between(0.005, 0.1)))
+
+@st.composite
+def limp_rotors(draw, radius, hinges):
+    """Rotors without springs to speak of."""
+    flap_hinge, lag_hinge = draw(hinge_offsets(radius, hinges))
     fraction = st.sampled_from([0.0, 1.0]) | between(0.0, 1.0)
     station, mass = draw(mass_distributions(radius))
-    limp = pp.Rotor.from_mass_distribution(
+    return pp.Rotor.from_mass_distribution(
         station,
         mass,
         n_blades=draw(st.integers(3, 6)),
@@ -105,32 +114,63 @@ def rotors(draw, rotor_speed, radius, hinges_off_centre=False, stiff=None):
         twist=draw(twists(radius)),
         airfoil=draw(airfoils),
     )
-    centrifugal = limp.blade_inertia * rotor_speed**2
-    pitch_inertia = limp.blade_inertia * draw(between(2e-4, 2e-2))
-    lag_per_rev = between(1.3, 2.5) if stiff else between(0.3, 2.5)
+
+
+@st.composite
+def rotors(draw, rotor_speed, radius, *, hinges="anywhere", stiff=False):
+    """Rotors of a given size, sprung for a given speed; `stiff` ones have each blade motion above 1/rev."""
+    limp = draw(limp_rotors(radius, hinges))
+    inertia = limp.blade_inertia
+    pitch_inertia = inertia * draw(between(2e-4, 2e-2))
+    spring_per_rev = between(1.2, 1.6) if stiff else between(0.4, 1.6)
+    lag_per_rev = between(1.3, 2.5) if stiff else between(0.4, 2.5)
+    gimbal_share = between(0.01, 0.3) if stiff else zero_or(between(0.01, 0.3))
     return replace(
         limp,
-        flap_stiffness=limp.flap_inertia * rotor_speed**2 * draw(between(0.8 if stiff else 0.1, 2.0)),
-        lag_stiffness=limp.lag_inertia * rotor_speed**2 * draw(lag_per_rev) ** 2,
-        gimbal_stiffness=centrifugal * draw(zero_or(between(0.01, 0.3))),
+        flap_stiffness=limp.flap_inertia * (rotor_speed * draw(spring_per_rev)) ** 2,
+        lag_stiffness=limp.lag_inertia * (rotor_speed * draw(lag_per_rev)) ** 2,
+        control_stiffness=pitch_inertia * (rotor_speed * draw(between(3.0, 6.0))) ** 2,
         pitch_inertia=pitch_inertia,
-        control_stiffness=pitch_inertia * rotor_speed**2 * draw(between(3.0, 6.0)) ** 2,
-        **{name: centrifugal / rotor_speed * draw(zero_or(between(1e-3, 1e-2))) for name in DAMPERS},
+        gimbal_stiffness=inertia * rotor_speed**2 * draw(gimbal_share),
+        **{name: inertia * rotor_speed * draw(zero_or(between(1e-3, 1e-2))) for name in DAMPERS},
     )
 
 
 @st.composite
-def flights(draw, **rotor_choices):
-    """Rotors in cruise, windmilling or at a given collective."""
-    radius = draw(between(1.0, 6.0))
-    tip_speed = draw(between(140.0, 210.0))
+def flights(draw, **kind):
+    """Rotors in cruise, windmilling or at a given collective; `kind` as for `rotors`."""
+    radius, tip_speed = draw(between(1.0, 6.0)), draw(between(140.0, 210.0))
     airspeed = tip_speed * draw(between(0.25, 0.75))
     aligned = np.arctan2(airspeed, 0.75 * tip_speed)
-    trim = draw(st.just("windmill") | between(-0.03, 0.06).map(lambda extra: {"collective": aligned + extra}))
+    given = between(-0.03, 0.06).map(lambda more: {"collective": aligned + more})
     operation = pp.Operation(
         rotor_speed=tip_speed / radius,
         density=draw(between(0.6, 1.3)),
         speed_of_sound=SPEED_OF_SOUND,
-        trim=trim,
+        trim=draw(st.just("windmill") | given),
     )
-    return Flight(draw(rotors(operation.rotor_speed, radius, **rotor_choices)), operation, airspeed)
+    return Flight(draw(rotors(operation.rotor_speed, radius, **kind)), operation, airspeed)
+
+
+def random_support(flight, seed):
+    """Six coordinates at the hub with a mass and a stiffness to match the rotor, coupled at random, undamped."""
+    rng = np.random.default_rng(seed)
+    rotor = flight.rotor
+    scale = rotor.n_blades * np.array([rotor.blade_mass] * 3 + [rotor.blade_inertia] * 3)
+
+    def coupled(low, high):
+        factor = rng.uniform(-1, 1, (6, 6))
+        matrix = (factor @ factor.T / 6 + np.eye(6)) * rng.uniform(low, high)
+        return matrix * np.sqrt(np.outer(scale, scale))
+
+    return pp.NormalModes(
+        names=HUB,
+        mass=coupled(0.3, 3.0),
+        damping=np.zeros((6, 6)),
+        stiffness=coupled(0.01, 1.0) * flight.rotor_speed**2,
+        hub=np.eye(6),
+        includes_rotor=False,
+    )
+
+
+seeds = st.integers(0, 2**31)

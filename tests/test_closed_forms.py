@@ -1,6 +1,6 @@
 """Rotors simple enough for a formula: rotating and fixed-frame frequencies, ground resonance, a rigid disk.
 
-All in vacuum. Where the formula is exact the tolerance is rounding, 1e-12 of one per rev or of the largest entry.
+All in vacuum. Exact formulas are held to rounding: 1e-12 of one per rev or of the largest entry.
 """
 
 from itertools import pairwise
@@ -33,7 +33,7 @@ def part(model, *dofs):
 def roots(M, C, K):
     """Eigenvalues of M q̈ + C q̇ + K q = 0 with positive frequency, slowest first.
 
-    Coordinates are scaled to unit inertia and time to the stiffest spring: rounding is that of numbers near 1.
+    Scaled to unit inertia, and time to the stiffest spring, so that rounding is that of numbers near one.
     """
     whiten = inv(cholesky(M, lower=True))
     C, K = whiten @ C @ whiten.T, whiten @ K @ whiten.T

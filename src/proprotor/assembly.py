@@ -1,18 +1,18 @@
-"""A rotor on a support: hub coordinates replaced by the support's own."""
+"""A rotor, or anything else with six hub coordinates, on a support: the hub's coordinates give way to the support's."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from proprotor.model import HUB, LinearModel, rigid_hub_mass
-from proprotor.rotor import Rotor
+from proprotor.errors import InputError
+from proprotor.model import HUB, LinearModel
 from proprotor.support import NormalModes
 
 
-def mount(rotor: Rotor, rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
+def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike | None = None) -> LinearModel:
     """The coupled model on the coordinates of the support and of the rotor without its hub.
 
     Hub motion is Φ p, so by virtual work the rotor's matrices become Tᵀ (...) T, with the support's own added.
@@ -20,15 +20,22 @@ def mount(rotor: Rotor, rotor_alone: LinearModel, support: NormalModes) -> Linea
 
     Parameters
     ----------
-    rotor : Rotor
     rotor_alone : LinearModel
-        From `rotor_model`, with its six hub coordinates.
+        On the six hub coordinates, then its own: from `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere.
     support : NormalModes
+    rigid_mass : array_like, shape (..., 6, 6)
+        M_hub, such as `rigid_hub_mass(rotor)`; only asked for where the support's masses include the rotor.
+
+    Raises
+    ------
+    InputError
+        When the model does not begin with the hub coordinates, or a rigid mass is asked for and not given.
     """
+    if rotor_alone.dofs[: len(HUB)] != HUB:
+        raise InputError("dofs", ", ".join(rotor_alone.dofs), f"must begin with {', '.join(HUB)}")
     own = rotor_alone.dofs[len(HUB) :]
     transformation = _transformation(support, len(own))
-    support_mass = support.mass - support.hub.T @ rigid_hub_mass(rotor) @ support.hub * support.includes_rotor
-    additions = {"M": support_mass, "C": support.damping, "K": support.stiffness}
+    additions = {"M": _mass_without_rotor(support, rigid_mass), "C": support.damping, "K": support.stiffness}
     modes = len(support.names)
     matrices = {}
     for name, addition in additions.items():
@@ -36,6 +43,14 @@ def mount(rotor: Rotor, rotor_alone: LinearModel, support: NormalModes) -> Linea
         matrix[..., :modes, :modes] += addition
         matrices[name] = matrix
     return replace(rotor_alone, **matrices, dofs=(*support.names, *own))
+
+
+def _mass_without_rotor(support: NormalModes, rigid_mass: ArrayLike | None) -> NDArray:
+    if not support.includes_rotor:
+        return support.mass
+    if rigid_mass is None:
+        raise InputError("rigid_mass", None, "must be given: the support's generalised masses include the rotor")
+    return support.mass - support.hub.T @ np.asarray(rigid_mass) @ support.hub
 
 
 def _transformation(support: NormalModes, own: int) -> NDArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -21,18 +22,21 @@ def along_segments(quantities: Quantities) -> dict[str, Any]:
     return {name: np.asarray(value)[..., None] for name, value in quantities.items()}
 
 
-def segment_quantities(rotor: Rotor, quantities: Quantities) -> dict[str, Any]:
-    """Quantities of each segment at trim: what holds for the whole blade, and the segment's geometry."""
+def segment_quantities(rotor: Rotor, quantities: Quantities, equations: ModuleType = airloads) -> dict[str, Any]:
+    """Quantities of each segment at trim: what holds for the whole blade, and the segment's geometry.
+
+    `equations` is the generated airload module, here and below.
+    """
     quadrature = rotor.quadrature
     pool = along_segments(quantities)
     pool |= {"beyond_flap_hinge": quadrature.beyond_flap_hinge, "beyond_lag_hinge": quadrature.beyond_lag_hinge}
-    return pool | evaluate(airloads.segment_geometry, pool)._asdict()
+    return pool | evaluate(equations.segment_geometry, pool)._asdict()
 
 
-def _velocities(rotor: Rotor, segments: Quantities) -> dict[str, NDArray]:
+def _velocities(rotor: Rotor, segments: Quantities, equations: ModuleType) -> dict[str, NDArray]:
     """Trim velocity of the air at the stations."""
     quadrature = rotor.quadrature
-    line = evaluate(airloads.trim_velocity, segments)[..., 0]
+    line = evaluate(equations.trim_velocity, segments)[..., 0]
     names = ("tangential_velocity", "axial_velocity", "radial_velocity")
     return {
         name: quadrature.at_stations(line[..., place]) + quadrature.at_stations(line[..., place + 3]) * quadrature.stations
@@ -57,7 +61,12 @@ def _lift_slope_alone(coefficients: SectionCoefficients) -> SectionCoefficients:
 
 
 def load_moments(
-    rotor: Rotor, segments: Quantities, *, compressibility: bool, lift_slope_only: bool = False
+    rotor: Rotor,
+    segments: Quantities,
+    *,
+    compressibility: bool,
+    lift_slope_only: bool = False,
+    equations: ModuleType = airloads,
 ) -> dict[str, NDArray]:
     """Radial moments of the section loads and their derivatives, by name and power of r, (..., segments).
 
@@ -72,7 +81,7 @@ def load_moments(
         Keep the terms proportional to the lift slope and no others.
     """
     stations = {name: segments[name] for name in ("density", "speed_of_sound", "rotor_speed")}
-    stations |= _velocities(rotor, segments)
+    stations |= _velocities(rotor, segments, equations)
     stations |= {"chord": rotor.station_chord, "section_pitch": segments["pitch"] + rotor.station_twist}
     stations |= evaluate(section.air_at_section, stations)._asdict()
     coefficients = rotor.airfoil.coefficients(stations["angle_of_attack"], stations["mach"])

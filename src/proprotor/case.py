@@ -16,7 +16,7 @@ from proprotor.assembly import mount
 from proprotor.datum import PER_REV, Datum
 from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
 from proprotor.errors import InputError
-from proprotor.model import LinearModel, rotor_model
+from proprotor.model import LinearModel, rigid_hub_mass, rotor_model
 from proprotor.operation import Operation
 from proprotor.rotor import Rotor
 from proprotor.support import HUB_AXES, NormalModes
@@ -70,7 +70,8 @@ class Case:
         **options
             See `proprotor.options.Options`.
         """
-        return mount(self.rotor, rotor_model(self.rotor, self.operation, airspeed, **options), self.support)
+        rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **options)
+        return mount(rotor_alone, self.support, rigid_hub_mass(self.rotor))
 
     def sweep(self, airspeeds: Any, **options: Any) -> xarray.Dataset:
         """Modes along a list of airspeeds, tracked and named: see `proprotor.sweep.sweep`."""

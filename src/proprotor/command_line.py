@@ -5,22 +5,21 @@ from __future__ import annotations
 import inspect
 import json
 import re
-import textwrap
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
 from proprotor.deck_file import list_cases, read_tables
 from proprotor.errors import InputError
 from proprotor.options import CHOICES, LOCKABLE, Options
+from proprotor.output_file import write_whole
 from proprotor.waiting import waiting
 
 # pint, xarray, rich and matplotlib are slow to import: each is imported where it is needed.
 if TYPE_CHECKING:
-    import xarray
-
     from proprotor.case import Case
     from proprotor.tables import SweepTable
 
@@ -49,8 +48,8 @@ class _InputErrorsTold(click.Group):
 def _model_options(command: Callable) -> Callable:
     """A flag for each choice of the model, as `proprotor.options` has them."""
     meanings = _meanings(Options)
-    locked = click.Choice(LOCKABLE)
-    command = click.option("--locked", multiple=True, type=locked, help=f"{meanings['locked']} Repeatable.")(command)
+    locked = {"multiple": True, "type": click.Choice(LOCKABLE), "help": f"{meanings['locked']} Repeatable."}
+    command = click.option("--locked", **locked)(command)
     for name, choices in reversed(CHOICES.items()):
         command = _model_option(name, choices, meanings[name])(command)
     return command
@@ -104,9 +103,9 @@ def sweep(
 
     CASE is a bundled case (see `proprotor cases`) or a TOML file that describes one.
 
-    The table has the modes that become unstable and those that move the support the most. Every number
-    states its sign: damping is -Re s/|s| of the eigenvalue s, in percent of critical, negative where a mode is
-    unstable. An airspeed that cannot be analysed is a row that says why.
+    The table has the modes that become unstable, the support's, and others that move it the most. Damping
+    is -Re s/|s| of the eigenvalue s in percent of critical, negative where a mode is unstable. An airspeed
+    that cannot be analysed is a row that says why.
 
     \b
     Examples:
@@ -114,17 +113,21 @@ def sweep(
       proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
     """
     _check_figure_format(plot)
+    options = asdict(Options(**options))
     with waiting("Analysing"):
         loaded, table = _analysed(case, speed, options)
+    # Files first: a reader of the table, such as `head`, may leave early.
+    if csv:
+        _write("--csv", csv, lambda file: file.write(table.csv()))
+    if plot:
+        with waiting("Drawing"):
+            _write("--plot", plot, lambda file: _draw(loaded, table, file, Path(plot).suffix))
     if as_json:
         click.echo(json.dumps(_document(loaded, table, options), indent=1, allow_nan=False))
     else:
-        _print_report(loaded, table, options, all_modes)
-    if csv:
-        _write(csv, lambda file: file.write(table.csv()))
-    if plot:
-        with waiting("Drawing"):
-            _write(plot, lambda file: _draw(loaded, table, file, Path(plot).suffix))
+        from proprotor.report import print_sweep
+
+        print_sweep(loaded, table, options, all_modes)
     if table.failed.all():
         raise click.exceptions.Exit(1)
 
@@ -161,3 +164,41 @@ def _document(case: Case, table: SweepTable, options: dict[str, Any]) -> dict[st
         "unstable ranges (m/s, interpolated)": [found._asdict() for found in unstable_ranges(table.sweep)],
         "points": list(table.records()),
     }
+
+
+def _draw(case: Case, table: SweepTable, file: IO[bytes], suffix: str) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")  # no window, and no display needed
+    from proprotor.plots import plot_sweep
+    from proprotor.provenance import reservations
+    from proprotor.report import heading
+
+    labels = {"title": heading(case), "footer": " ".join(reservations(case))}
+    figure = plot_sweep(table.sweep, rotor_speed=table.rotor_speed, unit=table.unit, **labels)
+    figure.savefig(file, format=suffix.removeprefix(".").lower(), dpi=160)
+
+
+def _write(option: str, path: str, write: Callable[[IO[bytes]], object]) -> None:
+    try:
+        write_whole(path, write)
+    except InputError as error:
+        raise InputError(option, path, error.rule) from None
+    except OSError as error:
+        reason = error.strerror or error
+        raise click.ClickException(f"{option} = {path}: cannot be written ({reason})") from None
+    click.echo(f"Wrote {path}", err=True)
+
+
+@main.command(epilog=_EXIT_CODES, short_help="List the bundled cases, or tell what one rests on.")
+@click.argument("name", required=False)
+def cases(name: str | None) -> None:
+    """List the bundled cases, or tell what one case, bundled or a TOML file, is and rests on."""
+    if name is None:
+        for bundled in list_cases():
+            click.echo(f"{bundled:<24} {read_tables(bundled).get('case', {}).get('title', '')}")
+    else:
+        from proprotor.case import load_case
+        from proprotor.report import print_case
+
+        print_case(load_case(name))

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from proprotor_equations import FIXED_COORDINATES, airloads, flap_lag_springs, inertia, multiblade, pitch
+from proprotor_equations import FIXED_COORDINATES, airloads, inertia, multiblade, pitch
 
 from proprotor.blade_airloads import load_moments, segment_quantities
+from proprotor.equation_set import EquationSet
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
 from proprotor.operation import Operation
@@ -146,7 +147,7 @@ def _matrices(rotor: Rotor, quantities: Mapping[str, Any], options: Options, tri
         state = {name: getattr(trim, name)[good] for name in UNKNOWNS}
         pool = with_trim(rotor, take(quantities, good), state)
         pool |= _couplings(options, pool)
-        mass, damping, stiffness = _structure(pool)
+        mass, damping, stiffness = _structure(pool, options.equation_set)
         if options.airloads != "none":
             air_damping, air_stiffness = _airloads(rotor, pool, options)
             damping, stiffness = damping + air_damping, stiffness + air_stiffness
@@ -162,23 +163,29 @@ def _couplings(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
     return {"pitch_flap_coupling": 0.0, "pitch_lag_coupling": 0.0}
 
 
-def _structure(pool: Mapping[str, Any]) -> tuple[NDArray, NDArray, NDArray]:
+def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray, NDArray, NDArray]:
     """Inertia, springs and dampers of one blade."""
-    mass = evaluate(inertia.mass, pool) + evaluate(pitch.mass, pool)
-    damping = evaluate(inertia.gyroscopic, pool) + evaluate(pitch.damping, pool)
-    stiffness = evaluate(inertia.centrifugal_stiffness, pool) + evaluate(flap_lag_springs.stiffness, pool)
-    return mass, damping, stiffness + evaluate(pitch.stiffness, pool)
+    pool = dict(pool) | evaluate(equations.inertia.trim_integrals, pool)._asdict()
+    mass = evaluate(equations.inertia.mass, pool) + evaluate(equations.pitch.mass, pool)
+    damping = evaluate(equations.inertia.gyroscopic, pool) + evaluate(pitch.damping, pool)
+    stiffness = evaluate(equations.inertia.centrifugal_stiffness, pool) + evaluate(equations.pitch.stiffness, pool)
+    return mass, damping, stiffness + evaluate(equations.flap_lag_springs.stiffness, pool)
 
 
 def _airloads(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[NDArray, NDArray]:
     """Airload damping and stiffness of one blade."""
-    segments = segment_quantities(rotor, pool)
-    lift_slope_only = options.airloads == "lift-slope"
+    motion = options.equation_set.airloads
+    segments = segment_quantities(rotor, pool, motion)
     segments |= load_moments(
-        rotor, segments, compressibility=options.compressibility, lift_slope_only=lift_slope_only
+        rotor,
+        segments,
+        compressibility=options.compressibility,
+        lift_slope_only=options.airloads == "lift-slope",
+        equations=motion,
     )
-    for name in ("virtual_motion", "rate_motion", "displacement_motion", "load_derivatives", "geometric_stiffness"):
-        segments[name] = evaluate(getattr(airloads, name), segments)
+    for name in ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness"):
+        segments[name] = evaluate(getattr(motion, name), segments)
+    segments["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
     return evaluate(airloads.damping, segments), evaluate(airloads.stiffness, segments)
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from proprotor.equation_set import EQUATION_SETS, EquationSet
 from proprotor.errors import InputError, unknown_name
 
 CHOICES: dict[str, tuple] = {
+    "equations": tuple(EQUATION_SETS),
     "pitch": ("dynamic", "coupling", "rigid"),
     "airloads": ("full", "lift-slope", "none"),
     "compressibility": (True, False),
@@ -21,6 +23,9 @@ class Options:
 
     Parameters
     ----------
+    equations : "consistent" or "published"
+        Every first-order term, or what AIAA-2002-1604 keeps of the perturbation equations (the trim is the same); an
+        `EquationSet` of generated modules stands for itself.
     pitch : "dynamic", "coupling" or "rigid"
         Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
     airloads : "full", "lift-slope" or "none"
@@ -38,6 +43,7 @@ class Options:
         For a choice that does not exist, with those that do.
     """
 
+    equations: str | EquationSet = "consistent"
     pitch: str = "dynamic"
     airloads: str = "full"
     compressibility: bool = True
@@ -47,6 +53,8 @@ class Options:
     def __post_init__(self) -> None:
         for name, choices in CHOICES.items():
             value = getattr(self, name)
+            if isinstance(value, EquationSet):
+                continue
             if value not in choices:
                 raise InputError(name, value, f"must be one of {', '.join(map(str, choices))}")
         locked = (self.locked,) if isinstance(self.locked, str) else tuple(self.locked)
@@ -54,6 +62,11 @@ class Options:
             if name not in LOCKABLE:
                 raise InputError("locked", name, f"must be of {', '.join(LOCKABLE)}")
         object.__setattr__(self, "locked", locked)
+
+    @property
+    def equation_set(self) -> EquationSet:
+        """The generated modules of the chosen equations."""
+        return self.equations if isinstance(self.equations, EquationSet) else EQUATION_SETS[self.equations]
 
     @property
     def pitch_is_free(self) -> bool:

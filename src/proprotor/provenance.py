@@ -24,7 +24,7 @@ def reservations(case: Case) -> list[str]:
     sentences = []
     if counts:
         told = ", ".join(f"{count} {status}" for status, count in sorted(counts.items()))
-        sentences.append(f"Not from a source: {told} of {len(case.sources)} inputs.")
+        sentences.append(f"Rests on inputs that were not read in a source: {told}, of {len(case.sources)}.")
     if case.calibration:
         sentences.append(f"Calibration: {case.calibration.rstrip('.')}.")
     return sentences

@@ -38,9 +38,11 @@ class RadialQuadrature:
 
     def at_stations(self, at_segments: NDArray) -> NDArray:
         """Values (..., stations) of a quantity (..., segments) that is constant along a segment."""
+        segments = np.broadcast_to(at_segments, (*at_segments.shape[:-1], self.weights.shape[-2]))
         if self.segment.ndim == 1:
-            return at_segments[..., self.segment]
-        return np.take_along_axis(at_segments, np.broadcast_to(self.segment, (*at_segments.shape[:-1], self.segment.shape[-1])), -1)
+            return segments[..., self.segment]
+        places = np.broadcast_to(self.segment, (*segments.shape[:-1], self.segment.shape[-1]))
+        return np.take_along_axis(segments, places, axis=-1)
 
     def moments(self, section_loads: NDArray) -> NDArray:
         """Radial moments (..., loads, segments, 3) of section loads (..., loads, stations)."""

@@ -1,4 +1,4 @@
-"""What carries the rotor: a wing given by normal modes and their motion at the hub."""
+"""What carries the rotor: a wing given by normal modes and their motion at the hub, or a two-axis pivot."""
 
 from __future__ import annotations
 
@@ -93,6 +93,46 @@ class NormalModes:
             hub=hub,
             includes_rotor=includes_rotor,
         )
+
+
+def two_axis_pivot(
+    distance: float,
+    inertia: ArrayLike,
+    stiffness: ArrayLike,
+    damping: ArrayLike = (0.0, 0.0),
+    *,
+    includes_rotor: bool,
+) -> NormalModes:
+    """A rigid shaft that pitches and yaws about a point behind the hub: the mount of a propeller on its nacelle.
+
+    Pitch raises the hub along I and yaw moves it outboard along J, each by `distance` per radian.
+
+    Parameters
+    ----------
+    distance : float
+        From the pivot forward to the hub, m.
+    inertia, stiffness, damping : array_like, shape (2,)
+        Of pitch and yaw about the pivot: kg m², N m/rad, N m s/rad (viscous; for hysteretic damping see
+        `proprotor.structural_damping`).
+    includes_rotor : bool
+        Whether the inertias include the rotor's, its mass at the hub included.
+
+    Raises
+    ------
+    InputError
+        When a value is not finite or an inertia negative.
+    """
+    hub = np.zeros((len(HUB_AXES), 2))
+    hub[HUB_AXES.index("x"), 0], hub[HUB_AXES.index("alpha_y"), 0] = distance, 1.0
+    hub[HUB_AXES.index("y"), 1], hub[HUB_AXES.index("alpha_x"), 1] = distance, -1.0
+    return NormalModes(
+        names=("pitch", "yaw"),
+        mass=np.diag(_finite("inertia", inertia, (2,))),
+        damping=np.diag(_finite("damping", damping, (2,))),
+        stiffness=np.diag(_finite("stiffness", stiffness, (2,))),
+        hub=hub,
+        includes_rotor=includes_rotor,
+    )
 
 
 def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""What a sweep says at a glance: damping in percent, where modes are unstable, which of them move the support."""
+"""What a sweep says at a glance: frequency, damping, where modes are unstable, which move the support."""
 
 from __future__ import annotations
 
@@ -35,6 +35,12 @@ class UnstableRange(NamedTuple):
     open_stop: bool
 
 
+def damped_frequency(sweep: xarray.Dataset) -> NDArray:
+    """|Im s| (airspeed, mode) in rad/s, NaN at failed points."""
+    eigenvalue = sweep.eigenvalue.values
+    return np.where(np.isnan(eigenvalue), np.nan, np.abs(eigenvalue.imag))
+
+
 def growth_rate(sweep: xarray.Dataset) -> NDArray:
     """Re s (airspeed, mode) in rad/s, exactly zero where it is zero but for rounding."""
     real = sweep.eigenvalue.values.real
@@ -63,7 +69,10 @@ def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
 
 def _ranges(airspeed: NDArray, growth: NDArray) -> Iterator[tuple[float, float, bool, bool]]:
     unstable = np.concatenate([[False], growth > 0, [False]])
-    starts, ends = np.flatnonzero(~unstable[:-1] & unstable[1:]), np.flatnonzero(unstable[:-1] & ~unstable[1:])
+    starts, ends = (
+        np.flatnonzero(~unstable[:-1] & unstable[1:]),
+        np.flatnonzero(unstable[:-1] & ~unstable[1:]),
+    )
     for first, after in zip(starts, ends, strict=True):
         open_start, open_stop = first == 0, after == len(growth)
         start = airspeed[0] if open_start else _zero(airspeed, growth, first - 1)

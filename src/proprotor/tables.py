@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 from proprotor import units
 from proprotor.sweep_summary import (
     UnstableRange,
+    damped_frequency,
     damping_percent,
     growth_rate,
+    support_coordinates,
     support_share,
     unstable_ranges,
 )
@@ -67,7 +69,7 @@ class SweepTable:
     @cached_property
     def frequency(self) -> NDArray:
         """Frequency (airspeed, mode) per revolution."""
-        return self.sweep.frequency.values / self.rotor_speed
+        return damped_frequency(self.sweep) / self.rotor_speed
 
     @cached_property
     def damping(self) -> NDArray:
@@ -86,23 +88,28 @@ class SweepTable:
 
     def lines(self, width: int = 80, all_modes: bool = False) -> Iterator[Text]:
         """Lines of one or more tables no wider than asked for, a row for each airspeed."""
+        from rich.text import Text  # here, because rich takes long to import
+
         fit = max(1, (width - _SPEED_WIDTH) // _MODE_WIDTH)
         shown = range(len(self.sweep.mode)) if all_modes else self._of_interest(fit)
         for start in range(0, max(1, len(shown)), fit):
             yield from self._table(shown[start : start + fit])
-        if left_out := [str(name) for i, name in enumerate(self.sweep.mode.values) if i not in shown]:
-            yield from _wrapped(f"{len(left_out)} more modes (--all-modes): {', '.join(left_out)}.", width)
+        left_out = [str(name) for i, name in enumerate(self.sweep.mode.values) if i not in shown]
+        if left_out and not self.failed.all():
+            told = f"{len(left_out)} more modes (--all-modes): {', '.join(left_out)}."
+            yield from map(Text, (*textwrap.wrap(told, width), ""))
 
     def _of_interest(self, count: int) -> list[int]:
-        """Unstable modes, then those that move the support the most, in the order of the sweep."""
+        """Unstable modes, the support's, then those that move it the most; in the order of the sweep."""
         if self.failed.all():
             return []
-        ever_unstable = self.unstable.any(axis=0)
-        by_interest = np.lexsort([-support_share(self.sweep), ~ever_unstable])
-        return sorted(by_interest[: max(count, ever_unstable.sum())].tolist())
+        unstable = self.unstable.any(axis=0)
+        of_support = np.isin(self.sweep.mode.values, support_coordinates(self.sweep))
+        by_interest = np.lexsort([-support_share(self.sweep), ~of_support, ~unstable])
+        return sorted(by_interest[: max(count, np.sum(unstable | of_support))].tolist())
 
     def _table(self, modes: Sequence[int]) -> Iterator[Text]:
-        from rich.text import Text  # here, because rich takes long to import
+        from rich.text import Text
 
         names = [textwrap.wrap(str(self.sweep.mode.values[i]), _MODE_WIDTH - 2) for i in modes]
         for row in range(max(map(len, names), default=0)):
@@ -129,17 +136,18 @@ class SweepTable:
         """A sentence on each range of airspeed in which a mode is unstable, or that there is none."""
         if self.failed.all():
             return ["No airspeed could be analysed."]
-        return [self._told(found) for found in unstable_ranges(self.sweep)] or [
-            "No mode is unstable at the airspeeds analysed."
-        ]
+        ranges = sorted(unstable_ranges(self.sweep), key=lambda found: found.start)
+        return [self._told(found) for found in ranges] or ["No mode is unstable at the airspeeds analysed."]
 
     def _told(self, found: UnstableRange) -> str:
-        start, stop = (self._speed(speed) for speed in (found.start, found.stop))
-        since = f"at {start}, the first airspeed" if found.open_start else f"from about {start} (interpolated)"
+        start, stop = (self._rounded(speed) for speed in (found.start, found.stop))
+        since = f"from about {start} (interpolated)"
+        if found.open_start:
+            since = f"at {self.airspeed[~self.failed][0]:g} {self.unit}, the lowest airspeed analysed"
         until = "" if found.open_stop else f", stable again from about {stop} (interpolated)"
         return f"{found.mode}: unstable {since}{until}"
 
-    def _speed(self, speed: float) -> str:
+    def _rounded(self, speed: float) -> str:
         """A speed to three digits and at least to whole units."""
         value = speed / units.factor_to_si(self.unit, self.unit, "m/s")
         digits = 0 if value == 0 else max(0, 2 - math.floor(math.log10(value)))
@@ -148,15 +156,16 @@ class SweepTable:
     def records(self) -> Iterator[dict[str, Any]]:
         """Airspeed by airspeed and mode by mode, with units in the names; None at failed points."""
         sweep = self.sweep
-        for i, j in np.ndindex(sweep.frequency.shape):
+        for i, j in np.ndindex(self.damping.shape):
+            s = complex(sweep.eigenvalue.values[i, j])
             yield {
                 f"airspeed ({self.unit})": self.airspeed[i].item(),
                 "airspeed (m/s)": sweep.airspeed.values[i].item(),
                 "mode": str(sweep.mode.values[j]),
                 "frequency (per rev)": _finite(self.frequency[i, j]),
                 "damping (% of critical)": _finite(self.damping[i, j]),
-                "Re s (rad/s)": _finite(sweep.eigenvalue.values[i, j].real),
-                "Im s (rad/s)": _finite(sweep.eigenvalue.values[i, j].imag),
+                "Re s (rad/s)": _finite(s.real),
+                "Im s (rad/s)": None if np.isnan(s) else s.imag,
                 "failure": str(sweep.reason.values[i]),
             }
 
@@ -170,11 +179,5 @@ class SweepTable:
         return text.getvalue().encode()
 
 
-def _finite(number: np.floating) -> float | None:
-    return number.item() if np.isfinite(number) else None
-
-
-def _wrapped(text: str, width: int) -> Iterator[Text]:
-    from rich.text import Text
-
-    return (Text(line) for line in textwrap.wrap(text, width))
+def _finite(number: float) -> float | None:
+    return float(number) if np.isfinite(number) else None

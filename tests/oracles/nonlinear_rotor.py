@@ -20,7 +20,7 @@ HUB_FORCE, HUB_MOMENT = slice(0, 3), slice(3, 6)
 FLAP, LAG, PITCH = (DOFS.index(name) for name in ("flap_0", "lag_0", "pitch_0"))
 AZIMUTH, GIMBAL_C, GIMBAL_S = (DOFS.index(name) for name in ("azimuth", "gimbal_1c", "gimbal_1s"))
 UNIT = np.eye(len(DOFS))
-GENERALISED = range(6, 18)  # the rows of virtual work; the six hub rows are resultants
+GENERALISED = slice(6, 18)  # the rows of virtual work; the six hub rows are resultants
 
 
 @dataclass(frozen=True)
@@ -131,10 +131,13 @@ def blades(rotor, station, q, shaft):
 
 
 def virtual_displacements(rotor, station, q, time):
-    """Row by row, the motion of the blades whose rates are the derivatives by that coordinate."""
-    shaft = clock(rotor, time, running=False)
-    for row in GENERALISED:
-        yield row, blades(rotor, station, Motion(q, UNIT[row]), shaft)
+    """Motions whose rates are the derivatives by each generalised coordinate, along an axis before the blades."""
+    return blades(rotor, station, virtual_motion(q), clock(rotor, time, running=False))
+
+
+def virtual_motion(q):
+    """Every generalised coordinate at a rate of one in its turn: (..., row, 18)."""
+    return Motion(q[..., None, :], UNIT[GENERALISED])
 
 
 def spring_energy(rotor, motion, coordinates):
@@ -242,17 +245,18 @@ def inertia_rows(rotor, q, time):
     rows = np.zeros((*inertia_force.shape[:-3], len(DOFS)), dtype=complex)
     rows[..., HUB_FORCE] = inertia_force.sum((-3, -2))
     rows[..., HUB_MOMENT] = np.cross(motion.arm.value, inertia_force).sum((-3, -2))
-    for row, displacement in virtual_displacements(rotor, rotor.station, q.value, time):
-        work = (inertia_force * displacement.position.rate).sum((-3, -2, -1))
-        rows[..., row] = work + (pitching_moment * displacement.shaft_pitch.rate).sum((-2, -1))
+    virtual = virtual_displacements(rotor, rotor.station, q.value, time)
+    work = (inertia_force[..., None, :, :, :] * virtual.position.rate).sum((-3, -2, -1))
+    pitching_work = (pitching_moment[..., None, :, :] * virtual.shaft_pitch.rate).sum((-2, -1))
+    rows[..., GENERALISED] = work + pitching_work
     return rows
 
 
 def spring_rows(rotor, q, time):
     """Gradient of the spring energy."""
     rows = np.zeros(q.value.shape, dtype=complex)
-    for row, displacement in virtual_displacements(rotor, np.zeros(1), q.value, time):
-        rows[..., row] = spring_energy(rotor, displacement, Motion(q.value, UNIT[row])).rate
+    virtual = virtual_displacements(rotor, np.zeros(1), q.value, time)
+    rows[..., GENERALISED] = spring_energy(rotor, virtual, virtual_motion(q.value)).rate
     return rows
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from tests.oracles.motion import Motion, scaled
 from tests.oracles.nonlinear_rotor import (
     DOFS,
+    GENERALISED,
     HUB_FORCE,
     HUB_MOMENT,
     NonlinearRotor,
@@ -39,10 +40,10 @@ class Aerodynamics:
     compressibility: bool = True
 
 
-def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=20):
+def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=14):
     """Gauss–Legendre stations and weights on panels split wherever the integrand has a corner.
 
-    Twenty points integrate the smooth panels to rounding; the nearest singularities (V/Ω off the real axis,
+    Fourteen points integrate the smooth panels to rounding; the nearest singularities (V/Ω off the real axis,
     and sonic speed) are about a panel length away.
     """
     corners = {rotor.flap_hinge_offset, rotor.lag_hinge_offset, *air.chord[0], *air.twist[0]}
@@ -106,13 +107,13 @@ def lift_slope_loads(air, station, motion, trim):
     return force, 0.0 * lift
 
 
-def virtual_nose_up_rotation(displacement):
+def virtual_nose_up_rotation(virtual):
     """The part about d of the rotation of the section axes, and the pitch of the section in them."""
-    axes_about_span = (displacement.normal.rate * displacement.chordwise.value).sum(-1)
-    return axes_about_span + displacement.pitch.rate
+    axes_about_span = (virtual.normal.rate * virtual.chordwise.value).sum(-1)
+    return axes_about_span + virtual.pitch.rate
 
 
-def airload_rows(air, rotor, q, time, order=20):
+def airload_rows(air, rotor, q, time, order=14):
     """What the airloads add to the left-hand side of the equations of motion."""
     station, weight = quadrature(air, rotor, order)
     motion = blades(rotor, station, q, clock(rotor, time))
@@ -135,7 +136,8 @@ def assembled(rotor, station, q, time, motion, force, moment):
     rows[..., HUB_FORCE] = force.sum((-3, -2))
     about_hub = np.cross(motion.arm.value, force) + moment[..., None] * motion.spanwise.value
     rows[..., HUB_MOMENT] = about_hub.sum((-3, -2))
-    for row, displacement in virtual_displacements(rotor, station, q.value, time):
-        work = (force * displacement.position.rate).sum((-3, -2, -1))
-        rows[..., row] = work + (moment * virtual_nose_up_rotation(displacement)).sum((-2, -1))
+    virtual = virtual_displacements(rotor, station, q.value, time)
+    work = (force[..., None, :, :, :] * virtual.position.rate).sum((-3, -2, -1))
+    pitching_work = (moment[..., None, :, :] * virtual_nose_up_rotation(virtual)).sum((-2, -1))
+    rows[..., GENERALISED] = work + pitching_work
     return rows

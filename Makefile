@@ -1,0 +1,39 @@
+# Needs Python 3.11 or newer with venv, make and git; everything else goes into .venv.
+PYTHON ?= python3
+BIN := .venv/bin
+
+demo: .venv/installed  ## Set up .venv, then analyse the XV-15 from 50 to 400 kt: a table, and damping.png (the default)
+	$(BIN)/proprotor sweep xv15 --speed 50:400:5kt --plot damping.png
+
+test: .venv/installed  ## Run the tests
+	$(BIN)/python -m pytest --ignore=tests/verify
+
+verify: .venv/verify-installed  ## Check the equations: generated against derived, inertia against an independent engine
+	$(BIN)/python -m derive --check
+	$(BIN)/python -m pytest tests/verify
+
+regenerate-equations: .venv/installed  ## Derive the equations again and write generated/
+	$(BIN)/python -m derive
+
+lint: .venv/installed  ## Check the style of the source
+	$(BIN)/ruff check src derive tests
+	$(BIN)/ruff format --check src derive tests
+
+clean:  ## Remove all that make has made
+	rm -rf .venv .hypothesis .pytest_cache .ruff_cache build dist damping.png
+
+help:  ## List the targets
+	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
+
+.PHONY: demo test verify regenerate-equations lint clean help
+
+.venv/installed: pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --upgrade pip  # dependency groups need pip 25.1
+	$(BIN)/python -m pip install --editable . --group dev
+	touch $@
+
+.venv/verify-installed: .venv/installed
+	$(BIN)/python -m pip install --group verify
+	touch $@

@@ -1,0 +1,69 @@
+"""What the command line prints on a sweep and on a case."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+
+from proprotor.provenance import doubtful_inputs, reservations
+from proprotor.tables import CONVENTION, SweepTable
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+
+def heading(case: Case) -> str:
+    """The case and its rotor speed."""
+    return f"{case.title or case.name}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
+
+
+def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_modes: bool = False) -> None:
+    """Print what was analysed, what it rests on, the table and where modes are unstable.
+
+    Parameters
+    ----------
+    case : Case
+    table : SweepTable
+    options : dict
+        Of the model, as in `proprotor.options.Options`.
+    all_modes : bool
+        Every mode, in as many tables as it takes, or those of interest only.
+    """
+    console = _console()
+    chosen = ", ".join(f"{name.replace('_', ' ')} {_told(value)}" for name, value in options.items())
+    warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
+    for line in (heading(case), f"Model: {chosen}.", CONVENTION, *reservations(case), *warnings, ""):
+        console.print(line)
+    for line in table.lines(console.width, all_modes):
+        console.print(line, soft_wrap=True)
+    for line in table.verdict():
+        console.print(line, style="bold")
+
+
+def print_case(case: Case) -> None:
+    """Print what a case is, and each input that was not read in a source."""
+    console = _console()
+    warnings = (f"Warning: {text}" for text in case.warnings)
+    for paragraph in filter(None, (case.title, case.description, *reservations(case), *warnings)):
+        console.print(f"{paragraph}\n")
+    for path, number in doubtful_inputs(case).items():
+        console.print(f"{number.status:<11} {path} = {number.written}", soft_wrap=True)
+        console.print(f"{'':<11} {number.source}", soft_wrap=True)
+
+
+def _console() -> Console:
+    return Console(markup=False, highlight=False, emoji=False)
+
+
+def _shortened(text: str, case: Case, width: int) -> str:
+    """About two lines of a warning, and where the whole of it stands."""
+    return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")
+
+
+def _told(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else " and ".join(value) or "nothing"
