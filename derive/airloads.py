@@ -26,6 +26,7 @@ from derive.published import CONSISTENT
 
 SECTION_AXES = ("x", "n", "d")
 VELOCITIES = ("ut", "up", "ur")
+GUSTS = ("gust_i", "gust_j", "gust_k")
 
 # u_T, u_P, u_R are these multiples of the section's own velocity along i', n, d.
 SENSE = {"x": -1, "n": 1, "d": 1}
@@ -296,6 +297,17 @@ def displacement_motion(motion: str, name: str, dropped: frozenset[str] = CONSIS
     return _motion(kinematics, kinematics.velocity, motion, name)
 
 
+def gust_motion(motion: str, gust: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    """U_gust: velocity of the air along a segment for air that itself moves along a rotating axis."""
+    name, _, power = motion.partition("_")
+    if motion == "theta" or power == "1":
+        return sp.Integer(0)
+    kinematics = segment_kinematics(dropped)
+    axis = SECTION_AXES[VELOCITIES.index(name)]
+    component = kinematics.axes[axis][()][GUSTS.index(gust)]
+    return _power(kinematics, -SENSE[axis] * component, 0)
+
+
 def trim_velocity(motion: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Trim velocity of the air at r = 0 and per unit radius."""
     kinematics = segment_kinematics(dropped)
@@ -341,12 +353,14 @@ def products() -> dict[str, sp.MatrixExpr]:
     derivatives = sp.MatrixSymbol("load_derivatives", loads, motions)
     rate = sp.MatrixSymbol("rate_motion", motions, coordinates)
     displacement = sp.MatrixSymbol("displacement_motion", motions, coordinates)
+    gust = sp.MatrixSymbol("gust_motion", motions, len(GUSTS))
     geometric = sp.MatrixSymbol("geometric_stiffness", coordinates, coordinates)
     steady = sp.MatrixSymbol("steady_loads", loads, 1)
     # The virtual work of the airloads stands on the right of the equations of motion, so it leaves with a minus.
     return {
         "damping": -virtual.T * derivatives * rate,
         "stiffness": -virtual.T * derivatives * displacement - geometric,
+        "gust_loads": virtual.T * derivatives * gust,
         "steady_work": virtual.T * steady,
     }
 

@@ -35,6 +35,7 @@ MODULE_TITLES = {
     "section": "Loads of a blade section",
     "airloads": "Airloads of one blade, segment by segment",
     "trim": "Trim balance of one blade",
+    "drive_train": "Engine and shaft on the rotor's azimuth",
     "multiblade": "From one blade to N blades in the fixed frame",
 }
 
@@ -132,7 +133,8 @@ def index_groups(functions: list[Function]) -> list[dict]:
     for function in functions:
         groups |= dict.fromkeys(names for names in (function.rows, function.columns) if names)
     if any(function.blade_matrices for function in functions):
-        groups[tuple(symbol.name for symbol in multiblade.BLADE_INDEX.values())] = None
+        for indices in (multiblade.BLADE_INDEX, multiblade.INPUT_INDEX):
+            groups[tuple(symbol.name for symbol in indices.values())] = None
     constants: dict[str, int] = {}
     for names in groups:
         for place, name in enumerate(names):
@@ -195,6 +197,7 @@ def render() -> Iterator[tuple[str, str]]:
         modules=list(STEPS),
         blade_coordinates=kin.COORDINATES,
         fixed_coordinates=multiblade.FIXED_COORDINATES,
+        fixed_inputs=multiblade.FIXED_INPUTS,
         **_header(),
     )
     yield "__init__.py", formatted(package, "__init__.py")

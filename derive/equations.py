@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from derive import airloads, flap_lag_springs, inertia, multiblade, pitch, section, trim
+from derive import airloads, drive_train, flap_lag_springs, inertia, multiblade, pitch, section, trim
 from derive import kinematics as kin
 from derive import symbols as s
 from derive.published import CONSISTENT, PUBLISHED
@@ -211,6 +211,13 @@ def spring_shared() -> Iterator[Function]:
         flap_lag_springs.effective_stiffness(),
         tuple(flap_lag_springs.STIFFNESS.values()),
     )
+    yield values(
+        "flap_lag_springs",
+        "stiffness_of_frequencies",
+        "Diagonal stiffness of given rotating frequencies, and what cyclic flapping has above collective.",
+        "AIAA-2002-1604, nomenclature: flap and lag frequency",
+        flap_lag_springs.stiffness_of_frequencies(),
+    )
 
 
 def spring_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]:
@@ -357,6 +364,15 @@ def airload_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function
         0,
     )
     yield _segment_matrix(
+        "gust_motion",
+        "U for gusts: velocity of the air along a segment for air that moves along the rotating axes.",
+        airloads.SEGMENT_MOTION,
+        airloads.GUSTS,
+        lambda motion, gust: airloads.gust_motion(motion, gust, dropped),
+        lambda motion, gust: NUMBER,
+        "perturbation velocities, Eqs. 14-15, of moving air",
+    )
+    yield _segment_matrix(
         "geometric_stiffness",
         "G: change of the steady airloads' virtual work with each coordinate, of one segment.",
         kin.COORDINATES,
@@ -389,6 +405,7 @@ def airload_shared() -> Iterator[Function]:
     summaries = {
         "damping": "Airload damping of one blade in rotating axes, C = - sum W^T L U.",
         "stiffness": "Airload stiffness of one blade in rotating axes, K = - sum W^T L U - G.",
+        "gust_loads": "Loads of gusts on one blade in rotating axes, on the right of the equations of motion.",
         "steady_work": "Virtual work of the steady airloads of one blade, one column.",
     }
     for name, product in airloads.products().items():
@@ -409,12 +426,12 @@ def trim_shared() -> Iterator[Function]:
     yield Function(
         "trim",
         "residual",
-        "Steady balance of one blade without airloads: flap, lag, pitch moment and torque.",
+        "Steady balance of one blade without airloads: flap, lag, pitch moment, torque and thrust.",
         "AIAA-2002-1604, Eqs. 12 and 32, steady part",
-        rows=trim.BALANCES,
+        rows=trim.STEADY_ROWS,
         columns=("trim",),
         entries=_entries(
-            trim.BALANCES, ("trim",), lambda row, _: trim.residual(row), lambda row, _: MOMENT, ROW_EQUATION
+            trim.STEADY_ROWS, ("trim",), lambda row, _: trim.residual(row), lambda row, _: row_dimension(row), ROW_EQUATION
         ),
     )
     yield Function(
@@ -422,9 +439,9 @@ def trim_shared() -> Iterator[Function]:
         "jacobian",
         "Derivative of the residual with coning, lag, elastic pitch and collective, without airloads.",
         "AIAA-2002-1604, Eqs. 12 and 32, differentiated",
-        rows=trim.BALANCES,
+        rows=trim.STEADY_ROWS,
         columns=tuple(columns),
-        entries=_entries(trim.BALANCES, columns, trim.jacobian, lambda row, _: MOMENT, ROW_EQUATION),
+        entries=_entries(trim.STEADY_ROWS, columns, trim.jacobian, lambda row, _: row_dimension(row), ROW_EQUATION),
     )
     for function in (
         _virtual_motion("virtual_motion", trim.STEADY_ROWS, CONSISTENT),
@@ -438,7 +455,7 @@ def trim_shared() -> Iterator[Function]:
         _segment_matrix(
             "geometric_stiffness",
             "G for the unknowns: change of the steady airloads' virtual work, of one segment.",
-            trim.BALANCES,
+            trim.STEADY_ROWS,
             tuple(columns),
             _unknowns(airloads.geometric_stiffness),
             lambda row, _: row_dimension(row),
@@ -480,6 +497,85 @@ def multiblade_shared() -> Iterator[Function]:
         )
 
 
+    yield Function(
+        "multiblade",
+        "input_matrix",
+        "Loads on the rotor's coordinates per unit of swashplate motion and gusts, on the right of the equations.",
+        "AIAA-2002-1604, Eqs. 7-9 and 17: sum over N blades",
+        rows=multiblade.FIXED_COORDINATES,
+        columns=multiblade.FIXED_INPUTS,
+        entries=_entries(
+            multiblade.FIXED_COORDINATES,
+            multiblade.FIXED_INPUTS,
+            lambda row, column: multiblade.input_matrix(places[row], multiblade.FIXED_INPUTS.index(column)),
+            lambda row, column: _plus(row_dimension(row), minus=(0, 1, -1) if "gust" in column else NUMBER),
+            FIXED_EQUATION,
+        ),
+        blade_matrices=("inputs",),
+    )
+    yield from reactionless_functions()
+    excess = flap_lag_springs.cyclic_flap_stiffness_excess
+    yield Function(
+        "multiblade",
+        "cyclic_restraint",
+        "Stiffness that only cyclic flapping feels, for cyclic and collective frequencies given apart.",
+        "separate cyclic and collective flap frequencies, as NASA TN D-7677",
+        rows=multiblade.FIXED_COORDINATES,
+        columns=multiblade.FIXED_COORDINATES,
+        entries=_entries(
+            multiblade.FIXED_COORDINATES,
+            multiblade.FIXED_COORDINATES,
+            placed(lambda row, column: multiblade.cyclic_restraint(row, column, excess)),
+            lambda row, column: MOMENT,
+            FIXED_EQUATION,
+        ),
+    )
+
+
+def reactionless_functions() -> Iterator[Function]:
+    summaries = {
+        "reactionless": ("motions of a harmonic whose sum over the blades vanishes", multiblade.REACTIONLESS_PAIR),
+        "differential": ("motion of neighbouring blades against each other, even N", multiblade.DIFFERENTIAL),
+    }
+    for prefix, (summary, names) in summaries.items():
+        for kind, order in (("mass", 2), ("damping", 1), ("stiffness", 0)):
+            yield Function(
+                "multiblade",
+                f"{prefix}_{kind}",
+                f"{kind.capitalize()} matrix of the {summary}.",
+                "multiblade coordinates beyond Eq. 17, for more than three blades",
+                rows=names,
+                columns=names,
+                entries=_entries(
+                    names,
+                    names,
+                    lambda row, column, kind=kind: multiblade.reactionless(kind, row, column),
+                    lambda row, column, order=order: _plus(MOMENT, _per_time(order)),
+                    "blade angles beyond Eq. 17",
+                ),
+                blade_matrices=("mass", "damping", "stiffness")[: 3 - order],
+            )
+
+
+def drive_train_shared() -> Iterator[Function]:
+    for kind, order in (("mass", 2), ("damping", 1), ("stiffness", 0)):
+        yield Function(
+            "drive_train",
+            kind,
+            f"{kind.capitalize()} that engine and shaft add to the rotor in the fixed frame.",
+            "energies of engine and shaft on the azimuth of Eq. 17",
+            rows=multiblade.FIXED_COORDINATES,
+            columns=multiblade.FIXED_COORDINATES,
+            entries=_entries(
+                multiblade.FIXED_COORDINATES,
+                multiblade.FIXED_COORDINATES,
+                lambda row, column, kind=kind: drive_train.matrix(kind, row, column),
+                lambda row, column, order=order: _plus(MOMENT, _per_time(order)),
+                FIXED_EQUATION,
+            ),
+        )
+
+
 def _nothing(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]:
     """A module that is the same in both sets of equations."""
     return iter(())
@@ -494,6 +590,7 @@ STEPS = {
     "airloads": (airload_shared, airload_functions),
     "trim": (trim_shared, _nothing),
     "multiblade": (multiblade_shared, _nothing),
+    "drive_train": (drive_train_shared, _nothing),
 }
 
 

@@ -14,6 +14,7 @@ import sympy as sp
 
 from derive import kinematics as kin
 from derive import symbols as s
+from derive.inertia import blade_inertia, trim_integrals
 from derive.published import CONSISTENT
 
 FLAP_LAG = ("flap", "lag")
@@ -155,3 +156,32 @@ def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
 def steady(i: str) -> sp.Expr:
     """Gradient of the spring energy at trim."""
     return sp.factor_terms(sp.expand(kin.at_trim(sp.diff(spring_energy(), kin.q[i]))))
+
+
+cyclic_flap_stiffness_excess = s.quantity(
+    "cyclic_flap_stiffness_excess", r"\Delta K_{\beta c}", "N m/rad", "flap stiffness of cyclic above collective motion"
+)
+
+
+def stiffness_of_frequencies() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Diagonal stiffness that gives a blade its tabulated rotating frequencies, uncoupled and at zero cone."""
+    blade = blade_inertia()
+    flat = dict.fromkeys((s.precone, s.coning, s.lag), 0)
+    integrals = {symbol: sp.sympify(value).subs(flat) for symbol, value in trim_integrals().items()}
+
+    def at_zero_cone(expression):
+        for _ in range(4):
+            expression = expression.subs(integrals)
+        return sp.factor_terms(sp.expand(expression))
+
+    def needed(coordinate, frequency):
+        total = frequency**2 * blade.mass(coordinate, coordinate) - blade.centrifugal(coordinate, coordinate)
+        return at_zero_cone(total)
+
+    collective = needed("flap", s.rotating_flap_frequency)
+    cyclic = needed("flap", s.cyclic_flap_frequency)
+    return [
+        (STIFFNESS["flap", "flap", 0], collective),
+        (STIFFNESS["lag", "lag", 0], needed("lag", s.rotating_lag_frequency)),
+        (cyclic_flap_stiffness_excess, sp.factor_terms(sp.expand(cyclic - collective))),
+    ]

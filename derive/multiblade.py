@@ -116,3 +116,73 @@ def stiffness(row: int, column: int) -> sp.Expr:
         + s.rotor_speed * _projected(DAMPING, row, column, 1)
         + _projected(STIFFNESS, row, column, 0)
     )
+
+
+# Swashplate and gusts: what reaches one blade, and what is given in the fixed frame.
+BLADE_INPUTS = ("swashplate", "gust_i", "gust_j", "gust_k")
+FIXED_INPUTS = ("collective", "cyclic_1c", "cyclic_1s", "gust_x", "gust_y", "gust_z")
+INPUTS = sp.IndexedBase("inputs")
+INPUT_INDEX = {name: sp.Symbol(f"BLADE_{name.upper()}") for name in BLADE_INPUTS}
+
+
+@functools.cache
+def blade_inputs() -> sp.Matrix:
+    """One blade's inputs (4 rows) in those of the fixed frame (6 columns)."""
+    fixed = {name: sp.Symbol(f"fixed_{name}") for name in FIXED_INPUTS}
+    gust = sp.Matrix([fixed["gust_x"], fixed["gust_y"], fixed["gust_z"]])
+    pitch = fixed["collective"] + fixed["cyclic_1c"] * sp.cos(psi) + fixed["cyclic_1s"] * sp.sin(psi)
+    return sp.Matrix([pitch, gust.dot(I_AZIMUTH), gust.dot(J_AZIMUTH), gust[2]]).jacobian(list(fixed.values()))
+
+
+def input_matrix(row: int, column: int) -> sp.Expr:
+    """Entry of B: loads of N blades on a row per unit of an input."""
+    names = list(INPUT_INDEX.values())
+    indices = [BLADE_INDEX[name] for name in kin.COORDINATES]
+    products = (
+        INPUTS[indices[i], names[j]] * azimuth_mean(left * blade_inputs()[j, column])
+        for i, left in _columns(0)[row].items()
+        for j in range(len(BLADE_INPUTS))
+    )
+    return s.n_blades * sum(products, sp.Integer(0))
+
+
+# Motions of the blades in which nothing reaches the hub: harmonics 2 and above below N/2 come in pairs, and for even N
+# neighbouring blades may move against each other.
+REACTIONLESS_PAIR = ("flap_nc", "flap_ns", "lag_nc", "lag_ns", "pitch_nc", "pitch_ns")
+DIFFERENTIAL = ("flap_d", "lag_d", "pitch_d")
+harmonic = s.quantity("harmonic", "n", "", "harmonic of the azimuth, 2 to below half the number of blades")
+
+
+def _angle_and_motion(name: str) -> tuple[str, sp.Expr]:
+    """Blade angle of a reactionless coordinate, and its share in the blade at azimuth psi (in units of the harmonic)."""
+    angle, kind = name.split("_")
+    return angle, {"nc": sp.cos(psi), "ns": sp.sin(psi), "d": sp.Integer(1)}[kind]
+
+
+def _reactionless(base: sp.IndexedBase, row: str, column: str, order: int) -> sp.Expr:
+    """Mean of the product of two motions with a blade matrix entry; d/dpsi brings the harmonic down."""
+    (row_angle, left), (column_angle, right) = _angle_and_motion(row), _angle_and_motion(column)
+    derivative = harmonic**order * sp.diff(right, psi, order) if order else right
+    return base[BLADE_INDEX[row_angle], BLADE_INDEX[column_angle]] * azimuth_mean(left * derivative)
+
+
+def reactionless(kind: str, row: str, column: str) -> sp.Expr:
+    """Entry of the mass, damping or stiffness of reactionless motions, of all blades."""
+    omega = s.rotor_speed
+    if kind == "mass":
+        return s.n_blades * _reactionless(MASS, row, column, 0)
+    if kind == "damping":
+        inertia = 2 * omega * _reactionless(MASS, row, column, 1)
+        return s.n_blades * (inertia + _reactionless(DAMPING, row, column, 0))
+    inertia = omega**2 * _reactionless(MASS, row, column, 2) + omega * _reactionless(DAMPING, row, column, 1)
+    return s.n_blades * (inertia + _reactionless(STIFFNESS, row, column, 0))
+
+
+def cyclic_restraint(row: int, column: int, stiffness_excess: sp.Symbol) -> sp.Expr:
+    """Stiffness that only the cyclic flapping of the blades feels."""
+    cyclic = [FIXED_COORDINATES.index(name) for name in ("flap_1c", "flap_1s")]
+    if row not in cyclic or column not in cyclic:
+        return sp.Integer(0)
+    flap = kin.COORDINATES.index("flap")
+    shares = [_columns(0)[place][flap] for place in (row, column)]
+    return s.n_blades * stiffness_excess * azimuth_mean(shares[0] * shares[1])

@@ -100,6 +100,21 @@ pitch_damping = quantity("pitch_damping", r"C_\theta", "N m s/rad", "pitch dampe
 gimbal_damping = quantity("gimbal_damping", "C_G", "N m s/rad", "gimbal damper, non-rotating")
 propeller_moment = quantity("propeller_moment", r"\pi_\theta", "", "1 with the propeller moment, 0 without")
 
+rotating_flap_frequency = quantity(
+    "rotating_flap_frequency", r"\omega_\beta", "rad/s", "rotating flap frequency at zero cone, given"
+)
+rotating_lag_frequency = quantity(
+    "rotating_lag_frequency", r"\omega_\zeta", "rad/s", "rotating lag frequency at zero cone, given"
+)
+cyclic_flap_frequency = quantity(
+    "cyclic_flap_frequency", r"\omega_{\beta c}", "rad/s", "rotating flap frequency of the cyclic motions, given"
+)
+
+# Drive train
+drive_inertia = quantity("drive_inertia", "J_e", "kg m^2", "inertia that turns with the rotor, at rotor speed")
+drive_damping = quantity("drive_damping", "C_e", "N m s/rad", "damping of the rotor speed perturbation")
+shaft_stiffness = quantity("shaft_stiffness", "K_e", "N m/rad", "shaft to an end that turns at constant speed")
+
 # Trim
 coning = quantity("coning", r"\bar\beta_0", "rad", "trim elastic coning")
 lag = quantity("lag", r"\bar\zeta_0", "rad", "trim lag")

@@ -13,6 +13,7 @@ from proprotor.errors import InputError
 from proprotor.operation import Operation
 from proprotor.rotor import Rotor
 from proprotor.support import NormalModes
+from tests.c81_files import as_c81, made_up_tables
 
 FT = 0.3048
 LBF = 0.45359237 * 9.80665
@@ -106,7 +107,7 @@ def test_a_deck_has_the_fields_of_what_it_describes():
 
     instead = {"flap_frequency", "lag_frequency", "lock_number", "mass_distribution"}
     assert set(RotorSection.model_fields) - instead == names(Rotor)
-    assert set(AirfoilSection.model_fields) == names(Airfoil)
+    assert set(AirfoilSection.model_fields) - {"table"} == names(Airfoil)
     assert set(OperationSection.model_fields) == names(Operation)
 
 
@@ -116,6 +117,36 @@ def test_chord_from_lock_number(tmp_path):
     assert case.sources["rotor.chord"].status == "derived"
     with pytest.raises(InputError, match=r"rotor.lock_number = 3.83: needs a density above zero"):
         altered(tmp_path, '[rotor]\nlock_number = 3.83\n[operation]\ndensity = "0 kg/m**3"\n')
+
+
+def test_an_airfoil_table(tmp_path):
+    (tmp_path / "a.c81").write_text(as_c81("MADE UP", **made_up_tables()))
+    text = '[rotor.airfoil]\ntable = { value = "a.c81", status = "assumed", source = "made up" }\n'
+    case = altered(tmp_path, text)
+    assert case.rotor.airfoil.name == "MADE UP"
+    assert (case.sources["rotor.airfoil.table"].written, case.sources["rotor.airfoil.table"].status) == (
+        "a.c81",
+        "assumed",
+    )
+    assert case.rotor.airfoil.contains_compressibility
+    assert case.linearize(100.0, compressibility=False).trim.converged
+    with pytest.raises(InputError) as caught:
+        altered(tmp_path, text + "[rotor]\nlock_number = 3.83\n")
+    assert (
+        str(caught.value) == "rotor.lock_number = 3.83: needs a lift_slope; with an airfoil table give chord"
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "rule"),
+    [(None, "no such file"), ("not C81\n", "line 1: must have six counts of two digits in columns 31 to 42")],
+)
+def test_an_airfoil_table_that_cannot_be_used(tmp_path, content, rule):
+    if content is not None:
+        (tmp_path / "a.c81").write_text(content)
+    with pytest.raises(InputError) as caught:
+        altered(tmp_path, '[rotor.airfoil]\ntable = "a.c81"\n')
+    assert str(caught.value) == f"rotor.airfoil.table = a.c81: {rule}"
 
 
 def test_a_frequency_per_revolution(tmp_path):

@@ -179,6 +179,18 @@ MISTAKES = [
     ("n_blades = 3", "n_blades = 2", "rotor.n_blades = 2: must be a whole number, at least 3"),
     ("n_blades = 3", "n_blades = 3.5", "rotor.n_blades = 3.5: must be a whole number, at least 3"),
     ("[rotor.airfoil]", "airfoil = 1\n[case.odd]", "rotor.airfoil = 1: must be a table"),
+    ('lift_slope = "5.7/rad"\n', "", "rotor.airfoil.lift_slope: is missing; give lift_slope or table"),
+    ('lift_slope = "5.7/rad"', 'table = "a.c81"', "rotor.airfoil.table = a.c81: must not be given with drag"),
+    (
+        'lift_slope = "5.7/rad"\ndrag = 0.0065',
+        "table = 3",
+        "rotor.airfoil.table = 3: must be the name of a file",
+    ),
+    (
+        'lift_slope = "5.7/rad"\ndrag = 0.0065',
+        'table = ""',
+        'rotor.airfoil.table = "": must be the name of a file',
+    ),
     (
         "flap_frequency",
         "lag_frequency",
@@ -489,6 +501,23 @@ def test_a_deck_alters_a_file_beside_it(tmp_path):
     (tmp_path / "base.toml").write_text(US_DECK)
     deck = read(tmp_path, 'base = "base.toml"\n[case]\nname = "other"\n')
     assert (deck.case.name, deck.case.title) == ("other", "A small deck")
+
+
+def test_a_table_stands_in_for_an_airfoil_and_the_other_way_round(tmp_path):
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    table = '[rotor.airfoil]\ntable = { value = "a.c81", status = "assumed", source = "made up" }\n'
+    (folder / "tabulated.toml").write_text(f'base = "xv15"\n[case]\nname = "tabulated"\n{table}')
+    deck = dict(si_values(read(folder, (folder / "tabulated.toml").read_text())))
+    airfoil = {field: datum for field, datum in deck.items() if field.startswith("rotor.airfoil")}
+    assert airfoil == {"rotor.airfoil.table": Datum("a.c81", str(folder / "a.c81"), "", "assumed", "made up")}
+
+    renamed = 'base = "folder/tabulated.toml"\n[case]\nname = "renamed"\n'
+    assert dict(si_values(read(tmp_path, renamed))) == deck  # the name starts from the deck that has it
+    here = dict(si_values(read(tmp_path, renamed + '[rotor.airfoil]\ntable = "a.c81"\n')))
+    assert here["rotor.airfoil.table"].si == str(tmp_path / "a.c81")
+    linear = dict(si_values(read(tmp_path, renamed + '[rotor.airfoil]\nlift_slope = "6/rad"\n')))
+    assert {field for field in linear if field.startswith("rotor.airfoil")} == {"rotor.airfoil.lift_slope"}
 
 
 @pytest.mark.parametrize(

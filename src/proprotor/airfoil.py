@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,11 +26,31 @@ class SectionCoefficients(NamedTuple):
 
 
 class SectionModel(Protocol):
-    """Anything that can stand for an airfoil."""
+    """Anything that can stand for an airfoil.
+
+    `contains_compressibility` says that the coefficients depend on Mach number already, so that no Prandtl-Glauert factor is
+    put on them.
+    """
+
+    contains_compressibility: bool
 
     def coefficients(self, alpha: NDArray, mach: NDArray) -> SectionCoefficients:
         """Coefficients and derivatives at angles of attack (rad) and Mach numbers of the same shape."""
         ...
+
+
+@runtime_checkable
+class Warns(Protocol):
+    """A section model that knows where its coefficients are not to be trusted."""
+
+    def warnings(self, alpha: NDArray, mach: NDArray) -> dict[str, NDArray]:
+        """Reasons for mistrust and where each holds, masks of the shape of `alpha` and `mach` broadcast."""
+        ...
+
+
+# Beyond these a straight lift line and the Prandtl-Glauert factor are not to be trusted (assumed, typical of thin sections).
+LINEAR_ALPHA = np.radians(12.0)
+LINEAR_MACH = 0.85
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +79,8 @@ class Airfoil:
     drag: float = 0.0
     moment: float = 0.0
 
+    contains_compressibility: ClassVar[bool] = False
+
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
@@ -81,3 +103,10 @@ class Airfoil:
             moment_coefficient_alpha=0.0,
             moment_coefficient_mach=0.0,
         )
+
+    def warnings(self, alpha: NDArray, mach: NDArray) -> dict[str, NDArray]:
+        """Where linear lift or the Prandtl-Glauert factor is not to be trusted."""
+        return {
+            f"angle of attack beyond {np.degrees(LINEAR_ALPHA):.0f} deg": np.abs(alpha) > LINEAR_ALPHA,
+            f"Mach number beyond {LINEAR_MACH:g}": mach > LINEAR_MACH,
+        }

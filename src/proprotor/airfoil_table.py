@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,29 +14,20 @@ from proprotor.c81 import COEFFICIENTS, Table, read_c81
 from proprotor.coefficient_surface import CoefficientSurface, broken_rules
 from proprotor.errors import InputError
 
-BEYOND_STALL = "beyond stall"
+BEYOND_STALL = "angle of attack beyond stall"
 BEYOND_ALPHA = "angle of attack outside the airfoil table"
 BEYOND_MACH = "Mach number outside the airfoil table"
 
 _NO_STALL = 100.0  # rad, which no angle reaches
 
 
-@runtime_checkable
-class Warns(Protocol):
-    """A section model that knows where its coefficients are not to be trusted."""
-
-    def warnings(self, alpha: NDArray, mach: NDArray) -> dict[str, NDArray]:
-        """Reasons for mistrust and where each holds, masks of the shape of `alpha` and `mach` broadcast."""
-        ...
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AirfoilTable:
     """Section coefficients interpolated in a table, with the exact derivatives of the interpolation.
 
-    Interpolation is that of `proprotor.coefficient_surface`: smooth, exact at the nodes, without overshoot.
-    Outside the table the coefficients go on straight in angle of attack and are held in Mach number (a table
-    from -180 to 180 deg closes on itself); `warnings` says where that is so.
+    Interpolation is that of `proprotor.coefficient_surface`: smooth, exact at the nodes, without overshoot
+    along the rows and columns of the table. Outside it the coefficients go on straight in angle of attack and
+    are held in Mach number (a table from -180 to 180 deg closes on itself); `warnings` says where that is so.
 
     Parameters
     ----------
@@ -84,7 +74,7 @@ class AirfoilTable:
 
     @property
     def contains_compressibility(self) -> bool:
-        """Whether the coefficients depend on Mach number, so that no compressibility factor belongs on them."""
+        """Whether the coefficients depend on Mach number, so that no factor for it belongs on them."""
         return any(len(surface.mach) > 1 for surface in self._surfaces.values())
 
     def coefficients(self, alpha: ArrayLike, mach: ArrayLike) -> SectionCoefficients:
@@ -100,8 +90,8 @@ class AirfoilTable:
     def warnings(self, alpha: ArrayLike, mach: ArrayLike) -> dict[str, NDArray]:
         """Where the coefficients are not to be trusted, and why: masks of the broadcast shape by reason.
 
-        Stall is the first maximum of the lift curve above the angle nearest zero, and its first minimum below,
-        linear in Mach number between the columns of the table.
+        Stall begins at the first maximum of the lift curve above the angle nearest zero, and at the first
+        minimum below it; between the columns of the table these angles are linear in Mach number.
         """
         alpha, mach = np.broadcast_arrays(alpha, mach)
         angle = np.real(self._surfaces["lift"].turned(alpha))
@@ -128,13 +118,13 @@ class AirfoilTable:
         if alpha.ndim != 1 or mach.ndim != 1 or len(alpha) < 2 or len(mach) < 1:
             raise InputError(name, None, "must have two angles of attack or more and a list of Mach numbers")
         if values.shape != (len(alpha), len(mach)):
-            rule = f"must have a row for each of {len(alpha)} angles, a column for each of {len(mach)} Mach numbers"
+            rule = f"must have {len(alpha)} rows, one for each angle, and {len(mach)} columns of Mach numbers"
             raise InputError(name, f"array of shape {values.shape}", rule)
         return alpha, mach, values
 
     @cached_property
     def _stall(self) -> tuple[tuple[NDArray, NDArray], ...]:
-        """Mach numbers, and the angles there up to which lift falls with falling and rises with rising angle."""
+        """Mach numbers and, for each, the angle of stall: those below zero, and those above."""
         lift = self._surfaces["lift"]
         start = int(np.argmin(np.abs(lift.alpha)))
         rises = np.diff(lift.values, axis=0) > 0

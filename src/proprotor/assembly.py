@@ -1,4 +1,4 @@
-"""A rotor, or anything else with six hub coordinates, on a support: the hub's coordinates give way to the support's."""
+"""A rotor, or what stands in its place, on a support: hub coordinates replaced by the support's own."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from proprotor.support import NormalModes
 def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike | None = None) -> LinearModel:
     """The coupled model on the coordinates of the support and of the rotor without its hub.
 
-    Hub motion is Φ p, so by virtual work the rotor's matrices become Tᵀ (...) T, with the support's own added.
-    Where the support's generalised masses include the rotor, its rigid-body share Φᵀ M_hub Φ is taken off first.
+    Hub motion is Φ p, so by virtual work the rotor's matrices become Tᵀ (...) T, with the support's own
+    added. Where the support's generalised masses include the rotor, its rigid-body share Φᵀ M_hub Φ is
+    taken off first.
 
     Parameters
     ----------
     rotor_alone : LinearModel
-        On the six hub coordinates, then its own: from `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere.
+        Six hub coordinates, then any others: `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere.
     support : NormalModes
     rigid_mass : array_like, shape (..., 6, 6)
         M_hub, such as `rigid_hub_mass(rotor)`; only asked for where the support's masses include the rotor.
@@ -42,14 +43,22 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
         matrix = transformation.T @ getattr(rotor_alone, name) @ transformation
         matrix[..., :modes, :modes] += addition
         matrices[name] = matrix
-    return replace(rotor_alone, **matrices, dofs=(*support.names, *own))
+    inputs = None if rotor_alone.B is None else transformation.T @ rotor_alone.B
+    return replace(
+        rotor_alone,
+        **matrices,
+        B=inputs,
+        dofs=(*support.names, *own),
+        hub=transformation[: len(HUB)],
+        rotor=rotor_alone,
+    )
 
 
 def _mass_without_rotor(support: NormalModes, rigid_mass: ArrayLike | None) -> NDArray:
     if not support.includes_rotor:
         return support.mass
     if rigid_mass is None:
-        raise InputError("rigid_mass", None, "must be given: the support's generalised masses include the rotor")
+        raise InputError("rigid_mass", None, "must be given: the support's masses include the rotor")
     return support.mass - support.hub.T @ np.asarray(rigid_mass) @ support.hub
 
 

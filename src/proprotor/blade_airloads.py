@@ -44,6 +44,14 @@ def _velocities(rotor: Rotor, segments: Quantities, equations: ModuleType) -> di
     }
 
 
+def air_at_stations(rotor: Rotor, segments: Quantities, equations: ModuleType = airloads) -> dict[str, Any]:
+    """Air, pitch, angle of attack and Mach number at the stations, by name, (..., stations)."""
+    stations = {name: segments[name] for name in ("density", "speed_of_sound", "rotor_speed")}
+    stations |= _velocities(rotor, segments, equations)
+    stations |= {"chord": rotor.station_chord, "section_pitch": segments["pitch"] + rotor.station_twist}
+    return stations | evaluate(section.air_at_section, stations)._asdict()
+
+
 def _compressible(coefficients: SectionCoefficients, mach: NDArray) -> SectionCoefficients:
     """Prandtl-Glauert on lift and moment, and on their derivatives."""
     factor, slope = section.prandtl_glauert(mach=mach)
@@ -76,16 +84,13 @@ def load_moments(
     segments : mapping
         `segment_quantities` at trim.
     compressibility : bool
-        Prandtl-Glauert factor on lift and moment.
+        Prandtl-Glauert factor on lift and moment, unless the airfoil holds compressibility already.
     lift_slope_only : bool
         Keep the terms proportional to the lift slope and no others.
     """
-    stations = {name: segments[name] for name in ("density", "speed_of_sound", "rotor_speed")}
-    stations |= _velocities(rotor, segments, equations)
-    stations |= {"chord": rotor.station_chord, "section_pitch": segments["pitch"] + rotor.station_twist}
-    stations |= evaluate(section.air_at_section, stations)._asdict()
+    stations = air_at_stations(rotor, segments, equations)
     coefficients = rotor.airfoil.coefficients(stations["angle_of_attack"], stations["mach"])
-    if compressibility:
+    if compressibility and not rotor.airfoil.contains_compressibility:
         coefficients = _compressible(coefficients, stations["mach"])
     if lift_slope_only:
         coefficients = _lift_slope_alone(coefficients)

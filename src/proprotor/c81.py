@@ -1,12 +1,12 @@
 """C81 airfoil files: card images of seven columns a number.
 
 Line 1 has a title (columns 1-30) and six counts of two digits: Mach numbers and angles of lift, of drag, of
-moment. Each of the three tables is a line of Mach numbers, its first seven columns blank, and a line for every
-angle of attack in degrees; nine values to a line, more on further lines whose first seven columns are blank.
+moment. Each of the three tables is a line of Mach numbers, its first seven columns blank, and a line for
+every angle of attack in degrees; nine values to a line, more on further lines that begin with seven blanks.
 
 The reader is the package's own. The one on the package index, c81utils 1.1.0, splits lines at blanks: it
-refuses files whose numbers fill their columns (``-180.00-0.2800``) or that have more than 18 Mach numbers, and
-takes others in silence that are wrong: numbers beyond the counts, NaN, overflow. Its errors name no line.
+refuses files whose numbers fill their columns (``-180.00-0.2800``) or that have more than 18 Mach numbers,
+and takes others in silence that are wrong: a column too many, NaN, overflow. Its errors name no line.
 """
 
 from __future__ import annotations
@@ -23,11 +23,8 @@ from numpy.typing import NDArray
 from proprotor.coefficient_surface import broken_rules
 from proprotor.errors import InputError
 
-COEFFICIENTS = {
-    "lift": -np.inf,
-    "drag": 0.0,
-    "moment": -np.inf,
-}  # in the order of the file, with the least values
+# In the order of the file, with what each must not be less than.
+COEFFICIENTS = {"lift": -np.inf, "drag": 0.0, "moment": -np.inf}
 
 _LARGEST = 1_000_000  # bytes; 99 angles at 99 Mach numbers, three times, take a quarter of it
 _WIDTH, _TO_A_LINE = 7, 9

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.airfoil import Airfoil
+from proprotor.airfoil import Airfoil, SectionModel
+from proprotor.airfoil_table import AirfoilTable
 from proprotor.assembly import mount
 from proprotor.datum import PER_REV, Datum
 from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
@@ -103,7 +104,7 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
             trim=trim if isinstance(trim, str) else _values(numbers, "operation.trim"),
         )
     with _told_as_written("rotor.airfoil", numbers):
-        airfoil = Airfoil(**_values(numbers, "rotor.airfoil"))
+        airfoil = _airfoil(_values(numbers, "rotor.airfoil"))
     with _told_as_written("rotor", numbers):
         given = {"airfoil": airfoil, "propeller_moment": deck.rotor.propeller_moment}
         rotor, derived = _rotor(_values(numbers, "rotor") | given, operation.density)
@@ -154,6 +155,10 @@ def _value(number: Datum, numbers: Mapping[str, Datum]) -> Any:
     return np.array(number.r_over_R) * numbers["rotor.radius"].si, np.array(number.si)
 
 
+def _airfoil(given: dict[str, Any]) -> SectionModel:
+    return AirfoilTable.from_c81(given["table"]) if "table" in given else Airfoil(**given)
+
+
 def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datum]]:
     """The rotor, and the numbers that follow from those given."""
     omega = {name: given.pop(f"{name}_frequency") for name in ("flap", "lag") if f"{name}_frequency" in given}
@@ -180,6 +185,8 @@ def _spring(rotor: Rotor, hinge: str, frequency: float) -> Datum:
 def _chord(rotor: Rotor, lock_number: float, density: float) -> Datum:
     if density == 0:
         raise InputError("lock_number", lock_number, "needs a density above zero; give chord instead")
+    if not isinstance(rotor.airfoil, Airfoil):
+        raise InputError("lock_number", lock_number, "needs a lift_slope; with an airfoil table give chord")
     chord = lock_number * rotor.blade_inertia / (density * rotor.airfoil.lift_slope * rotor.radius**4)
     return Datum(
         "γ I_b / (ρ c_lα R⁴)", chord, "m", "derived", "lock_number, density, lift_slope, blade_inertia"

@@ -1,10 +1,11 @@
 """One section coefficient over angle of attack and Mach number: a table, and the smooth surface through it.
 
-Between the nodes the surface is bicubic, with nodal slopes after Fritsch and Butland (SciPy's PCHIP) along
-either direction and, for the cross derivative, along Mach of the slopes along the angle. It meets the table at
-every node, is continuously differentiable, and runs monotonically from node to node along every row and
-column: it overshoots nowhere, and its lift curve peaks where the table's does. The slopes are local. A C²
-spline would be smoother, but rings from the kink of a stall into the linear range, whose slope decides flutter.
+Between the nodes the surface is bicubic, with nodal slopes after Fritsch and Butland (SciPy's PCHIP) in both
+directions; the cross derivative is the slope, in Mach number, of the slopes in angle of attack. The surface
+meets the table at every node, is continuously differentiable, and along every row and column runs
+monotonically from node to node: it does not overshoot there, and lift peaks where the table's does. A slope
+follows from the two cells beside the node alone. A C² spline would be smoother, but the kink of a stall makes
+it ring into the linear range, whose slope decides flutter.
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ _SAME = 1e-9  # coefficients and angles that differ by less are equal
 class CoefficientSurface:
     """A coefficient at n angles and m Mach numbers, and everywhere else.
 
-    Outside the table the surface goes on straight in the angle of attack, and is held in Mach number, where its
-    Mach derivative vanishes. A table from -180 to 180 deg whose ends agree closes on itself instead, and one
-    with a single column holds at every Mach number.
+    Outside the table the surface goes on straight in angle of attack and is held in Mach number, its Mach
+    derivative zero. A table from -180 to 180 deg whose ends agree closes on itself instead, and one with a
+    single column holds at every Mach number.
 
     Parameters
     ----------
@@ -60,11 +61,9 @@ class CoefficientSurface:
         """
         row, angle = _place(self.alpha, self.turned(alpha))
         column, speed = _place(self.mach, mach)
-        cell = self._polynomials[row, column]
-        value = np.einsum("...ab,...a,...b->...", cell, _powers(angle), _powers(speed))
-        by_alpha = np.einsum("...ab,...a,...b->...", cell, _slopes_of_powers(angle), _powers(speed))
-        by_mach = np.einsum("...ab,...a,...b->...", cell, _powers(angle), _slopes_of_powers(speed))
-        return value, by_alpha, by_mach
+        cells = self._polynomials[:, :, row, column]
+        along_alpha, by_mach = _horner(cells, speed)
+        return *_horner(along_alpha, angle), _horner(by_mach, angle)[0]
 
     def beyond_alpha(self, alpha: NDArray) -> NDArray:
         """Where an angle of attack lies outside the table, (...)."""
@@ -84,17 +83,15 @@ class CoefficientSurface:
 
     @cached_property
     def _polynomials(self) -> NDArray:
-        """Coefficients (n + 1, m + 1, 4, 4) of the powers of angle and Mach number from the start of each cell.
+        """Coefficients (4, 4, n + 1, m + 1) of the powers of Mach number and angle from each cell's start.
 
         The first and last cell of either direction lie outside the table.
         """
         by_alpha, by_mach = self._alpha_slopes, _slopes(self.mach, self.values.T).T
-        along_alpha = _cubics(self.alpha, self.values, by_alpha, outside=1.0)
-        mach_slope = _cubics(self.alpha, by_mach, _slopes(self.mach, by_alpha.T).T, outside=1.0)
-        cells = _cubics(
-            self.mach, *(np.moveaxis(part, -1, 0) for part in (along_alpha, mach_slope)), outside=0.0
-        )
-        return np.ascontiguousarray(cells.transpose(2, 0, 3, 1))
+        values = _cubics(self.alpha, self.values, by_alpha, outside=1.0)
+        slopes = _cubics(self.alpha, by_mach, _slopes(self.mach, by_alpha.T).T, outside=1.0)
+        cells = _cubics(self.mach, values.transpose(2, 1, 0), slopes.transpose(2, 1, 0), outside=0.0)
+        return np.ascontiguousarray(cells.transpose(1, 2, 3, 0))
 
     @property
     def _alpha_slopes(self) -> NDArray:
@@ -133,18 +130,19 @@ def _first_row(holds: NDArray, rule: str) -> Iterator[tuple[int, str]]:
 
 
 def _place(nodes: NDArray, x: NDArray) -> tuple[NDArray, NDArray]:
-    """Cell of each x, 0 below the first node, and the distance from the cell's start; nodes count as inside."""
+    """Cell of each x, 0 below the first node, and the distance from its start; nodes count as inside."""
     starts = np.append(nodes[:-1], np.nextafter(nodes[-1], np.inf))
     cell = np.searchsorted(starts, np.real(x), side="right")
     return cell, x - nodes[np.maximum(cell - 1, 0)]
 
 
-def _powers(t: NDArray) -> NDArray:
-    return np.stack([np.ones_like(t), t, t * t, t * t * t], axis=-1)
-
-
-def _slopes_of_powers(t: NDArray) -> NDArray:
-    return np.stack([np.zeros_like(t), np.ones_like(t), 2 * t, 3 * t * t], axis=-1)
+def _horner(coefficients: NDArray, t: NDArray) -> tuple[NDArray, NDArray]:
+    """A polynomial and its derivative, coefficients along the first axis, the constant term first."""
+    value, slope = coefficients[-1], np.zeros_like(t)
+    for coefficient in coefficients[-2::-1]:
+        slope = slope * t + value
+        value = value * t + coefficient
+    return value, slope
 
 
 def _slopes(x: NDArray, values: NDArray) -> NDArray:
@@ -158,7 +156,7 @@ def _slopes(x: NDArray, values: NDArray) -> NDArray:
 
 
 def _cubics(x: NDArray, values: NDArray, slopes: NDArray, outside: float) -> NDArray:
-    """Coefficients (n + 1, 4, ...) of the cubics between n nodes along the first axis, and straight lines outside.
+    """Coefficients (n + 1, 4, ...) of the cubics between n nodes along the first axis, and of lines outside.
 
     `outside` is the part of the end slope that goes on: 1, or 0 to hold the value.
     """

@@ -5,8 +5,8 @@ from __future__ import annotations
 import inspect
 import json
 import re
+from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import asdict
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.tables import SweepTable
 
+_NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
 _FIGURE_FORMATS = (".png", ".pdf", ".svg")
-_NUMBERS = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # those of a range; what follows is the unit
+_RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # those of a range; what follows is the unit
 
 _EXIT_CODES = """\b
 Exit codes:
@@ -50,6 +51,8 @@ def _model_options(command: Callable) -> Callable:
     meanings = _meanings(Options)
     locked = {"multiple": True, "type": click.Choice(LOCKABLE), "help": f"{meanings['locked']} Repeatable."}
     command = click.option("--locked", **locked)(command)
+    for name in reversed(_NUMBERS):
+        command = click.option(f"--{name.replace('_', '-')}", type=float, help=meanings[name])(command)
     for name, choices in reversed(CHOICES.items()):
         command = _model_option(name, choices, meanings[name])(command)
     return command
@@ -66,8 +69,9 @@ def _model_option(name: str, choices: tuple, meaning: str) -> Callable:
 def _meanings(documented: type) -> dict[str, str]:
     """What the docstring says on each parameter; nothing in a Python without docstrings."""
     lines = inspect.getdoc(documented) or ""
-    found = re.findall(r"^(\w+) : .*\n((?:    .*\n)+)", lines, re.MULTILINE)
-    return dict.fromkeys((*CHOICES, "locked"), "") | {name: " ".join(text.split()) for name, text in found}
+    found = re.findall(r"^([\w, ]+) : .*\n((?:    .*\n)+)", lines, re.MULTILINE)
+    meanings = {name: " ".join(text.split()) for names, text in found for name in names.split(", ")}
+    return defaultdict(str, meanings)
 
 
 @click.group(cls=_InputErrorsTold, epilog=_EXIT_CODES)
@@ -113,7 +117,7 @@ def sweep(
       proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
     """
     _check_figure_format(plot)
-    options = asdict(Options(**options))
+    options = {name: options[name] for name in (*CHOICES, *_NUMBERS, "locked")}  # in a fixed order
     with waiting("Analysing"):
         loaded, table = _analysed(case, speed, options)
     # Files first: a reader of the table, such as `head`, may leave early.
@@ -144,7 +148,7 @@ def _analysed(name: str, speed: str, options: dict[str, Any]) -> tuple[Case, Swe
 
     airspeeds = speeds(speed, "--speed")
     case = load_case(name)
-    unit = _NUMBERS.sub("", speed, count=1).strip()
+    unit = _RANGE.sub("", speed, count=1).strip()
     return case, SweepTable(case.sweep(airspeeds, **options), case.operation.rotor_speed, unit)
 
 
@@ -170,13 +174,16 @@ def _draw(case: Case, table: SweepTable, file: IO[bytes], suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")  # no window, and no display needed
+    from matplotlib import pyplot
+
     from proprotor.plots import plot_sweep
     from proprotor.provenance import reservations
     from proprotor.report import heading
 
-    labels = {"title": heading(case), "footer": " ".join(reservations(case))}
+    labels = {"title": heading(case), "footer": " ".join((*reservations(case), *table.doubts()))}
     figure = plot_sweep(table.sweep, rotor_speed=table.rotor_speed, unit=table.unit, **labels)
     figure.savefig(file, format=suffix.removeprefix(".").lower(), dpi=160)
+    pyplot.close(figure)
 
 
 def _write(option: str, path: str, write: Callable[[IO[bytes]], object]) -> None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from proprotor.errors import InputError, unknown_name
@@ -19,14 +20,14 @@ _MOST_STATIONS = 10_000
 
 @dataclass(frozen=True)
 class Datum:
-    """A number, or a distribution along the blade, with its provenance.
+    """A number, a distribution along the blade or a file of numbers, with its provenance.
 
     Attributes
     ----------
     written : str
         The value as the deck gives it.
-    si : float, int or tuple of float
-        The value in `unit`; a tuple for a distribution.
+    si : float, int, tuple of float or str
+        The value in `unit`; a tuple for a distribution, the path for a file.
     unit : str
         SI unit, ``""`` for a plain number.
     status : str
@@ -38,11 +39,24 @@ class Datum:
     """
 
     written: str
-    si: float | tuple[float, ...]
+    si: float | tuple[float, ...] | str
     unit: str
     status: str = "unstated"
     source: str = ""
     r_over_R: tuple[float, ...] | None = None
+
+
+class FileName(str):
+    """The name of a file as a deck has it, and the folder it starts from."""
+
+    folder = Path()
+
+    @classmethod
+    def inside(cls, folder: Path, name: str) -> FileName:
+        """A name that starts from a folder."""
+        file = cls(name)
+        file.folder = folder
+        return file
 
 
 class Bound(NamedTuple):
@@ -125,10 +139,20 @@ def read_profile(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
     return read_distribution(raw, unit, bound) if is_distribution else read_quantity(raw, unit, bound)
 
 
+def read_file(raw: Any) -> Datum:
+    """The name of a file, or a table holding one; plain text starts from the working directory."""
+    table = _as_table(raw, ("value",))
+    name = table["value"]
+    if not isinstance(name, str) or not name:
+        raise InputError("", name, "must be the name of a file")
+    folder = name.folder if isinstance(name, FileName) else FileName.folder
+    return _datum(table, str(name), str(folder / name), "")
+
+
 def _datum(
     table: Mapping[str, Any],
     written: str,
-    si: float | tuple[float, ...],
+    si: float | tuple[float, ...] | str,
     unit: str,
     r_over_R: tuple[float, ...] | None = None,
 ) -> Datum:

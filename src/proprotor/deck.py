@@ -19,7 +19,8 @@ linear between its stations and constant beyond them.
     lag_frequency, non-rotating, K = I ω²; of chord: lock_number γ, chord = γ I_b / (ρ c_lα R⁴) at the
     deck's density; of the seven mass integrals: mass_distribution.
 ``[rotor.airfoil]``
-    The arguments of `proprotor.Airfoil`.
+    The arguments of `proprotor.Airfoil`, or instead of them: table, a C81 file, its name starting from the
+    deck's folder.
 ``[operation]``
     rotor_speed, density, speed_of_sound, trim = "windmill" or { collective = "30 deg" }.
 ``[support]``
@@ -58,6 +59,7 @@ from proprotor.datum import (
     Datum,
     read_count,
     read_distribution,
+    read_file,
     read_frequency,
     read_profile,
     read_quantity,
@@ -95,6 +97,7 @@ Frequency = _field(read_frequency)
 Count = _field(read_count, 3)
 Chord = _field(read_profile, "m", POSITIVE)
 Twist = _field(read_profile, "rad", ANY)
+File = _field(read_file)
 MassDistribution = _field(read_distribution, "kg/m", NOT_NEGATIVE)
 
 Text = Annotated[str, StringConstraints(min_length=1, max_length=2000)]
@@ -132,10 +135,20 @@ class CaseSection(Section):
 
 
 class AirfoilSection(Section):
-    lift_slope: Slope
+    lift_slope: Slope = None
     zero_lift_angle: Angle = None
     drag: NotNegative = None
     moment: Number = None
+    table: File = None
+
+    @model_validator(mode="after")
+    def _numbers_or_a_table(self) -> AirfoilSection:
+        numbers = [name for name in type(self).model_fields if name in self.model_fields_set - {"table"}]
+        if "table" in self.model_fields_set and numbers:
+            raise InputError("table", self.table.written, f"must not be given with {', '.join(numbers)}")
+        if "table" not in self.model_fields_set and "lift_slope" not in numbers:
+            raise InputError("lift_slope", None, "is missing; give lift_slope or table")
+        return self
 
 
 class RotorSection(Section):

@@ -8,6 +8,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from proprotor.datum import FileName
 from proprotor.errors import InputError, unknown_name
 from proprotor.rotor import MASS_INTEGRALS
 
@@ -21,6 +22,9 @@ ALTERNATIVES = (
     (("chord",), ("lock_number",)),
     (MASS_INTEGRALS, ("mass_distribution",)),
 )
+# Fields of [rotor.airfoil]: one side only.
+AIRFOIL_ALTERNATIVES = ((("lift_slope", "zero_lift_angle", "drag", "moment"), ("table",)),)
+_FILE = ("rotor", "airfoil", "table", "value")
 
 _LARGEST = 1_000_000  # bytes
 
@@ -44,6 +48,8 @@ def read_tables(name_or_path: str | os.PathLike[str]) -> dict[str, Any]:
 def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, Any]:
     file = _find(name, folder)
     tables = _parse(file, name)
+    folder = file.parent if isinstance(file, Path) else folder
+    _locate_file(tables, folder, _FILE)
     if "base" not in tables:
         return tables
     base = tables.pop("base")
@@ -51,7 +57,6 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
         raise InputError("base", base, "must be the name or path of a deck")
     if str(file) in altered_by:
         raise InputError("base", base, "must not lead back to the deck itself")
-    folder = file.parent if isinstance(file, Path) else folder
     return _altered(_tables(base, folder, (*altered_by, str(file))), tables)
 
 
@@ -93,19 +98,40 @@ def _parse(file: Traversable, name: str) -> dict[str, Any]:
         raise InputError("deck", name, "is not a deck: nested too deeply") from None
 
 
+def _locate_file(tables: Any, folder: Path, place: tuple[str, ...]) -> None:
+    """Have the name of a file, at a place in the tables or on the way there, start from the deck's folder."""
+    key, *further = place
+    entry = tables.get(key) if isinstance(tables, dict) else None
+    if isinstance(entry, str):
+        tables[key] = FileName.inside(folder, entry)
+    elif further:
+        _locate_file(entry, folder, tuple(further))
+
+
 def _altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     """The base with the changes put in; a name belongs to one deck only."""
-    for section, name in (("case", "name"), *_superseded(changes)):
-        if isinstance(base.get(section), dict):
-            base[section] = {key: value for key, value in base[section].items() if key != name}
+    superseded = _superseded(changes, ("rotor",), ALTERNATIVES)
+    superseded += _superseded(changes, ("rotor", "airfoil"), AIRFOIL_ALTERNATIVES)
+    for place in (("case", "name"), *superseded):
+        base = _without(base, place)
     return _merged(base, changes)
 
 
-def _superseded(changes: dict[str, Any]) -> list[tuple[str, str]]:
-    rotor = changes.get("rotor")
-    given = set(rotor) if isinstance(rotor, dict) else set()
-    sides = [(side, other) for pair in ALTERNATIVES for side, other in (pair, pair[::-1])]
-    return [("rotor", name) for side, other in sides if given.intersection(side) for name in other]
+def _superseded(changes: Any, section: tuple[str, ...], alternatives: Any) -> list[tuple[str, ...]]:
+    """Fields of a section that give way to those the changes have there."""
+    for key in section:
+        changes = changes.get(key) if isinstance(changes, dict) else None
+    given = set(changes) if isinstance(changes, dict) else set()
+    sides = [(side, other) for pair in alternatives for side, other in (pair, pair[::-1])]
+    return [(*section, name) for side, other in sides if given.intersection(side) for name in other]
+
+
+def _without(tables: Any, place: tuple[str, ...]) -> Any:
+    key, *further = place
+    if not isinstance(tables, dict) or key not in tables:
+        return tables
+    rest = {name: entry for name, entry in tables.items() if name != key}
+    return rest | {key: _without(tables[key], tuple(further))} if further else rest
 
 
 def _merged(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from proprotor_equations import FIXED_COORDINATES, airloads, inertia, multiblade, pitch
+from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, FIXED_INPUTS, airloads, drive_train, inertia, multiblade, pitch
 
 from proprotor.blade_airloads import load_moments, segment_quantities
 from proprotor.equation_set import EquationSet
@@ -18,19 +18,22 @@ from proprotor.operation import Operation
 from proprotor.options import Options, parse_options
 from proprotor.rotor import Rotor
 from proprotor.speed import in_metres_per_second
-from proprotor.trim import UNKNOWNS, Trim, solve_trim, take, with_trim
+from proprotor.trim import UNKNOWNS, Target, Trim, solve_trim, take, trim_target, with_trim
 
 if TYPE_CHECKING:
     import xarray
 
+    from proprotor.state_space import StateSpace
+
 HUB = FIXED_COORDINATES[:6]
+INPUTS = FIXED_INPUTS
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
 _SOFTEST_SPRING = 1e-12  # of the other spring: a free hinge, without a division by zero in series
 
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """M q̈ + C q̇ + K q = 0 about trim, batched over leading axes.
+    """M q̈ + C q̇ + K q = B u about trim, batched over leading axes.
 
     Attributes
     ----------
@@ -42,6 +45,12 @@ class LinearModel:
         Arrays of the batch's shape, with the reason of every failed point.
     airspeed : array (...)
         m/s.
+    B : array (..., n, 6), optional
+        Loads per unit of the inputs `INPUTS`: swashplate collective and cyclics in rad, gusts along I, J, K in m/s.
+    hub : array (6, n), optional
+        Hub motion in the coordinates; None for a model whose first six coordinates are the hub's own.
+    rotor : LinearModel, optional
+        The rotor alone of a rotor on a support, from which the hub loads follow.
     """
 
     M: NDArray
@@ -50,6 +59,15 @@ class LinearModel:
     dofs: tuple[str, ...]
     trim: Trim
     airspeed: NDArray
+    B: NDArray | None = None
+    hub: NDArray | None = None
+    rotor: LinearModel | None = None
+
+    @property
+    def shaft_holds_azimuth(self) -> bool:
+        """Whether a shaft to a constant-speed end makes the azimuth a displacement of its own; else it is a rate."""
+        place = self.dofs.index(ROTOR_SPEED) if ROTOR_SPEED in self.dofs else None
+        return place is not None and bool(np.any(np.nan_to_num(self.K[..., place, place]) > 0))
 
     def modes(self) -> xarray.Dataset:
         """Eigenvalues and mode shapes, see `proprotor.modes.modes`."""
@@ -57,11 +75,19 @@ class LinearModel:
 
         return modes(self)
 
+    def to_state_space(self) -> StateSpace:
+        """A, B, C, D with named states, inputs and outputs, see `proprotor.state_space.state_space`."""
+        from proprotor.state_space import state_space
+
+        return state_space(self)
+
     def submodel(self, dofs: tuple[str, ...]) -> LinearModel:
         """The model with other coordinates held at zero."""
         places = [self.dofs.index(name) for name in dofs]
         parts = {name: getattr(self, name)[..., places, :][..., places] for name in "MCK"}
-        return replace(self, dofs=tuple(dofs), **parts)
+        inputs = None if self.B is None else self.B[..., places, :]
+        hub = None if self.hub is None else self.hub[:, places]
+        return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, **parts)
 
 
 def rotor_quantities(rotor: Rotor, operation: Operation, airspeed: NDArray, points: tuple[int, ...]) -> dict[str, Any]:
@@ -111,16 +137,34 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     shape = batch_shape(rotor, operation, speed)
     quantities = rotor_quantities(rotor, operation, speed, shape)
     points = int(np.prod(shape, dtype=int))
-    collective = None if operation.windmilling else operation.trim["collective"]
-    trim = solve_trim(rotor, quantities, choice, collective, points)
-    matrices = _matrices(rotor, quantities, choice, trim, points)
-    dofs = _free_coordinates(choice)
-    places = [FIXED_COORDINATES.index(name) for name in dofs]
+    trim = solve_trim(rotor, quantities, choice, _flat(trim_target(rotor, operation), shape), points)
+    extra = reactionless_coordinates(int(np.max(rotor.n_blades))) if choice.reactionless else ()
+    matrices = _matrices(rotor, quantities, choice, trim, points, extra)
+    coordinates = (*FIXED_COORDINATES, *extra)
+    dofs = _free_coordinates(choice, coordinates)
+    places = [coordinates.index(name) for name in dofs]
+    inputs = matrices.pop("B")[:, places].reshape(*shape, len(dofs), len(INPUTS))
     parts = {
         name: matrix[:, places][:, :, places].reshape(*shape, len(dofs), len(dofs)) for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    return LinearModel(**parts, dofs=dofs, trim=shaped, airspeed=np.broadcast_to(speed, shape))
+    return LinearModel(**parts, B=inputs, dofs=dofs, trim=shaped, airspeed=np.broadcast_to(speed, shape))
+
+
+def _flat(target: Target, shape: tuple[int, ...]) -> Target:
+    """The target with arrays flattened over the batch."""
+    flat = {
+        name: np.broadcast_to(value, shape).reshape(-1) if np.ndim(value) else value
+        for name, value in (("collective", target.collective), ("load", target.load))
+    }
+    return replace(target, **flat)
+
+
+def reactionless_coordinates(n_blades: int) -> tuple[str, ...]:
+    """Names of the blade motions beyond Eq. 17: harmonics 2 to below N/2, and for even N neighbours against each other."""
+    angles = ("flap", "lag", "pitch")
+    pairs = [f"{angle}_{n}{part}" for n in range(2, (n_blades + 1) // 2) for angle in angles for part in "cs"]
+    return tuple(pairs + [f"{angle}_d" for angle in angles] * (n_blades % 2 == 0))
 
 
 def _check_pitch(rotor: Rotor, options: Options) -> None:
@@ -130,37 +174,109 @@ def _check_pitch(rotor: Rotor, options: Options) -> None:
         raise InputError("control_stiffness", rotor.control_stiffness, 'must be above zero with pitch="coupling"')
 
 
-def _free_coordinates(options: Options) -> tuple[str, ...]:
-    removed = {name for name in options.locked}
+def _free_coordinates(options: Options, coordinates: tuple[str, ...]) -> tuple[str, ...]:
+    removed = set(options.locked)
     if not options.pitch_is_free:
         removed.add("pitch")
     if options.rotor_speed == "constant":
         removed.add(ROTOR_SPEED)
-    return tuple(name for name in FIXED_COORDINATES if name.rpartition("_")[0] not in removed and name not in removed)
+    return tuple(name for name in coordinates if name.rpartition("_")[0] not in removed and name not in removed)
 
 
-def _matrices(rotor: Rotor, quantities: Mapping[str, Any], options: Options, trim: Trim, points: int) -> dict:
-    """M, C, K (points, 18, 18) in the fixed frame, NaN where trim failed."""
-    matrices = {name: np.full((points, len(FIXED_COORDINATES), len(FIXED_COORDINATES)), np.nan) for name in "MCK"}
+def _matrices(
+    rotor: Rotor, quantities: Mapping[str, Any], options: Options, trim: Trim, points: int, extra: tuple[str, ...]
+) -> dict[str, NDArray]:
+    """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless coordinates last, NaN where trim failed."""
+    n = len(FIXED_COORDINATES) + len(extra)
+    matrices = {name: np.full((points, n, n), np.nan) for name in "MCK"} | {"B": np.full((points, n, len(INPUTS)), np.nan)}
     good = np.flatnonzero(trim.converged)
     if len(good):
         state = {name: getattr(trim, name)[good] for name in UNKNOWNS}
-        pool = with_trim(rotor, take(quantities, good), state)
+        pool = with_trim(take(quantities, good), options, state)
         pool |= _couplings(options, pool)
-        mass, damping, stiffness = _structure(pool, options.equation_set)
-        if options.airloads != "none":
-            air_damping, air_stiffness = _airloads(rotor, pool, options)
-            damping, stiffness = damping + air_damping, stiffness + air_stiffness
-        matrices["M"][good] = evaluate(multiblade.mass, pool, mass)
-        matrices["C"][good] = evaluate(multiblade.damping, pool, mass, damping)
-        matrices["K"][good] = evaluate(multiblade.stiffness, pool, mass, damping, stiffness)
+        *blade, inputs = _blade_matrices(rotor, pool, options)
+        matrices["B"][good] = 0.0
+        matrices["B"][good, : len(FIXED_COORDINATES)] = evaluate(multiblade.input_matrix, pool, inputs)
+        for name, matrix in _fixed_frame(pool, options, blade, extra).items():
+            matrices[name][good] = matrix
     return matrices
 
 
+def _blade_matrices(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[NDArray, ...]:
+    """Mass, damping and stiffness (points, 12, 12) of one blade in rotating axes, and its inputs (points, 12, 4)."""
+    mass, damping, stiffness = _structure(pool, options.equation_set)
+    gusts = np.zeros((*stiffness.shape[:-1], 3))
+    if options.airloads != "none":
+        air_damping, air_stiffness, gusts = _airloads(rotor, pool, options)
+        damping, stiffness = damping + air_damping, stiffness + air_stiffness
+    swashplate = _swashplate(pool, options, stiffness)
+    return mass, damping, stiffness, np.concatenate([swashplate, np.broadcast_to(gusts, (*swashplate.shape[:-1], 3))], -1)
+
+
+def _swashplate(pool: Mapping[str, Any], options: Options, stiffness: NDArray) -> NDArray:
+    """Loads (points, 12, 1) on one blade per unit of pitch that the swashplate asks for.
+
+    With the pitch equations kept, the pitch coordinate is then the whole pitch perturbation and the swashplate pulls at it
+    through the control system (its rate does not reach the pitch damper). Without them the blade follows at once.
+    """
+    if options.pitch_is_free:
+        loads = np.zeros_like(stiffness[..., :1])
+        loads[..., BLADE_COORDINATES.index("pitch"), 0] = pool["control_stiffness"]
+        return loads
+    stiffness = stiffness.copy()
+    stiffness[..., BLADE_COORDINATES.index("pitch"), BLADE_COORDINATES.index("pitch")] = 0.0  # a row that is left out
+    return -stiffness[..., BLADE_COORDINATES.index("pitch"), None]
+
+
+_KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}
+
+
+def _fixed_frame(
+    pool: Mapping[str, Any], options: Options, blade: list[NDArray], extra: tuple[str, ...]
+) -> dict[str, NDArray]:
+    """M, C, K of the rotor from those of one blade."""
+    matrices = {}
+    for count, (name, kind) in enumerate(_KINDS.items(), start=1):
+        matrix = evaluate(getattr(multiblade, kind), pool, *blade[:count])
+        if options.drive_train is not None:
+            matrix = matrix + evaluate(getattr(drive_train, kind), vars(options.drive_train))
+        matrices[name] = matrix
+    if "cyclic_flap_stiffness_excess" in pool:
+        matrices["K"] = matrices["K"] + evaluate(multiblade.cyclic_restraint, pool)
+    return {name: _with_reactionless(pool, blade, extra, name, matrix) for name, matrix in matrices.items()}
+
+
+def _with_reactionless(
+    pool: Mapping[str, Any], blade: list[NDArray], extra: tuple[str, ...], name: str, matrix: NDArray
+) -> NDArray:
+    """The matrix with the blocks of the reactionless coordinates, which couple with nothing else."""
+    if not extra:
+        return matrix
+    count, kind = list(_KINDS).index(name) + 1, _KINDS[name]
+    whole = np.zeros((*matrix.shape[:-2], *[len(FIXED_COORDINATES) + len(extra)] * 2))
+    start = len(FIXED_COORDINATES)
+    whole[..., :start, :start] = matrix
+    while start < whole.shape[-1]:
+        first = extra[start - len(FIXED_COORDINATES)]
+        if first.endswith("_d"):
+            block = evaluate(getattr(multiblade, f"differential_{kind}"), pool, *blade[:count])
+        else:
+            harmonic = {"harmonic": int(first.split("_")[1][:-1])}
+            block = evaluate(getattr(multiblade, f"reactionless_{kind}"), dict(pool) | harmonic, *blade[:count])
+        end = start + block.shape[-1]
+        whole[..., start:end, start:end] = block
+        start = end
+    return whole
+
+
 def _couplings(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
-    if options.pitch == "coupling":
-        return evaluate(pitch.couplings, pool)._asdict()
-    return {"pitch_flap_coupling": 0.0, "pitch_lag_coupling": 0.0}
+    """Pitch-flap and pitch-lag coupling of the airloads' pitch; a given value stands in place of the closed form."""
+    names = ("pitch_flap_coupling", "pitch_lag_coupling")
+    if options.pitch != "coupling":
+        return dict.fromkeys(names, 0.0)
+    closed_form = evaluate(pitch.couplings, pool)._asdict()
+    given = {name: getattr(options, name) for name in names}
+    return closed_form | {name: value for name, value in given.items() if value is not None}
 
 
 def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray, NDArray, NDArray]:
@@ -172,8 +288,8 @@ def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray
     return mass, damping, stiffness + evaluate(equations.flap_lag_springs.stiffness, pool)
 
 
-def _airloads(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[NDArray, NDArray]:
-    """Airload damping and stiffness of one blade."""
+def _airloads(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[NDArray, NDArray, NDArray]:
+    """Airload damping and stiffness of one blade, and what gusts load it with."""
     motion = options.equation_set.airloads
     segments = segment_quantities(rotor, pool, motion)
     segments |= load_moments(
@@ -183,10 +299,10 @@ def _airloads(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[
         lift_slope_only=options.airloads == "lift-slope",
         equations=motion,
     )
-    for name in ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness"):
+    for name in ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion"):
         segments[name] = evaluate(getattr(motion, name), segments)
     segments["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
-    return evaluate(airloads.damping, segments), evaluate(airloads.stiffness, segments)
+    return tuple(evaluate(product, segments) for product in (airloads.damping, airloads.stiffness, airloads.gust_loads))
 
 
 def rigid_hub_mass(rotor: Rotor) -> NDArray:

@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from proprotor.errors import InputError
 from proprotor.model import ROTOR_SPEED, LinearModel
 
 if TYPE_CHECKING:
     import xarray
+
+_NO_INERTIA = 1e-13  # determinant of a mass matrix scaled to a unit diagonal that counts as zero
 
 
 class Eigensystem(NamedTuple):
@@ -34,12 +37,27 @@ class Eigensystem(NamedTuple):
 def state_matrix(model: LinearModel) -> NDArray:
     """A of ẋ = A x with x the displacements without the azimuth, then all velocities; (..., 2n - 1, 2n - 1)."""
     n = len(model.dofs)
-    held = [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED]
+    _check_inertia(model)
+    held = held_coordinates(model)
     acceleration = -np.linalg.solve(model.M, np.concatenate([model.K[..., held], model.C], axis=-1))
     matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
     matrix[..., np.arange(len(held)), len(held) + np.array(held)] = 1
     matrix[..., len(held) :, :] = acceleration
     return matrix
+
+
+def _check_inertia(model: LinearModel) -> None:
+    """A rotor alone has massless directions: its hub may move against azimuth and gimbal without moving any mass."""
+    diagonal = np.sqrt(np.abs(np.diagonal(model.M, axis1=-2, axis2=-1)))
+    scaled = model.M / np.where(diagonal > 0, diagonal, 1)[..., None, :] / np.where(diagonal > 0, diagonal, 1)[..., None]
+    if np.any(np.abs(np.linalg.det(scaled)) < _NO_INERTIA):
+        rule = "gives the mass matrix no inverse: mount the rotor on a support, or hold hub coordinates with submodel"
+        raise InputError("dofs", ", ".join(model.dofs), rule)
+
+
+def held_coordinates(model: LinearModel) -> list[int]:
+    """Places of the coordinates whose displacement is a state: all but an azimuth that no shaft holds."""
+    return [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or model.shaft_holds_azimuth]
 
 
 def _good(model: LinearModel) -> NDArray:
@@ -50,36 +68,34 @@ def eigensystem(model: LinearModel) -> Eigensystem:
     """All eigenvalues and vectors; eigenvalues of a point in no particular order."""
     good = _good(model)
     shape, n = model.M.shape[:-2], len(model.dofs)
-    states = 2 * n - (ROTOR_SPEED in model.dofs)
+    held = held_coordinates(model)
+    states = len(held) + n
     values = np.full((*shape, states), np.nan, dtype=complex)
     right, left = (np.full((*shape, states, states), np.nan, dtype=complex) for _ in range(2))
     if good.any():
         part = LinearModel(model.M[good], model.C[good], model.K[good], model.dofs, model.trim, model.airspeed)
         values[good], right[good] = np.linalg.eig(state_matrix(part))
         left[good] = np.linalg.inv(right[good])
-    return Eigensystem(values, right, left, _displacement(model.dofs, values, right))
+    return Eigensystem(values, right, left, _displacement(held, n, values, right))
 
 
-def _displacement(dofs: tuple[str, ...], values: NDArray, right: NDArray) -> NDArray:
-    """Motion of the coordinates: the azimuth's is its rate divided by the eigenvalue."""
-    n = len(dofs)
+def _displacement(held: list[int], n: int, values: NDArray, right: NDArray) -> NDArray:
+    """Motion of the coordinates: that of a rate is the rate divided by the eigenvalue."""
     velocities = right[..., -n:, :]
     with np.errstate(all="ignore"):
         shapes = velocities / np.where(values == 0, np.nan, values)[..., None, :]
-    held = [place for place, name in enumerate(dofs) if name != ROTOR_SPEED]
     shapes[..., held, :] = right[..., : len(held), :]
     return shapes
 
 
-def participation(dofs: tuple[str, ...], system: Eigensystem) -> NDArray:
+def participation(model: LinearModel, system: Eigensystem) -> NDArray:
     """Share of each coordinate in each mode (..., n, states), from left times right vector; sums to 1.
 
     Free of units and of how vectors are scaled, unlike the largest component of a mode that mixes lengths and angles.
     """
-    n = len(dofs)
+    n, held = len(model.dofs), held_coordinates(model)
     products = np.abs(np.swapaxes(system.left, -1, -2) * system.right)
     shares = products[..., -n:, :].copy()
-    held = [place for place, name in enumerate(dofs) if name != ROTOR_SPEED]
     shares[..., held, :] += products[..., : len(held), :]
     return shares / shares.sum(axis=-2, keepdims=True)
 
@@ -102,7 +118,7 @@ def modes(model: LinearModel) -> xarray.Dataset:
     order = order[..., :count]
     values = np.where(np.isfinite(np.take_along_axis(kept, order, -1)), np.take_along_axis(values, order, -1), np.nan)
     shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
-    shares = np.take_along_axis(participation(model.dofs, system), order[..., None, :], -1)
+    shares = np.take_along_axis(participation(model, system), order[..., None, :], -1)
     return mode_dataset(model, values, shapes, shares)
 
 
@@ -126,6 +142,7 @@ def mode_dataset(model: LinearModel, values: NDArray, shapes: NDArray, shares: N
         "shape": ((*by_mode, "dof"), np.moveaxis(shapes, -1, -2)),
         "participation": ((*by_mode, "dof"), np.moveaxis(shares, -1, -2)),
         "dominant": (by_mode, dominant.astype(str)),
+        "warning": (leading, model.trim.warning.astype(str), {"long_name": "what makes a point doubtful"}),
         "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
     }
     coordinates = {"dof": list(model.dofs), "airspeed": (leading, model.airspeed, {"units": "m/s"})}

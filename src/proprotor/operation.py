@@ -9,7 +9,7 @@ import numpy as np
 
 from proprotor.errors import InputError, unknown_name
 
-TRIM_TARGETS = ("collective",)
+TRIM_TARGETS = ("collective", "thrust_coefficient", "power_coefficient")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,8 +24,10 @@ class Operation:
         kg/m³, not negative; 0 is a vacuum.
     speed_of_sound : float
         m/s, above zero.
-    trim : "windmill" or {"collective": float}
-        A windmilling rotor finds the collective at which its torque vanishes; else the collective is given, in rad.
+    trim : "windmill" or a mapping with one target
+        A windmilling rotor finds the collective at which its torque vanishes. {"collective": rad} gives it;
+        {"thrust_coefficient": C_T} and {"power_coefficient": C_P} find it, with C_T = T/(ρπR²(ΩR)²) and
+        C_P = P/(ρπR²(ΩR)³), power put into the rotor positive.
 
     Raises
     ------

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from proprotor.drive_train import DriveTrain
 from proprotor.equation_set import EQUATION_SETS, EquationSet
 from proprotor.errors import InputError, unknown_name
+from proprotor.frequencies import BladeFrequencies
 
 CHOICES: dict[str, tuple] = {
     "equations": tuple(EQUATION_SETS),
     "pitch": ("dynamic", "coupling", "rigid"),
+    "structure": ("coupled", "diagonal", "tabulated"),
     "airloads": ("full", "lift-slope", "none"),
     "compressibility": (True, False),
     "rotor_speed": ("windmilling", "constant"),
+    "reactionless": (False, True),
 }
+FURTHER = ("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling", "drive_train")
 LOCKABLE = ("flap", "lag", "pitch", "gimbal")
 
 
@@ -28,12 +35,23 @@ class Options:
         `EquationSet` of generated modules stands for itself.
     pitch : "dynamic", "coupling" or "rigid"
         Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
+    structure : "coupled", "diagonal" or "tabulated"
+        Springs that turn with the pitch (Eqs. 20-22); the same without the flap-lag stiffness; or the stiffness that
+        gives the frequencies of `frequencies`, whatever the rotor's springs are.
+    frequencies : BladeFrequencies
+        For structure="tabulated".
+    pitch_flap_coupling, pitch_lag_coupling : float, optional
+        For pitch="coupling": values in place of Eqs. 36 and 37.
     airloads : "full", "lift-slope" or "none"
         Perturbation airloads: all, those proportional to the lift slope, or none. The trim has them all.
     compressibility : bool
         Prandtl-Glauert factor on lift and moment.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
+    drive_train : DriveTrain, optional
+        Engine and shaft on the rotor's azimuth.
+    reactionless : bool
+        Keep the blade motions that no load of the hub feels, for more than three blades.
     locked : collection of "flap", "lag", "pitch", "gimbal"
         Coordinates removed; they stay at zero in trim too.
 
@@ -45,9 +63,15 @@ class Options:
 
     equations: str | EquationSet = "consistent"
     pitch: str = "dynamic"
+    structure: str = "coupled"
+    frequencies: BladeFrequencies | None = None
+    pitch_flap_coupling: float | None = None
+    pitch_lag_coupling: float | None = None
     airloads: str = "full"
     compressibility: bool = True
     rotor_speed: str = "windmilling"
+    drive_train: DriveTrain | None = None
+    reactionless: bool = False
     locked: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -62,6 +86,23 @@ class Options:
             if name not in LOCKABLE:
                 raise InputError("locked", name, f"must be of {', '.join(LOCKABLE)}")
         object.__setattr__(self, "locked", locked)
+        self._check_combinations()
+
+    def _check_combinations(self) -> None:
+        if (self.structure == "tabulated") != isinstance(self.frequencies, BladeFrequencies):
+            raise InputError("frequencies", self.frequencies, 'must be BladeFrequencies, with structure="tabulated" only')
+        for name in ("pitch_flap_coupling", "pitch_lag_coupling"):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            if self.pitch != "coupling":
+                raise InputError(name, value, 'goes with pitch="coupling"')
+            if not np.all(np.isfinite(np.asarray(value, dtype=float))):
+                raise InputError(name, value, "must be finite")
+        if self.drive_train is not None and not isinstance(self.drive_train, DriveTrain):
+            raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
+        if self.drive_train is not None and self.rotor_speed == "constant":
+            raise InputError("drive_train", self.drive_train, 'goes with rotor_speed="windmilling"')
 
     @property
     def equation_set(self) -> EquationSet:
@@ -82,7 +123,7 @@ def parse_options(options: dict) -> Options:
     InputError
         For an unknown keyword, with the known ones.
     """
-    known = (*CHOICES, "locked")
+    known = (*CHOICES, *FURTHER)
     for name in options:
         if name not in known:
             raise InputError(name, options[name], f"{unknown_name(name, known, 'option')} (options: {', '.join(known)})")

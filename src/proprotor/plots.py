@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 # Okabe and Ito's colours, which colour-blind readers tell apart, less the yellow, too pale on white.
 _COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-_DASHES = ("-", (0, (6, 2)), (0, (2, 1.5)))
+_DASHES = ("-", "--", ":")
 _LABEL_SIZE = 8  # points
 _LINE_SPACING = 1.3
 
 
 class _Style(NamedTuple):
     color: str
-    linestyle: object
+    linestyle: str
     linewidth: float
 
 

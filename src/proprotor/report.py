@@ -33,12 +33,16 @@ def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_mode
         Every mode, in as many tables as it takes, or those of interest only.
     """
     console = _console()
-    chosen = ", ".join(f"{name.replace('_', ' ')} {_told(value)}" for name, value in options.items())
+    chosen = ", ".join(
+        f"{name.replace('_', ' ')} {_told(value)}" for name, value in options.items() if value is not None
+    )
     warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
     for line in (heading(case), f"Model: {chosen}.", CONVENTION, *reservations(case), *warnings, ""):
         console.print(line)
     for line in table.lines(console.width, all_modes):
         console.print(line, soft_wrap=True)
+    for line in table.doubts():
+        console.print(line, style="yellow")
     for line in table.verdict():
         console.print(line, style="bold")
 
@@ -66,4 +70,6 @@ def _shortened(text: str, case: Case, width: int) -> str:
 def _told(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return value if isinstance(value, str) else " and ".join(value) or "nothing"
+    if isinstance(value, tuple):
+        return " and ".join(value) or "nothing"
+    return str(value)

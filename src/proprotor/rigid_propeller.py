@@ -1,13 +1,14 @@
 """A rigid propeller with published whirl derivatives, to stand in a rotor's place on its six hub coordinates.
 
-The derivatives are those of NASA TN D-659 (Reed and Bland, 1961), in body axes X forward along the shaft, Y to the right
-and Z down, the propeller turning about +X:
+The derivatives are those of NASA TN D-659 (Reed and Bland, 1961), in axes X forward along the shaft, Y to
+the right and Z down, the propeller turning about +X:
 
     F_Z  = ½ρV²S ( C_Zθ θ̄ + C_Zψ ψ̄ + C_Zr ψ̇R/V)        M_Y = ρV²SR ( C_mψ ψ̄ + C_mq θ̇R/V)
     F_Y  = ½ρV²S ( C_Zψ θ̄ - C_Zθ ψ̄ + C_Zr θ̇R/V)        M_Z = ρV²SR (-C_mψ θ̄ + C_mq ψ̇R/V)        S = πR²
 
-with pitch θ about Y (nose up), yaw ψ about Z (nose right), and θ̄, ψ̄ the angles between the shaft and the hub's path. In the
-rotor's axes I up, J outboard and K forward along the shaft, X = K, Y = J and Z = -I: both turn about the flight direction, and
+with pitch θ about Y (nose up), yaw ψ about Z (nose right), and θ̄, ψ̄ the angles between the shaft and the
+hub's path. The rotor's axes are I up, J outboard and K forward along the shaft, and it turns about +K. So
+X = K, Y = J, Z = -I, and
 
     θ = αy        ψ = -αx        θ̄ = αy - ẋ/V        ψ̄ = -αx - ẏ/V
     f_x = -F_Z    f_y = F_Y      m_x = -M_Z          m_y = M_Y
@@ -34,7 +35,7 @@ _TO_ATTITUDE = np.array([[0.0, 1.0], [-1.0, 0.0]])  # (θ, ψ) from (αx, αy)
 
 
 class WhirlDerivatives(NamedTuple):
-    """Derivatives of a propeller's forces and moments in pitch and yaw, dimensionless, in the convention above.
+    """Derivatives of a propeller's forces and moments in pitch and yaw, dimensionless, as defined above.
 
     z_theta, z_psi : C_Zθ and C_Zψ, force against the shaft's angles to its path.
     z_r : C_Zr, force against the yaw rate.
@@ -62,7 +63,7 @@ def rigid_propeller(
     polar_inertia: ArrayLike,
     diametral_inertia: ArrayLike,
 ) -> LinearModel:
-    """The propeller on its six hub coordinates: inertia, gyroscopic moments, and airloads of the whirl derivatives.
+    """The propeller on its six hub coordinates: inertia, gyroscopic moments and airloads.
 
     It carries no steady thrust or torque, turns at constant speed, and its trim has no collective (NaN).
 
@@ -176,6 +177,7 @@ def _unloaded(shape: tuple[int, ...]) -> Trim:
         collective=np.full(shape, np.nan),
         converged=np.ones(shape, dtype=bool),
         reason=np.full(shape, "", dtype=object),
+        warning=np.full(shape, "", dtype=object),
         iterations=np.zeros(shape, dtype=int),
     )
 

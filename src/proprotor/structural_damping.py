@@ -1,4 +1,4 @@
-"""Structural (hysteretic) damping: springs S (1 + ig), which mean something in steady oscillation only, at s = iω."""
+"""Structural (hysteretic) damping: springs S (1 + ig), which have a meaning in steady oscillation, s = iω."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class NeutralDamping(NamedTuple):
 
 
 def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
-    """All structural dampings g of the springs S at which a mode is neutrally stable, exact and without iteration.
+    """All structural dampings g of the springs S at which a mode is neutrally stable, without iteration.
 
-    With s = iω the equations are (A + igS) u = 0, A = K - ω²M + iωC. Where g is real, the conjugate equations hold too,
-    and their product has no g: (A ⊗ S + S ⊗ A*)(u ⊗ u*) = 0, or
+    With s = iω the equations are (A + igS) u = 0, A = K - ω²M + iωC. Where g is real their conjugates have
+    the same g, and it drops out of both together: (A ⊗ S + S ⊗ A*)(u ⊗ u*) = 0, or
 
         s² (M ⊗ S + S ⊗ M) + s (C ⊗ S - S ⊗ C) + (K ⊗ S + S ⊗ K) = 0
 
@@ -73,7 +73,7 @@ def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
 
 
 def _frequencies(model: LinearModel, springs: NDArray) -> NDArray:
-    """Frequencies (..., n²) at which a damping may be real, 0 in place of those that are not on the imaginary axis."""
+    """Frequencies (..., n²) at which a damping may be real, 0 in place of roots off the imaginary axis."""
     M, C, K = (getattr(model, name) for name in "MCK")
     mass, stiffness = (np.kron(matrix, springs) + np.kron(springs, matrix) for matrix in (M, K))
     damping = np.kron(C, springs) - np.kron(springs, C)

@@ -103,7 +103,7 @@ def two_axis_pivot(
     *,
     includes_rotor: bool,
 ) -> NormalModes:
-    """A rigid shaft that pitches and yaws about a point behind the hub: the mount of a propeller on its nacelle.
+    """A rigid shaft that pitches and yaws about a point behind the hub, as a propeller in its nacelle does.
 
     Pitch raises the hub along I and yaw moves it outboard along J, each by `distance` per radian.
 

@@ -62,7 +62,7 @@ def sweep(model: LinearModel) -> xarray.Dataset:
     order = track(system)
     values = np.take_along_axis(system.values, order, 1)
     shapes = np.take_along_axis(system.displacement, order[:, None, :], 2)
-    shares = np.take_along_axis(participation(model.dofs, system), order[:, None, :], 2)
+    shares = np.take_along_axis(participation(model, system), order[:, None, :], 2)
     kept = _one_of_each_pair(values)
     values, shapes, shares = values[:, kept], shapes[..., kept], shares[..., kept]
     names, by_frequency = _names(model.dofs, values, shares)

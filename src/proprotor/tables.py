@@ -33,7 +33,7 @@ CONVENTION = (
     "Frequency |Im s| per revolution (/rev); damping -Re s/|s| in percent of critical (%), "
     "negative and marked * where a mode is unstable."
 )
-_SPEED_WIDTH = 8
+_SPEED_WIDTH = 7
 _MODE_WIDTH = 14
 
 
@@ -90,7 +90,7 @@ class SweepTable:
         """Lines of one or more tables no wider than asked for, a row for each airspeed."""
         from rich.text import Text  # here, because rich takes long to import
 
-        fit = max(1, (width - _SPEED_WIDTH) // _MODE_WIDTH)
+        fit = max(1, (width - _SPEED_WIDTH - 1) // _MODE_WIDTH)
         shown = range(len(self.sweep.mode)) if all_modes else self._of_interest(fit)
         for start in range(0, max(1, len(shown)), fit):
             yield from self._table(shown[start : start + fit])
@@ -98,6 +98,12 @@ class SweepTable:
         if left_out and not self.failed.all():
             told = f"{len(left_out)} more modes (--all-modes): {', '.join(left_out)}."
             yield from map(Text, (*textwrap.wrap(told, width), ""))
+
+    def doubts(self) -> list[str]:
+        """A sentence on each warning of single airspeeds; their rows have a question mark."""
+        texts = self.sweep.warning.values
+        found = {text: self.airspeed[texts == text] for text in dict.fromkeys(texts.tolist()) if text}
+        return [f"? Doubtful from {v[0]:g} to {v[-1]:g} {self.unit}: {text}." for text, v in found.items()]
 
     def _of_interest(self, count: int) -> list[int]:
         """Unstable modes, the support's, then those that move it the most; in the order of the sweep."""
@@ -114,8 +120,10 @@ class SweepTable:
         names = [textwrap.wrap(str(self.sweep.mode.values[i]), _MODE_WIDTH - 2) for i in modes]
         for row in range(max(map(len, names), default=0)):
             cells = (name[row] if row < len(name) else "" for name in names)
-            yield Text(" " * _SPEED_WIDTH + "".join(f"{cell:>{_MODE_WIDTH - 1}} " for cell in cells), "bold")
-        yield Text(f"{self.unit:>{_SPEED_WIDTH}}" + f"{'/rev':>6}{'%':>7} " * len(modes), "dim")
+            yield Text(
+                " " * (_SPEED_WIDTH + 1) + "".join(f"{cell:>{_MODE_WIDTH - 1}} " for cell in cells), "bold"
+            )
+        yield Text(f"{self.unit:>{_SPEED_WIDTH}} " + f"{'/rev':>6}{'%':>7} " * len(modes), "dim")
         for point in range(len(self.airspeed)):
             yield self._row(point, modes)
         yield Text("")
@@ -126,6 +134,7 @@ class SweepTable:
         row = Text(f"{self.airspeed[point]:>{_SPEED_WIDTH}g}")
         if self.failed[point]:
             return row.append(f"  {self.sweep.reason.values[point]}", "yellow")
+        row.append("?" if self.sweep.warning.values[point] else " ", "yellow")
         for mode in modes:
             frequency, damping = self.frequency[point, mode], self.damping[point, mode]
             mark, style = ("*", "bold red") if self.unstable[point, mode] else (" ", "")
@@ -166,6 +175,7 @@ class SweepTable:
                 "damping (% of critical)": _finite(self.damping[i, j]),
                 "Re s (rad/s)": _finite(s.real),
                 "Im s (rad/s)": None if np.isnan(s) else s.imag,
+                "warning": str(sweep.warning.values[i]),
                 "failure": str(sweep.reason.values[i]),
             }
 

@@ -131,7 +131,7 @@ def blades(rotor, station, q, shaft):
 
 
 def virtual_displacements(rotor, station, q, time):
-    """Motions whose rates are the derivatives by each generalised coordinate, along an axis before the blades."""
+    """Blades whose rates are the derivatives by each generalised coordinate, on an axis before the blades."""
     return blades(rotor, station, virtual_motion(q), clock(rotor, time, running=False))
 
 

@@ -1,0 +1,81 @@
+"""Flap and lag frequencies given against collective or airspeed, as simple analyses with tabulated rotors take them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+
+from proprotor.errors import InputError
+
+Curve = float | ArrayLike | Callable[[NDArray], NDArray]
+ABSCISSAE = ("collective", "airspeed")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BladeFrequencies:
+    """Rotating frequencies of a blade per revolution, uncoupled and at zero cone.
+
+    Parameters
+    ----------
+    against : "collective" or "airspeed"
+        What they depend on: trim collective in rad, or airspeed in m/s.
+    at : array (k,), optional
+        Where the tables have their entries, increasing; not needed for numbers and functions.
+    flap, lag : float, array (k,) or function of an array
+        Frequency per revolution. Tables are interpolated smoothly without overshoot and held at their ends.
+    cyclic_flap : the same, optional
+        Frequency of cyclic flapping where it is not that of the collective, as when the gimbal is locked and its mode
+        stands in the blade's place.
+
+    Raises
+    ------
+    InputError
+        When a table does not fit its abscissa or a frequency is not positive.
+    """
+
+    flap: Curve
+    lag: Curve
+    cyclic_flap: Curve | None = None
+    against: str = "collective"
+    at: ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        if self.against not in ABSCISSAE:
+            raise InputError("against", self.against, f"must be one of {', '.join(ABSCISSAE)}")
+        if self.at is not None and (np.ndim(self.at) != 1 or np.any(np.diff(np.asarray(self.at, dtype=float)) <= 0)):
+            raise InputError("at", self.at, "must increase")
+        for name in ("flap", "lag", "cyclic_flap"):
+            self._check(name, getattr(self, name))
+
+    def _check(self, name: str, curve: Curve | None) -> None:
+        if curve is None or callable(curve):
+            return
+        values = np.asarray(curve, dtype=float)
+        if values.ndim and (self.at is None or values.shape != np.shape(self.at)):
+            raise InputError(name, f"array of shape {values.shape}", "must have one entry for each of at")
+        if not np.all(np.isfinite(values)) or np.any(values <= 0):
+            raise InputError(name, curve, "must be above zero")
+
+    def _evaluate(self, curve: Curve, abscissa: NDArray) -> NDArray:
+        if callable(curve):
+            return np.asarray(curve(abscissa), dtype=float)
+        if np.ndim(curve) == 0:
+            return np.full(np.shape(abscissa), float(curve))
+        at = np.asarray(self.at, dtype=float)
+        return PchipInterpolator(at, np.asarray(curve, dtype=float))(np.clip(abscissa, at[0], at[-1]))
+
+    def rotating(self, collective: NDArray, airspeed: NDArray, rotor_speed: NDArray) -> dict[str, NDArray]:
+        """Rotating frequencies in rad/s by the names of the derivation, shapes of the arguments broadcast."""
+        abscissa = np.asarray(collective if self.against == "collective" else airspeed, dtype=float)
+        cyclic = self.flap if self.cyclic_flap is None else self.cyclic_flap
+        curves = {"flap": self.flap, "lag": self.lag, "cyclic": cyclic}
+        per_rev = {name: self._evaluate(curve, abscissa) for name, curve in curves.items()}
+        return {
+            "rotating_flap_frequency": per_rev["flap"] * rotor_speed,
+            "rotating_lag_frequency": per_rev["lag"] * rotor_speed,
+            "cyclic_flap_frequency": per_rev["cyclic"] * rotor_speed,
+        }

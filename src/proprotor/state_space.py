@@ -1,0 +1,132 @@
+"""State space of a linear model, with names: for control design, frequency response and simulation.
+
+Inputs are swashplate collective and cyclics (rad) and gusts along I, J, K (m/s). Outputs are hub motion, the rotor's loads on the
+hub and the blades' motion. With the pitch equations kept, the pitch coordinates are the whole perturbation of blade pitch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor.errors import InputError
+from proprotor.model import HUB, INPUTS, LinearModel
+from proprotor.modes import held_coordinates, state_matrix
+
+if TYPE_CHECKING:
+    import control
+
+LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
+
+
+@dataclass(frozen=True, eq=False)
+class StateSpace:
+    """ẋ = A x + B u, y = C x + D u, batched over leading axes; NaN at failed points.
+
+    Attributes
+    ----------
+    A, B, C, D : array (..., states, states), (..., states, inputs), (..., outputs, states), (..., outputs, inputs)
+    states, inputs, outputs : tuple of str
+        States are displacements (without the rotor's azimuth unless a shaft holds it), then rates ("… rate").
+        Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about inertial axes)
+        and the rotor's own coordinates.
+    """
+
+    A: NDArray
+    B: NDArray
+    C: NDArray
+    D: NDArray
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    def to_control(self) -> control.StateSpace:
+        """The same as a `control.StateSpace` of python-control; one point at a time.
+
+        Raises
+        ------
+        InputError
+            When the model is a batch of several points.
+        ImportError
+            When python-control is not installed.
+        """
+        import control
+
+        if self.A.ndim != 2:
+            raise InputError("airspeed", f"array of shape {self.A.shape[:-2]}", "must be one speed for python-control")
+        return control.StateSpace(
+            self.A, self.B, self.C, self.D, states=self.states, inputs=self.inputs, outputs=self.outputs
+        )
+
+
+def state_space(model: LinearModel) -> StateSpace:
+    """State space of a rotor, alone or on a support.
+
+    Raises
+    ------
+    InputError
+        When the model has no inputs, as one from elsewhere may.
+    """
+    if model.B is None:
+        raise InputError("B", None, "must be given: the model has no inputs")
+    n, held = len(model.dofs), held_coordinates(model)
+    system = state_matrix(model)
+    rates = slice(len(held), len(held) + n)
+    acceleration_by_input = np.linalg.solve(model.M, model.B)
+    inputs = np.zeros((*system.shape[:-1], len(INPUTS)))
+    inputs[..., rates, :] = acceleration_by_input
+    displacement = np.zeros((n, system.shape[-1]))
+    displacement[held, np.arange(len(held))] = 1
+    rate = np.zeros((n, system.shape[-1]))
+    rate[:, rates] = np.eye(n)
+    motion = (displacement, rate, system[..., rates, :])
+    names, rows, feedthrough = _outputs(model, motion, acceleration_by_input)
+    states = (*(model.dofs[place] for place in held), *(f"{name} rate" for name in model.dofs))
+    return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names)
+
+
+def _outputs(model: LinearModel, motion: tuple, acceleration_by_input: NDArray) -> tuple[tuple[str, ...], NDArray, NDArray]:
+    """Names, rows of C and of D."""
+    hub = np.eye(len(HUB), len(model.dofs)) if model.hub is None else model.hub
+    own = [place for place, name in enumerate(model.dofs) if model.hub is None or not np.any(hub[:, place])]
+    own = [place for place in own if model.dofs[place] not in HUB]
+    displacement, rate, acceleration = motion
+    loads, loads_by_input = _hub_loads(model, motion, acceleration_by_input)
+    shape = acceleration.shape[:-2]
+    none = np.zeros((len(HUB), len(INPUTS)))
+    blocks = [
+        (HUB, hub @ displacement, none),
+        (tuple(f"{name} rate" for name in HUB), hub @ rate, none),
+        (tuple(f"{name} acceleration" for name in HUB), hub @ acceleration, hub @ acceleration_by_input),
+        (LOADS, loads, loads_by_input),
+        (tuple(model.dofs[place] for place in own), displacement[own], np.zeros((len(own), len(INPUTS)))),
+    ]
+    names = tuple(name for part, _, _ in blocks for name in part)
+    stacked = [
+        np.concatenate([np.broadcast_to(block[kind], (*shape, *block[kind].shape[-2:])) for block in blocks], axis=-2)
+        for kind in (1, 2)
+    ]
+    return names, *stacked
+
+
+def _hub_loads(model: LinearModel, motion: tuple, acceleration_by_input: NDArray) -> tuple[NDArray, NDArray]:
+    """Perturbation of the rotor's forces and moments on the hub: minus the hub rows of the rotor alone, plus its inputs."""
+    rotor = model if model.rotor is None else model.rotor
+    if rotor.dofs[: len(HUB)] != HUB:
+        raise InputError("dofs", ", ".join(rotor.dofs), "must begin with the hub's, from which its loads follow")
+    to_rotor = np.eye(len(model.dofs)) if model.rotor is None else _to_rotor(model)
+    rows = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
+    displacement, rate, acceleration = motion
+    loads = -(rows["M"] @ acceleration + rows["C"] @ rate + rows["K"] @ displacement)
+    return loads, rotor.B[..., : len(HUB), :] - rows["M"] @ acceleration_by_input
+
+
+def _to_rotor(model: LinearModel) -> NDArray:
+    """Coordinates of the rotor alone in those of the mounted model."""
+    own = model.rotor.dofs[len(HUB) :]
+    rows = np.zeros((len(own), len(model.dofs)))
+    rows[np.arange(len(own)), [model.dofs.index(name) for name in own]] = 1
+    return np.concatenate([model.hub, rows])
