@@ -5,8 +5,8 @@ the moment m depend on them and on the pitch; row i of the virtual work is the i
 row's virtual displacement in section axes and t_i its rotation about d.
 
 A blade is straight on each segment between its hinges, so w_i = w0 + w1 r and u = u0 + u1 r there. With the
-seven-vector motions (w0, w1, t) and (u0, u1, pitch) a segment's airloads are seven generalised loads that depend on
-seven motions through radial moments of the section's derivatives only:
+motions (w0, w1, t) and (u0, u1, pitch, rotation about d) a segment's airloads are seven generalised loads that depend on
+eight motions through radial moments of the section's derivatives only:
 
     C = - sum W^T L U_rate        K = - sum W^T L U_displacement - G        (sum over the segments)
 
@@ -50,6 +50,7 @@ ARGUMENTS = {
     "_up": ("u_P", " s/m", " per u_P"),
     "_ur": ("u_R", " s/m", " per u_R"),
     "_theta": (r"\theta", "", " per rad of pitch"),
+    "_spin": (r"\omega_d", " s", " per rad/s of rotation about d"),
 }
 POWERS = range(3)
 
@@ -59,7 +60,7 @@ def _moment_unit(unit: str, per: str, power: int) -> str:
     numerator, _, denominator = unit.partition("/")
     per_speed = per == " s/m"
     lengths -= (denominator == "m") + per_speed
-    speed = " s" if per_speed else ""
+    speed = " s" if per else ""
     length = f" m^{lengths}" if lengths > 0 else ("/m" if lengths < 0 else "")
     return f"{numerator}{speed}{length}"
 
@@ -211,6 +212,10 @@ class SegmentKinematics:
         """Velocity of the air along a section axis per rate of a coordinate."""
         return SENSE[axis] * _dot(self._derivative(self.axes[axis]), self._derivative(self.position, name))
 
+    def spin(self, *along: str):
+        """Rotation of the section about d at rest in the rotating axes, and its derivative."""
+        return self.ring(s.rotor_speed) * self._derivative(self.axes["d"], *along)[2]
+
     def pitch_change(self, *along: str):
         """Change of the section's pitch in the airloads, where a coupling may stand for the pitch equation."""
         return self.pitch_in_air.get(along, self.zero)
@@ -256,7 +261,7 @@ _STRAIGHT_BLADE |= {cosine: 1 for _, cosine in SINE_AND_COSINE}
 
 
 SEGMENT_LOADS = ("x_0", "n_0", "d_0", "x_1", "n_1", "d_1", "rotation")
-SEGMENT_MOTION = ("ut_0", "up_0", "ur_0", "ut_1", "up_1", "ur_1", "theta")
+SEGMENT_MOTION = ("ut_0", "up_0", "ur_0", "ut_1", "up_1", "ur_1", "spin", "theta")
 
 
 def _is_dropped(dropped: frozenset[str], *coordinates: str) -> bool:
@@ -280,10 +285,12 @@ def _motion(kinematics: SegmentKinematics, velocity, motion: str, *along: str) -
 
 
 def rate_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """U_rate: velocity of the air at r = 0 and per unit radius for the rate of each coordinate; pitch has none."""
+    """U_rate: velocity of the air at r = 0 and per unit radius, and rotation about d, for the rate of each coordinate."""
     if motion == "theta" or _is_dropped(dropped, name):
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
+    if motion == "spin":
+        return _power(kinematics, kinematics.work_rotation(name), 0)
     return _motion(kinematics, kinematics.rate_velocity, motion, name)
 
 
@@ -294,13 +301,15 @@ def displacement_motion(motion: str, name: str, dropped: frozenset[str] = CONSIS
     kinematics = segment_kinematics(dropped)
     if motion == "theta":
         return _power(kinematics, kinematics.pitch_change(name), 0)
+    if motion == "spin":
+        return _power(kinematics, kinematics.spin(name), 0)
     return _motion(kinematics, kinematics.velocity, motion, name)
 
 
 def gust_motion(motion: str, gust: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """U_gust: velocity of the air along a segment for air that itself moves along a rotating axis."""
     name, _, power = motion.partition("_")
-    if motion == "theta" or power == "1":
+    if motion in ("theta", "spin") or power == "1":
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
     axis = SECTION_AXES[VELOCITIES.index(name)]
@@ -309,8 +318,10 @@ def gust_motion(motion: str, gust: str, dropped: frozenset[str] = CONSISTENT) ->
 
 
 def trim_velocity(motion: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """Trim velocity of the air at r = 0 and per unit radius."""
+    """Trim velocity of the air at r = 0 and per unit radius, and the section's rotation about d."""
     kinematics = segment_kinematics(dropped)
+    if motion == "spin":
+        return _power(kinematics, kinematics.spin(), 0)
     return _motion(kinematics, kinematics.velocity, motion)
 
 
@@ -334,7 +345,7 @@ def load_derivative(load: str, motion: str) -> sp.Expr:
     else:
         axis, load_power = load.split("_")
         name = f"f{axis}"
-    argument, motion_power = ("theta", 0) if motion == "theta" else motion.split("_")
+    argument, motion_power = (motion, 0) if motion in ("theta", "spin") else motion.split("_")
     return MOMENTS[f"{name}_{argument}", int(load_power) + int(motion_power)]
 
 

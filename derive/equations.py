@@ -282,7 +282,7 @@ def section_shared() -> Iterator[Function]:
 
 _SEGMENT_ROW = {"x_0": LENGTH, "n_0": LENGTH, "d_0": LENGTH, "rotation": NUMBER}
 _SEGMENT_MOTION_DIMENSION = {
-    motion: NUMBER if motion == "theta" else ((0, 1, -1) if motion.endswith("_0") else PER_SECOND)
+    motion: NUMBER if motion == "theta" else ((0, 1, -1) if motion.endswith("_0") else PER_SECOND)  # spin too
     for motion in airloads.SEGMENT_MOTION
 }
 
@@ -341,8 +341,8 @@ def airload_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function
     )
     yield _segment_matrix(
         "trim_velocity",
-        "Trim velocity of the air at r = 0 and per unit radius, along a segment.",
-        airloads.SEGMENT_MOTION[:-1],
+        "Trim velocity of the air at r = 0 and per unit radius, along a segment, and the sections' rotation.",
+        tuple(motion for motion in airloads.SEGMENT_MOTION if motion != "theta"),
         ("trim",),
         lambda motion, _: airloads.trim_velocity(motion, dropped),
         lambda motion, _: _SEGMENT_MOTION_DIMENSION[motion],
@@ -415,7 +415,7 @@ def airload_shared() -> Iterator[Function]:
 def _load_derivative(load: str, motion: str) -> sp.Expr:
     """The moment that L holds, or nothing where the section has no such derivative."""
     name = "m" if load == "rotation" else f"f{load[0]}"
-    argument = "_theta" if motion == "theta" else f"_{motion[:2]}"
+    argument = f"_{motion}" if motion in ("theta", "spin") else f"_{motion[:2]}"
     if section.load_derivatives()[section.SECTION_LOADS[name, argument]] == 0:
         return sp.Integer(0)
     return airloads.load_derivative(load, motion)

@@ -2,6 +2,9 @@
 
     L = 1/2 rho c U² c_l, D = 1/2 rho c U² c_d, moment 1/2 rho c² U² c_m, with U² = u_T² + u_P²,
     alpha = pitch - atan(u_P / u_T) and Mach = U / a_s; radial drag 1/2 rho c U c_d u_R against d.
+
+A section that turns about d may be given thin-airfoil theory's quasi-steady damping about the quarter chord,
+- pi/8 rho c³ U omega_d, the part of the moment that circulation does not bring.
 """
 
 from __future__ import annotations
@@ -16,6 +19,8 @@ from derive.airloads import ARGUMENTS, LOADS
 tangential_velocity = s.quantity("tangential_velocity", "u_T", "m/s", "velocity of the air along i'")
 axial_velocity = s.quantity("axial_velocity", "u_P", "m/s", "velocity of the section along n")
 radial_velocity = s.quantity("radial_velocity", "u_R", "m/s", "velocity of the section along d")
+section_spin = s.quantity("section_spin", r"\omega_d", "rad/s", "rotation of the section about d, nose up")
+section_damping = s.quantity("section_damping", r"\pi_d", "", "1 with quasi-steady pitch damping of the section, else 0")
 section_pitch = s.quantity("section_pitch", r"\theta", "rad", "pitch of the section: trim pitch and twist")
 section_speed = s.quantity("section_speed", "U", "m/s", "speed of the air in the section's plane")
 inflow_angle = s.quantity("inflow_angle", r"\phi", "rad", "angle of the air's velocity to i'")
@@ -37,18 +42,26 @@ COEFFICIENT = {
     )
 }
 
-VELOCITY = {"_ut": tangential_velocity, "_up": axial_velocity, "_ur": radial_velocity, "_theta": section_pitch}
+VELOCITY = {"_ut": tangential_velocity, "_up": axial_velocity, "_ur": radial_velocity, "_theta": section_pitch, "_spin": section_spin}
+
+
+
+def _unit(load: str, per: str) -> str:
+    """Unit of a section load, or of its derivative with a velocity or a rotation."""
+    lengths = (load != "m") + (per == " s/m")
+    numerator = "N s" if per else "N"
+    return numerator + {0: "", 1: "/m", 2: "/m^2"}[lengths]
+
 
 SECTION_LOADS = {
     (load, argument): s.quantity(
         load + argument,
         f"{latex}{{}}_{{,{by}}}" if by else latex,
-        {"fx": "N/m", "fn": "N/m", "fd": "N/m", "m": "N"}[load] if per == "" else _per_speed,
+        _unit(load, per),
         f"{meaning} per unit span{by_meaning}",
     )
     for load, (latex, _, meaning) in LOADS.items()
     for argument, (by, per, by_meaning) in ARGUMENTS.items()
-    for _per_speed in (("N s/m",) if load == "m" else ("N s/m^2",))
 }
 
 
@@ -74,7 +87,7 @@ def loads() -> dict[str, sp.Expr]:
         "fx": pressure_chord * speed() * (lift * axial_velocity + drag * tangential_velocity),
         "fn": pressure_chord * speed() * (lift * tangential_velocity - drag * axial_velocity),
         "fd": -pressure_chord * speed() * drag * radial_velocity,
-        "m": pressure_chord * s.chord * speed() ** 2 * moment,
+        "m": pressure_chord * s.chord * speed() * (speed() * moment - section_damping * sp.pi / 4 * s.chord * section_spin),
     }
 
 

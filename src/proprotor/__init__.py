@@ -2,14 +2,17 @@
 
 from proprotor.airfoil import Airfoil
 from proprotor.airfoil_table import AirfoilTable
+from proprotor.assembly import mount
 from proprotor.case import Case, list_cases, load_case
 from proprotor.drive_train import DriveTrain
 from proprotor.errors import InputError
 from proprotor.frequencies import BladeFrequencies
 from proprotor.model import LinearModel, rotor_model
 from proprotor.operation import Operation
+from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.rotor import Rotor
-from proprotor.support import NormalModes
+from proprotor.structural_damping import neutral_damping
+from proprotor.support import NormalModes, two_axis_pivot
 
 __all__ = [
     "Airfoil",
@@ -22,7 +25,12 @@ __all__ = [
     "NormalModes",
     "Operation",
     "Rotor",
+    "WhirlDerivatives",
     "list_cases",
     "load_case",
+    "mount",
+    "neutral_damping",
+    "rigid_propeller",
     "rotor_model",
+    "two_axis_pivot",
 ]

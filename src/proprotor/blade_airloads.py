@@ -34,19 +34,20 @@ def segment_quantities(rotor: Rotor, quantities: Quantities, equations: ModuleTy
 
 
 def _velocities(rotor: Rotor, segments: Quantities, equations: ModuleType) -> dict[str, NDArray]:
-    """Trim velocity of the air at the stations."""
+    """Trim velocity of the air and rotation of the sections at the stations."""
     quadrature = rotor.quadrature
     line = evaluate(equations.trim_velocity, segments)[..., 0]
     names = ("tangential_velocity", "axial_velocity", "radial_velocity")
-    return {
+    air = {
         name: quadrature.at_stations(line[..., place]) + quadrature.at_stations(line[..., place + 3]) * quadrature.stations
         for place, name in enumerate(names)
     }
+    return air | {"section_spin": quadrature.at_stations(line[..., 6])}
 
 
 def air_at_stations(rotor: Rotor, segments: Quantities, equations: ModuleType = airloads) -> dict[str, Any]:
     """Air, pitch, angle of attack and Mach number at the stations, by name, (..., stations)."""
-    stations = {name: segments[name] for name in ("density", "speed_of_sound", "rotor_speed")}
+    stations = {name: segments[name] for name in ("density", "speed_of_sound", "section_damping")}
     stations |= _velocities(rotor, segments, equations)
     stations |= {"chord": rotor.station_chord, "section_pitch": segments["pitch"] + rotor.station_twist}
     return stations | evaluate(section.air_at_section, stations)._asdict()

@@ -135,7 +135,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed)
     shape = batch_shape(rotor, operation, speed)
-    quantities = rotor_quantities(rotor, operation, speed, shape)
+    quantities = rotor_quantities(rotor, operation, speed, shape) | {"section_damping": float(choice.section_damping)}
     points = int(np.prod(shape, dtype=int))
     trim = solve_trim(rotor, quantities, choice, _flat(trim_target(rotor, operation), shape), points)
     extra = reactionless_coordinates(int(np.max(rotor.n_blades))) if choice.reactionless else ()

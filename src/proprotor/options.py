@@ -17,6 +17,7 @@ CHOICES: dict[str, tuple] = {
     "structure": ("coupled", "diagonal", "tabulated"),
     "airloads": ("full", "lift-slope", "none"),
     "compressibility": (True, False),
+    "section_damping": (False, True),
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
 }
@@ -46,6 +47,8 @@ class Options:
         Perturbation airloads: all, those proportional to the lift slope, or none. The trim has them all.
     compressibility : bool
         Prandtl-Glauert factor on lift and moment.
+    section_damping : bool
+        Quasi-steady pitch damping of the sections, thin-airfoil theory about the quarter chord.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional
@@ -69,6 +72,7 @@ class Options:
     pitch_lag_coupling: float | None = None
     airloads: str = "full"
     compressibility: bool = True
+    section_damping: bool = False
     rotor_speed: str = "windmilling"
     drive_train: DriveTrain | None = None
     reactionless: bool = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -42,7 +43,7 @@ _NOT_NEGATIVE = (
 )
 _FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
 
-Distribution = float | tuple[ArrayLike, ArrayLike]
+Distribution = float | tuple[ArrayLike, ArrayLike] | Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,9 +82,9 @@ class Rotor:
         From the collective reference to the blade's structural axes, rad.
     propeller_moment : bool
         Whether the propeller moment acts on the blade's pitch.
-    chord, twist : float or (r, values)
+    chord, twist : float, (r, values) or function of r
         m and rad. A number is a constant chord and a linear twist over the radius; a pair of arrays is interpolated
-        linearly between its stations. Twist counts from the pitch at 0.75 R.
+        linearly between its stations; a smooth function takes an array of radii. Twist counts from the pitch at 0.75 R.
     airfoil : SectionModel
         Such as `Airfoil`.
 
@@ -138,6 +139,8 @@ class Rotor:
         if isinstance(value, tuple):
             _check_distribution(name, value)
             return
+        if name in ("chord", "twist") and callable(value):
+            return
         try:
             finite = np.all(np.isfinite(np.asarray(value, dtype=complex)))
         except (TypeError, ValueError):
@@ -155,7 +158,8 @@ class Rotor:
         for name in _FRACTIONS:
             if np.any((np.real(getattr(self, name)) < 0) | (np.real(getattr(self, name)) > 1)):
                 raise InputError(name, getattr(self, name), "must lie between 0 and 1")
-        chord = self.chord[1] if isinstance(self.chord, tuple) else self.chord
+        chord = self.station_chord if callable(self.chord) else self.chord
+        chord = chord[1] if isinstance(chord, tuple) else chord
         if np.any(np.real(chord) <= 0):
             raise InputError("chord", chord, "must be above zero")
         if np.any(np.abs(np.real(self.precone)) >= np.pi / 2):
@@ -229,7 +233,7 @@ class Rotor:
     @functools.cached_property
     def station_chord(self) -> np.ndarray:
         """Chord at the stations of the quadrature, m."""
-        if isinstance(self.chord, tuple):
+        if isinstance(self.chord, tuple) or callable(self.chord):
             return _interpolate(self.chord, self.quadrature.stations)
         return np.asarray(self.chord)[..., None]
 
@@ -238,7 +242,7 @@ class Rotor:
         """Twist at the stations of the quadrature, from the pitch at 0.75 R, rad."""
         r = self.quadrature.stations
         reference = 0.75 * np.asarray(self.radius)[..., None]
-        if isinstance(self.twist, tuple):
+        if isinstance(self.twist, tuple) or callable(self.twist):
             return _interpolate(self.twist, r) - _interpolate(self.twist, reference)
         return np.asarray(self.twist)[..., None] * (r - reference) / np.asarray(self.radius)[..., None]
 
@@ -280,5 +284,7 @@ def _check_distribution(name: str, distribution: tuple[ArrayLike, ArrayLike]) ->
         raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
 
 
-def _interpolate(distribution: tuple[ArrayLike, ArrayLike], r: np.ndarray) -> np.ndarray:
+def _interpolate(distribution: Distribution, r: np.ndarray) -> np.ndarray:
+    if callable(distribution):
+        return np.asarray(distribution(r))
     return np.interp(np.real(r), *(np.asarray(part, dtype=float) for part in distribution))

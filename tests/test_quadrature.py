@@ -1,0 +1,174 @@
+"""Integrals along the blade: radial moments of section loads, and the mass integrals of a mass distribution.
+
+Section loads are kinked where chord or twist are tabulated and where a segment begins, and vary over V/Ω elsewhere. A
+moment is held to 1e-10 of itself with the loads' signs left out, segment by segment: a torque that vanishes has no
+size of its own.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+import proprotor as pp
+from tests.rotors import between, mass_distributions, zero_or
+
+many = settings(max_examples=150, derandomize=True, deadline=None, phases=[Phase.generate])
+
+RADIUS, TIP_SPEED = 4.0, 180.0
+SPEED = TIP_SPEED / RADIUS
+
+
+@st.composite
+def tables(draw, low, high):
+    """Anything tabulated from the centre to the tip, two stations or many."""
+    inner = draw(st.lists(st.integers(1, 99), max_size=12, unique=True))
+    values = draw(st.lists(between(low, high), min_size=len(inner) + 2, max_size=len(inner) + 2))
+    return RADIUS * np.array([0, *sorted(inner), 100]) / 100, np.array(values)
+
+
+@st.composite
+def blades(draw):
+    """Blades with a hinge on either side of the cutout, or on it, or at the centre."""
+    flap, gap = draw(zero_or(between(0.01, 0.4))), draw(zero_or(between(0.01, 0.3)))
+    return pp.Rotor.from_mass_distribution(
+        [0.0, RADIUS],
+        [5.0, 5.0],
+        n_blades=3,
+        radius=RADIUS,
+        root_cutout=RADIUS * draw(between(0.05, 0.3)),
+        flap_hinge_offset=RADIUS * flap,
+        lag_hinge_offset=RADIUS * (flap + gap),
+        flap_stiffness=1.0,
+        lag_stiffness=1.0,
+        chord=draw(between(0.1, 0.5) | tables(0.1, 0.5)),
+        twist=draw(between(-0.9, 0.0) | tables(-0.3, 0.9)),
+        airfoil=pp.Airfoil(lift_slope=5.7),
+    )
+
+
+airspeeds = between(np.log(0.02), np.log(3.0)).map(lambda logarithm: TIP_SPEED * np.exp(logarithm))
+
+
+def section_loads(tangential, axial, radial, pitch, chord):
+    """Lift and drag along i', n and d, and moment, per unit span, of a linear airfoil in air of density 2."""
+    speed = np.sqrt(tangential**2 + axial**2)
+    lift = 5.7 * (pitch - np.arctan(axial / tangential) + 0.03)
+    along = chord * speed * np.array([lift * axial + 0.01 * tangential, lift * tangential - 0.01 * axial])
+    return np.array([*along, -0.01 * chord * speed * radial, -0.02 * chord**2 * speed**2])
+
+
+def loads_and_derivatives(station, chord, twist, airspeed):
+    """(20, stations): the loads, and what they change per unit of each velocity and of pitch, by complex steps."""
+    pitch = np.arctan(airspeed / (0.75 * TIP_SPEED)) + twist
+    arguments = np.array(np.broadcast_arrays(SPEED * station, airspeed, 0.05 * airspeed, pitch))
+    steps = 1e-30j * np.eye(4)[:, :, None]
+    rates = (np.imag(section_loads(*(arguments + step), chord)) / 1e-30 for step in steps)
+    return np.concatenate([section_loads(*arguments, chord), *rates])
+
+
+def at(distribution, station):
+    """Chord, or twist from its value at three quarters of the radius."""
+    if isinstance(distribution, tuple):
+        return np.interp(station, *distribution)
+    return np.full_like(station, distribution)
+
+
+def twist_at(rotor, station):
+    if isinstance(rotor.twist, tuple):
+        return at(rotor.twist, station) - at(rotor.twist, np.array(0.75 * RADIUS))
+    return rotor.twist * (station / RADIUS - 0.75)
+
+
+def segment_ends(rotor):
+    """Cutout and tip, and the hinges between them."""
+    hinges = (rotor.flap_hinge_offset, rotor.lag_hinge_offset)
+    return np.unique([rotor.root_cutout, *np.clip(hinges, rotor.root_cutout, RADIUS), RADIUS])
+
+
+def kinks(rotor):
+    return np.concatenate([np.asarray(d[0]) for d in (rotor.chord, rotor.twist) if isinstance(d, tuple)] or [[]])
+
+
+def fine_moments(rotor, airspeed, start, end):
+    """Moments, and moments without signs, by twenty points on each of hundreds of panels that widen from the root."""
+    inside = [kink for kink in kinks(rotor) if start < kink < end]
+    edges = np.unique([*np.geomspace(start, end, 201), *inside])
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    half = np.diff(edges)[:, None] / 2
+    station, weight = (edges[:-1, None] + half * (1 + nodes)).ravel(), (half * weights).ravel()
+    loads = loads_and_derivatives(station, at(rotor.chord, station), twist_at(rotor, station), airspeed)
+    moments = weight[:, None] * station[:, None] ** np.arange(3)
+    return loads @ moments, np.abs(loads) @ moments
+
+
+@many
+@given(blades(), airspeeds)
+def test_radial_moments_of_section_loads(rotor, airspeed):
+    quadrature = rotor.quadrature
+    loads = loads_and_derivatives(quadrature.stations, rotor.station_chord, rotor.station_twist, airspeed)
+    moments = quadrature.moments(loads)
+    ends = segment_ends(rotor)
+    assert moments.shape == (20, len(ends) - 1, 3)
+    for segment, (start, end) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+        expected, size = fine_moments(rotor, airspeed, start, end)
+        assert np.all(np.abs(moments[:, segment] - expected) <= 1e-10 * size)
+
+
+@many
+@given(blades())
+def test_segments_lie_between_the_hinges(rotor):
+    quadrature, ends = rotor.quadrature, segment_ends(rotor)
+    middles = (ends[:-1] + ends[1:]) / 2
+    assert np.array_equal(quadrature.beyond_flap_hinge, middles > rotor.flap_hinge_offset)
+    assert np.array_equal(quadrature.beyond_lag_hinge, middles > rotor.lag_hinge_offset)
+    lengths = quadrature.moments(np.ones((1, quadrature.stations.shape[-1])))[0, :, 0]
+    assert np.allclose(lengths, np.diff(ends), rtol=1e-13)
+    stations = quadrature.stations
+    assert np.array_equal(quadrature.segment, np.searchsorted(ends, stations) - 1)
+
+
+@many
+@given(mass_distributions(RADIUS), zero_or(between(0.01, 0.6)), zero_or(between(0.01, 0.3)))
+def test_mass_integrals_of_a_distribution(distribution, flap_hinge, gap):
+    flap_hinge, lag_hinge = RADIUS * flap_hinge, RADIUS * (flap_hinge + gap)
+    rotor = pp.Rotor.from_mass_distribution(
+        *distribution,
+        n_blades=3,
+        radius=RADIUS,
+        flap_hinge_offset=flap_hinge,
+        lag_hinge_offset=lag_hinge,
+        flap_stiffness=1.0,
+        lag_stiffness=1.0,
+        chord=0.3,
+        airfoil=pp.Airfoil(lift_slope=5.7),
+    )
+
+    def integral(power, hinge):
+        edges = np.unique([*(r for r in distribution[0] if r > hinge), hinge])
+        pieces = zip(edges[:-1], edges[1:], strict=True)
+        return sum(quad(lambda r: np.interp(r, *distribution) * (r - hinge) ** power, *piece)[0] for piece in pieces)
+
+    assert np.isclose(rotor.blade_mass, integral(0, 0.0), rtol=1e-12)
+    for name, hinge in (("blade", 0.0), ("flap", flap_hinge), ("lag", lag_hinge)):
+        assert np.isclose(getattr(rotor, f"{name}_first_moment"), integral(1, hinge), rtol=1e-12)
+        assert np.isclose(getattr(rotor, f"{name}_inertia"), integral(2, hinge), rtol=1e-12)
+
+
+@pytest.mark.parametrize("hinge", ["flap", "lag"])
+def test_mass_within_a_hinge_does_not_count_for_it(hinge):
+    """A blade that is bare outboard of a hinge has nothing to flap or lag."""
+    offsets = {"flap_hinge_offset": 2.5, "lag_hinge_offset": 2.5} if hinge == "flap" else {"lag_hinge_offset": 2.5}
+    with pytest.raises(pp.InputError, match=f"{hinge}_inertia = 0: must be above zero"):
+        pp.Rotor.from_mass_distribution(
+            [0.0, 2.0, 2.1, RADIUS],
+            [5.0, 5.0, 0.0, 0.0],
+            n_blades=3,
+            radius=RADIUS,
+            flap_stiffness=1.0,
+            lag_stiffness=1.0,
+            chord=0.3,
+            airfoil=pp.Airfoil(lift_slope=5.7),
+            **offsets,
+        )
