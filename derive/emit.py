@@ -34,6 +34,7 @@ MODULE_TITLES = {
     "pitch": "Blade pitch, control system, dampers and gimbal restraint",
     "section": "Loads of a blade section",
     "airloads": "Airloads of one blade, segment by segment",
+    "lift_slope": "Lift-slope airloads of the published set in closed form",
     "trim": "Trim balance of one blade",
     "drive_train": "Engine and shaft on the rotor's azimuth",
     "multiblade": "From one blade to N blades in the fixed frame",
@@ -143,10 +144,15 @@ def index_groups(functions: list[Function]) -> list[dict]:
     return [{"name": name.upper(), "place": place} for name, place in constants.items()]
 
 
+# Steps whose text the generated files depend on; the audit only reads them.
+_SOURCES = ("symbols", "kinematics", "polynomials", "published", "inertia", "flap_lag_springs", "pitch", "section")
+_SOURCES += ("airloads", "lift_slope", "trim", "multiblade", "drive_train", "equations", "emit")
+
+
 def derivation_hash() -> str:
     """Digest of the derivation and the templates, so that a file says what made it."""
     digest = hashlib.sha256()
-    for path in sorted([*(ROOT / "derive").glob("*.py"), *TEMPLATES.glob("*.jinja")]):
+    for path in [*(ROOT / "derive" / f"{name}.py" for name in sorted(_SOURCES)), *sorted(TEMPLATES.glob("*.jinja"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 

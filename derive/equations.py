@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from derive import airloads, drive_train, flap_lag_springs, inertia, multiblade, pitch, section, trim
+from derive import airloads, drive_train, flap_lag_springs, inertia, lift_slope, multiblade, pitch, section, trim
 from derive import kinematics as kin
 from derive import symbols as s
 from derive.published import CONSISTENT, PUBLISHED
@@ -383,6 +383,18 @@ def airload_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function
     )
 
 
+def lift_slope_shared() -> Iterator[Function]:
+    moments = lift_slope.moments()
+    yield values(
+        "lift_slope",
+        "load_moments",
+        "Radial moments of the section derivatives proportional to the lift slope, over one segment, in closed form.",
+        "u_T = Omega r and u_P = V, constant chord, no compressibility, as NASA TN D-7677; valid down to V = 0",
+        [*lift_slope.ends(), *lift_slope.integrals(), *moments],
+        tuple(symbol for symbol, _ in moments),
+    )
+
+
 def airload_shared() -> Iterator[Function]:
     yield _segment_matrix(
         "load_derivatives",
@@ -588,6 +600,7 @@ STEPS = {
     "pitch": (pitch_shared, pitch_functions),
     "section": (section_shared, _nothing),
     "airloads": (airload_shared, airload_functions),
+    "lift_slope": (lift_slope_shared, _nothing),
     "trim": (trim_shared, _nothing),
     "multiblade": (multiblade_shared, _nothing),
     "drive_train": (drive_train_shared, _nothing),

@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from proprotor_equations import airloads, section
+from proprotor_equations import airloads, lift_slope, section
 
-from proprotor.airfoil import SectionCoefficients
+from proprotor.airfoil import Airfoil, SectionCoefficients
 from proprotor.evaluation import evaluate
+from proprotor.quadrature import POWERS
 from proprotor.rotor import Rotor
 
 Quantities = Mapping[str, Any]
+_STILL = 1e-150  # inflow ratio that stands for no airspeed: its square vanishes against the logarithm of a blade without cutout
 
 
 def along_segments(quantities: Quantities) -> dict[str, Any]:
@@ -104,3 +106,23 @@ def load_moments(
         for place, name in enumerate(loads._fields)
         for power in range(moments.shape[-1])
     }
+
+
+def has_closed_form(rotor: Rotor) -> bool:
+    """Whether the lift-slope airloads of the published set can be had without quadrature."""
+    return isinstance(rotor.airfoil, Airfoil) and not isinstance(rotor.chord, tuple) and not callable(rotor.chord)
+
+
+def closed_form_moments(rotor: Rotor, segments: Quantities) -> dict[str, NDArray]:
+    """Radial moments as `load_moments`, lift slope alone, without compressibility and with u_T = Ωr and u_P = V."""
+    edges = rotor.quadrature.edges / np.asarray(rotor.radius)[..., None, None]
+    inflow_ratio = segments["airspeed"] / (segments["rotor_speed"] * segments["radius"])
+    given = {
+        "chord": np.asarray(rotor.chord)[..., None],
+        "lift_slope": np.asarray(rotor.airfoil.lift_slope)[..., None],
+        "inflow_ratio": np.maximum(inflow_ratio, _STILL),
+        "inner_edge": edges[..., 0],
+        "outer_edge": edges[..., 1],
+    }
+    moments = dict.fromkeys((f"{load}_{power}" for load in section.Loads._fields for power in range(POWERS)), 0.0)
+    return moments | evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()

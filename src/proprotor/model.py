@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, FIXED_INPUTS, airloads, drive_train, inertia, multiblade, pitch
 
-from proprotor.blade_airloads import load_moments, segment_quantities
+from proprotor.blade_airloads import closed_form_moments, has_closed_form, load_moments, segment_quantities
 from proprotor.equation_set import EquationSet
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
@@ -292,17 +292,26 @@ def _airloads(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[
     """Airload damping and stiffness of one blade, and what gusts load it with."""
     motion = options.equation_set.airloads
     segments = segment_quantities(rotor, pool, motion)
-    segments |= load_moments(
-        rotor,
-        segments,
-        compressibility=options.compressibility,
-        lift_slope_only=options.airloads == "lift-slope",
-        equations=motion,
-    )
+    segments |= _moments(rotor, segments, options)
     for name in ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion"):
         segments[name] = evaluate(getattr(motion, name), segments)
     segments["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
     return tuple(evaluate(product, segments) for product in (airloads.damping, airloads.stiffness, airloads.gust_loads))
+
+
+def _moments(rotor: Rotor, segments: Mapping[str, Any], options: Options) -> dict[str, NDArray]:
+    """Radial moments of the section loads: in closed form where there is one, else by quadrature."""
+    lift_slope_only = options.airloads == "lift-slope"
+    as_published = options.equations == "published" and not options.compressibility and not options.section_damping
+    if lift_slope_only and as_published and has_closed_form(rotor):
+        return closed_form_moments(rotor, segments)
+    return load_moments(
+        rotor,
+        segments,
+        compressibility=options.compressibility,
+        lift_slope_only=lift_slope_only,
+        equations=options.equation_set.airloads,
+    )
 
 
 def rigid_hub_mass(rotor: Rotor) -> NDArray:

@@ -26,6 +26,8 @@ class RadialQuadrature:
         Segment each station lies on.
     weights : array (..., stations, segments, 3)
         Weight of a station in the integral of f r^n over each segment.
+    edges : array (..., segments, 2)
+        Where each segment begins and ends, m.
     beyond_flap_hinge, beyond_lag_hinge : array (segments,)
         1 on segments outboard of the hinge, else 0.
     """
@@ -33,6 +35,7 @@ class RadialQuadrature:
     stations: NDArray
     segment: NDArray
     weights: NDArray
+    edges: NDArray
     beyond_flap_hinge: NDArray
     beyond_lag_hinge: NDArray
 
@@ -79,7 +82,7 @@ def gauss_panels(
     widths = np.diff(edges, axis=-1)
     used = (widths > 1e-12 * tip[..., None]).reshape(-1, widths.shape[-1]).any(axis=0)
     stations, weights = _gauss_points(edges[..., :-1][..., used], widths[..., used], tip)
-    return _by_segment(stations, weights, flap, lag)
+    return _by_segment(stations, weights, root, tip, flap, lag)
 
 
 def _gauss_points(starts: NDArray, widths: NDArray, tip: NDArray) -> tuple[NDArray, NDArray]:
@@ -95,7 +98,9 @@ def _gauss_points(starts: NDArray, widths: NDArray, tip: NDArray) -> tuple[NDArr
     return np.concatenate(stations, axis=-1), np.concatenate(weights, axis=-1)
 
 
-def _by_segment(stations: NDArray, weights: NDArray, flap: NDArray, lag: NDArray) -> RadialQuadrature:
+def _by_segment(
+    stations: NDArray, weights: NDArray, root: NDArray, tip: NDArray, flap: NDArray, lag: NDArray
+) -> RadialQuadrature:
     beyond_flap, beyond_lag = stations > flap[..., None], stations > lag[..., None]
     kinds = ((False, False), (True, False), (True, True))
     masks = [(beyond_flap == f) & (beyond_lag == l) for f, l in kinds]
@@ -104,4 +109,7 @@ def _by_segment(stations: NDArray, weights: NDArray, flap: NDArray, lag: NDArray
     table = np.stack([masks[place][..., None] * moments for place in present], axis=-2)
     segment = np.argmax(np.stack([masks[place] for place in present]), axis=0)
     steps = np.array([kinds[place] for place in present], dtype=float)
-    return RadialQuadrature(stations, segment, table, steps[:, 0], steps[:, 1])
+    hinges = np.clip(np.stack([flap, lag], axis=-1), root[..., None], tip[..., None])
+    ends = np.concatenate([root[..., None], hinges, tip[..., None]], axis=-1)
+    edges = np.stack([ends[..., present], ends[..., np.add(present, 1)]], axis=-1)
+    return RadialQuadrature(stations, segment, table, edges, steps[:, 0], steps[:, 1])
