@@ -2,7 +2,8 @@
 
     python benchmarks/dropped_terms.py
 
-Run from the repository: the reduced equations are derived in memory. A boundary is where a mode's damping falls through zero, by
+Run from the repository: the reduced equations are derived in memory. A boundary is where a mode's damping falls
+through zero, by
 linear interpolation between points 5 kt apart.
 """
 

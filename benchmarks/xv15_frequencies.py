@@ -18,7 +18,7 @@ from proprotor.sweep import sweep
 KNOT = 1852 / 3600
 SPEEDS = np.arange(50, 451, 50) * KNOT
 STATEMENTS = (
-    "Paper: low-frequency cyclic lag from about 0.8 to 0.2 per rev (Fig. 14); coning near 1.85; gimbal 1.0355 (Fig. 18).",
+    "Paper: low-frequency cyclic lag 0.8 to 0.2 per rev (Fig. 14), coning near 1.85, gimbal 1.0355 (Fig. 18).",
     "Test (TM X-62,407): coning 1.70 per rev at 458 rpm; lag 1.72 per rev in the rotating frame at low pitch.",
 )
 

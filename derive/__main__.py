@@ -8,7 +8,9 @@ from derive import emit
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m derive", description=__doc__)
-    parser.add_argument("--check", action="store_true", help="change nothing; exit 1 if a generated file differs")
+    parser.add_argument(
+        "--check", action="store_true", help="change nothing; exit 1 if a generated file differs"
+    )
     if not parser.parse_args().check:
         emit.update()
         return 0

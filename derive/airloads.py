@@ -1,11 +1,13 @@
 """Quasi-steady airloads of one blade by virtual work, linearised about trim (Eqs. 14-16, and what they leave out).
 
-At a section the air comes with u_T along i', u_P against n and u_R against d. The section forces f = (f_x, f_n, f_d) and
+At a section the air comes with u_T along i', u_P against n and u_R against d. The section forces f = (f_x, f_n,
+f_d) and
 the moment m depend on them and on the pitch; row i of the virtual work is the integral of f . w_i + m t_i, with w_i the
 row's virtual displacement in section axes and t_i its rotation about d.
 
 A blade is straight on each segment between its hinges, so w_i = w0 + w1 r and u = u0 + u1 r there. With the
-motions (w0, w1, t) and (u0, u1, pitch, rotation about d) a segment's airloads are seven generalised loads that depend on
+motions (w0, w1, t) and (u0, u1, pitch, rotation about d) a segment's airloads are seven generalised loads that
+depend on
 eight motions through radial moments of the section's derivatives only:
 
     C = - sum W^T L U_rate        K = - sum W^T L U_displacement - G        (sum over the segments)
@@ -21,7 +23,13 @@ import sympy as sp
 
 from derive import kinematics as kin
 from derive import symbols as s
-from derive.polynomials import SEGMENT_ANGLES, SINE_AND_COSINE, PolynomialRing, cos_lag, name_trigonometry, temporaries
+from derive.polynomials import (
+    SEGMENT_ANGLES,
+    SINE_AND_COSINE,
+    PolynomialRing,
+    name_trigonometry,
+    temporaries,
+)
 from derive.published import CONSISTENT
 
 SECTION_AXES = ("x", "n", "d")
@@ -33,7 +41,8 @@ SENSE = {"x": -1, "n": 1, "d": 1}
 
 # Geometry of a segment at trim: the line p = anchor + r d, and its flap arm, whose slope is h_beta cos(lag).
 anchor = [
-    s.quantity(f"anchor_{axis}", f"a_{axis}", "m", f"where the segment's line meets r = 0, along {axis}") for axis in "ijk"
+    s.quantity(f"anchor_{axis}", f"a_{axis}", "m", f"where the segment's line meets r = 0, along {axis}")
+    for axis in "ijk"
 ]
 flap_arm_at_center = s.quantity("flap_arm_at_center", "b_0", "m", "flap arm of the segment's line at r = 0")
 
@@ -95,7 +104,9 @@ def _on_segment(expression):
     return expression.subs(arms).subs({s.coning: flap * s.coning, s.lag: lag * s.lag})
 
 
-Taylor = dict[tuple[str, ...], list]  # derivatives at trim by the coordinates they are taken along; () is the value
+Taylor = dict[
+    tuple[str, ...], list
+]  # derivatives at trim by the coordinates they are taken along; () is the value
 
 
 class SegmentKinematics:
@@ -199,7 +210,9 @@ class SegmentKinematics:
     def air_velocity(self, *along: str) -> list:
         """Inertial velocity of a point at rest in the rotating axes, and its derivative."""
         spun = _spin(self._derivative(self.position, *along), self.ring(s.rotor_speed))
-        return spun if along else [a + self.ring(b) for a, b in zip(spun, s.airspeed * kin.K_AXIS, strict=True)]
+        return (
+            spun if along else [a + self.ring(b) for a, b in zip(spun, s.airspeed * kin.K_AXIS, strict=True)]
+        )
 
     def velocity(self, axis: str, *along: str):
         """Velocity of the air along a section axis; along a coordinate the point moves and the axis turns."""
@@ -285,7 +298,7 @@ def _motion(kinematics: SegmentKinematics, velocity, motion: str, *along: str) -
 
 
 def rate_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """U_rate: velocity of the air at r = 0 and per unit radius, and rotation about d, for the rate of each coordinate."""
+    """U_rate: velocity of the air at r = 0 and per unit radius, and rotation about d, for each rate."""
     if motion == "theta" or _is_dropped(dropped, name):
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
@@ -333,7 +346,11 @@ def geometric_stiffness(row: str, name: str, dropped: frozenset[str] = CONSISTEN
     changes = {f"f{axis}": kinematics.work_displacement(axis, row, name) for axis in SECTION_AXES}
     changes["m"] = kinematics.work_rotation(row, name)
     return sum(
-        (MOMENTS[load, p] * _power(kinematics, change, p) for load, change in changes.items() for p in POWERS),
+        (
+            MOMENTS[load, p] * _power(kinematics, change, p)
+            for load, change in changes.items()
+            for p in POWERS
+        ),
         sp.Integer(0),
     )
 
@@ -358,7 +375,7 @@ def steady_load(load: str) -> sp.Expr:
 
 
 def products() -> dict[str, sp.MatrixExpr]:
-    """What each segment adds to a blade's airload damping and stiffness, and to the virtual work of its steady airloads."""
+    """What each segment adds to a blade's airload damping and stiffness, gust loads and steady virtual work."""
     loads, motions, coordinates = len(SEGMENT_LOADS), len(SEGMENT_MOTION), len(kin.COORDINATES)
     virtual = sp.MatrixSymbol("virtual_motion", loads, coordinates)
     derivatives = sp.MatrixSymbol("load_derivatives", loads, motions)
@@ -380,7 +397,10 @@ def segment_geometry(dropped: frozenset[str] = CONSISTENT) -> list[tuple[sp.Symb
     """Sines and cosines, anchor and flap arm of a segment in hinge offsets and trim angles."""
     steps = temporaries(SEGMENT_ANGLES) + _line_and_arm()
     if "cone_in_airloads" in dropped:
-        return [(symbol, sp.sympify(_STRAIGHT_BLADE.get(symbol, value)).subs(_STRAIGHT_BLADE)) for symbol, value in steps]
+        return [
+            (symbol, sp.sympify(_STRAIGHT_BLADE.get(symbol, value)).subs(_STRAIGHT_BLADE))
+            for symbol, value in steps
+        ]
     return steps
 
 
@@ -396,7 +416,10 @@ def _line_and_arm() -> list[tuple[sp.Symbol, sp.Expr]]:
         polynomial = ring.reduced(ring(name_trigonometry(_on_segment(expression), SEGMENT_ANGLES)))
         return [sp.factor_terms(polynomial.as_expr().expand().coeff(r, power)) for power in (0, 1)]
 
-    steps = [(symbol, linear(component)[0]) for symbol, component in zip(anchor, kin.at_trim(kin.blade_line()), strict=True)]
+    steps = [
+        (symbol, linear(component)[0])
+        for symbol, component in zip(anchor, kin.at_trim(kin.blade_line()), strict=True)
+    ]
     return [*steps, (flap_arm_at_center, linear(kin.deflected_flap_arm())[0])]
 
 

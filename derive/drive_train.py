@@ -1,7 +1,8 @@
 """Engine and shaft on the rotor's azimuth, mounted on the hub's support.
 
 What turns with the rotor has the spin of azimuth and hub together; shaft and damping feel the azimuth relative to the
-support. The engine's own angular momentum about other axes is left out: its sense and gearing are not part of the model.
+support. The engine's own angular momentum about other axes is left out: its sense and gearing are not part of
+the model.
 """
 
 from __future__ import annotations

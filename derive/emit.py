@@ -95,7 +95,9 @@ def printed_entries(function: Function) -> list[dict[str, str]]:
         else:
             code = print_code(entry.value)
             first[value] = place
-        lines.append({"place": place, "code": code, "equation": entry.equation if entry.equation != equation else ""})
+        lines.append(
+            {"place": place, "code": code, "equation": entry.equation if entry.equation != equation else ""}
+        )
         equation = entry.equation
     return lines
 
@@ -103,7 +105,9 @@ def printed_entries(function: Function) -> list[dict[str, str]]:
 def operations(function: Function) -> int:
     """Arithmetic operations per point, equal entries counted once."""
     distinct = {sp.expand(entry.value) for entry in function.entries.values()}
-    expressions = [value for _, value in function.steps] + [value for value in distinct if -value not in distinct]
+    expressions = [value for _, value in function.steps] + [
+        value for value in distinct if -value not in distinct
+    ]
     return int(sum(sp.count_ops(expression) for expression in expressions))
 
 
@@ -116,7 +120,8 @@ def describe(function: Function) -> dict:
         "arguments": argument_lines(function),
         "steps": [{"name": str(symbol), "code": print_code(value)} for symbol, value in function.steps],
         "values": [
-            {"name": str(v), "unit": QUANTITIES[v].unit or "-", "meaning": QUANTITIES[v].meaning} for v in function.values
+            {"name": str(v), "unit": QUANTITIES[v].unit or "-", "meaning": QUANTITIES[v].meaning}
+            for v in function.values
         ],
         "tuple_name": "".join(part.capitalize() for part in function.name.split("_")),
         "rows": function.rows,
@@ -145,21 +150,44 @@ def index_groups(functions: list[Function]) -> list[dict]:
 
 
 # Steps whose text the generated files depend on; the audit only reads them.
-_SOURCES = ("symbols", "kinematics", "polynomials", "published", "inertia", "flap_lag_springs", "pitch", "section")
+_SOURCES = (
+    "symbols",
+    "kinematics",
+    "polynomials",
+    "published",
+    "inertia",
+    "flap_lag_springs",
+    "pitch",
+    "section",
+)
 _SOURCES += ("airloads", "lift_slope", "trim", "multiblade", "drive_train", "equations", "emit")
 
 
 def derivation_hash() -> str:
     """Digest of the derivation and the templates, so that a file says what made it."""
     digest = hashlib.sha256()
-    for path in [*(ROOT / "derive" / f"{name}.py" for name in sorted(_SOURCES)), *sorted(TEMPLATES.glob("*.jinja"))]:
+    for path in [
+        *(ROOT / "derive" / f"{name}.py" for name in sorted(_SOURCES)),
+        *sorted(TEMPLATES.glob("*.jinja")),
+    ]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 
 
 def formatted(source: str, name: str) -> str:
     """The source as the formatter lays it out."""
-    command = [sys.executable, "-m", "ruff", "format", "--isolated", "--line-length", "110", "--stdin-filename", name, "-"]
+    command = [
+        sys.executable,
+        "-m",
+        "ruff",
+        "format",
+        "--isolated",
+        "--line-length",
+        "110",
+        "--stdin-filename",
+        name,
+        "-",
+    ]
     return subprocess.run(command, input=source, capture_output=True, text=True, check=True).stdout
 
 
@@ -178,12 +206,16 @@ def render_module(functions: list[Function], title: str) -> str:
     """Text of one generated module, formatted; dimensions are checked on the way."""
     for function in functions:
         function.check_dimensions()
-    text = _environment().get_template("module.py.jinja").render(
-        title=title,
-        functions=[describe(function) for function in functions],
-        indices=index_groups(functions),
-        operations=sum(operations(function) for function in functions),
-        **_header(),
+    text = (
+        _environment()
+        .get_template("module.py.jinja")
+        .render(
+            title=title,
+            functions=[describe(function) for function in functions],
+            indices=index_groups(functions),
+            operations=sum(operations(function) for function in functions),
+            **_header(),
+        )
     )
     return formatted(text, "module.py")
 
@@ -199,16 +231,26 @@ def render() -> Iterator[tuple[str, str]]:
     for module in REDUCED_MODULES:
         title = f"{MODULE_TITLES[module]}, as published"
         yield f"published/{module}.py", render_module(reduced_functions(module), title)
-    package = _environment().get_template("package.py.jinja").render(
-        modules=list(STEPS),
-        blade_coordinates=kin.COORDINATES,
-        fixed_coordinates=multiblade.FIXED_COORDINATES,
-        fixed_inputs=multiblade.FIXED_INPUTS,
-        **_header(),
+    package = (
+        _environment()
+        .get_template("package.py.jinja")
+        .render(
+            modules=list(STEPS),
+            blade_coordinates=kin.COORDINATES,
+            fixed_coordinates=multiblade.FIXED_COORDINATES,
+            fixed_inputs=multiblade.FIXED_INPUTS,
+            **_header(),
+        )
     )
     yield "__init__.py", formatted(package, "__init__.py")
-    published = _environment().get_template("published.py.jinja").render(
-        modules=REDUCED_MODULES, terms=[{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()], **_header()
+    published = (
+        _environment()
+        .get_template("published.py.jinja")
+        .render(
+            modules=REDUCED_MODULES,
+            terms=[{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()],
+            **_header(),
+        )
     )
     yield "published/__init__.py", formatted(published, "__init__.py")
 
@@ -229,7 +271,9 @@ def derive_files(progress=print) -> dict[str, str]:
     start = time.perf_counter()
     for count, (name, text) in enumerate(render(), start=1):
         files[name] = text
-        progress(f"[{count}/{total}] {name:<24} {len(text.splitlines()):>5} lines  {time.perf_counter() - start:6.1f} s")
+        progress(
+            f"[{count}/{total}] {name:<24} {len(text.splitlines()):>5} lines  {time.perf_counter() - start:6.1f} s"
+        )
     return files
 
 
@@ -258,7 +302,11 @@ def differences(folder: Path = GENERATED, progress=print) -> list[str]:
         present = (folder / name).read_text(encoding="utf-8")
         if present != files[name]:
             diff = difflib.unified_diff(
-                present.splitlines(), files[name].splitlines(), f"generated/{name}", f"derived/{name}", lineterm=""
+                present.splitlines(),
+                files[name].splitlines(),
+                f"generated/{name}",
+                f"derived/{name}",
+                lineterm="",
             )
             found.append("\n".join(diff))
     return found

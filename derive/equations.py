@@ -12,7 +12,17 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from derive import airloads, drive_train, flap_lag_springs, inertia, lift_slope, multiblade, pitch, section, trim
+from derive import (
+    airloads,
+    drive_train,
+    flap_lag_springs,
+    inertia,
+    lift_slope,
+    multiblade,
+    pitch,
+    section,
+    trim,
+)
 from derive import kinematics as kin
 from derive import symbols as s
 from derive.published import CONSISTENT, PUBLISHED
@@ -90,7 +100,9 @@ class Function:
         free -= known
         unknown = free - set(QUANTITIES)
         if unknown:
-            raise ValueError(f"{self.module}.{self.name} uses symbols that are no argument: {sorted(map(str, unknown))}")
+            raise ValueError(
+                f"{self.module}.{self.name} uses symbols that are no argument: {sorted(map(str, unknown))}"
+            )
         return [symbol for symbol in QUANTITIES if symbol in free]
 
     def check_dimensions(self) -> None:
@@ -120,7 +132,9 @@ def dimension_of(expression: sp.Expr, where: str = "") -> Dimension:
             raise DimensionError(f"{where}: terms of different dimension in {expression}")
         return dimensions.pop()
     if expression.is_Mul:
-        return tuple(sum(parts) for parts in zip(*(dimension_of(a, where) for a in expression.args), strict=True))
+        return tuple(
+            sum(parts) for parts in zip(*(dimension_of(a, where) for a in expression.args), strict=True)
+        )
     if expression.is_Pow:
         exponent = expression.exp
         return tuple(int(d * exponent) for d in dimension_of(expression.base, where))
@@ -146,7 +160,9 @@ def _per_time(order: int) -> Dimension:
     return (0, 0, order)
 
 
-def _entries(rows, columns, value: Callable, dimension: Callable, equation: dict | str) -> dict[tuple[str, str], Entry]:
+def _entries(
+    rows, columns, value: Callable, dimension: Callable, equation: dict | str
+) -> dict[tuple[str, str], Entry]:
     entries = {}
     for row in rows:
         for column in columns:
@@ -157,7 +173,9 @@ def _entries(rows, columns, value: Callable, dimension: Callable, equation: dict
     return entries
 
 
-def blade_matrix(module, name, summary, value, order: int, rows=kin.COORDINATES, columns=kin.COORDINATES, steps=()):
+def blade_matrix(
+    module, name, summary, value, order: int, rows=kin.COORDINATES, columns=kin.COORDINATES, steps=()
+):
     """A matrix of one blade in rotating axes; `order` counts the time derivatives of the column's coordinate."""
 
     def dimension(row, column):
@@ -165,7 +183,9 @@ def blade_matrix(module, name, summary, value, order: int, rows=kin.COORDINATES,
 
     entries = _entries(rows, columns, value, dimension, ROW_EQUATION)
     origin = "AIAA-2002-1604: " + "; ".join(dict.fromkeys(ROW_EQUATION[row] for row, _ in entries))
-    return Function(module, name, summary, origin, list(steps), rows=tuple(rows), columns=tuple(columns), entries=entries)
+    return Function(
+        module, name, summary, origin, list(steps), rows=tuple(rows), columns=tuple(columns), entries=entries
+    )
 
 
 def values(module, name, summary, origin, steps, returned=None):
@@ -195,10 +215,18 @@ def inertia_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function
     )
     yield blade_matrix("inertia", "mass", "Mass matrix of one blade in rotating axes.", blade.mass, 2)
     yield blade_matrix(
-        "inertia", "gyroscopic", "Gyroscopic (Coriolis) matrix of one blade in rotating axes.", blade.gyroscopic, 1
+        "inertia",
+        "gyroscopic",
+        "Gyroscopic (Coriolis) matrix of one blade in rotating axes.",
+        blade.gyroscopic,
+        1,
     )
     yield blade_matrix(
-        "inertia", "centrifugal_stiffness", "Centrifugal stiffness of one blade in rotating axes.", blade.centrifugal, 0
+        "inertia",
+        "centrifugal_stiffness",
+        "Centrifugal stiffness of one blade in rotating axes.",
+        blade.centrifugal,
+        0,
     )
 
 
@@ -231,7 +259,9 @@ def spring_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]
 
 
 def pitch_shared() -> Iterator[Function]:
-    yield blade_matrix("pitch", "damping", "Dampers of one blade and its share of the gimbal's.", pitch.damping, 1)
+    yield blade_matrix(
+        "pitch", "damping", "Dampers of one blade and its share of the gimbal's.", pitch.damping, 1
+    )
     yield values(
         "pitch",
         "couplings",
@@ -402,7 +432,9 @@ def airload_shared() -> Iterator[Function]:
         airloads.SEGMENT_LOADS,
         airloads.SEGMENT_MOTION,
         _load_derivative,
-        lambda load, motion: _plus(FORCE if load.endswith("_0") else MOMENT, minus=_SEGMENT_MOTION_DIMENSION[motion]),
+        lambda load, motion: _plus(
+            FORCE if load.endswith("_0") else MOMENT, minus=_SEGMENT_MOTION_DIMENSION[motion]
+        ),
         "strip theory on a straight segment, as NASA TN D-7677",
     )
     yield _segment_matrix(
@@ -443,7 +475,11 @@ def trim_shared() -> Iterator[Function]:
         rows=trim.STEADY_ROWS,
         columns=("trim",),
         entries=_entries(
-            trim.STEADY_ROWS, ("trim",), lambda row, _: trim.residual(row), lambda row, _: row_dimension(row), ROW_EQUATION
+            trim.STEADY_ROWS,
+            ("trim",),
+            lambda row, _: trim.residual(row),
+            lambda row, _: row_dimension(row),
+            ROW_EQUATION,
         ),
     )
     yield Function(
@@ -453,7 +489,9 @@ def trim_shared() -> Iterator[Function]:
         "AIAA-2002-1604, Eqs. 12 and 32, differentiated",
         rows=trim.STEADY_ROWS,
         columns=tuple(columns),
-        entries=_entries(trim.STEADY_ROWS, columns, trim.jacobian, lambda row, _: row_dimension(row), ROW_EQUATION),
+        entries=_entries(
+            trim.STEADY_ROWS, columns, trim.jacobian, lambda row, _: row_dimension(row), ROW_EQUATION
+        ),
     )
     for function in (
         _virtual_motion("virtual_motion", trim.STEADY_ROWS, CONSISTENT),
@@ -508,7 +546,6 @@ def multiblade_shared() -> Iterator[Function]:
             blade_matrices=("mass", "damping", "stiffness")[: 3 - order],
         )
 
-
     yield Function(
         "multiblade",
         "input_matrix",
@@ -546,7 +583,10 @@ def multiblade_shared() -> Iterator[Function]:
 
 def reactionless_functions() -> Iterator[Function]:
     summaries = {
-        "reactionless": ("motions of a harmonic whose sum over the blades vanishes", multiblade.REACTIONLESS_PAIR),
+        "reactionless": (
+            "motions of a harmonic whose sum over the blades vanishes",
+            multiblade.REACTIONLESS_PAIR,
+        ),
         "differential": ("motion of neighbouring blades against each other, even N", multiblade.DIFFERENTIAL),
     }
     for prefix, (summary, names) in summaries.items():
@@ -614,12 +654,11 @@ def consistent_functions(module: str) -> list[Function]:
 
 
 def reduced_functions(module: str, dropped: frozenset[str] = PUBLISHED) -> list[Function]:
-    """The functions that dropped terms can change, without those terms, and with the signatures of the consistent ones."""
+    """The functions that dropped terms can change, without those terms, under the consistent signatures."""
     _, changing = STEPS[module]
     signatures = {function.name: tuple(function.arguments) for function in changing()}
     return [
-        dataclasses.replace(function, signature=signatures[function.name])
-        for function in changing(dropped)
+        dataclasses.replace(function, signature=signatures[function.name]) for function in changing(dropped)
     ]
 
 

@@ -23,18 +23,34 @@ FLAP_LAG = ("flap", "lag")
 _KINDS = (("", "", ""), ("_slope", "'", " per rad of pitch"), ("_curvature", "''", " per rad² of pitch"))
 STIFFNESS = {
     (a, b, order): s.quantity(
-        f"{a}_{b}_stiffness{suffix}", rf"K_{{{greek}}}{prime}", "N m/rad", f"effective {a}-{b} stiffness{meaning}"
+        f"{a}_{b}_stiffness{suffix}",
+        rf"K_{{{greek}}}{prime}",
+        "N m/rad",
+        f"effective {a}-{b} stiffness{meaning}",
     )
     for order, (suffix, prime, meaning) in enumerate(_KINDS)
-    for a, b, greek in (("flap", "flap", r"\beta\beta"), ("flap", "lag", r"\beta\zeta"), ("lag", "lag", r"\zeta\zeta"))
+    for a, b, greek in (
+        ("flap", "flap", r"\beta\beta"),
+        ("flap", "lag", r"\beta\zeta"),
+        ("lag", "lag", r"\zeta\zeta"),
+    )
 }
 outboard_stiffness_difference = s.quantity(
-    "outboard_stiffness_difference", r"R_\beta K_\zeta-R_\zeta K_\beta", "N m/rad", "what pitch moves from lag to flap"
+    "outboard_stiffness_difference",
+    r"R_\beta K_\zeta-R_\zeta K_\beta",
+    "N m/rad",
+    "what pitch moves from lag to flap",
 )
-series_softening = s.quantity("series_softening", r"\Delta_s", "", "what sin² of structural pitch adds to Delta")
-series_determinant = s.quantity("series_determinant", r"\Delta", "", "determinant of the springs in series, Eq. 22")
+series_softening = s.quantity(
+    "series_softening", r"\Delta_s", "", "what sin² of structural pitch adds to Delta"
+)
+series_determinant = s.quantity(
+    "series_determinant", r"\Delta", "", "determinant of the springs in series, Eq. 22"
+)
 series_determinant_slope = s.quantity("series_determinant_slope", r"\Delta'", "", "its derivative with pitch")
-series_determinant_curvature = s.quantity("series_determinant_curvature", r"\Delta''", "", "its second derivative")
+series_determinant_curvature = s.quantity(
+    "series_determinant_curvature", r"\Delta''", "", "its second derivative"
+)
 
 
 def flexibility(angle: sp.Expr) -> sp.Matrix:
@@ -57,7 +73,9 @@ def blade_axes(angle: sp.Expr) -> sp.Matrix:
         [[sp.cos(angle), 0, sp.sin(angle)], [0, 1, 0], [-sp.sin(angle), 0, sp.cos(angle)]]
     )
     flatwise, edgewise = rotation_about_span * kin.K_AXIS, rotation_about_span * kin.I_AXIS
-    return sp.Matrix.hstack(*(sp.Matrix([axis.dot(kin.K_AXIS), axis.dot(kin.I_AXIS)]) for axis in (flatwise, edgewise)))
+    return sp.Matrix.hstack(
+        *(sp.Matrix([axis.dot(kin.K_AXIS), axis.dot(kin.I_AXIS)]) for axis in (flatwise, edgewise))
+    )
 
 
 @functools.cache
@@ -133,9 +151,14 @@ def spring_energy(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """U of the flap and lag springs, K_eff a function of the pitch relative to the yoke."""
     deflection = {"flap": kin.FLAP_ANGLE, "lag": kin.LAG_ANGLE}
     _, to_yoke = kin.pitch_angles(dropped)
-    return sum(
-        _stiffness_function(a, b, to_yoke - s.pitch) * deflection[a] * deflection[b] for a in FLAP_LAG for b in FLAP_LAG
-    ) / 2
+    return (
+        sum(
+            _stiffness_function(a, b, to_yoke - s.pitch) * deflection[a] * deflection[b]
+            for a in FLAP_LAG
+            for b in FLAP_LAG
+        )
+        / 2
+    )
 
 
 def _stiffness_function(a: str, b: str, pitch_change: sp.Expr) -> sp.Expr:
@@ -146,7 +169,11 @@ def _stiffness_function(a: str, b: str, pitch_change: sp.Expr) -> sp.Expr:
 
 def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Second derivative of the spring energy at trim."""
-    if "springs_follow_pitch" in dropped and not (i in FLAP_LAG and j in FLAP_LAG) and (i != "pitch" or "gimbal" in j):
+    if (
+        "springs_follow_pitch" in dropped
+        and not (i in FLAP_LAG and j in FLAP_LAG)
+        and (i != "pitch" or "gimbal" in j)
+    ):
         return sp.Integer(0)
     if "spring_curvature" in dropped and i == j == "pitch":
         return sp.Integer(0)
@@ -159,7 +186,10 @@ def steady(i: str) -> sp.Expr:
 
 
 cyclic_flap_stiffness_excess = s.quantity(
-    "cyclic_flap_stiffness_excess", r"\Delta K_{\beta c}", "N m/rad", "flap stiffness of cyclic above collective motion"
+    "cyclic_flap_stiffness_excess",
+    r"\Delta K_{\beta c}",
+    "N m/rad",
+    "flap stiffness of cyclic above collective motion",
 )
 
 

@@ -38,12 +38,18 @@ axial_moment = s.quantity("axial_moment", "S_k", "kg m", "mass times axial arm")
 flap_moment = s.quantity("flap_moment", r"S_b", "kg m", "mass times flap arm")
 radial_inertia = s.quantity("radial_inertia", "I_{jj}", "kg m^2", "mass times radial arm squared")
 axial_inertia = s.quantity("axial_inertia", "I_{kk}", "kg m^2", "mass times axial arm squared")
-radial_axial_inertia = s.quantity("radial_axial_inertia", "I_{jk}", "kg m^2", "mass times radial and axial arm")
+radial_axial_inertia = s.quantity(
+    "radial_axial_inertia", "I_{jk}", "kg m^2", "mass times radial and axial arm"
+)
 radial_flap_inertia = s.quantity("radial_flap_inertia", "I_{jb}", "kg m^2", "mass times radial and flap arm")
 axial_flap_inertia = s.quantity("axial_flap_inertia", "I_{kb}", "kg m^2", "mass times axial and flap arm")
-radial_lag_inertia = s.quantity("radial_lag_inertia", r"I_{j\zeta}", "kg m^2", "mass times radial and lag arm")
+radial_lag_inertia = s.quantity(
+    "radial_lag_inertia", r"I_{j\zeta}", "kg m^2", "mass times radial and lag arm"
+)
 axial_lag_inertia = s.quantity("axial_lag_inertia", r"I_{k\zeta}", "kg m^2", "mass times axial and lag arm")
-deflected_flap_inertia = s.quantity("deflected_flap_inertia", "I_{bb}", "kg m^2", "mass times flap arm squared")
+deflected_flap_inertia = s.quantity(
+    "deflected_flap_inertia", "I_{bb}", "kg m^2", "mass times flap arm squared"
+)
 deflected_flap_lag_inertia = s.quantity(
     "deflected_flap_lag_inertia", r"I_{b\zeta}", "kg m^2", "mass times flap and lag arm"
 )
@@ -69,8 +75,12 @@ TRIM_INTEGRALS = {
 # Integrals over the arms of the deflected blade, between the mass data and the integrals at trim.
 inboard_moment = s.quantity("inboard_moment", "S_a", "kg m", "mass times inboard arm")
 inboard_inertia = s.quantity("inboard_inertia", "I_{aa}", "kg m^2", "mass times inboard arm squared")
-inboard_flap_inertia = s.quantity("inboard_flap_inertia", "I_{ab}", "kg m^2", "mass times inboard and flap arm")
-inboard_lag_inertia = s.quantity("inboard_lag_inertia", r"I_{a\zeta}", "kg m^2", "mass times inboard and lag arm")
+inboard_flap_inertia = s.quantity(
+    "inboard_flap_inertia", "I_{ab}", "kg m^2", "mass times inboard and flap arm"
+)
+inboard_lag_inertia = s.quantity(
+    "inboard_lag_inertia", r"I_{a\zeta}", "kg m^2", "mass times inboard and lag arm"
+)
 
 DEFLECTED_INTEGRALS = {
     (): s.blade_mass,
@@ -115,7 +125,9 @@ def trim_integrals(dropped: frozenset[str] = CONSISTENT) -> dict[sp.Symbol, sp.E
     angles = dict(temporaries(WHOLE_BLADE_ANGLES))
     if "finite_trim_angles" in dropped:
         integrals = {symbol: first_order(value) for symbol, value in integrals.items()}
-        angles = {symbol: sp.series(angle, _argument(angle), n=2).removeO() for symbol, angle in angles.items()}
+        angles = {
+            symbol: sp.series(angle, _argument(angle), n=2).removeO() for symbol, angle in angles.items()
+        }
     if "trim_lag" in dropped:
         angles |= {cos_lag: sp.Integer(1), sin_lag: sp.Integer(0)}
     return angles | integrals
@@ -160,9 +172,14 @@ def dependent_inertias() -> dict[sp.Symbol, sp.Expr]:
     radius = {s.flap_hub_inertia: kin.outboard_arm + s.flap_hinge_offset}
     radius |= {s.lag_hub_inertia: kin.lag_arm + s.lag_hinge_offset}
     radius |= {s.flap_lag_inertia: kin.lag_arm + s.lag_hinge_offset - s.flap_hinge_offset}
-    hinge_arm = {s.flap_hub_inertia: kin.outboard_arm, s.lag_hub_inertia: kin.lag_arm, s.flap_lag_inertia: kin.lag_arm}
+    hinge_arm = {
+        s.flap_hub_inertia: kin.outboard_arm,
+        s.lag_hub_inertia: kin.lag_arm,
+        s.flap_lag_inertia: kin.lag_arm,
+    }
     return {
-        symbol: integrate_mass(sp.expand(radius[symbol] * hinge_arm[symbol]), MASS_INTEGRALS) for symbol in radius
+        symbol: integrate_mass(sp.expand(radius[symbol] * hinge_arm[symbol]), MASS_INTEGRALS)
+        for symbol in radius
     }
 
 

@@ -84,7 +84,9 @@ LAG_ANGLE = s.lag + q["lag"]
 
 
 # Arms of the undeflected blade.
-inboard_arm = s.quantity("inboard_arm", r"r-\rho_\beta", "m", "length inboard of the flap hinge, at most its offset")
+inboard_arm = s.quantity(
+    "inboard_arm", r"r-\rho_\beta", "m", "length inboard of the flap hinge, at most its offset"
+)
 outboard_arm = s.quantity("outboard_arm", r"\rho_\beta", "m", "distance outboard of the flap hinge")
 lag_arm = s.quantity("lag_arm", r"\rho_\zeta", "m", "distance outboard of the lag hinge")
 
@@ -92,7 +94,9 @@ lag_arm = s.quantity("lag_arm", r"\rho_\zeta", "m", "distance outboard of the la
 chordwise_arm = s.quantity("chordwise_arm", "p_i", "m", "trim position towards the trailing edge")
 radial_arm = s.quantity("radial_arm", "p_j", "m", "trim position outboard")
 axial_arm = s.quantity("axial_arm", "p_k", "m", "trim position along the shaft")
-flap_arm = s.quantity("flap_arm", r"\rho_\beta-(1-\cos\bar\zeta_0)\rho_\zeta", "m", "arm of the flap displacement")
+flap_arm = s.quantity(
+    "flap_arm", r"\rho_\beta-(1-\cos\bar\zeta_0)\rho_\zeta", "m", "arm of the flap displacement"
+)
 
 
 def blade_line() -> sp.Matrix:

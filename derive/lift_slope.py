@@ -1,7 +1,8 @@
 """Closed forms of the lift-slope airloads of the published set: constant chord, no compressibility (NASA TN D-7677).
 
-With u_T = Omega r and u_P = V every section derivative that is proportional to the lift slope is, but for 1/U, a polynomial in
-r. So the radial moments are combinations of I_m = int x^m / sqrt(lambda² + x²) dx, with x = r/R and lambda = V/(Omega R).
+With u_T = Omega r and u_P = V every section derivative that is proportional to the lift slope is, but for 1/U, a
+polynomial in r. So the radial moments are combinations of I_m = int x^m / sqrt(lambda² + x²) dx, with x = r/R and
+lambda = V/(Omega R).
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ logarithm = s.quantity("logarithm", "I_0", "", "asinh(x_1/lambda) - asinh(x_0/la
 
 HIGHEST = 4
 INTEGRALS = [
-    s.quantity(f"speed_integral_{m}", f"I_{m}", "", f"integral of x^{m} over the section speed, in tip speeds")
+    s.quantity(
+        f"speed_integral_{m}", f"I_{m}", "", f"integral of x^{m} over the section speed, in tip speeds"
+    )
     for m in range(HIGHEST + 1)
 ]
 

@@ -56,10 +56,16 @@ def blade_coordinates() -> sp.Matrix:
     tilt = sp.Matrix([fixed["gimbal_1s"], -fixed["gimbal_1c"], 0])  # g = beta_GS I - beta_GC J
     blade = {"azimuth": fixed["azimuth"]}
     for prefix, vector in (("hub", displacement), ("turn", turn)):
-        blade |= {f"{prefix}_i": vector.dot(I_AZIMUTH), f"{prefix}_j": vector.dot(J_AZIMUTH), f"{prefix}_k": vector[2]}
+        blade |= {
+            f"{prefix}_i": vector.dot(I_AZIMUTH),
+            f"{prefix}_j": vector.dot(J_AZIMUTH),
+            f"{prefix}_k": vector[2],
+        }
     blade |= {"gimbal_flap": tilt.dot(I_AZIMUTH), "gimbal_roll": tilt.dot(J_AZIMUTH)}
     for angle in ("flap", "lag", "pitch"):
-        blade[angle] = fixed[f"{angle}_0"] + fixed[f"{angle}_1c"] * sp.cos(psi) + fixed[f"{angle}_1s"] * sp.sin(psi)
+        blade[angle] = (
+            fixed[f"{angle}_0"] + fixed[f"{angle}_1c"] * sp.cos(psi) + fixed[f"{angle}_1s"] * sp.sin(psi)
+        )
     return sp.Matrix([blade[name] for name in kin.COORDINATES]).jacobian(list(fixed.values()))
 
 
@@ -131,7 +137,9 @@ def blade_inputs() -> sp.Matrix:
     fixed = {name: sp.Symbol(f"fixed_{name}") for name in FIXED_INPUTS}
     gust = sp.Matrix([fixed["gust_x"], fixed["gust_y"], fixed["gust_z"]])
     pitch = fixed["collective"] + fixed["cyclic_1c"] * sp.cos(psi) + fixed["cyclic_1s"] * sp.sin(psi)
-    return sp.Matrix([pitch, gust.dot(I_AZIMUTH), gust.dot(J_AZIMUTH), gust[2]]).jacobian(list(fixed.values()))
+    return sp.Matrix([pitch, gust.dot(I_AZIMUTH), gust.dot(J_AZIMUTH), gust[2]]).jacobian(
+        list(fixed.values())
+    )
 
 
 def input_matrix(row: int, column: int) -> sp.Expr:
@@ -154,7 +162,7 @@ harmonic = s.quantity("harmonic", "n", "", "harmonic of the azimuth, 2 to below 
 
 
 def _angle_and_motion(name: str) -> tuple[str, sp.Expr]:
-    """Blade angle of a reactionless coordinate, and its share in the blade at azimuth psi (in units of the harmonic)."""
+    """Blade angle of a reactionless coordinate, and its share in a blade at azimuth psi / n."""
     angle, kind = name.split("_")
     return angle, {"nc": sp.cos(psi), "ns": sp.sin(psi), "d": sp.Integer(1)}[kind]
 

@@ -1,4 +1,5 @@
-"""Blade pitch: lumped inertia, control system, propeller moment, dampers, gimbal restraint, and the closed-form couplings.
+"""Blade pitch: lumped inertia, control system, propeller moment, dampers, gimbal restraint, and the closed-form
+couplings.
 
 Pitch inertia is lumped on purpose: it acts on the pitch relative to the shaft alone, and the propeller moment uses the
 steady rotor speed. Both couplings of Eqs. 36 and 37 are the gradient of the spring energy's pitch moment.

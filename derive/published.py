@@ -30,7 +30,7 @@ DROPPED_TERMS = {
         "neglected, as the paper says of Eqs. 36 and 37",
     ),
     "hub_turn_of_raised_blade": DroppedTerm(
-        "in-plane acceleration of the coned blade when the hub turns about an in-plane axis: (alpha'' x k) r (beta_P + beta_0)",
+        "in-plane acceleration of the coned blade when the hub tilts: (alpha'' x k) r (beta_P + beta_0)",
         "Eq. 11, components i and j",
         "absent; first order in the cone",
     ),
@@ -40,7 +40,7 @@ DROPPED_TERMS = {
         "absent, although the same term of the blade's own flapping is there",
     ),
     "yoke_roll": DroppedTerm(
-        "roll gamma of the rigid yoke about the blade's radius: in-plane swing of the coned blade, and its part in the pitch",
+        "roll gamma of the rigid yoke about the blade's radius: in-plane swing of the coned blade, part of the pitch",
         "Eqs. 2, 3, 11, 14-16",
         "absent: Eq. 2 has the gimbal as a flap angle",
     ),

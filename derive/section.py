@@ -20,7 +20,9 @@ tangential_velocity = s.quantity("tangential_velocity", "u_T", "m/s", "velocity 
 axial_velocity = s.quantity("axial_velocity", "u_P", "m/s", "velocity of the section along n")
 radial_velocity = s.quantity("radial_velocity", "u_R", "m/s", "velocity of the section along d")
 section_spin = s.quantity("section_spin", r"\omega_d", "rad/s", "rotation of the section about d, nose up")
-section_damping = s.quantity("section_damping", r"\pi_d", "", "1 with quasi-steady pitch damping of the section, else 0")
+section_damping = s.quantity(
+    "section_damping", r"\pi_d", "", "1 with quasi-steady pitch damping of the section, else 0"
+)
 section_pitch = s.quantity("section_pitch", r"\theta", "rad", "pitch of the section: trim pitch and twist")
 section_speed = s.quantity("section_speed", "U", "m/s", "speed of the air in the section's plane")
 inflow_angle = s.quantity("inflow_angle", r"\phi", "rad", "angle of the air's velocity to i'")
@@ -42,8 +44,13 @@ COEFFICIENT = {
     )
 }
 
-VELOCITY = {"_ut": tangential_velocity, "_up": axial_velocity, "_ur": radial_velocity, "_theta": section_pitch, "_spin": section_spin}
-
+VELOCITY = {
+    "_ut": tangential_velocity,
+    "_up": axial_velocity,
+    "_ur": radial_velocity,
+    "_theta": section_pitch,
+    "_spin": section_spin,
+}
 
 
 def _unit(load: str, per: str) -> str:
@@ -87,7 +94,10 @@ def loads() -> dict[str, sp.Expr]:
         "fx": pressure_chord * speed() * (lift * axial_velocity + drag * tangential_velocity),
         "fn": pressure_chord * speed() * (lift * tangential_velocity - drag * axial_velocity),
         "fd": -pressure_chord * speed() * drag * radial_velocity,
-        "m": pressure_chord * s.chord * speed() * (speed() * moment - section_damping * sp.pi / 4 * s.chord * section_spin),
+        "m": pressure_chord
+        * s.chord
+        * speed()
+        * (speed() * moment - section_damping * sp.pi / 4 * s.chord * section_spin),
     }
 
 
@@ -101,13 +111,13 @@ def load_derivatives() -> dict[sp.Symbol, sp.Expr]:
 
 def _named(expression: sp.Expr) -> sp.Expr:
     """Coefficients, speed and angle by name."""
-    expression = expression.doit().replace(
-        lambda e: isinstance(e, sp.Subs), lambda e: _derivative_name(e)
-    )
+    expression = expression.doit().replace(lambda e: isinstance(e, sp.Subs), lambda e: _derivative_name(e))
     names = {_coefficient(name): COEFFICIENT[name, ""] for name in COEFFICIENTS}
     expression = expression.subs(names).subs(speed(), section_speed)
     expression = expression.subs(tangential_velocity**2 + axial_velocity**2, section_speed**2)
-    expression = expression.subs(1 + axial_velocity**2 / tangential_velocity**2, section_speed**2 / tangential_velocity**2)
+    expression = expression.subs(
+        1 + axial_velocity**2 / tangential_velocity**2, section_speed**2 / tangential_velocity**2
+    )
     return sp.factor_terms(sp.expand(expression))
 
 

@@ -24,7 +24,9 @@ def dimension_of_unit(unit: str) -> Dimension:
     for part, sign in ((numerator, 1), (denominator, -1)):
         for name, power in re.findall(r"([A-Za-z]+)(?:\^(\d+))?", part):
             factor = sign * int(power or 1)
-            contribution = {"kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "N": (1, 1, -2), "rad": NUMBER}[name]
+            contribution = {"kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "N": (1, 1, -2), "rad": NUMBER}[
+                name
+            ]
             exponents = [total + factor * one for total, one in zip(exponents, contribution, strict=True)]
     return tuple(exponents)
 
@@ -71,7 +73,9 @@ chord = quantity("chord", "c", "m", "chord of the section")
 
 # Mass integrals of one blade (nomenclature of the paper); the last three follow from the others
 blade_mass = quantity("blade_mass", "m_b", "kg", "mass")
-blade_first_moment = quantity("blade_first_moment", "S_b", "kg m", "first moment about the centre of rotation")
+blade_first_moment = quantity(
+    "blade_first_moment", "S_b", "kg m", "first moment about the centre of rotation"
+)
 blade_inertia = quantity("blade_inertia", "I_b", "kg m^2", "second moment about the centre of rotation")
 flap_first_moment = quantity("flap_first_moment", r"S_\beta", "kg m", "first moment about the flap hinge")
 flap_inertia = quantity("flap_inertia", r"I_\beta", "kg m^2", "second moment about the flap hinge")
@@ -107,21 +111,34 @@ rotating_lag_frequency = quantity(
     "rotating_lag_frequency", r"\omega_\zeta", "rad/s", "rotating lag frequency at zero cone, given"
 )
 cyclic_flap_frequency = quantity(
-    "cyclic_flap_frequency", r"\omega_{\beta c}", "rad/s", "rotating flap frequency of the cyclic motions, given"
+    "cyclic_flap_frequency",
+    r"\omega_{\beta c}",
+    "rad/s",
+    "rotating flap frequency of the cyclic motions, given",
 )
 
 # Drive train
-drive_inertia = quantity("drive_inertia", "J_e", "kg m^2", "inertia that turns with the rotor, at rotor speed")
+drive_inertia = quantity(
+    "drive_inertia", "J_e", "kg m^2", "inertia that turns with the rotor, at rotor speed"
+)
 drive_damping = quantity("drive_damping", "C_e", "N m s/rad", "damping of the rotor speed perturbation")
-shaft_stiffness = quantity("shaft_stiffness", "K_e", "N m/rad", "shaft to an end that turns at constant speed")
+shaft_stiffness = quantity(
+    "shaft_stiffness", "K_e", "N m/rad", "shaft to an end that turns at constant speed"
+)
 
 # Trim
 coning = quantity("coning", r"\bar\beta_0", "rad", "trim elastic coning")
 lag = quantity("lag", r"\bar\zeta_0", "rad", "trim lag")
-elastic_pitch = quantity("elastic_pitch", r"\bar\theta_0", "rad", "trim pitch of the control system's flexibility")
+elastic_pitch = quantity(
+    "elastic_pitch", r"\bar\theta_0", "rad", "trim pitch of the control system's flexibility"
+)
 pitch = quantity("pitch", r"\Theta", "rad", "trim pitch at 0.75R: collective and elastic pitch")
 structural_pitch = quantity(
     "structural_pitch", r"\Theta + \delta_s", "rad", "trim angle of the blade's structural axes"
 )
-pitch_flap_coupling = quantity("pitch_flap_coupling", r"K_{P\beta}", "", "pitch-flap coupling, nose down per flap")
-pitch_lag_coupling = quantity("pitch_lag_coupling", r"K_{P\zeta}", "", "pitch-lag coupling, nose down per lag")
+pitch_flap_coupling = quantity(
+    "pitch_flap_coupling", r"K_{P\beta}", "", "pitch-flap coupling, nose down per flap"
+)
+pitch_lag_coupling = quantity(
+    "pitch_lag_coupling", r"K_{P\zeta}", "", "pitch-lag coupling, nose down per lag"
+)

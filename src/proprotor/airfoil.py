@@ -28,7 +28,8 @@ class SectionCoefficients(NamedTuple):
 class SectionModel(Protocol):
     """Anything that can stand for an airfoil.
 
-    `contains_compressibility` says that the coefficients depend on Mach number already, so that no Prandtl-Glauert factor is
+    `contains_compressibility` says that the coefficients depend on Mach number already, so that no Prandtl-
+    Glauert factor is
     put on them.
     """
 
@@ -48,7 +49,8 @@ class Warns(Protocol):
         ...
 
 
-# Beyond these a straight lift line and the Prandtl-Glauert factor are not to be trusted (assumed, typical of thin sections).
+# Beyond these a straight lift line and the Prandtl-Glauert factor are not to be trusted (assumed, typical of
+# thin sections).
 LINEAR_ALPHA = np.radians(12.0)
 LINEAR_MACH = 0.85
 

@@ -16,7 +16,8 @@ from proprotor.quadrature import POWERS
 from proprotor.rotor import Rotor
 
 Quantities = Mapping[str, Any]
-_STILL = 1e-150  # inflow ratio that stands for no airspeed: its square vanishes against the logarithm of a blade without cutout
+# Inflow ratio that stands for no airspeed: its square vanishes against the logarithm of a blade without cutout.
+_STILL = 1e-150
 
 
 def along_segments(quantities: Quantities) -> dict[str, Any]:
@@ -24,14 +25,19 @@ def along_segments(quantities: Quantities) -> dict[str, Any]:
     return {name: np.asarray(value)[..., None] for name, value in quantities.items()}
 
 
-def segment_quantities(rotor: Rotor, quantities: Quantities, equations: ModuleType = airloads) -> dict[str, Any]:
+def segment_quantities(
+    rotor: Rotor, quantities: Quantities, equations: ModuleType = airloads
+) -> dict[str, Any]:
     """Quantities of each segment at trim: what holds for the whole blade, and the segment's geometry.
 
     `equations` is the generated airload module, here and below.
     """
     quadrature = rotor.quadrature
     pool = along_segments(quantities)
-    pool |= {"beyond_flap_hinge": quadrature.beyond_flap_hinge, "beyond_lag_hinge": quadrature.beyond_lag_hinge}
+    pool |= {
+        "beyond_flap_hinge": quadrature.beyond_flap_hinge,
+        "beyond_lag_hinge": quadrature.beyond_lag_hinge,
+    }
     return pool | evaluate(equations.segment_geometry, pool)._asdict()
 
 
@@ -41,7 +47,8 @@ def _velocities(rotor: Rotor, segments: Quantities, equations: ModuleType) -> di
     line = evaluate(equations.trim_velocity, segments)[..., 0]
     names = ("tangential_velocity", "axial_velocity", "radial_velocity")
     air = {
-        name: quadrature.at_stations(line[..., place]) + quadrature.at_stations(line[..., place + 3]) * quadrature.stations
+        name: quadrature.at_stations(line[..., place])
+        + quadrature.at_stations(line[..., place + 3]) * quadrature.stations
         for place, name in enumerate(names)
     }
     return air | {"section_spin": quadrature.at_stations(line[..., 6])}
@@ -60,7 +67,9 @@ def _compressible(coefficients: SectionCoefficients, mach: NDArray) -> SectionCo
     factor, slope = section.prandtl_glauert(mach=mach)
     scaled = {}
     for name in ("lift", "moment"):
-        value, alpha, by_mach = (getattr(coefficients, f"{name}_coefficient{d}") for d in ("", "_alpha", "_mach"))
+        value, alpha, by_mach = (
+            getattr(coefficients, f"{name}_coefficient{d}") for d in ("", "_alpha", "_mach")
+        )
         scaled |= {f"{name}_coefficient": factor * value, f"{name}_coefficient_alpha": factor * alpha}
         scaled |= {f"{name}_coefficient_mach": factor * by_mach + slope * value}
     return coefficients._replace(**scaled)
@@ -68,7 +77,9 @@ def _compressible(coefficients: SectionCoefficients, mach: NDArray) -> SectionCo
 
 def _lift_slope_alone(coefficients: SectionCoefficients) -> SectionCoefficients:
     kept = coefficients.lift_coefficient_alpha
-    return SectionCoefficients(*([0.0] * len(SectionCoefficients._fields)))._replace(lift_coefficient_alpha=kept)
+    return SectionCoefficients(*([0.0] * len(SectionCoefficients._fields)))._replace(
+        lift_coefficient_alpha=kept
+    )
 
 
 def load_moments(
@@ -110,7 +121,11 @@ def load_moments(
 
 def has_closed_form(rotor: Rotor) -> bool:
     """Whether the lift-slope airloads of the published set can be had without quadrature."""
-    return isinstance(rotor.airfoil, Airfoil) and not isinstance(rotor.chord, tuple) and not callable(rotor.chord)
+    return (
+        isinstance(rotor.airfoil, Airfoil)
+        and not isinstance(rotor.chord, tuple)
+        and not callable(rotor.chord)
+    )
 
 
 def closed_form_moments(rotor: Rotor, segments: Quantities) -> dict[str, NDArray]:
@@ -124,5 +139,7 @@ def closed_form_moments(rotor: Rotor, segments: Quantities) -> dict[str, NDArray
         "inner_edge": edges[..., 0],
         "outer_edge": edges[..., 1],
     }
-    moments = dict.fromkeys((f"{load}_{power}" for load in section.Loads._fields for power in range(POWERS)), 0.0)
+    moments = dict.fromkeys(
+        (f"{load}_{power}" for load in section.Loads._fields for power in range(POWERS)), 0.0
+    )
     return moments | evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()

@@ -26,5 +26,7 @@ EQUATION_SETS = {
     "consistent": EquationSet(
         consistent.inertia, consistent.flap_lag_springs, consistent.pitch, consistent.airloads
     ),
-    "published": EquationSet(published.inertia, published.flap_lag_springs, published.pitch, published.airloads),
+    "published": EquationSet(
+        published.inertia, published.flap_lag_springs, published.pitch, published.airloads
+    ),
 }

@@ -46,7 +46,9 @@ class BladeFrequencies:
     def __post_init__(self) -> None:
         if self.against not in ABSCISSAE:
             raise InputError("against", self.against, f"must be one of {', '.join(ABSCISSAE)}")
-        if self.at is not None and (np.ndim(self.at) != 1 or np.any(np.diff(np.asarray(self.at, dtype=float)) <= 0)):
+        if self.at is not None and (
+            np.ndim(self.at) != 1 or np.any(np.diff(np.asarray(self.at, dtype=float)) <= 0)
+        ):
             raise InputError("at", self.at, "must increase")
         for name in ("flap", "lag", "cyclic_flap"):
             self._check(name, getattr(self, name))

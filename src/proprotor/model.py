@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, FIXED_INPUTS, airloads, drive_train, inertia, multiblade, pitch
+from proprotor_equations import (
+    BLADE_COORDINATES,
+    FIXED_COORDINATES,
+    FIXED_INPUTS,
+    airloads,
+    drive_train,
+    inertia,
+    multiblade,
+    pitch,
+)
 
 from proprotor.blade_airloads import closed_form_moments, has_closed_form, load_moments, segment_quantities
 from proprotor.equation_set import EquationSet
@@ -90,11 +99,15 @@ class LinearModel:
         return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, **parts)
 
 
-def rotor_quantities(rotor: Rotor, operation: Operation, airspeed: NDArray, points: tuple[int, ...]) -> dict[str, Any]:
+def rotor_quantities(
+    rotor: Rotor, operation: Operation, airspeed: NDArray, points: tuple[int, ...]
+) -> dict[str, Any]:
     """Numbers, or arrays flattened over the batch, of rotor, operation and airspeed by the names of the derivation."""
     given = {entry.name: getattr(rotor, entry.name) for entry in fields(rotor)}
     given = {name: value for name, value in given.items() if name not in ("airfoil", "chord", "twist")}
-    given |= {name: getattr(rotor, name) for name in ("flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")}
+    given |= {
+        name: getattr(rotor, name) for name in ("flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")
+    }
     given |= {name: getattr(operation, name) for name in ("rotor_speed", "density", "speed_of_sound")}
     given["propeller_moment"] = float(rotor.propeller_moment)
     softest = _SOFTEST_SPRING * np.maximum(np.maximum(rotor.flap_stiffness, rotor.lag_stiffness), 1.0)
@@ -135,7 +148,9 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed)
     shape = batch_shape(rotor, operation, speed)
-    quantities = rotor_quantities(rotor, operation, speed, shape) | {"section_damping": float(choice.section_damping)}
+    quantities = rotor_quantities(rotor, operation, speed, shape) | {
+        "section_damping": float(choice.section_damping)
+    }
     points = int(np.prod(shape, dtype=int))
     trim = solve_trim(rotor, quantities, choice, _flat(trim_target(rotor, operation), shape), points)
     extra = reactionless_coordinates(int(np.max(rotor.n_blades))) if choice.reactionless else ()
@@ -145,7 +160,8 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     places = [coordinates.index(name) for name in dofs]
     inputs = matrices.pop("B")[:, places].reshape(*shape, len(dofs), len(INPUTS))
     parts = {
-        name: matrix[:, places][:, :, places].reshape(*shape, len(dofs), len(dofs)) for name, matrix in matrices.items()
+        name: matrix[:, places][:, :, places].reshape(*shape, len(dofs), len(dofs))
+        for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
     return LinearModel(**parts, B=inputs, dofs=dofs, trim=shaped, airspeed=np.broadcast_to(speed, shape))
@@ -161,7 +177,7 @@ def _flat(target: Target, shape: tuple[int, ...]) -> Target:
 
 
 def reactionless_coordinates(n_blades: int) -> tuple[str, ...]:
-    """Names of the blade motions beyond Eq. 17: harmonics 2 to below N/2, and for even N neighbours against each other."""
+    """Blade motions beyond Eq. 17: harmonics 2 to below N/2, and for even N neighbours against each other."""
     angles = ("flap", "lag", "pitch")
     pairs = [f"{angle}_{n}{part}" for n in range(2, (n_blades + 1) // 2) for angle in angles for part in "cs"]
     return tuple(pairs + [f"{angle}_d" for angle in angles] * (n_blades % 2 == 0))
@@ -171,7 +187,9 @@ def _check_pitch(rotor: Rotor, options: Options) -> None:
     if options.pitch_is_free and np.any(np.asarray(rotor.pitch_inertia) <= 0):
         raise InputError("pitch_inertia", rotor.pitch_inertia, 'must be above zero with pitch="dynamic"')
     if options.pitch == "coupling" and np.any(np.asarray(rotor.control_stiffness) <= 0):
-        raise InputError("control_stiffness", rotor.control_stiffness, 'must be above zero with pitch="coupling"')
+        raise InputError(
+            "control_stiffness", rotor.control_stiffness, 'must be above zero with pitch="coupling"'
+        )
 
 
 def _free_coordinates(options: Options, coordinates: tuple[str, ...]) -> tuple[str, ...]:
@@ -180,15 +198,24 @@ def _free_coordinates(options: Options, coordinates: tuple[str, ...]) -> tuple[s
         removed.add("pitch")
     if options.rotor_speed == "constant":
         removed.add(ROTOR_SPEED)
-    return tuple(name for name in coordinates if name.rpartition("_")[0] not in removed and name not in removed)
+    return tuple(
+        name for name in coordinates if name.rpartition("_")[0] not in removed and name not in removed
+    )
 
 
 def _matrices(
-    rotor: Rotor, quantities: Mapping[str, Any], options: Options, trim: Trim, points: int, extra: tuple[str, ...]
+    rotor: Rotor,
+    quantities: Mapping[str, Any],
+    options: Options,
+    trim: Trim,
+    points: int,
+    extra: tuple[str, ...],
 ) -> dict[str, NDArray]:
-    """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless coordinates last, NaN where trim failed."""
+    """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless coordinates last; NaN without trim."""
     n = len(FIXED_COORDINATES) + len(extra)
-    matrices = {name: np.full((points, n, n), np.nan) for name in "MCK"} | {"B": np.full((points, n, len(INPUTS)), np.nan)}
+    matrices = {name: np.full((points, n, n), np.nan) for name in "MCK"} | {
+        "B": np.full((points, n, len(INPUTS)), np.nan)
+    }
     good = np.flatnonzero(trim.converged)
     if len(good):
         state = {name: getattr(trim, name)[good] for name in UNKNOWNS}
@@ -210,13 +237,19 @@ def _blade_matrices(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> 
         air_damping, air_stiffness, gusts = _airloads(rotor, pool, options)
         damping, stiffness = damping + air_damping, stiffness + air_stiffness
     swashplate = _swashplate(pool, options, stiffness)
-    return mass, damping, stiffness, np.concatenate([swashplate, np.broadcast_to(gusts, (*swashplate.shape[:-1], 3))], -1)
+    return (
+        mass,
+        damping,
+        stiffness,
+        np.concatenate([swashplate, np.broadcast_to(gusts, (*swashplate.shape[:-1], 3))], -1),
+    )
 
 
 def _swashplate(pool: Mapping[str, Any], options: Options, stiffness: NDArray) -> NDArray:
     """Loads (points, 12, 1) on one blade per unit of pitch that the swashplate asks for.
 
-    With the pitch equations kept, the pitch coordinate is then the whole pitch perturbation and the swashplate pulls at it
+    With the pitch equations kept, the pitch coordinate is then the whole pitch perturbation and the swashplate
+    pulls at it
     through the control system (its rate does not reach the pitch damper). Without them the blade follows at once.
     """
     if options.pitch_is_free:
@@ -224,7 +257,9 @@ def _swashplate(pool: Mapping[str, Any], options: Options, stiffness: NDArray) -
         loads[..., BLADE_COORDINATES.index("pitch"), 0] = pool["control_stiffness"]
         return loads
     stiffness = stiffness.copy()
-    stiffness[..., BLADE_COORDINATES.index("pitch"), BLADE_COORDINATES.index("pitch")] = 0.0  # a row that is left out
+    stiffness[..., BLADE_COORDINATES.index("pitch"), BLADE_COORDINATES.index("pitch")] = (
+        0.0  # a row that is left out
+    )
     return -stiffness[..., BLADE_COORDINATES.index("pitch"), None]
 
 
@@ -262,7 +297,9 @@ def _with_reactionless(
             block = evaluate(getattr(multiblade, f"differential_{kind}"), pool, *blade[:count])
         else:
             harmonic = {"harmonic": int(first.split("_")[1][:-1])}
-            block = evaluate(getattr(multiblade, f"reactionless_{kind}"), dict(pool) | harmonic, *blade[:count])
+            block = evaluate(
+                getattr(multiblade, f"reactionless_{kind}"), dict(pool) | harmonic, *blade[:count]
+            )
         end = start + block.shape[-1]
         whole[..., start:end, start:end] = block
         start = end
@@ -284,7 +321,9 @@ def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray
     pool = dict(pool) | evaluate(equations.inertia.trim_integrals, pool)._asdict()
     mass = evaluate(equations.inertia.mass, pool) + evaluate(equations.pitch.mass, pool)
     damping = evaluate(equations.inertia.gyroscopic, pool) + evaluate(pitch.damping, pool)
-    stiffness = evaluate(equations.inertia.centrifugal_stiffness, pool) + evaluate(equations.pitch.stiffness, pool)
+    stiffness = evaluate(equations.inertia.centrifugal_stiffness, pool) + evaluate(
+        equations.pitch.stiffness, pool
+    )
     return mass, damping, stiffness + evaluate(equations.flap_lag_springs.stiffness, pool)
 
 
@@ -293,16 +332,26 @@ def _airloads(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[
     motion = options.equation_set.airloads
     segments = segment_quantities(rotor, pool, motion)
     segments |= _moments(rotor, segments, options)
-    for name in ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion"):
+    for name in (
+        "virtual_motion",
+        "rate_motion",
+        "displacement_motion",
+        "geometric_stiffness",
+        "gust_motion",
+    ):
         segments[name] = evaluate(getattr(motion, name), segments)
     segments["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
-    return tuple(evaluate(product, segments) for product in (airloads.damping, airloads.stiffness, airloads.gust_loads))
+    return tuple(
+        evaluate(product, segments) for product in (airloads.damping, airloads.stiffness, airloads.gust_loads)
+    )
 
 
 def _moments(rotor: Rotor, segments: Mapping[str, Any], options: Options) -> dict[str, NDArray]:
     """Radial moments of the section loads: in closed form where there is one, else by quadrature."""
     lift_slope_only = options.airloads == "lift-slope"
-    as_published = options.equations == "published" and not options.compressibility and not options.section_damping
+    as_published = (
+        options.equations == "published" and not options.compressibility and not options.section_damping
+    )
     if lift_slope_only and as_published and has_closed_form(rotor):
         return closed_form_moments(rotor, segments)
     return load_moments(
@@ -318,7 +367,10 @@ def rigid_hub_mass(rotor: Rotor) -> NDArray:
     """Mass matrix (6, 6) of the undeflected rotor on its hub coordinates, everything else locked."""
     still = {name: 0.0 for name in UNKNOWNS}
     names = [e.name for e in fields(rotor) if e.name not in ("airfoil", "chord", "twist")]
-    pool = {name: getattr(rotor, name) for name in (*names, "flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")}
+    pool = {
+        name: getattr(rotor, name)
+        for name in (*names, "flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")
+    }
     pool |= still
     pool |= evaluate(inertia.trim_integrals, pool)._asdict()
     return evaluate(multiblade.mass, pool, evaluate(inertia.mass, pool))[..., :6, :6]

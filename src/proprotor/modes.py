@@ -1,7 +1,7 @@
 """Eigenvalues and mode shapes of a linear model.
 
-Signs: s = -ζω ± iω√(1 - ζ²), damping ratio ζ = -Re s / |s|, so a negative ratio is an instability. The rotor's azimuth has
-no stiffness and enters as a rate: n coordinates have 2n - 1 states.
+Signs: s = -ζω ± iω√(1 - ζ²), damping ratio ζ = -Re s / |s|, so a negative ratio is an instability. The rotor's
+azimuth has no stiffness unless a shaft gives it one, and enters as a rate: n coordinates have 2n - 1 states.
 """
 
 from __future__ import annotations
@@ -49,7 +49,11 @@ def state_matrix(model: LinearModel) -> NDArray:
 def _check_inertia(model: LinearModel) -> None:
     """A rotor alone has massless directions: its hub may move against azimuth and gimbal without moving any mass."""
     diagonal = np.sqrt(np.abs(np.diagonal(model.M, axis1=-2, axis2=-1)))
-    scaled = model.M / np.where(diagonal > 0, diagonal, 1)[..., None, :] / np.where(diagonal > 0, diagonal, 1)[..., None]
+    scaled = (
+        model.M
+        / np.where(diagonal > 0, diagonal, 1)[..., None, :]
+        / np.where(diagonal > 0, diagonal, 1)[..., None]
+    )
     if np.any(np.abs(np.linalg.det(scaled)) < _NO_INERTIA):
         rule = "gives the mass matrix no inverse: mount the rotor on a support, or hold hub coordinates with submodel"
         raise InputError("dofs", ", ".join(model.dofs), rule)
@@ -57,7 +61,9 @@ def _check_inertia(model: LinearModel) -> None:
 
 def held_coordinates(model: LinearModel) -> list[int]:
     """Places of the coordinates whose displacement is a state: all but an azimuth that no shaft holds."""
-    return [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or model.shaft_holds_azimuth]
+    return [
+        place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or model.shaft_holds_azimuth
+    ]
 
 
 def _good(model: LinearModel) -> NDArray:
@@ -73,7 +79,9 @@ def eigensystem(model: LinearModel) -> Eigensystem:
     values = np.full((*shape, states), np.nan, dtype=complex)
     right, left = (np.full((*shape, states, states), np.nan, dtype=complex) for _ in range(2))
     if good.any():
-        part = LinearModel(model.M[good], model.C[good], model.K[good], model.dofs, model.trim, model.airspeed)
+        part = LinearModel(
+            model.M[good], model.C[good], model.K[good], model.dofs, model.trim, model.airspeed
+        )
         values[good], right[good] = np.linalg.eig(state_matrix(part))
         left[good] = np.linalg.inv(right[good])
     return Eigensystem(values, right, left, _displacement(held, n, values, right))
@@ -116,7 +124,9 @@ def modes(model: LinearModel) -> xarray.Dataset:
     order = np.argsort(kept, axis=-1, kind="stable")
     count = int(np.isfinite(kept).sum(axis=-1).max(initial=0))
     order = order[..., :count]
-    values = np.where(np.isfinite(np.take_along_axis(kept, order, -1)), np.take_along_axis(values, order, -1), np.nan)
+    values = np.where(
+        np.isfinite(np.take_along_axis(kept, order, -1)), np.take_along_axis(values, order, -1), np.nan
+    )
     shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
     shares = np.take_along_axis(participation(model, system), order[..., None, :], -1)
     return mode_dataset(model, values, shapes, shares)
@@ -126,7 +136,11 @@ def mode_dataset(model: LinearModel, values: NDArray, shapes: NDArray, shares: N
     """The dataset of `modes` from eigenvalues (..., mode), motions and participations (..., n, mode)."""
     import xarray  # here, because it takes long to import
 
-    leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim)) if model.airspeed.ndim != 1 else ("airspeed",)
+    leading = (
+        tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
+        if model.airspeed.ndim != 1
+        else ("airspeed",)
+    )
     by_mode = (*leading, "mode")
     with np.errstate(all="ignore"):
         ratio = -values.real / np.abs(values)

@@ -50,9 +50,13 @@ class Operation:
                 raise InputError(name, getattr(self, name), rule)
         if isinstance(self.trim, str):
             if self.trim != "windmill":
-                raise InputError("trim", self.trim, unknown_name(self.trim, ("windmill", *TRIM_TARGETS), "trim"))
+                raise InputError(
+                    "trim", self.trim, unknown_name(self.trim, ("windmill", *TRIM_TARGETS), "trim")
+                )
         elif not isinstance(self.trim, Mapping) or len(self.trim) != 1:
-            raise InputError("trim", self.trim, 'must be "windmill" or one target such as {"collective": 0.6}')
+            raise InputError(
+                "trim", self.trim, 'must be "windmill" or one target such as {"collective": 0.6}'
+            )
         else:
             (name, value), *_ = self.trim.items()
             if name not in TRIM_TARGETS:

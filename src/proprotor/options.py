@@ -94,7 +94,9 @@ class Options:
 
     def _check_combinations(self) -> None:
         if (self.structure == "tabulated") != isinstance(self.frequencies, BladeFrequencies):
-            raise InputError("frequencies", self.frequencies, 'must be BladeFrequencies, with structure="tabulated" only')
+            raise InputError(
+                "frequencies", self.frequencies, 'must be BladeFrequencies, with structure="tabulated" only'
+            )
         for name in ("pitch_flap_coupling", "pitch_lag_coupling"):
             value = getattr(self, name)
             if value is None:
@@ -130,5 +132,7 @@ def parse_options(options: dict) -> Options:
     known = (*CHOICES, *FURTHER)
     for name in options:
         if name not in known:
-            raise InputError(name, options[name], f"{unknown_name(name, known, 'option')} (options: {', '.join(known)})")
+            raise InputError(
+                name, options[name], f"{unknown_name(name, known, 'option')} (options: {', '.join(known)})"
+            )
     return Options(**options)

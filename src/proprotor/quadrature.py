@@ -103,7 +103,7 @@ def _by_segment(
 ) -> RadialQuadrature:
     beyond_flap, beyond_lag = stations > flap[..., None], stations > lag[..., None]
     kinds = ((False, False), (True, False), (True, True))
-    masks = [(beyond_flap == f) & (beyond_lag == l) for f, l in kinds]
+    masks = [(beyond_flap == flap_side) & (beyond_lag == lag_side) for flap_side, lag_side in kinds]
     present = [place for place, mask in enumerate(masks) if mask.any()]
     moments = weights[..., None] * stations[..., None] ** np.arange(POWERS)
     table = np.stack([masks[place][..., None] * moments for place in present], axis=-2)

@@ -167,7 +167,9 @@ class Rotor:
 
     def _check_hinges(self) -> None:
         if np.any(np.real(self.root_cutout) >= np.real(self.radius)):
-            raise InputError("root_cutout", self.root_cutout, f"must lie inboard of the tip ({self.radius:g} m)")
+            raise InputError(
+                "root_cutout", self.root_cutout, f"must lie inboard of the tip ({self.radius:g} m)"
+            )
         if np.any(np.real(self.lag_hinge_offset) < np.real(self.flap_hinge_offset)):
             rule = f"must not lie inboard of the flap hinge ({self.flap_hinge_offset:g} m)"
             raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
@@ -176,7 +178,7 @@ class Rotor:
             raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
 
     def _check_mass(self) -> None:
-        """The integrals of m times two of the arms 1, r, ρβ, ρζ are inner products: their Gram matrix is not negative."""
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ are inner products: no negative Gram matrix."""
         i_beta_alpha = np.real(self.flap_hub_inertia)
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
             rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {i_beta_alpha:g} kg m²"
@@ -185,7 +187,9 @@ class Rotor:
         scale = np.sqrt(np.diagonal(gram, axis1=-2, axis2=-1))
         correlation = gram / (scale[..., :, None] * scale[..., None, :])
         if np.any(np.linalg.eigvalsh(correlation) < -1e-9):
-            rule = "cannot belong to one blade with the other mass integrals: their Gram matrix has a negative eigenvalue"
+            rule = (
+                "cannot belong to one blade: the Gram matrix of the mass integrals has a negative eigenvalue"
+            )
             raise InputError("blade_inertia", self.blade_inertia, rule)
 
     def _gram_matrix(self) -> np.ndarray:
@@ -201,7 +205,9 @@ class Rotor:
 
     @functools.cached_property
     def _dependent(self) -> Any:
-        return evaluate(inertia.dependent_inertias, {entry.name: getattr(self, entry.name) for entry in fields(self)})
+        return evaluate(
+            inertia.dependent_inertias, {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        )
 
     @property
     def flap_hub_inertia(self) -> float:
@@ -267,7 +273,11 @@ class Rotor:
         half = np.diff(edges)[:, None] / 2
         stations = (edges[:-1, None] + half * (1 + nodes)).ravel()
         m = (half * weights).ravel() * np.interp(stations, r, mass)
-        arms = {"blade": stations, "flap": np.maximum(stations - flap, 0), "lag": np.maximum(stations - lag, 0)}
+        arms = {
+            "blade": stations,
+            "flap": np.maximum(stations - flap, 0),
+            "lag": np.maximum(stations - lag, 0),
+        }
         integrals = {"blade_mass": m.sum()}
         for name, arm in arms.items():
             integrals |= {f"{name}_first_moment": m @ arm, f"{name}_inertia": m @ arm**2}
@@ -277,7 +287,9 @@ class Rotor:
 def _check_distribution(name: str, distribution: tuple[ArrayLike, ArrayLike]) -> None:
     r, values = (np.asarray(part, dtype=float) for part in distribution)
     if r.ndim != 1 or r.shape != values.shape or r.size < 2:
-        raise InputError(name, f"arrays of shape {r.shape} and {values.shape}", "must be two lists of equal length")
+        raise InputError(
+            name, f"arrays of shape {r.shape} and {values.shape}", "must be two lists of equal length"
+        )
     if not (np.isfinite(r).all() and np.isfinite(values).all()):
         raise InputError(name, values.tolist(), "must be finite")
     if np.any(np.diff(r) <= 0):

@@ -24,5 +24,7 @@ def in_metres_per_second(airspeed: Any) -> NDArray:
     if isinstance(airspeed, str) or hasattr(airspeed, "to"):
         from proprotor import units  # here, because pint takes long to import
 
-        return units.speeds(airspeed) if isinstance(airspeed, str) else units.as_si(airspeed, "m/s", "airspeed")
+        return (
+            units.speeds(airspeed) if isinstance(airspeed, str) else units.as_si(airspeed, "m/s", "airspeed")
+        )
     return np.asarray(airspeed, dtype=float)

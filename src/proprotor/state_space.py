@@ -1,7 +1,9 @@
 """State space of a linear model, with names: for control design, frequency response and simulation.
 
-Inputs are swashplate collective and cyclics (rad) and gusts along I, J, K (m/s). Outputs are hub motion, the rotor's loads on the
-hub and the blades' motion. With the pitch equations kept, the pitch coordinates are the whole perturbation of blade pitch.
+Inputs are swashplate collective and cyclics (rad) and gusts along I, J, K (m/s). Outputs are hub motion, the
+rotor's loads on the
+hub and the blades' motion. With the pitch equations kept, the pitch coordinates are the whole perturbation of
+blade pitch.
 """
 
 from __future__ import annotations
@@ -31,7 +33,8 @@ class StateSpace:
     A, B, C, D : array (..., states, states), (..., states, inputs), (..., outputs, states), (..., outputs, inputs)
     states, inputs, outputs : tuple of str
         States are displacements (without the rotor's azimuth unless a shaft holds it), then rates ("… rate").
-        Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about inertial axes)
+        Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
+        inertial axes)
         and the rotor's own coordinates.
     """
 
@@ -56,7 +59,9 @@ class StateSpace:
         import control
 
         if self.A.ndim != 2:
-            raise InputError("airspeed", f"array of shape {self.A.shape[:-2]}", "must be one speed for python-control")
+            raise InputError(
+                "airspeed", f"array of shape {self.A.shape[:-2]}", "must be one speed for python-control"
+            )
         return control.StateSpace(
             self.A, self.B, self.C, self.D, states=self.states, inputs=self.inputs, outputs=self.outputs
         )
@@ -88,7 +93,9 @@ def state_space(model: LinearModel) -> StateSpace:
     return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names)
 
 
-def _outputs(model: LinearModel, motion: tuple, acceleration_by_input: NDArray) -> tuple[tuple[str, ...], NDArray, NDArray]:
+def _outputs(
+    model: LinearModel, motion: tuple, acceleration_by_input: NDArray
+) -> tuple[tuple[str, ...], NDArray, NDArray]:
     """Names, rows of C and of D."""
     hub = np.eye(len(HUB), len(model.dofs)) if model.hub is None else model.hub
     own = [place for place, name in enumerate(model.dofs) if model.hub is None or not np.any(hub[:, place])]
@@ -106,17 +113,21 @@ def _outputs(model: LinearModel, motion: tuple, acceleration_by_input: NDArray) 
     ]
     names = tuple(name for part, _, _ in blocks for name in part)
     stacked = [
-        np.concatenate([np.broadcast_to(block[kind], (*shape, *block[kind].shape[-2:])) for block in blocks], axis=-2)
+        np.concatenate(
+            [np.broadcast_to(block[kind], (*shape, *block[kind].shape[-2:])) for block in blocks], axis=-2
+        )
         for kind in (1, 2)
     ]
     return names, *stacked
 
 
 def _hub_loads(model: LinearModel, motion: tuple, acceleration_by_input: NDArray) -> tuple[NDArray, NDArray]:
-    """Perturbation of the rotor's forces and moments on the hub: minus the hub rows of the rotor alone, plus its inputs."""
+    """Perturbation of the rotor's loads on the hub: minus the hub rows of the rotor alone, plus its inputs."""
     rotor = model if model.rotor is None else model.rotor
     if rotor.dofs[: len(HUB)] != HUB:
-        raise InputError("dofs", ", ".join(rotor.dofs), "must begin with the hub's, from which its loads follow")
+        raise InputError(
+            "dofs", ", ".join(rotor.dofs), "must begin with the hub's, from which its loads follow"
+        )
     to_rotor = np.eye(len(model.dofs)) if model.rotor is None else _to_rotor(model)
     rows = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
     displacement, rate, acceleration = motion

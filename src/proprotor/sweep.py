@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +29,7 @@ def track(system: Eigensystem) -> NDArray:
     points, states = system.values.shape
     order = np.tile(np.arange(states), (points, 1))
     good = np.flatnonzero(np.isfinite(system.values).all(axis=1))
-    for before, after in zip(good[:-1], good[1:], strict=True):
+    for before, after in pairwise(good):
         order[after] = _assign(system, before, order[before], after)
     return order
 
@@ -57,7 +58,9 @@ def sweep(model: LinearModel) -> xarray.Dataset:
         When the points do not form a line.
     """
     if model.airspeed.ndim != 1:
-        raise InputError("airspeed", f"array of shape {model.airspeed.shape}", "must be a list of speeds to sweep")
+        raise InputError(
+            "airspeed", f"array of shape {model.airspeed.shape}", "must be a list of speeds to sweep"
+        )
     system = eigensystem(model)
     order = track(system)
     values = np.take_along_axis(system.values, order, 1)
@@ -78,7 +81,9 @@ def _one_of_each_pair(values: NDArray) -> NDArray:
 
 def _names(dofs: tuple[str, ...], values: NDArray, shares: NDArray) -> tuple[list[str], NDArray]:
     """Names from the coordinates that take part most over the sweep, and the order of their mean frequency."""
-    frequency = np.nan_to_num(np.nanmean(np.abs(values.imag), axis=0)) if len(values) else np.zeros(values.shape[1])
+    frequency = (
+        np.nan_to_num(np.nanmean(np.abs(values.imag), axis=0)) if len(values) else np.zeros(values.shape[1])
+    )
     order = np.argsort(frequency, kind="stable")
     mean_shares = np.nan_to_num(np.nanmean(shares, axis=0))[:, order]
     groups = [_group(dof) for dof in dofs]
@@ -104,7 +109,10 @@ def _group(dof: str) -> str:
 
 def _distinct(names: list[str], real: NDArray) -> list[str]:
     """The same family twice is told apart as low and high, more often by number; a real root is said to be one."""
-    names = [f"{name} (real)" if is_real and name != "rotor speed" else name for name, is_real in zip(names, real, strict=True)]
+    names = [
+        f"{name} (real)" if is_real and name != "rotor speed" else name
+        for name, is_real in zip(names, real, strict=True)
+    ]
     count, seen = Counter(names), Counter()
     distinct = []
     for name in names:

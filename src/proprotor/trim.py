@@ -158,7 +158,9 @@ def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:
     return [place for place, name in enumerate(UNKNOWNS) if free[name]]
 
 
-def solve_trim(rotor: Rotor, quantities: Mapping[str, Any], options: Options, target: Target, points: int) -> Trim:
+def solve_trim(
+    rotor: Rotor, quantities: Mapping[str, Any], options: Options, target: Target, points: int
+) -> Trim:
     """Newton's method on all points at once; each point stops when it has converged.
 
     Parameters
@@ -209,7 +211,9 @@ def _newton_step(rotor, quantities, state, options, target, rows, free) -> NDArr
     return np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
 
 
-def _before_trim(quantities: Mapping[str, Any], prandtl_glauert: bool, target: Target, points: int) -> NDArray:
+def _before_trim(
+    quantities: Mapping[str, Any], prandtl_glauert: bool, target: Target, points: int
+) -> NDArray:
     """Reasons that are known before any iteration."""
     reason = np.full(points, "", dtype=object)
     airspeed = np.broadcast_to(quantities["airspeed"], (points,))
@@ -232,12 +236,16 @@ def _failure(target: Target) -> str:
     if target.row == _THRUST:
         return "no trim with this thrust coefficient found: Newton did not converge"
     name = "windmilling trim" if target.windmilling else "trim with this power coefficient"
-    return f"no {name} found: the torque has no such value near zero angle of attack, or Newton did not converge"
+    return (
+        f"no {name} found: the torque has no such value near zero angle of attack, or Newton did not converge"
+    )
 
 
 def _result(rotor, quantities, options, target, state, reason, iterations) -> Trim:
     for name in ("coning", "lag", "elastic_pitch"):
-        reason[(reason == "") & ~(np.abs(state[name]) < np.pi / 2)] = f"trim {name.replace('_', ' ')} beyond 90 deg"
+        reason[(reason == "") & ~(np.abs(state[name]) < np.pi / 2)] = (
+            f"trim {name.replace('_', ' ')} beyond 90 deg"
+        )
     good = np.flatnonzero(reason == "")
     values = {name: np.full(len(reason), np.nan) for name in (*UNKNOWNS, "thrust", "torque")}
     warning = np.full(len(reason), "", dtype=object)
@@ -255,7 +263,9 @@ def _result(rotor, quantities, options, target, state, reason, iterations) -> Tr
 def _warnings(rotor: Rotor, pool: Mapping[str, Any], thrust: NDArray, points: int) -> list[str]:
     """What makes each point doubtful: neglected induced velocity, and sections outside what the airfoil knows."""
     notes: list[list[str]] = [[] for _ in range(points)]
-    share = np.abs(thrust) / (2 * pool["density"] * np.pi * np.square(pool["radius"]) * np.square(pool["airspeed"]))
+    share = np.abs(thrust) / (
+        2 * pool["density"] * np.pi * np.square(pool["radius"]) * np.square(pool["airspeed"])
+    )
     for place in np.flatnonzero(np.broadcast_to(share, (points,)) > _INDUCED_SHARE):
         notes[place].append(f"induced velocity, neglected, would be {share[place]:.0%} of the airspeed")
     if isinstance(rotor.airfoil, Warns):
