@@ -6,7 +6,7 @@ demo: .venv/installed  ## Set up .venv, then analyse the XV-15 from 50 to 400 kt
 	$(BIN)/proprotor sweep xv15 --speed 50:400:5kt --plot damping.png
 
 test: .venv/installed  ## Run the tests
-	$(BIN)/python -m pytest --ignore=tests/verify
+	$(BIN)/python -m pytest --ignore=tests/verify --numprocesses auto --maxprocesses 8
 
 verify: .venv/verify-installed  ## Check the equations: generated against derived, inertia against an independent engine
 	$(BIN)/python -m derive --check

@@ -305,7 +305,12 @@ def section_shared() -> Iterator[Function]:
         "loads",
         "Section loads per unit span and their derivatives with the air's velocity and the pitch.",
         "quasi-steady strip theory, as NASA TN D-7677",
-        half_pressure + list(section.load_derivatives().items()),
+        [
+            *half_pressure,
+            *section.coefficients_by_velocity().items(),
+            *section.force_coefficients().items(),
+            *section.load_derivatives().items(),
+        ],
         tuple(section.SECTION_LOADS.values()),
     )
 

@@ -98,7 +98,8 @@ def moments() -> list[tuple[sp.Symbol, sp.Expr]]:
     speed = sp.Symbol("speed", positive=True)  # over tip speed
     steps = []
     for (load, argument), symbol in section.SECTION_LOADS.items():
-        derivative = section.load_derivatives()[symbol].subs(alone).subs(published)
+        derivative = section.in_airfoil_coefficients(section.load_derivatives()[symbol])
+        derivative = derivative.subs(alone).subs(published)
         derivative = sp.expand(derivative.subs(section.section_speed, tip_speed * speed))
         for power in POWERS:
             moment = MOMENTS[load + argument, power]

@@ -49,8 +49,26 @@ VELOCITY = {
     "_up": axial_velocity,
     "_ur": radial_velocity,
     "_theta": section_pitch,
-    "_spin": section_spin,
 }
+VELOCITY["_spin"] = section_spin
+
+# Derivatives of the coefficients with the velocities, through angle of attack and Mach number.
+COEFFICIENT_BY_VELOCITY = {
+    (name, velocity): s.quantity(
+        f"{name}_coefficient{velocity}",
+        f"{_LATEX[name]}{{}}_{{,u}}",
+        "s/m",
+        f"{name} coefficient, derivative with a velocity",
+    )
+    for name in COEFFICIENTS
+    for velocity in ("_ut", "_up")
+}
+chordwise_coefficient = s.quantity(
+    "chordwise_coefficient", "c_x U", "m/s", "section speed times force coefficient along i'"
+)
+normal_coefficient = s.quantity(
+    "normal_coefficient", "c_n U", "m/s", "section speed times force coefficient along n"
+)
 
 
 def _unit(load: str, per: str) -> str:
@@ -82,7 +100,8 @@ def inflow() -> sp.Expr:
 
 
 def _coefficient(name: str) -> sp.Expr:
-    return sp.Function(name)(section_pitch - inflow(), speed() / s.speed_of_sound)
+    """A coefficient as it depends on the air and the pitch."""
+    return sp.Function(name)(tangential_velocity, axial_velocity, section_pitch)
 
 
 @functools.cache
@@ -90,17 +109,39 @@ def loads() -> dict[str, sp.Expr]:
     """f_x, f_n, f_d and m in the velocities and the pitch."""
     lift, drag, moment = (_coefficient(name) for name in COEFFICIENTS)
     # sin phi = u_P / U and cos phi = u_T / U
+    spin_moment = section_damping * sp.pi / 4 * s.chord * section_spin
     return {
         "fx": pressure_chord * speed() * (lift * axial_velocity + drag * tangential_velocity),
         "fn": pressure_chord * speed() * (lift * tangential_velocity - drag * axial_velocity),
         "fd": -pressure_chord * speed() * drag * radial_velocity,
-        "m": pressure_chord
-        * s.chord
-        * speed()
-        * (speed() * moment - section_damping * sp.pi / 4 * s.chord * section_spin),
+        "m": pressure_chord * s.chord * speed() * (speed() * moment - spin_moment),
     }
 
 
+@functools.cache
+def coefficients_by_velocity() -> dict[sp.Symbol, sp.Expr]:
+    """Chain rule through angle of attack and Mach number."""
+    angle, mach_number = section_pitch - inflow(), speed() / s.speed_of_sound
+    return {
+        symbol: _speed_named(
+            COEFFICIENT[name, "alpha"] * sp.diff(angle, VELOCITY[velocity])
+            + COEFFICIENT[name, "mach"] * sp.diff(mach_number, VELOCITY[velocity])
+        )
+        for (name, velocity), symbol in COEFFICIENT_BY_VELOCITY.items()
+    }
+
+
+@functools.cache
+def force_coefficients() -> dict[sp.Symbol, sp.Expr]:
+    """The sums of lift and drag that every derivative of the forces holds."""
+    lift, drag = COEFFICIENT["lift", ""], COEFFICIENT["drag", ""]
+    return {
+        chordwise_coefficient: lift * axial_velocity + drag * tangential_velocity,
+        normal_coefficient: lift * tangential_velocity - drag * axial_velocity,
+    }
+
+
+@functools.cache
 def load_derivatives() -> dict[sp.Symbol, sp.Expr]:
     """Each load and each derivative, in the section's speed, velocities and airfoil coefficients."""
     return {
@@ -109,24 +150,31 @@ def load_derivatives() -> dict[sp.Symbol, sp.Expr]:
     }
 
 
+def in_airfoil_coefficients(expression: sp.Expr) -> sp.Expr:
+    """The named groups and chain-rule derivatives written out."""
+    return expression.subs(force_coefficients()).subs(coefficients_by_velocity())
+
+
 def _named(expression: sp.Expr) -> sp.Expr:
-    """Coefficients, speed and angle by name."""
-    expression = expression.doit().replace(lambda e: isinstance(e, sp.Subs), lambda e: _derivative_name(e))
-    names = {_coefficient(name): COEFFICIENT[name, ""] for name in COEFFICIENTS}
-    expression = expression.subs(names).subs(speed(), section_speed)
-    expression = expression.subs(tangential_velocity**2 + axial_velocity**2, section_speed**2)
-    expression = expression.subs(
-        1 + axial_velocity**2 / tangential_velocity**2, section_speed**2 / tangential_velocity**2
+    """Coefficients, their derivatives, groups and speed by name."""
+    names = {}
+    for name in COEFFICIENTS:
+        function = _coefficient(name)
+        names[sp.diff(function, section_pitch)] = COEFFICIENT[name, "alpha"]
+        names |= {sp.diff(function, VELOCITY[v]): COEFFICIENT_BY_VELOCITY[name, v] for v in ("_ut", "_up")}
+    expression = expression.subs(names).subs(
+        {_coefficient(name): COEFFICIENT[name, ""] for name in COEFFICIENTS}
     )
-    return sp.factor_terms(sp.expand(expression))
+    for symbol, group in force_coefficients().items():
+        expression = expression.subs(group, symbol)
+    return sp.factor_terms(_speed_named(expression))
 
 
-def _derivative_name(substituted: sp.Subs) -> sp.Symbol:
-    """c_alpha or c_M for SymPy's Subs(Derivative(c(alpha, M), alpha), ...)."""
-    derivative = substituted.expr
-    function = derivative.expr
-    place = function.args.index(derivative.variables[0])
-    return COEFFICIENT[function.func.__name__, ("alpha", "mach")[place]]
+def _speed_named(expression: sp.Expr) -> sp.Expr:
+    expression = expression.subs(speed(), section_speed)
+    expression = expression.subs(tangential_velocity**2 + axial_velocity**2, section_speed**2)
+    ratio = section_speed**2 / tangential_velocity**2
+    return expression.subs(1 + axial_velocity**2 / tangential_velocity**2, ratio)
 
 
 def air_at_section() -> list[tuple[sp.Symbol, sp.Expr]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
@@ -10,14 +11,43 @@ import numpy as np
 from numpy.typing import NDArray
 from proprotor_equations import airloads, lift_slope, section
 
-from proprotor.airfoil import Airfoil, SectionCoefficients
+from proprotor.airfoil import Airfoil, SectionCoefficients, SectionModel
 from proprotor.evaluation import evaluate
-from proprotor.quadrature import POWERS
+from proprotor.quadrature import POWERS, RadialQuadrature, flatten_points
 from proprotor.rotor import Rotor
 
 Quantities = Mapping[str, Any]
+_BLOCK = 64  # points; with some 200 stations an array of loads is then about 100 kB
 # Inflow ratio that stands for no airspeed: its square vanishes against the logarithm of a blade without cutout.
 _STILL = 1e-150
+
+
+@dataclass(frozen=True, eq=False)
+class BladeSections:
+    """What the airloads need of the blade's stations, for all points or for each of them.
+
+    Attributes
+    ----------
+    quadrature : RadialQuadrature
+    chord, twist : array (stations,) or (points, stations); a constant chord has one station
+    airfoil : SectionModel
+    """
+
+    quadrature: RadialQuadrature
+    chord: NDArray
+    twist: NDArray
+    airfoil: SectionModel
+
+    @classmethod
+    def of(cls, rotor: Rotor, shape: tuple[int, ...]) -> BladeSections:
+        """Sections of a rotor, those of many designs flattened over the batch."""
+        chord, twist = (flatten_points(part, shape, 1) for part in (rotor.station_chord, rotor.station_twist))
+        return cls(rotor.quadrature.flattened(shape), chord, twist, rotor.airfoil)
+
+    def take(self, rows: NDArray | slice) -> BladeSections:
+        """Sections at some of the points."""
+        chord, twist = (part[rows] if part.ndim > 1 else part for part in (self.chord, self.twist))
+        return BladeSections(self.quadrature.take(rows), chord, twist, self.airfoil)
 
 
 def along_segments(quantities: Quantities) -> dict[str, Any]:
@@ -26,13 +56,13 @@ def along_segments(quantities: Quantities) -> dict[str, Any]:
 
 
 def segment_quantities(
-    rotor: Rotor, quantities: Quantities, equations: ModuleType = airloads
+    sections: BladeSections, quantities: Quantities, equations: ModuleType = airloads
 ) -> dict[str, Any]:
     """Quantities of each segment at trim: what holds for the whole blade, and the segment's geometry.
 
     `equations` is the generated airload module, here and below.
     """
-    quadrature = rotor.quadrature
+    quadrature = sections.quadrature
     pool = along_segments(quantities)
     pool |= {
         "beyond_flap_hinge": quadrature.beyond_flap_hinge,
@@ -41,9 +71,10 @@ def segment_quantities(
     return pool | evaluate(equations.segment_geometry, pool)._asdict()
 
 
-def _velocities(rotor: Rotor, segments: Quantities, equations: ModuleType) -> dict[str, NDArray]:
+def _velocities(
+    quadrature: RadialQuadrature, segments: Quantities, equations: ModuleType
+) -> dict[str, NDArray]:
     """Trim velocity of the air and rotation of the sections at the stations."""
-    quadrature = rotor.quadrature
     line = evaluate(equations.trim_velocity, segments)[..., 0]
     names = ("tangential_velocity", "axial_velocity", "radial_velocity")
     air = {
@@ -54,11 +85,13 @@ def _velocities(rotor: Rotor, segments: Quantities, equations: ModuleType) -> di
     return air | {"section_spin": quadrature.at_stations(line[..., 6])}
 
 
-def air_at_stations(rotor: Rotor, segments: Quantities, equations: ModuleType = airloads) -> dict[str, Any]:
+def air_at_stations(
+    sections: BladeSections, segments: Quantities, equations: ModuleType = airloads
+) -> dict[str, Any]:
     """Air, pitch, angle of attack and Mach number at the stations, by name, (..., stations)."""
     stations = {name: segments[name] for name in ("density", "speed_of_sound", "section_damping")}
-    stations |= _velocities(rotor, segments, equations)
-    stations |= {"chord": rotor.station_chord, "section_pitch": segments["pitch"] + rotor.station_twist}
+    stations |= _velocities(sections.quadrature, segments, equations)
+    stations |= {"chord": sections.chord, "section_pitch": segments["pitch"] + sections.twist}
     return stations | evaluate(section.air_at_section, stations)._asdict()
 
 
@@ -83,58 +116,74 @@ def _lift_slope_alone(coefficients: SectionCoefficients) -> SectionCoefficients:
 
 
 def load_moments(
-    rotor: Rotor,
+    sections: BladeSections,
     segments: Quantities,
     *,
     compressibility: bool,
     lift_slope_only: bool = False,
     equations: ModuleType = airloads,
 ) -> dict[str, NDArray]:
-    """Radial moments of the section loads and their derivatives, by name and power of r, (..., segments).
+    """Radial moments of the section loads and their derivatives, by name and power of r, (points, segments).
+
+    Points are taken a block at a time, so that the loads at all stations stay in the cache.
 
     Parameters
     ----------
-    rotor : Rotor
+    sections : BladeSections
     segments : mapping
-        `segment_quantities` at trim.
+        `segment_quantities` at trim, (segments,) or (points, segments).
     compressibility : bool
         Prandtl-Glauert factor on lift and moment, unless the airfoil holds compressibility already.
     lift_slope_only : bool
         Keep the terms proportional to the lift slope and no others.
     """
-    stations = air_at_stations(rotor, segments, equations)
-    coefficients = rotor.airfoil.coefficients(stations["angle_of_attack"], stations["mach"])
-    if compressibility and not rotor.airfoil.contains_compressibility:
-        coefficients = _compressible(coefficients, stations["mach"])
-    if lift_slope_only:
-        coefficients = _lift_slope_alone(coefficients)
-    loads = evaluate(section.loads, stations | coefficients._asdict())
-    shape = np.broadcast_shapes(*(np.shape(load) for load in loads), rotor.quadrature.stations.shape)
-    table = np.stack([np.broadcast_to(load, shape) for load in loads], axis=-2)
-    moments = rotor.quadrature.moments(table)
+    points = max(np.shape(value)[0] if np.ndim(value) > 1 else 1 for value in segments.values())
+    shape = (points, len(sections.quadrature.beyond_lag_hinge), POWERS)
+    moments = {name: np.zeros(shape) for name in section.Loads._fields}
+    for start in range(0, points, _BLOCK):
+        rows = slice(start, start + _BLOCK)
+        block = {
+            name: value[rows] if np.ndim(value) > 1 and len(value) > 1 else value
+            for name, value in segments.items()
+        }
+        here = sections.take(rows)
+        for name, load in _section_loads(here, block, compressibility, lift_slope_only, equations).items():
+            if np.ndim(load):
+                moments[name][rows] = here.quadrature.moments(load)
     return {
-        f"{name}_{power}": moments[..., place, :, power]
-        for place, name in enumerate(loads._fields)
-        for power in range(moments.shape[-1])
+        f"{name}_{power}": moment[..., power] for name, moment in moments.items() for power in range(POWERS)
     }
 
 
-def has_closed_form(rotor: Rotor) -> bool:
+def _section_loads(
+    sections: BladeSections,
+    segments: Quantities,
+    compressibility: bool,
+    lift_slope_only: bool,
+    equations: ModuleType,
+) -> dict[str, Any]:
+    """Loads and derivatives at the stations, by name; a plain number where there are none."""
+    stations = air_at_stations(sections, segments, equations)
+    coefficients = sections.airfoil.coefficients(stations["angle_of_attack"], stations["mach"])
+    if compressibility and not sections.airfoil.contains_compressibility:
+        coefficients = _compressible(coefficients, stations["mach"])
+    if lift_slope_only:
+        coefficients = _lift_slope_alone(coefficients)
+    return evaluate(section.loads, stations | coefficients._asdict())._asdict()
+
+
+def has_closed_form(sections: BladeSections) -> bool:
     """Whether the lift-slope airloads of the published set can be had without quadrature."""
-    return (
-        isinstance(rotor.airfoil, Airfoil)
-        and not isinstance(rotor.chord, tuple)
-        and not callable(rotor.chord)
-    )
+    return isinstance(sections.airfoil, Airfoil) and sections.chord.shape[-1] == 1
 
 
-def closed_form_moments(rotor: Rotor, segments: Quantities) -> dict[str, NDArray]:
+def closed_form_moments(sections: BladeSections, segments: Quantities) -> dict[str, NDArray]:
     """Radial moments as `load_moments`, lift slope alone, without compressibility and with u_T = Ωr and u_P = V."""
-    edges = rotor.quadrature.edges / np.asarray(rotor.radius)[..., None, None]
+    edges = sections.quadrature.edges / np.asarray(segments["radius"])[..., None]
     inflow_ratio = segments["airspeed"] / (segments["rotor_speed"] * segments["radius"])
     given = {
-        "chord": np.asarray(rotor.chord)[..., None],
-        "lift_slope": np.asarray(rotor.airfoil.lift_slope)[..., None],
+        "chord": sections.chord,
+        "lift_slope": sections.airfoil.lift_slope,
         "inflow_ratio": np.maximum(inflow_ratio, _STILL),
         "inner_edge": edges[..., 0],
         "outer_edge": edges[..., 1],

@@ -19,7 +19,13 @@ from proprotor_equations import (
     pitch,
 )
 
-from proprotor.blade_airloads import closed_form_moments, has_closed_form, load_moments, segment_quantities
+from proprotor.blade_airloads import (
+    BladeSections,
+    closed_form_moments,
+    has_closed_form,
+    load_moments,
+    segment_quantities,
+)
 from proprotor.equation_set import EquationSet
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
@@ -152,9 +158,10 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         "section_damping": float(choice.section_damping)
     }
     points = int(np.prod(shape, dtype=int))
-    trim = solve_trim(rotor, quantities, choice, _flat(trim_target(rotor, operation), shape), points)
+    sections = BladeSections.of(rotor, shape)
+    trim = solve_trim(sections, quantities, choice, _flat(trim_target(rotor, operation), shape), points)
     extra = reactionless_coordinates(int(np.max(rotor.n_blades))) if choice.reactionless else ()
-    matrices = _matrices(rotor, quantities, choice, trim, points, extra)
+    matrices = _matrices(sections, quantities, choice, trim, extra)
     coordinates = (*FIXED_COORDINATES, *extra)
     dofs = _free_coordinates(choice, coordinates)
     places = [coordinates.index(name) for name in dofs]
@@ -204,24 +211,22 @@ def _free_coordinates(options: Options, coordinates: tuple[str, ...]) -> tuple[s
 
 
 def _matrices(
-    rotor: Rotor,
+    sections: BladeSections,
     quantities: Mapping[str, Any],
     options: Options,
     trim: Trim,
-    points: int,
     extra: tuple[str, ...],
 ) -> dict[str, NDArray]:
-    """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless coordinates last; NaN without trim."""
-    n = len(FIXED_COORDINATES) + len(extra)
-    matrices = {name: np.full((points, n, n), np.nan) for name in "MCK"} | {
-        "B": np.full((points, n, len(INPUTS)), np.nan)
-    }
+    """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless last; NaN without trim."""
+    points, n = len(trim.converged), len(FIXED_COORDINATES) + len(extra)
+    columns = dict.fromkeys("MCK", n) | {"B": len(INPUTS)}
+    matrices = {name: np.full((points, n, width), np.nan) for name, width in columns.items()}
     good = np.flatnonzero(trim.converged)
     if len(good):
         state = {name: getattr(trim, name)[good] for name in UNKNOWNS}
         pool = with_trim(take(quantities, good), options, state)
         pool |= _couplings(options, pool)
-        *blade, inputs = _blade_matrices(rotor, pool, options)
+        *blade, inputs = _blade_matrices(sections.take(good), pool, options)
         matrices["B"][good] = 0.0
         matrices["B"][good, : len(FIXED_COORDINATES)] = evaluate(multiblade.input_matrix, pool, inputs)
         for name, matrix in _fixed_frame(pool, options, blade, extra).items():
@@ -229,20 +234,21 @@ def _matrices(
     return matrices
 
 
-def _blade_matrices(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[NDArray, ...]:
+def _blade_matrices(
+    sections: BladeSections, pool: Mapping[str, Any], options: Options
+) -> tuple[NDArray, ...]:
     """Mass, damping and stiffness (points, 12, 12) of one blade in rotating axes, and its inputs (points, 12, 4)."""
     mass, damping, stiffness = _structure(pool, options.equation_set)
+    points = np.shape(pool["pitch"])
+    damping, stiffness = (
+        np.broadcast_to(matrix, (*points, *matrix.shape[-2:])) for matrix in (damping, stiffness)
+    )
     gusts = np.zeros((*stiffness.shape[:-1], 3))
     if options.airloads != "none":
-        air_damping, air_stiffness, gusts = _airloads(rotor, pool, options)
+        air_damping, air_stiffness, gusts = _airloads(sections, pool, options)
         damping, stiffness = damping + air_damping, stiffness + air_stiffness
-    swashplate = _swashplate(pool, options, stiffness)
-    return (
-        mass,
-        damping,
-        stiffness,
-        np.concatenate([swashplate, np.broadcast_to(gusts, (*swashplate.shape[:-1], 3))], -1),
-    )
+    inputs = np.concatenate([_swashplate(pool, options, stiffness), gusts], axis=-1)
+    return mass, damping, stiffness, inputs
 
 
 def _swashplate(pool: Mapping[str, Any], options: Options, stiffness: NDArray) -> NDArray:
@@ -327,35 +333,28 @@ def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray
     return mass, damping, stiffness + evaluate(equations.flap_lag_springs.stiffness, pool)
 
 
-def _airloads(rotor: Rotor, pool: Mapping[str, Any], options: Options) -> tuple[NDArray, NDArray, NDArray]:
+def _airloads(
+    sections: BladeSections, pool: Mapping[str, Any], options: Options
+) -> tuple[NDArray, NDArray, NDArray]:
     """Airload damping and stiffness of one blade, and what gusts load it with."""
-    motion = options.equation_set.airloads
-    segments = segment_quantities(rotor, pool, motion)
-    segments |= _moments(rotor, segments, options)
-    for name in (
-        "virtual_motion",
-        "rate_motion",
-        "displacement_motion",
-        "geometric_stiffness",
-        "gust_motion",
-    ):
-        segments[name] = evaluate(getattr(motion, name), segments)
+    equations = options.equation_set.airloads
+    segments = segment_quantities(sections, pool, equations)
+    segments |= _moments(sections, segments, options)
+    motions = ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion")
+    segments |= {name: evaluate(getattr(equations, name), segments) for name in motions}
     segments["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
-    return tuple(
-        evaluate(product, segments) for product in (airloads.damping, airloads.stiffness, airloads.gust_loads)
-    )
+    products = (airloads.damping, airloads.stiffness, airloads.gust_loads)
+    return tuple(evaluate(product, segments) for product in products)
 
 
-def _moments(rotor: Rotor, segments: Mapping[str, Any], options: Options) -> dict[str, NDArray]:
+def _moments(sections: BladeSections, segments: Mapping[str, Any], options: Options) -> dict[str, NDArray]:
     """Radial moments of the section loads: in closed form where there is one, else by quadrature."""
     lift_slope_only = options.airloads == "lift-slope"
-    as_published = (
-        options.equations == "published" and not options.compressibility and not options.section_damping
-    )
-    if lift_slope_only and as_published and has_closed_form(rotor):
-        return closed_form_moments(rotor, segments)
+    simple = options.equations == "published" and not (options.compressibility or options.section_damping)
+    if lift_slope_only and simple and has_closed_form(sections):
+        return closed_form_moments(sections, segments)
     return load_moments(
-        rotor,
+        sections,
         segments,
         compressibility=options.compressibility,
         lift_slope_only=lift_slope_only,

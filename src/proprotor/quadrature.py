@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,6 +39,22 @@ class RadialQuadrature:
     beyond_flap_hinge: NDArray
     beyond_lag_hinge: NDArray
 
+    def flattened(self, shape: tuple[int, ...]) -> RadialQuadrature:
+        """The same with leading axes, if there are any, broadcast to `shape` and flattened."""
+        if self.segment.ndim == 1:
+            return self
+        points = {"stations": 1, "segment": 1, "weights": 3, "edges": 2}
+        flat = {name: flatten_points(getattr(self, name), shape, own) for name, own in points.items()}
+        return replace(self, **flat)
+
+    def take(self, rows: NDArray | slice) -> RadialQuadrature:
+        """The quadrature at some of the points."""
+        if self.segment.ndim == 1:
+            return self
+        return replace(
+            self, **{name: getattr(self, name)[rows] for name in ("stations", "segment", "weights", "edges")}
+        )
+
     def at_stations(self, at_segments: NDArray) -> NDArray:
         """Values (..., stations) of a quantity (..., segments) that is constant along a segment."""
         segments = np.broadcast_to(at_segments, (*at_segments.shape[:-1], self.weights.shape[-2]))
@@ -47,11 +63,21 @@ class RadialQuadrature:
         places = np.broadcast_to(self.segment, (*segments.shape[:-1], self.segment.shape[-1]))
         return np.take_along_axis(segments, places, axis=-1)
 
-    def moments(self, section_loads: NDArray) -> NDArray:
-        """Radial moments (..., loads, segments, 3) of section loads (..., loads, stations)."""
+    def moments(self, section_load: NDArray) -> NDArray:
+        """Radial moments (..., segments, 3) of a section load (..., stations)."""
         *leading, stations, segments, powers = self.weights.shape
         table = self.weights.reshape(*leading, stations, segments * powers)
-        return (section_loads @ table).reshape(*section_loads.shape[:-1], segments, powers)
+        moments = (section_load[..., None, :] @ table)[..., 0, :] if leading else section_load @ table
+        return moments.reshape(*moments.shape[:-1], segments, powers)
+
+
+def flatten_points(array: NDArray, shape: tuple[int, ...], own_axes: int) -> NDArray:
+    """An array whose axes before its own ones are broadcast to `shape` and flattened; left alone without such axes."""
+    array = np.asarray(array)
+    if array.ndim == own_axes:
+        return array
+    own = array.shape[array.ndim - own_axes :]
+    return np.broadcast_to(array, (*shape, *own)).reshape(-1, *own)
 
 
 def gauss_panels(

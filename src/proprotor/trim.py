@@ -12,7 +12,7 @@ from proprotor_equations import airloads, flap_lag_springs, inertia
 from proprotor_equations import trim as equations
 
 from proprotor.airfoil import Warns
-from proprotor.blade_airloads import air_at_stations, load_moments, segment_quantities
+from proprotor.blade_airloads import BladeSections, air_at_stations, load_moments, segment_quantities
 from proprotor.evaluation import evaluate
 from proprotor.operation import Operation
 from proprotor.options import Options
@@ -121,11 +121,11 @@ def _springs(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _balance(
-    rotor: Rotor, pool: Mapping[str, Any], compressibility: bool, target: Target
+    sections: BladeSections, pool: Mapping[str, Any], compressibility: bool, target: Target
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Residual (n, 5) of balances and thrust, its Jacobian (n, 5, 4), and the steady airloads (n, 5)."""
-    segments = segment_quantities(rotor, pool)
-    segments |= load_moments(rotor, segments, compressibility=compressibility)
+    segments = segment_quantities(sections, pool)
+    segments |= load_moments(sections, segments, compressibility=compressibility)
     motion = {
         "virtual_motion": evaluate(equations.virtual_motion, segments),
         "displacement_motion": evaluate(equations.displacement_motion, segments),
@@ -159,13 +159,13 @@ def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:
 
 
 def solve_trim(
-    rotor: Rotor, quantities: Mapping[str, Any], options: Options, target: Target, points: int
+    sections: BladeSections, quantities: Mapping[str, Any], options: Options, target: Target, points: int
 ) -> Trim:
     """Newton's method on all points at once; each point stops when it has converged.
 
     Parameters
     ----------
-    rotor : Rotor
+    sections : BladeSections
     quantities : mapping
         Numbers or arrays (points,) of rotor, operation and airspeed by name.
     options : Options
@@ -176,7 +176,7 @@ def solve_trim(
     """
     free = _free_unknowns(options, target.finds_collective)
     state = _start(quantities, target.collective, points)
-    prandtl_glauert = options.compressibility and not rotor.airfoil.contains_compressibility
+    prandtl_glauert = options.compressibility and not sections.airfoil.contains_compressibility
     reason = _before_trim(quantities, prandtl_glauert, target, points)
     iterations = np.zeros(points, dtype=int)
     active = np.flatnonzero(reason == "")
@@ -184,7 +184,7 @@ def solve_trim(
         for _ in range(_ITERATIONS if free else 0):
             if not len(active):
                 break
-            step = _newton_step(rotor, quantities, state, options, target, active, free)
+            step = _newton_step(sections, quantities, state, options, target, active, free)
             for place, name in enumerate(UNKNOWNS):
                 state[name][active] -= step[:, place]
             iterations[active] += 1
@@ -192,13 +192,13 @@ def solve_trim(
             reason[active[lost]] = _failure(target)
             active = active[~lost & (np.abs(step).max(axis=1) > _CONVERGED)]
         reason[active] = _failure(target) if free else ""
-        return _result(rotor, quantities, options, target, state, reason, iterations)
+        return _result(sections, quantities, options, target, state, reason, iterations)
 
 
-def _newton_step(rotor, quantities, state, options, target, rows, free) -> NDArray:
+def _newton_step(sections, quantities, state, options, target, rows, free) -> NDArray:
     pool = with_trim(take(quantities, rows), options, {name: value[rows] for name, value in state.items()})
     here = replace(target, load=np.broadcast_to(target.load, state["coning"].shape)[rows])
-    residual, jacobian, _ = _balance(rotor, pool, options.compressibility, here)
+    residual, jacobian, _ = _balance(sections.take(rows), pool, options.compressibility, here)
     balances = [target.row if place == _BALANCES - 1 else place for place in free]
     step = np.zeros((len(rows), len(UNKNOWNS)))
     square = jacobian[:, balances][:, :, free]
@@ -241,7 +241,7 @@ def _failure(target: Target) -> str:
     )
 
 
-def _result(rotor, quantities, options, target, state, reason, iterations) -> Trim:
+def _result(sections, quantities, options, target, state, reason, iterations) -> Trim:
     for name in ("coning", "lag", "elastic_pitch"):
         reason[(reason == "") & ~(np.abs(state[name]) < np.pi / 2)] = (
             f"trim {name.replace('_', ' ')} beyond 90 deg"
@@ -253,14 +253,14 @@ def _result(rotor, quantities, options, target, state, reason, iterations) -> Tr
         values[name][good] = state[name][good]
     if len(good):
         pool = with_trim(take(quantities, good), options, {name: state[name][good] for name in UNKNOWNS})
-        _, _, work = _balance(rotor, pool, options.compressibility, Target())
+        _, _, work = _balance(sections.take(good), pool, options.compressibility, Target())
         loads = work * np.asarray(pool["n_blades"])[..., None]
         values["torque"][good], values["thrust"][good] = loads[:, _TORQUE], loads[:, _THRUST]
-        warning[good] = _warnings(rotor, pool, loads[:, _THRUST], len(good))
+        warning[good] = _warnings(sections.take(good), pool, loads[:, _THRUST], len(good))
     return Trim(**values, converged=reason == "", reason=reason, warning=warning, iterations=iterations)
 
 
-def _warnings(rotor: Rotor, pool: Mapping[str, Any], thrust: NDArray, points: int) -> list[str]:
+def _warnings(sections: BladeSections, pool: Mapping[str, Any], thrust: NDArray, points: int) -> list[str]:
     """What makes each point doubtful: neglected induced velocity, and sections outside what the airfoil knows."""
     notes: list[list[str]] = [[] for _ in range(points)]
     share = np.abs(thrust) / (
@@ -268,11 +268,11 @@ def _warnings(rotor: Rotor, pool: Mapping[str, Any], thrust: NDArray, points: in
     )
     for place in np.flatnonzero(np.broadcast_to(share, (points,)) > _INDUCED_SHARE):
         notes[place].append(f"induced velocity, neglected, would be {share[place]:.0%} of the airspeed")
-    if isinstance(rotor.airfoil, Warns):
-        air = air_at_stations(rotor, segment_quantities(rotor, pool))
-        shape = (points, rotor.quadrature.stations.shape[-1])
-        outboard = rotor.quadrature.stations >= _OUTBOARD * np.asarray(pool["radius"])[..., None]
-        for text, mask in rotor.airfoil.warnings(air["angle_of_attack"], air["mach"]).items():
+    if isinstance(sections.airfoil, Warns):
+        air = air_at_stations(sections, segment_quantities(sections, pool))
+        shape = (points, sections.quadrature.stations.shape[-1])
+        outboard = sections.quadrature.stations >= _OUTBOARD * np.asarray(pool["radius"])[..., None]
+        for text, mask in sections.airfoil.warnings(air["angle_of_attack"], air["mach"]).items():
             for place in np.flatnonzero((np.broadcast_to(mask, shape) & outboard).any(axis=1)):
                 notes[place].append(f"{text} outboard of {_OUTBOARD:g} R")
     return ["; ".join(lines) for lines in notes]

@@ -10,7 +10,7 @@ import numpy as np
 
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import PITCH, blades, clock, linearised, rows_in_vacuum
-from tests.oracles.virtual_work import airload_rows, assembled, lift_slope_loads, quadrature, section_loads
+from tests.oracles.virtual_work import assembled, lift_slope_loads, quadrature, section_loads
 
 _STEP = 1e-30
 _GUSTS = 1j * _STEP * np.eye(3)  # along I, J and K
@@ -40,15 +40,15 @@ def _gust_columns(air, rotor, trim, time, loads):
     return rows.imag.T / _STEP
 
 
-def swashplate_columns(air, rotor, trim, time):
-    """Loads (18, 3) per unit of collective and cyclics that the blades follow at once.
+def swashplate_columns(rotor, trim, time, airloads):
+    """Loads (18, 3) per unit of collective and cyclics that the blades follow at once; `airloads` as `airload_rows`.
 
     Elastic pitch does the same to Θs; what else it does, it does to the control system.
     """
     follower = replace(rotor, control_stiffness=0.0, pitch_damping=0.0)
 
     def rows(q, instant):
-        return rows_in_vacuum(follower, q, instant) + airload_rows(air, follower, q, instant)
+        return rows_in_vacuum(follower, q, instant) + airloads(follower, q, instant)
 
     return -_pitch_columns(rows, trim, time)
 
@@ -60,7 +60,8 @@ def control_columns(rotor, trim, time):
     """
     free = replace(rotor, control_stiffness=0.0)
     held, loose = (
-        _pitch_columns(lambda q, instant, r=r: rows_in_vacuum(r, q, instant), trim, time) for r in (rotor, free)
+        _pitch_columns(lambda q, instant, r=r: rows_in_vacuum(r, q, instant), trim, time)
+        for r in (rotor, free)
     )
     return held - loose
 
