@@ -139,7 +139,7 @@ def index_groups(functions: list[Function]) -> list[dict]:
     for function in functions:
         groups |= dict.fromkeys(names for names in (function.rows, function.columns) if names)
     if any(function.blade_matrices for function in functions):
-        for indices in (multiblade.BLADE_INDEX, multiblade.INPUT_INDEX):
+        for indices in (multiblade.BLADE_INDEX, multiblade.GUST_INDEX):
             groups[tuple(symbol.name for symbol in indices.values())] = None
     constants: dict[str, int] = {}
     for names in groups:
@@ -238,7 +238,7 @@ def render() -> Iterator[tuple[str, str]]:
             modules=list(STEPS),
             blade_coordinates=kin.COORDINATES,
             fixed_coordinates=multiblade.FIXED_COORDINATES,
-            fixed_inputs=multiblade.FIXED_INPUTS,
+            fixed_gusts=multiblade.FIXED_GUSTS,
             **_header(),
         )
     )

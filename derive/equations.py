@@ -553,19 +553,19 @@ def multiblade_shared() -> Iterator[Function]:
 
     yield Function(
         "multiblade",
-        "input_matrix",
-        "Loads on the rotor's coordinates per unit of swashplate motion and gusts, on the right of the equations.",
+        "gust_loads",
+        "Loads on the rotor's coordinates per unit of gusts, on the right of the equations of motion.",
         "AIAA-2002-1604, Eqs. 7-9 and 17: sum over N blades",
         rows=multiblade.FIXED_COORDINATES,
-        columns=multiblade.FIXED_INPUTS,
+        columns=multiblade.FIXED_GUSTS,
         entries=_entries(
             multiblade.FIXED_COORDINATES,
-            multiblade.FIXED_INPUTS,
-            lambda row, column: multiblade.input_matrix(places[row], multiblade.FIXED_INPUTS.index(column)),
-            lambda row, column: _plus(row_dimension(row), minus=(0, 1, -1) if "gust" in column else NUMBER),
+            multiblade.FIXED_GUSTS,
+            lambda row, column: multiblade.gust_loads(places[row], multiblade.FIXED_GUSTS.index(column)),
+            lambda row, _: _plus(row_dimension(row), minus=(0, 1, -1)),
             FIXED_EQUATION,
         ),
-        blade_matrices=("inputs",),
+        blade_matrices=("gusts",),
     )
     yield from reactionless_functions()
     excess = flap_lag_springs.cyclic_flap_stiffness_excess

@@ -124,32 +124,28 @@ def stiffness(row: int, column: int) -> sp.Expr:
     )
 
 
-# Swashplate and gusts: what reaches one blade, and what is given in the fixed frame.
-BLADE_INPUTS = ("swashplate", "gust_i", "gust_j", "gust_k")
-FIXED_INPUTS = ("collective", "cyclic_1c", "cyclic_1s", "gust_x", "gust_y", "gust_z")
-INPUTS = sp.IndexedBase("inputs")
-INPUT_INDEX = {name: sp.Symbol(f"BLADE_{name.upper()}") for name in BLADE_INPUTS}
+# Gusts: what reaches one blade, and what is given in the fixed frame.
+BLADE_GUSTS = ("gust_i", "gust_j", "gust_k")
+FIXED_GUSTS = ("gust_x", "gust_y", "gust_z")
+GUSTS = sp.IndexedBase("gusts")
+GUST_INDEX = {name: sp.Symbol(f"BLADE_{name.upper()}") for name in BLADE_GUSTS}
 
 
 @functools.cache
-def blade_inputs() -> sp.Matrix:
-    """One blade's inputs (4 rows) in those of the fixed frame (6 columns)."""
-    fixed = {name: sp.Symbol(f"fixed_{name}") for name in FIXED_INPUTS}
-    gust = sp.Matrix([fixed["gust_x"], fixed["gust_y"], fixed["gust_z"]])
-    pitch = fixed["collective"] + fixed["cyclic_1c"] * sp.cos(psi) + fixed["cyclic_1s"] * sp.sin(psi)
-    return sp.Matrix([pitch, gust.dot(I_AZIMUTH), gust.dot(J_AZIMUTH), gust[2]]).jacobian(
-        list(fixed.values())
-    )
+def blade_gusts() -> sp.Matrix:
+    """One blade's gusts (3 rows) in those of the fixed frame (3 columns)."""
+    gust = sp.Matrix(sp.symbols("gust_x gust_y gust_z"))
+    return sp.Matrix([gust.dot(I_AZIMUTH), gust.dot(J_AZIMUTH), gust[2]]).jacobian(list(gust))
 
 
-def input_matrix(row: int, column: int) -> sp.Expr:
-    """Entry of B: loads of N blades on a row per unit of an input."""
-    names = list(INPUT_INDEX.values())
+def gust_loads(row: int, column: int) -> sp.Expr:
+    """Loads of N blades on a row per unit of a gust."""
+    names = list(GUST_INDEX.values())
     indices = [BLADE_INDEX[name] for name in kin.COORDINATES]
     products = (
-        INPUTS[indices[i], names[j]] * azimuth_mean(left * blade_inputs()[j, column])
+        GUSTS[indices[i], names[j]] * azimuth_mean(left * blade_gusts()[j, column])
         for i, left in _columns(0)[row].items()
-        for j in range(len(BLADE_INPUTS))
+        for j in range(len(BLADE_GUSTS))
     )
     return s.n_blades * sum(products, sp.Integer(0))
 

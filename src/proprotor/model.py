@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from proprotor_equations import (
     BLADE_COORDINATES,
     FIXED_COORDINATES,
-    FIXED_INPUTS,
+    FIXED_GUSTS,
     airloads,
     drive_train,
     inertia,
@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from proprotor.state_space import StateSpace
 
 HUB = FIXED_COORDINATES[:6]
-INPUTS = FIXED_INPUTS
+SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
+INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
 _SOFTEST_SPRING = 1e-12  # of the other spring: a free hinge, without a division by zero in series
 
@@ -226,9 +227,10 @@ def _matrices(
         state = {name: getattr(trim, name)[good] for name in UNKNOWNS}
         pool = with_trim(take(quantities, good), options, state)
         pool |= _couplings(options, pool)
-        *blade, inputs = _blade_matrices(sections.take(good), pool, options)
+        *blade, gusts = _blade_matrices(sections.take(good), pool, options)
+        inputs = [_swashplate(pool, options, blade), evaluate(multiblade.gust_loads, pool, gusts)]
         matrices["B"][good] = 0.0
-        matrices["B"][good, : len(FIXED_COORDINATES)] = evaluate(multiblade.input_matrix, pool, inputs)
+        matrices["B"][good, : len(FIXED_COORDINATES)] = np.concatenate(inputs, axis=-1)
         for name, matrix in _fixed_frame(pool, options, blade, extra).items():
             matrices[name][good] = matrix
     return matrices
@@ -237,7 +239,7 @@ def _matrices(
 def _blade_matrices(
     sections: BladeSections, pool: Mapping[str, Any], options: Options
 ) -> tuple[NDArray, ...]:
-    """Mass, damping and stiffness (points, 12, 12) of one blade in rotating axes, and its inputs (points, 12, 4)."""
+    """Mass, damping and stiffness (points, 12, 12) of one blade in rotating axes, and its gusts (points, 12, 3)."""
     mass, damping, stiffness = _structure(pool, options.equation_set)
     points = np.shape(pool["pitch"])
     damping, stiffness = (
@@ -247,26 +249,25 @@ def _blade_matrices(
     if options.airloads != "none":
         air_damping, air_stiffness, gusts = _airloads(sections, pool, options)
         damping, stiffness = damping + air_damping, stiffness + air_stiffness
-    inputs = np.concatenate([_swashplate(pool, options, stiffness), gusts], axis=-1)
-    return mass, damping, stiffness, inputs
+    return mass, damping, stiffness, gusts
 
 
-def _swashplate(pool: Mapping[str, Any], options: Options, stiffness: NDArray) -> NDArray:
-    """Loads (points, 12, 1) on one blade per unit of pitch that the swashplate asks for.
+def _swashplate(pool: Mapping[str, Any], options: Options, blade: list[NDArray]) -> NDArray:
+    """Loads (points, 18, 3) on the rotor per unit of swashplate collective and cyclics, held in the fixed frame.
 
-    With the pitch equations kept, the pitch coordinate is then the whole pitch perturbation and the swashplate
-    pulls at it
-    through the control system (its rate does not reach the pitch damper). Without them the blade follows at once.
+    With the pitch equations kept, the pitch coordinates are then the whole perturbation of blade pitch, and the swashplate
+    pulls at them through control system and pitch damper. Without them the blades follow at once. Rates of the
+    swashplate are left out.
     """
+    place = BLADE_COORDINATES.index("pitch")
     if options.pitch_is_free:
-        loads = np.zeros_like(stiffness[..., :1])
-        loads[..., BLADE_COORDINATES.index("pitch"), 0] = pool["control_stiffness"]
-        return loads
-    stiffness = stiffness.copy()
-    stiffness[..., BLADE_COORDINATES.index("pitch"), BLADE_COORDINATES.index("pitch")] = (
-        0.0  # a row that is left out
-    )
-    return -stiffness[..., BLADE_COORDINATES.index("pitch"), None]
+        mass, damping, stiffness = (np.zeros_like(matrix) for matrix in blade)
+        damping[..., place, place], stiffness[..., place, place] = pool["pitch_damping"], pool["control_stiffness"]
+        sign = 1.0
+    else:
+        (mass, damping, stiffness), sign = blade, -1.0
+    columns = [FIXED_COORDINATES.index(name) for name in ("pitch_0", "pitch_1c", "pitch_1s")]
+    return sign * evaluate(multiblade.stiffness, pool, mass, damping, stiffness)[..., columns]
 
 
 _KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}

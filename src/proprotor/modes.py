@@ -48,12 +48,10 @@ def state_matrix(model: LinearModel) -> NDArray:
 
 def _check_inertia(model: LinearModel) -> None:
     """A rotor alone has massless directions: its hub may move against azimuth and gimbal without moving any mass."""
-    diagonal = np.sqrt(np.abs(np.diagonal(model.M, axis1=-2, axis2=-1)))
-    scaled = (
-        model.M
-        / np.where(diagonal > 0, diagonal, 1)[..., None, :]
-        / np.where(diagonal > 0, diagonal, 1)[..., None]
-    )
+    mass = model.M[_good(model)]
+    diagonal = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
+    diagonal = np.where(diagonal > 0, diagonal, 1)
+    scaled = mass / diagonal[..., None, :] / diagonal[..., None]
     if np.any(np.abs(np.linalg.det(scaled)) < _NO_INERTIA):
         rule = "gives the mass matrix no inverse: mount the rotor on a support, or hold hub coordinates with submodel"
         raise InputError("dofs", ", ".join(model.dofs), rule)

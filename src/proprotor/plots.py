@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from itertools import cycle
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 # Okabe and Ito's colours, which colour-blind readers tell apart, less the yellow, too pale on white.
 _COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _DASHES = ("-", "--", ":")
+_MARKERS = "s^DvP<>"  # for broad lines, which colour alone would not tell apart on a grey print
 _LABEL_SIZE = 8  # points
 _LINE_SPACING = 1.3
 
@@ -29,6 +31,7 @@ class _Style(NamedTuple):
     color: str
     linestyle: str
     linewidth: float
+    marker: str
 
 
 def plot_frequency(
@@ -158,10 +161,11 @@ def _axes(ax: Axes | None) -> Axes:
 
 def _draw_modes(ax: Axes, sweep: xarray.Dataset, values: NDArray, unit: str) -> list[Line2D]:
     airspeed = sweep.airspeed.values / factor_to_si(unit, unit, "m/s")
-    marker = "o" if len(airspeed) == 1 else ""
+    spacing = max(1, len(airspeed) // 7)
     lines = []
-    for mode, column, style in zip(sweep.mode.values.tolist(), values.T, _styles(sweep), strict=True):
-        lines += ax.plot(airspeed, column, label=mode, marker=marker, **style._asdict())
+    for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), _styles(sweep), strict=True)):
+        line = {"label": mode, "markevery": (3 * place % spacing, spacing), "markersize": 5}
+        lines += ax.plot(airspeed, values[:, place], **line, **style._asdict())
     failed = airspeed[sweep.reason.values != ""]
     on_the_axis = {"transform": ax.get_xaxis_transform(), "clip_on": False}
     ax.plot(failed, np.zeros(len(failed)), "x", color="0.4", **on_the_axis)
@@ -175,11 +179,14 @@ def _draw_modes(ax: Axes, sweep: xarray.Dataset, values: NDArray, unit: str) -> 
 def _styles(sweep: xarray.Dataset) -> list[_Style]:
     """One style for each mode: the support's modes and unstable ones in broad lines."""
     broad = {*support_coordinates(sweep), *(found.mode for found in unstable_ranges(sweep))}
+    markers = cycle(_MARKERS)
+    single = "o" if len(sweep.airspeed) == 1 else ""
     return [
         _Style(
             color=_COLOURS[place % len(_COLOURS)],
             linestyle=_DASHES[place // len(_COLOURS) % len(_DASHES)],
             linewidth=2.4 if mode in broad else 1.2,
+            marker=next(markers) if mode in broad else single,
         )
         for place, mode in enumerate(sweep.mode.values.tolist())
     ]
@@ -195,8 +202,8 @@ def _label(ax: Axes, lines: list[Line2D]) -> None:
         edge = np.clip(y, 0, 1)
         start = x if y == edge else 1
         ax.plot([start, 1, 1.03], [edge, edge, height], color=line.get_color(), linewidth=0.6, **beside)
-        sample = {name: getattr(line, f"get_{name}")() for name in ("color", "linestyle", "linewidth")}
-        ax.plot([1.03, 1.085], [height, height], **sample, **beside)
+        sample = {name: getattr(line, f"get_{name}")() for name in (*_Style._fields, "markersize")}
+        ax.plot([1.03, 1.0575, 1.085], [height] * 3, markevery=[1], **sample, **beside)
         beyond = " ↑" if y > 1 else " ↓" if y < 0 else ""
         ax.text(1.095, height, f"{line.get_label()}{beyond}", fontsize=_LABEL_SIZE, va="center", **beside)
 

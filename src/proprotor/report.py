@@ -42,7 +42,7 @@ def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_mode
     for line in table.lines(console.width, all_modes):
         console.print(line, soft_wrap=True)
     for line in table.doubts():
-        console.print(line, style="yellow")
+        console.print(f"? {line}", style="yellow")
     for line in table.verdict():
         console.print(line, style="bold")
 

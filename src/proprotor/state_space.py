@@ -35,7 +35,7 @@ class StateSpace:
         States are displacements (without the rotor's azimuth unless a shaft holds it), then rates ("… rate").
         Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
         inertial axes)
-        and the rotor's own coordinates.
+        and the rotor's own coordinates; of an azimuth that no shaft holds, the rate.
     """
 
     A: NDArray
@@ -109,7 +109,7 @@ def _outputs(
         (tuple(f"{name} rate" for name in HUB), hub @ rate, none),
         (tuple(f"{name} acceleration" for name in HUB), hub @ acceleration, hub @ acceleration_by_input),
         (LOADS, loads, loads_by_input),
-        (tuple(model.dofs[place] for place in own), displacement[own], np.zeros((len(own), len(INPUTS)))),
+        *_own_motion(model, own, displacement, rate),
     ]
     names = tuple(name for part, _, _ in blocks for name in part)
     stacked = [
@@ -119,6 +119,16 @@ def _outputs(
         for kind in (1, 2)
     ]
     return names, *stacked
+
+
+def _own_motion(model: LinearModel, own: list[int], displacement: NDArray, rate: NDArray) -> list[tuple]:
+    """Displacements of the rotor's own coordinates, and the rate of one that is no displacement."""
+    held = held_coordinates(model)
+    moved, turning = ([p for p in own if (p in held) is kept] for kept in (True, False))
+    return [
+        (tuple(model.dofs[p] for p in moved), displacement[moved], np.zeros((len(moved), len(INPUTS)))),
+        (tuple(f"{model.dofs[p]} rate" for p in turning), rate[turning], np.zeros((len(turning), len(INPUTS)))),
+    ]
 
 
 def _hub_loads(model: LinearModel, motion: tuple, acceleration_by_input: NDArray) -> tuple[NDArray, NDArray]:
@@ -139,5 +149,7 @@ def _to_rotor(model: LinearModel) -> NDArray:
     """Coordinates of the rotor alone in those of the mounted model."""
     own = model.rotor.dofs[len(HUB) :]
     rows = np.zeros((len(own), len(model.dofs)))
-    rows[np.arange(len(own)), [model.dofs.index(name) for name in own]] = 1
+    for place, name in enumerate(own):
+        if name in model.dofs:  # a coordinate left out of a submodel stays at zero
+            rows[place, model.dofs.index(name)] = 1
     return np.concatenate([model.hub, rows])

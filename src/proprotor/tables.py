@@ -103,7 +103,11 @@ class SweepTable:
         """A sentence on each warning of single airspeeds; their rows have a question mark."""
         texts = self.sweep.warning.values
         found = {text: self.airspeed[texts == text] for text in dict.fromkeys(texts.tolist()) if text}
-        return [f"? Doubtful from {v[0]:g} to {v[-1]:g} {self.unit}: {text}." for text, v in found.items()]
+        return [f"Doubtful {self._range(speeds)}: {text}." for text, speeds in found.items()]
+
+    def _range(self, speeds: NDArray) -> str:
+        ends = f"{speeds[0]:g} {self.unit}", f"{speeds[-1]:g} {self.unit}"
+        return f"at {ends[0]}" if len(speeds) == 1 else f"from {ends[0]} to {ends[1]}"
 
     def _of_interest(self, count: int) -> list[int]:
         """Unstable modes, the support's, then those that move it the most; in the order of the sweep."""
