@@ -1,6 +1,6 @@
-"""Rotor frequencies of the XV-15 against airspeed, beside what the paper and the tests say, and the stability boundary.
+"""Rotor frequencies of the XV-15 against airspeed, beside what the paper and the tests say.
 
-    python benchmarks/xv15_frequencies.py
+    python -m benchmarks.xv15_frequencies
 
 The rotor stands on a rigid hub; frequencies are in the fixed frame, per revolution at 458 rpm.
 """
@@ -12,27 +12,25 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.xv15_boundary import KNOT
 from proprotor.model import HUB
 from proprotor.sweep import sweep
 
-KNOT = 1852 / 3600
 SPEEDS = np.arange(50, 451, 50) * KNOT
+MODES = ("coning", "low cyclic lag", "low gimbal", "high gimbal")
 STATEMENTS = (
-    "Paper: low-frequency cyclic lag 0.8 to 0.2 per rev (Fig. 14), coning near 1.85, gimbal 1.0355 (Fig. 18).",
-    "Test (TM X-62,407): coning 1.70 per rev at 458 rpm; lag 1.72 per rev in the rotating frame at low pitch.",
+    "AIAA-2002-1604: low cyclic lag from about 0.8 to 0.2 per rev (Fig. 14); coning 1.85; gimbal 1.0355.",
+    "NASA TM X-62,407, test: coning 1.70 per rev at 458 rpm; lag 1.72 per rev, rotating, at low pitch.",
 )
 
 
-def on_rigid_hub(case: pp.Case, **options) -> list[np.ndarray]:
-    """Frequencies per rev of the coning, low cyclic lag and gimbal modes at `SPEEDS`."""
-    model = pp.rotor_model(case.rotor, case.operation, SPEEDS, **options)
+def on_rigid_hub(case: pp.Case, airspeeds: np.ndarray = SPEEDS, **options) -> dict[str, np.ndarray]:
+    """Frequencies per rev of the coning, low cyclic lag and gimbal modes; NaN where no mode has the name."""
+    model = pp.rotor_model(case.rotor, case.operation, airspeeds, **options)
     modes = sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB)))
-    names = [str(name) for name in modes.mode.values]
-    per_rev = modes.frequency.values / case.operation.rotor_speed
-    picked = []
-    for wanted in ("coning", "low cyclic lag", "low gimbal", "high gimbal"):
-        picked.append(per_rev[:, names.index(wanted)] if wanted in names else np.full(len(SPEEDS), np.nan))
-    return picked
+    per_rev = modes.frequency.values.T / case.operation.rotor_speed
+    named = dict(zip(modes.mode.values.tolist(), per_rev, strict=True))
+    return {name: named.get(name, np.full(len(airspeeds), np.nan)) for name in MODES}
 
 
 def main() -> None:
@@ -41,11 +39,12 @@ def main() -> None:
     console.print(f"[bold]{case.title}[/bold]  calibrated: {case.calibration}")
     for airloads in ("none", "full"):
         for rotor_speed in ("windmilling", "constant"):
-            columns = on_rigid_hub(case, airloads=airloads, rotor_speed=rotor_speed)
+            columns = on_rigid_hub(case, airloads=airloads, rotor_speed=rotor_speed).values()
             title = f"airloads {airloads}, rotor speed {'free' if rotor_speed == 'windmilling' else 'locked'}"
-            table = Table("kt", "coning", "low cyclic lag", "low gimbal", "high gimbal", title=title)
+            table = Table("kt", *MODES, title=title)
             for speed, *values in zip(SPEEDS / KNOT, *columns, strict=True):
-                table.add_row(f"{speed:.0f}", *(f"{value:.3f}" for value in values))
+                cells = (f"{value:.3f}" if np.isfinite(value) else "-" for value in values)
+                table.add_row(f"{speed:.0f}", *cells)
             console.print(table)
     for statement in STATEMENTS:
         console.print(statement)

@@ -307,7 +307,8 @@ def sampled(mach, factor) -> AirfoilTable:
 @pytest.mark.parametrize("compressibility", [True, False])
 def test_a_table_of_the_linear_airfoil_gives_its_matrices(compressibility, airloads):
     options = {"compressibility": compressibility, "airloads": airloads}
-    table = sampled(np.array([0.0, 0.3, 0.5, 0.9]), lambda mach: 1.0)
+    mach = [0.0] if compressibility else [0.0, 0.3, 0.5, 0.9]  # Mach columns would say that it is in the table
+    table = sampled(np.array(mach), lambda mach: 1.0)
     model, expected = matrices(table, **options), matrices(LINEAR, **options)
     assert expected.trim.converged.all()
     np.testing.assert_allclose(model.trim.collective, expected.trim.collective, rtol=0, atol=1e-12)

@@ -96,7 +96,6 @@ def test_doubtful_airspeeds_are_marked_and_explained(tmp_path):
         assert text in file.read_text(encoding="utf-8")
 
 
-@pytest.mark.filterwarnings("ignore:Mean of empty slice:RuntimeWarning")
 def test_nothing_but_failed_airspeeds_is_a_failure():
     result = run("sweep", "xv15", "--speed", "0 kt")
     assert result.exit_code == 1

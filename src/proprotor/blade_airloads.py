@@ -149,10 +149,20 @@ def load_moments(
         here = sections.take(rows)
         for name, load in _section_loads(here, block, compressibility, lift_slope_only, equations).items():
             if np.ndim(load):
-                moments[name][rows] = here.quadrature.moments(load)
+                moments[name][rows] = _block_moments(here.quadrature, load)
     return {
         f"{name}_{power}": moment[..., power] for name, moment in moments.items() for power in range(POWERS)
     }
+
+
+def _block_moments(quadrature: RadialQuadrature, load: NDArray) -> NDArray:
+    """Radial moments of a block of points, filled up so that a point's sums do not depend on how many it comes with."""
+    rows = len(load)
+    if quadrature.segment.ndim > 1 or rows == _BLOCK:
+        return quadrature.moments(load)
+    full = np.zeros((_BLOCK, load.shape[-1]))
+    full[:rows] = load
+    return quadrature.moments(full)[:rows]
 
 
 def _section_loads(

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from proprotor.errors import InputError
 
@@ -67,6 +66,8 @@ class BladeFrequencies:
             return np.asarray(curve(abscissa), dtype=float)
         if np.ndim(curve) == 0:
             return np.full(np.shape(abscissa), float(curve))
+        from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
+
         at = np.asarray(self.at, dtype=float)
         return PchipInterpolator(at, np.asarray(curve, dtype=float))(np.clip(abscissa, at[0], at[-1]))
 

@@ -125,8 +125,10 @@ def rotor_quantities(
 
 def batch_shape(rotor: Rotor, operation: Operation, airspeed: NDArray) -> tuple[int, ...]:
     """Shape of all arrays among the inputs, broadcast together."""
-    inputs = [getattr(rotor, e.name) for e in fields(rotor) if e.name not in ("airfoil", "chord", "twist")]
+    inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name != "airfoil"]
+    inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)]
     inputs += [getattr(operation, name) for name in ("rotor_speed", "density", "speed_of_sound")]
+    inputs += [] if operation.windmilling else list(operation.trim.values())
     return np.broadcast_shapes(np.shape(airspeed), *(np.shape(value) for value in inputs))
 
 

@@ -17,6 +17,7 @@ from proprotor.model import ROTOR_SPEED, LinearModel
 if TYPE_CHECKING:
     import xarray
 
+_NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping ratio
 _NO_INERTIA = 1e-13  # determinant of a mass matrix scaled to a unit diagonal that counts as zero
 
 
@@ -141,14 +142,15 @@ def mode_dataset(model: LinearModel, values: NDArray, shapes: NDArray, shares: N
     )
     by_mode = (*leading, "mode")
     with np.errstate(all="ignore"):
-        ratio = -values.real / np.abs(values)
+        neutral = np.abs(values) < _NEUTRAL * np.nanmax(np.abs(values), initial=0)
+        ratio = np.where(neutral, np.nan, -values.real / np.abs(values))
         largest = np.take_along_axis(shapes, np.abs(np.nan_to_num(shapes)).argmax(axis=-2)[..., None, :], -2)
         shapes = np.where(np.isnan(values)[..., None, :], np.nan, shapes / largest)
     dominant = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-2)]
     dominant = np.where(np.isnan(values), "", dominant)
     data = {
         "eigenvalue": (by_mode, values, {"units": "rad/s"}),
-        "frequency": (by_mode, np.abs(values.imag), {"units": "rad/s", "long_name": "damped frequency"}),
+        "frequency": (by_mode, np.where(np.isnan(values), np.nan, np.abs(values.imag)), {"units": "rad/s", "long_name": "damped frequency"}),
         "natural_frequency": (by_mode, np.abs(values), {"units": "rad/s"}),
         "damping_ratio": (by_mode, ratio, {"units": "1", "long_name": "fraction of critical damping"}),
         "shape": ((*by_mode, "dof"), np.moveaxis(shapes, -1, -2)),

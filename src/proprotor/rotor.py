@@ -136,11 +136,13 @@ class Rotor:
 
     def _check_number(self, name: str) -> None:
         value = getattr(self, name)
-        if isinstance(value, tuple):
+        if name in ("chord", "twist") and isinstance(value, tuple):
             _check_distribution(name, value)
             return
         if name in ("chord", "twist") and callable(value):
             return
+        if isinstance(value, tuple | str):
+            raise InputError(name, value, "must be a number")
         try:
             finite = np.all(np.isfinite(np.asarray(value, dtype=complex)))
         except (TypeError, ValueError):
@@ -168,20 +170,20 @@ class Rotor:
     def _check_hinges(self) -> None:
         if np.any(np.real(self.root_cutout) >= np.real(self.radius)):
             raise InputError(
-                "root_cutout", self.root_cutout, f"must lie inboard of the tip ({self.radius:g} m)"
+                "root_cutout", self.root_cutout, f"must lie inboard of the tip ({_shown(self.radius)} m)"
             )
         if np.any(np.real(self.lag_hinge_offset) < np.real(self.flap_hinge_offset)):
-            rule = f"must not lie inboard of the flap hinge ({self.flap_hinge_offset:g} m)"
+            rule = f"must not lie inboard of the flap hinge ({_shown(self.flap_hinge_offset)} m)"
             raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
         if np.any(np.real(self.lag_hinge_offset) >= np.real(self.radius)):
-            rule = f"must lie inboard of the tip ({self.radius:g} m)"
+            rule = f"must lie inboard of the tip ({_shown(self.radius)} m)"
             raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
 
     def _check_mass(self) -> None:
         """Integrals of m times two of the arms 1, r, ρβ, ρζ are inner products: no negative Gram matrix."""
         i_beta_alpha = np.real(self.flap_hub_inertia)
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
-            rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {i_beta_alpha:g} kg m²"
+            rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
             raise InputError("flap_inertia", self.flap_inertia, rule)
         gram = np.real(self._gram_matrix())
         scale = np.sqrt(np.diagonal(gram, axis1=-2, axis2=-1))
@@ -282,6 +284,12 @@ class Rotor:
         for name, arm in arms.items():
             integrals |= {f"{name}_first_moment": m @ arm, f"{name}_inertia": m @ arm**2}
         return cls(**{name: float(value) for name, value in integrals.items()}, **fields_)
+
+
+def _shown(value: ArrayLike) -> str:
+    """A number, or the range of an array of designs."""
+    low, high = np.min(np.real(value)), np.max(np.real(value))
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def _check_distribution(name: str, distribution: tuple[ArrayLike, ArrayLike]) -> None:

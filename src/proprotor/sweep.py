@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
@@ -35,6 +34,8 @@ def track(system: Eigensystem) -> NDArray:
 
 
 def _assign(system: Eigensystem, before: int, order: NDArray, after: int) -> NDArray:
+    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
+
     forward = np.abs(system.left[before][order] @ system.right[after])
     backward = np.abs(system.left[after] @ system.right[before][:, order]).T
     likeness = np.sqrt(forward * backward)
@@ -66,26 +67,28 @@ def sweep(model: LinearModel) -> xarray.Dataset:
     values = np.take_along_axis(system.values, order, 1)
     shapes = np.take_along_axis(system.displacement, order[:, None, :], 2)
     shares = np.take_along_axis(participation(model, system), order[:, None, :], 2)
-    kept = _one_of_each_pair(values)
+    good = np.isfinite(values).all(axis=1)
+    kept = _one_of_each_pair(values[good])
     values, shapes, shares = values[:, kept], shapes[..., kept], shares[..., kept]
-    names, by_frequency = _names(model.dofs, values, shares)
+    names, by_frequency = _names(model.dofs, values[good], shares[good])
     data = mode_dataset(model, values[:, by_frequency], shapes[..., by_frequency], shares[..., by_frequency])
     return data.assign_coords(mode=names)
 
 
 def _one_of_each_pair(values: NDArray) -> NDArray:
     """Columns that are in the upper half plane more than in the lower, and every root that stays real."""
-    weight = np.nansum(values.imag, axis=0)
-    return np.flatnonzero((weight > 0) | (np.nanmax(np.abs(values.imag), axis=0, initial=0) == 0))
+    if not len(values):  # no point worked: there are no modes
+        return np.empty(0, dtype=int)
+    return np.flatnonzero((values.imag.sum(axis=0) > 0) | (np.abs(values.imag).max(axis=0) == 0))
 
 
 def _names(dofs: tuple[str, ...], values: NDArray, shares: NDArray) -> tuple[list[str], NDArray]:
     """Names from the coordinates that take part most over the sweep, and the order of their mean frequency."""
-    frequency = (
-        np.nan_to_num(np.nanmean(np.abs(values.imag), axis=0)) if len(values) else np.zeros(values.shape[1])
-    )
+    if not len(values):
+        return [], np.empty(0, dtype=int)
+    frequency = np.abs(values.imag).mean(axis=0)
     order = np.argsort(frequency, kind="stable")
-    mean_shares = np.nan_to_num(np.nanmean(shares, axis=0))[:, order]
+    mean_shares = shares.mean(axis=0)[:, order]
     groups = [_group(dof) for dof in dofs]
     labels = sorted(set(groups), key=groups.index)
     by_group = np.stack([mean_shares[[g == label for g in groups]].sum(axis=0) for label in labels])

@@ -54,11 +54,12 @@ def swashplate_columns(rotor, trim, time, airloads):
 
 
 def control_columns(rotor, trim, time):
-    """Loads (18, 3) per unit of collective and cyclics that pull at the pitch of the blades with K_θ.
+    """Loads (18, 3) per unit of collective and cyclics that pull at the pitch of the blades with K_θ and C_θ.
 
-    With θ the pitch perturbation and u the swashplate's, the spring holds ½ K_θ (θ − u)².
+    With θ the pitch perturbation and u the swashplate's, the spring holds ½ K_θ (θ − u)²; a held cyclic turns the blade
+    once a revolution against the damper.
     """
-    free = replace(rotor, control_stiffness=0.0)
+    free = replace(rotor, control_stiffness=0.0, pitch_damping=0.0)
     held, loose = (
         _pitch_columns(lambda q, instant, r=r: rows_in_vacuum(r, q, instant), trim, time)
         for r in (rotor, free)
