@@ -135,7 +135,9 @@ def _judged(equation: PrintedEquation, part: str, printed: Terms, derived: Terms
         for term, number in agreed.items():
             yield TermVerdict(part, term, number, number, AFTER_READING, name)
     for term in sorted({*printed, *derived}, key=sp.default_sort_key):
-        yield _left_over(equation, part, term, printed.get(term, sp.Integer(0)), derived.get(term, sp.Integer(0)))
+        yield _left_over(
+            equation, part, term, printed.get(term, sp.Integer(0)), derived.get(term, sp.Integer(0))
+        )
 
 
 def _agreement(printed: Terms, derived: Terms) -> tuple[Terms, Terms, Terms]:

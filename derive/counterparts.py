@@ -47,7 +47,9 @@ def counterpart(*numbers: int | str):
 
 def truncated(expression, order: int, **orders):
     """Terms of at most `order` when the symbols of `orders["of"]` are small to the power given there."""
-    scaled = sp.sympify(expression).subs({symbol: _small**power * symbol for symbol, power in orders["of"].items()})
+    scaled = sp.sympify(expression).subs(
+        {symbol: _small**power * symbol for symbol, power in orders["of"].items()}
+    )
     total, derivative = sp.Integer(0), scaled
     for power in range(order + 1):
         total += derivative.subs(_small, 0) / sp.factorial(power)
@@ -109,7 +111,9 @@ def _blade_in_hub_axes() -> sp.Matrix:
     return (kin.GIMBAL_TILT * kin.rotation(kin.q["azimuth"] * kin.K_AXIS) * line).subs(ARMS)
 
 
-_ANGLES = {kin.q[name]: 1 for name in ("flap", "lag", "azimuth", "gimbal_flap", "gimbal_roll")} | {s.precone: 1}
+_ANGLES = {kin.q[name]: 1 for name in ("flap", "lag", "azimuth", "gimbal_flap", "gimbal_roll")} | {
+    s.precone: 1
+}
 
 
 @counterpart(2)
@@ -127,7 +131,9 @@ def _inertia(dropped: frozenset[str]) -> inertia.BladeInertia:
 
 def _in_arms(component) -> sp.Expr:
     """A component of a ring vector in r, the hinge offsets and the trim angles, to first order in the cone."""
-    expression = component.as_expr().subs(_trim_arms()).subs(dict(temporaries(WHOLE_BLADE_ANGLES))).subs(s.lag, 0)
+    expression = (
+        component.as_expr().subs(_trim_arms()).subs(dict(temporaries(WHOLE_BLADE_ANGLES))).subs(s.lag, 0)
+    )
     return first_order_in_cone(expression.subs(ARMS))
 
 
@@ -351,7 +357,9 @@ def coordinates(dropped) -> Parts:
 
 _sine, _cosine = sp.sin(s.structural_pitch), sp.cos(s.structural_pitch)
 _STIFFNESS = sp.Matrix(
-    2, 2, lambda i, j: flap_lag_springs.STIFFNESS["lag" if min(i, j) else "flap", "lag" if i or j else "flap", 0]
+    2,
+    2,
+    lambda i, j: flap_lag_springs.STIFFNESS["lag" if min(i, j) else "flap", "lag" if i or j else "flap", 0],
 )
 _DEFLECTION = sp.Matrix([TIME["flap"][0], TIME["lag"][0]])
 _MOMENTS = sp.Matrix([n.M_beta, n.M_zeta])
@@ -416,7 +424,10 @@ def elastic_moments(dropped) -> Parts:
 def effective_stiffness(dropped) -> Parts:
     numerators, _ = flap_lag_springs.series_springs()
     names = {"K_ββ": ("flap", "flap"), "K_ζζ": ("lag", "lag"), "K_βζ": ("flap", "lag")}
-    return {name: sp.expand(numerators[pair] / flap_lag_springs.series_determinant) for name, pair in names.items()}
+    return {
+        name: sp.expand(numerators[pair] / flap_lag_springs.series_determinant)
+        for name, pair in names.items()
+    }
 
 
 @counterpart(22)
@@ -430,7 +441,11 @@ def uniform_blade(dropped) -> Parts:
     length, mass, arm = sp.symbols("length mass arm", positive=True)
     moment, second = (sp.integrate(mass * arm**power, (arm, 0, length)) for power in (1, 2))
     centrifugal = frequency_squared("flap").subs(inertia.dependent_inertias()).subs(s.rotor_speed, sp.oo)
-    offset = {s.flap_first_moment: moment, s.flap_inertia: second, s.flap_hinge_offset: n.mean_offset * length}
+    offset = {
+        s.flap_first_moment: moment,
+        s.flap_inertia: second,
+        s.flap_hinge_offset: n.mean_offset * length,
+    }
     spring = frequency_squared("flap").coeff(flap_lag_springs.STIFFNESS["flap", "flap", 0])
     return {"ν_β²": sp.expand(centrifugal.subs(offset)) + spring * s.flap_stiffness}
 
@@ -493,16 +508,22 @@ def _offset_from_feather_axis() -> tuple[sp.Matrix, sp.Matrix]:
     return axis, blade.subs(whole) - blade.subs(inboard)
 
 
-@counterpart(32)
-def pitch_equation(dropped) -> Parts:
-    """Virtual work of a turn of the outboard blade about the feather axis; what resists stands with a plus."""
+@functools.cache
+def _work_about_feather_axis() -> sp.Expr:
+    """Work of the section's forces per unit turn, to second order in the angles."""
     axis, offset = _offset_from_feather_axis()
     force = sp.Matrix([n.F_x, n.F_r, n.F_z])
     small = _ANGLES | {angle: 1 for angle in (n.beta_in, n.beta_out, n.zeta_in, n.zeta_out)}
     # F_r belongs to second order in the angles; the others are perturbations themselves.
     work = truncated(axis.cross(offset).dot(force), 2, of=small | {n.F_x: 1, n.F_z: 1})
+    return in_fixed_coordinates(work)
+
+
+@counterpart(32)
+def pitch_equation(dropped) -> Parts:
+    """Virtual work of a turn of the outboard blade about the feather axis; what resists stands with a plus."""
     turn = sp.diff(kin.pitch_angles()[0], kin.q["pitch"])
-    integrand = -in_fixed_coordinates(work) + airload_sign() * turn * n.dM_theta_aero
+    integrand = -_work_about_feather_axis() + airload_sign() * turn * n.dM_theta_aero
     control = sp.Integer(0)
     for name in kin.COORDINATES:
         displacement, _, second = motion(name)

@@ -95,8 +95,7 @@ class Function:
         known = {symbol for symbol, _ in self.steps}
         expressions = [value for _, value in self.steps] + [entry.value for entry in self.entries.values()]
         free = set().union(*(expression.free_symbols for expression in expressions)) if expressions else set()
-        if self.blade_matrices:
-            free = {symbol for symbol in free if symbol in QUANTITIES}
+        free = {symbol for symbol in free if not isinstance(symbol, sp.Indexed)} - _INDEX_SYMBOLS
         free -= known
         unknown = free - set(QUANTITIES)
         if unknown:
@@ -110,8 +109,7 @@ class Function:
         for symbol, value in self.steps:
             _require(value, QUANTITIES[symbol].dimension, f"{self.module}.{self.name}: {symbol}")
         for place, entry in self.entries.items():
-            if not self.blade_matrices:
-                _require(entry.value, entry.dimension, f"{self.module}.{self.name}: {place}")
+            _require(entry.value, entry.dimension, f"{self.module}.{self.name}: {place}")
 
 
 def _require(expression: sp.Expr, dimension: Dimension, where: str) -> None:
@@ -124,6 +122,8 @@ def dimension_of(expression: sp.Expr, where: str = "") -> Dimension:
     """Dimension of an expression; all terms of a sum must agree and functions take numbers."""
     if expression.is_number:
         return NUMBER
+    if isinstance(expression, sp.Indexed):
+        return _blade_entry_dimension(expression)
     if expression.is_Symbol:
         return QUANTITIES[expression].dimension
     if expression.is_Add:
@@ -154,6 +154,24 @@ def coordinate_dimension(name: str) -> Dimension:
 def row_dimension(name: str) -> Dimension:
     """Virtual work per unit of the row's coordinate."""
     return FORCE if coordinate_dimension(name) == LENGTH else MOMENT
+
+
+# Names that stand for whole matrices and places in them, not for quantities.
+_INDEX_SYMBOLS = {*multiblade.BLADE_INDEX.values(), *multiblade.GUST_INDEX.values()}
+_INDEX_SYMBOLS |= {
+    base.label for base in (multiblade.MASS, multiblade.DAMPING, multiblade.STIFFNESS, multiblade.GUSTS)
+}
+_TIME_ORDER = {multiblade.MASS: 2, multiblade.DAMPING: 1, multiblade.STIFFNESS: 0}
+
+
+def _blade_entry_dimension(entry: sp.Indexed) -> Dimension:
+    """Dimension of an entry of a blade's mass, damping or stiffness matrix, or of its gust loads."""
+    names = {symbol: name for name, symbol in multiblade.BLADE_INDEX.items()}
+    row, column = entry.indices
+    if entry.base == multiblade.GUSTS:
+        return _plus(row_dimension(names[row]), minus=(0, 1, -1))
+    order = _per_time(_TIME_ORDER[entry.base])
+    return _plus(row_dimension(names[row]), order, minus=coordinate_dimension(names[column]))
 
 
 def _per_time(order: int) -> Dimension:

@@ -84,16 +84,12 @@ def dimensions(equations: Equations) -> Iterator[Finding]:
 
 # Mirror image: Omega -> -Omega with everything reflected in the plane of I and K
 
+_ODD_MOTIONS = ("y", "alpha_x", "alpha_z", "lag", "lag_0", "lag_1c", "flap_1s", "azimuth", "gimbal_1s")
+_ODD_MOTIONS += ("pitch", "pitch_0", "pitch_1c")
 _ODD = {s.rotor_speed, s.structural_pitch, s.lag, s.pitch_gimbal_coupling, s.pitch_flap_coupling}
 _ODD |= {STIFFNESS["flap", "lag", 0], n.M_zeta, n.M_zeta_elas, n.zeta_in, n.zeta_out, n.B, n.C, n.X, n.Y}
-_ODD |= {n.F_x, n.a_i, n.dM_theta, n.dM_theta_aero, n.flexibility_in["bz"], n.flexibility_out["bz"], psi}
-_ODD |= {
-    symbol
-    for motions in (TIME, AZIMUTH)
-    for name in ("y", "alpha_x", "alpha_z", "lag", "lag_0", "lag_1c", "flap_1s", "azimuth", "gimbal_1s")
-    + ("pitch", "pitch_0", "pitch_1c")
-    for symbol in motions[name]
-}
+_ODD |= {n.F_x, n.a_i, n.dM_theta, n.dM_theta_aero, n.flexibility_out["bz"], psi}
+_ODD |= {symbol for motions in (TIME, AZIMUTH) for name in _ODD_MOTIONS for symbol in motions[name]}
 # Derivatives with azimuth are odd where those with time are even.
 _ODD ^= {motion[1] for motion in AZIMUTH.values()}
 # Axes are any three in Eq. 10.
@@ -143,8 +139,12 @@ def skewness(equations: Equations) -> Iterator[Finding]:
     whole = sp.expand(equations[13].parts["inertia and springs"]).coeff(AZIMUTH["lag"][1])
     flap_row = sp.expand(whole * s.blade_inertia * omega)
     rest = sp.factor(flap_row + lag_row)
-    yield Finding(13, SKEWNESS, rest == 0, f"flap by lag {sp.factor(flap_row)}, lag by flap {sp.factor(lag_row)}")
-    arm = sp.expand(equations[12].parts["integrand"]).coeff(n.a_j).coeff(s.precone) / (n.m * (s.radial_station - n.e))
+    yield Finding(
+        13, SKEWNESS, rest == 0, f"flap by lag {sp.factor(flap_row)}, lag by flap {sp.factor(lag_row)}"
+    )
+    arm = sp.expand(equations[12].parts["integrand"]).coeff(n.a_j).coeff(s.precone) / (
+        n.m * (s.radial_station - n.e)
+    )
     from_12 = sp.simplify(arm) * cone * _inertia_of(sp.expand(along_j).coeff(lag_rate))
     rest = sp.factor(from_12 + lag_row)
     yield Finding(12, SKEWNESS, rest == 0, f"flap by lag from Eqs. 11 and 12 {sp.factor(from_12)}")
@@ -153,14 +153,13 @@ def skewness(equations: Equations) -> Iterator[Finding]:
 def _tilted_back(vector: list[sp.Expr]) -> list[sp.Expr]:
     """The hub tilted by alpha_x and alpha_y with the gimbal tilted back; everything else at rest."""
     alpha_x, alpha_y = TIME["alpha_x"], TIME["alpha_y"]
-    tilt = sp.cos(psi) * sp.Symbol("tilt_c") + sp.sin(psi) * sp.Symbol("tilt_s")
-    back = dict(zip(TIME["gimbal_flap"], _derivatives_of_tilt(tilt, alpha_x, alpha_y), strict=True))
+    back = dict(zip(TIME["gimbal_flap"], _gimbal_flap_against(alpha_x, alpha_y), strict=True))
     moving = {*back, *alpha_x, *alpha_y}
     rest = {q: 0 for motion in TIME.values() for q in motion if q not in moving}
     return [sp.expand(component.subs(back).subs(rest)) for component in vector]
 
 
-def _derivatives_of_tilt(tilt, alpha_x, alpha_y) -> list[sp.Expr]:
+def _gimbal_flap_against(alpha_x, alpha_y) -> list[sp.Expr]:
     """beta_G of beta_GC = alpha_y and beta_GS = -alpha_x, with its derivatives in time."""
     gc, gs = alpha_y, [-a for a in alpha_x]
     omega, cosine, sine = s.rotor_speed, sp.cos(psi), sp.sin(psi)
@@ -174,9 +173,9 @@ def _derivatives_of_tilt(tilt, alpha_x, alpha_y) -> list[sp.Expr]:
     ]
 
 
-def rigid_tilt_rest(equation: PrintedEquation, added: sp.Expr = sp.Integer(0)) -> list[sp.Expr]:
-    """What is left of an acceleration, along the axes of the turned hub, when nothing moves; with a term added to a_i."""
-    along = [equation.parts["i"] + added, equation.parts["j"], equation.parts["k"]]
+def rigid_tilt_rest(equation: PrintedEquation, added: sp.Expr | None = None) -> list[sp.Expr]:
+    """What is left of an acceleration along the turned hub's axes when nothing moves; with a term added to a_i."""
+    along = [equation.parts["i"] + (added or 0), equation.parts["j"], equation.parts["k"]]
     alpha_x, alpha_y = TIME["alpha_x"][0], TIME["alpha_y"][0]
     # The centrifugal acceleration does not turn with the hub, its components do.
     seen = s.rotor_speed**2 * s.radial_station * (alpha_x * sp.sin(psi) - alpha_y * sp.cos(psi))
@@ -240,7 +239,9 @@ def series(equations: Equations) -> Iterator[Finding]:
     for number, wanted in ((30, "AWBXCYDZ"), (31, "AWBXCYDZ")):
         rests = [
             springs[sp.Symbol(a, real=True)] + springs[sp.Symbol(b, real=True)] - total
-            for (a, b), total in zip(zip(wanted[::2], wanted[1::2], strict=True), (one, zero, zero, one), strict=True)
+            for (a, b), total in zip(
+                zip(wanted[::2], wanted[1::2], strict=True), (one, zero, zero, one), strict=True
+            )
         ]
         worst = max(_worst(rest, samples) for rest in rests)
         yield Finding(number, SERIES, worst < 1e-12, f"off by {worst:.1e}")
@@ -259,7 +260,9 @@ def series(equations: Equations) -> Iterator[Finding]:
 def definiteness(equations: Equations) -> Iterator[Finding]:
     """K_eff is positive definite with the determinant K_beta K_zeta / Delta of two springs in series."""
     springs = _springs(equations)
-    flap, mixed, lag = (STIFFNESS[key] for key in (("flap", "flap", 0), ("flap", "lag", 0), ("lag", "lag", 0)))
+    flap, mixed, lag = (
+        STIFFNESS[key] for key in (("flap", "flap", 0), ("flap", "lag", 0), ("lag", "lag", 0))
+    )
     determinant = springs[flap] * springs[lag] - springs[mixed] ** 2
     ratio = determinant * springs[series_determinant] / (s.flap_stiffness * s.lag_stiffness)
     samples = _samples()
@@ -283,9 +286,8 @@ def energy(equations: Equations) -> Iterator[Finding]:
     positive = work.subs({n.dM_theta: 1, s.control_stiffness: 1}) > 0
     yield Finding(35, ENERGY, bool(positive), f"work of the moment on its deflection {work}")
     at_trim = {flap: s.coning, lag: s.lag}
-    sign = 1 / (s.control_stiffness)  # a spring that takes up work
     for number, name, along in ((36, "K_Pβ", flap), (37, "K_Pζ", lag)):
-        needed = -sign * sp.diff(moment, along).subs(at_trim)
+        needed = -sp.diff(moment, along).subs(at_trim) / s.control_stiffness  # the spring takes up work
         worst = _worst((equations[number].parts[name] - needed).subs(springs), samples)
         yield Finding(number, ENERGY, worst < 1e-12, f"off the moment's gradient by {worst:.1e}")
     exchange = sp.diff(equations[36].parts["K_Pβ"], s.lag) - sp.diff(equations[37].parts["K_Pζ"], s.coning)

@@ -61,7 +61,9 @@ def mass_distributions(draw, radius):
 def twists(radius):
     """Linear, or a table from the centre to the tip."""
     table = st.tuples(between(0.3, 0.8), between(0.0, 0.2), between(-0.25, 0.0))
-    return between(-0.9, -0.3) | table.map(lambda twist: (radius * np.array([0.0, 0.6, 1.0]), np.array(twist)))
+    return between(-0.9, -0.3) | table.map(
+        lambda twist: (radius * np.array([0.0, 0.6, 1.0]), np.array(twist))
+    )
 
 
 def chords(radius):

@@ -6,6 +6,7 @@ To derive takes a while, so it is done once for each of three hash seeds, side b
 
 import dataclasses
 import functools
+import itertools
 import os
 import pickle
 import re
@@ -20,7 +21,7 @@ from hypothesis import Phase, given, settings
 from proprotor_equations import inertia
 from scipy.integrate import quad
 
-from derive import __main__ as command
+from derive import __main__ as command_line
 from derive import emit, equations, multiblade
 from derive import symbols as s
 from derive.equations import DimensionError, Entry, Function
@@ -78,7 +79,7 @@ def derived_once(files, monkeypatch):
     monkeypatch.setattr(emit, "derive_files", lambda progress=print: files)
 
 
-# Dimensions -------------------------------------------------------------------------------------------------------------
+# Dimensions ---------------------------------------------------------------------------------------
 
 
 def test_every_entry_is_dimensionally_homogeneous(functions):
@@ -89,23 +90,26 @@ def test_every_entry_is_dimensionally_homogeneous(functions):
     assert checked > 1000
 
 
-def dimension_of_units(name):
-    """Of a row's or column's coordinate or input: metres, metres per second or a number."""
+def dimension_of_motion(name):
+    """Of a coordinate or a gust."""
     if "gust" in name:
         return (0, 1, -1)
     return equations.coordinate_dimension(name)
 
 
+PRIMES = map(sp.prime, itertools.count(1))
+
+
+@functools.cache
 def stand_in(entry):
-    """A product of quantities with the dimension of an entry of a blade's matrix."""
+    """A product of quantities with the dimension of an entry of a blade's matrix, times a prime lest two cancel."""
     row, column = (index.name.removeprefix("BLADE_").lower() for index in entry.indices)
-    order = {"mass": 2, "damping": 1, "stiffness": 0, "inputs": 0}[entry.base.label.name]
-    force, moment = s.flap_stiffness / s.flap_hinge_offset, s.flap_stiffness
-    work = force if equations.row_dimension(row) == equations.FORCE else moment
-    units = sp.prod(
-        base**-power for base, power in zip((s.blade_mass, s.radial_station, 1 / s.rotor_speed), dimension_of_units(column))
-    )
-    return work * units / s.rotor_speed**order
+    order = {"mass": 2, "damping": 1}.get(entry.base.label.name, 0)
+    force = s.flap_stiffness / s.radial_station
+    work = force if equations.row_dimension(row) == equations.FORCE else s.flap_stiffness
+    _, length, time = dimension_of_motion(column)
+    per_motion = s.radial_station**-length * s.rotor_speed**time
+    return next(PRIMES) * work * per_motion / s.rotor_speed**order
 
 
 def test_the_rotor_has_the_dimensions_of_its_blades(functions):
@@ -132,8 +136,9 @@ def test_products_over_segments_have_the_dimensions_of_a_blade(functions):
     for motion, order in (("rate_motion", 1), ("displacement_motion", 0), ("gust_motion", 0)):
         for row in {name for _, name in matrices["virtual_motion"]}:
             for column in {name for _, name in matrices[motion]}:
-                units = zip(equations.row_dimension(row), (0, 0, order), dimension_of_units(column), strict=True)
-                assert set(dimensions(row, column, motion)) <= {tuple(a + b - c for a, b, c in units)}
+                work, per_motion = equations.row_dimension(row), dimension_of_motion(column)
+                expected = tuple(a + b - c for a, b, c in zip(work, (0, 0, order), per_motion, strict=True))
+                assert set(dimensions(row, column, motion)) <= {expected}
 
 
 def _column(entries, name):
@@ -181,7 +186,7 @@ def test_an_entry_broken_on_purpose_is_found(functions):
         dataclasses.replace(gyroscopic, entries=gyroscopic.entries | {place: broken}).check_dimensions()
 
 
-# Symbols ----------------------------------------------------------------------------------------------------------------
+# Symbols ------------------------------------------------------------------------------------------
 
 STRAY = sp.Symbol("stray", real=True)
 
@@ -211,7 +216,7 @@ def test_what_cannot_be_printed_is_refused():
         emit.print_code(sp.Function("f")(s.coning))
 
 
-# The check --------------------------------------------------------------------------------------------------------------
+# The check ----------------------------------------------------------------------------------------
 
 
 def copy_of_generated(folder):
@@ -223,7 +228,7 @@ def run_check(monkeypatch, folder=None):
     monkeypatch.setattr(sys, "argv", ["derive", "--check"])
     if folder is not None:
         monkeypatch.setattr(emit, "differences", functools.partial(emit.differences, folder))
-    return command.main()
+    return command_line.main()
 
 
 def test_the_generated_files_match_the_derivation(derived_once, monkeypatch, capsys):
@@ -284,7 +289,7 @@ def test_the_derivation_needs_little_memory(derivations):
     assert all(peak < GIGABYTE for _, _, peak in derivations)
 
 
-# What is generated ----------------------------------------------------------------------------------------------------
+# What is generated --------------------------------------------------------------------------------
 
 RUN = """
 import sys
@@ -298,7 +303,8 @@ print(*sorted(derivation & {name.partition(".")[0] for name in sys.modules}))
 
 
 def test_nothing_of_the_derivation_is_imported_at_run_time(tmp_path):
-    done = subprocess.run([sys.executable, "-c", RUN], cwd=tmp_path, capture_output=True, text=True, check=True)
+    command = [sys.executable, "-c", RUN]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
 
 
@@ -320,7 +326,7 @@ def test_dependent_inertias_are_integrals_over_the_blade(distribution, flap_hing
         def integrand(r):
             return np.interp(r, *distribution) * np.prod([max(r - hinge, 0.0) for hinge in hinges])
 
-        return sum(quad(integrand, *piece)[0] for piece in zip(edges[:-1], edges[1:], strict=True))
+        return sum(quad(integrand, *piece)[0] for piece in itertools.pairwise(edges))
 
     dependent = inertia.dependent_inertias(
         flap_hinge_offset=flap_hinge,

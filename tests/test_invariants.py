@@ -33,7 +33,7 @@ OPTIONS = st.fixed_dictionaries(
 )
 
 
-# Models and comparisons ---------------------------------------------------------------------------------------------
+# Models and comparisons ---------------------------------------------------------------------------
 
 
 def trimmed(flight, **options):
@@ -59,8 +59,8 @@ def assert_equal(actual, expected, dofs, scale, columns=None):
         for places in columns or by_block(dofs):
             block = np.ix_(rows, places)
             largest = max(np.abs(actual[block]).max(), np.abs(expected[block]).max())
-            error = np.abs(actual[block] - expected[block]).max()
-            assert error <= 1e-12 * largest + 1e-14 * scale[block].max(), f"{dofs[rows[0]]} by {dofs[places[0]]}"
+            error, allowed = np.abs(actual[block] - expected[block]).max(), 1e-12 * largest
+            assert error <= allowed + 1e-14 * scale[block].max(), f"{dofs[rows[0]]} by {dofs[places[0]]}"
 
 
 class Matrices:
@@ -97,7 +97,7 @@ class Matrices:
         self.assert_loads_equal(name, alone, -rest, *motion)
 
 
-# Without airloads and dampers ---------------------------------------------------------------------------------------
+# Without airloads and dampers ---------------------------------------------------------------------
 
 
 @any_rotor
@@ -214,7 +214,7 @@ def test_a_gimbal_tilted_back_against_the_hub_only_pitches_the_blades(flight):
         matrices.assert_loads_equal("K", matrices.along("K", **tilt), pitched + torque, *tilt, pitch)
 
 
-# Frequencies and mechanical instability -----------------------------------------------------------------------------
+# Frequencies and mechanical instability -----------------------------------------------------------
 
 
 def state_matrix(M, C, K):
@@ -254,22 +254,23 @@ def growth(model):
     return np.abs(roots.real).max(), np.abs(roots).max()
 
 
-@pytest.mark.parametrize("locked", [(), ("gimbal",)])
+@pytest.mark.parametrize("locked", [(), ("gimbal",)], ids=["gimballed", "gimbal locked"])
 @any_rotor
-@given(flight=flights(hinges="off centre", stiff=True), seed=seeds, speed=st.sampled_from(["windmilling", "constant"]))
-def test_nothing_grows_when_all_rotating_frequencies_are_above_one_per_rev(locked, flight, seed, speed):
-    """Pitch and gimbal included. In coordinates that measure energy the state matrix is skew, so each root is as good
+@given(flight=flights(hinges="off centre", stiff=True), seed=seeds)
+def test_nothing_grows_when_all_rotating_frequencies_are_above_one_per_rev(locked, flight, seed):
+    """Pitch and gimbal included.
 
-    as rounding of the largest: 1e-12 of it. (The flap of a blade hinged near the centre, against the gimbal, may reach
-    a thousand per rev.)
+    To 1e-12 of the largest root: in coordinates that measure energy the state matrix is skew, so that rounding moves
+    each root by no more than a few units in the last place of the largest. (That is the flap against the gimbal of
+    blades hinged near the centre, up to a thousand per rev.)
     """
-    options = {"airloads": "none", "locked": locked}
-    alone = undamped(flight, locked=locked)
-    frequencies = rotating_frequencies(alone, flight.rotor_speed)
+    frequencies = rotating_frequencies(undamped(flight, locked=locked), flight.rotor_speed)
     assume(frequencies[frequencies > 0].min() > flight.rotor_speed)
-    model = flight.without_dampers().on(random_support(flight, seed), rotor_speed=speed, **options)
-    largest, of = growth(model)
-    assert largest < 1e-12 * of
+    support = random_support(flight, seed)
+    for speed in ("windmilling", "constant"):
+        options = {"airloads": "none", "locked": locked, "rotor_speed": speed}
+        largest, of = growth(flight.without_dampers().on(support, **options))
+        assert largest < 1e-12 * of
 
 
 def uniform_rotor(rotor_speed, *, flap, lag, pitch, gimbal, n_blades=3):
@@ -290,7 +291,12 @@ def uniform_rotor(rotor_speed, *, flap, lag, pitch, gimbal, n_blades=3):
         airfoil=pp.Airfoil(lift_slope=5.7),
     )
     disk = n_blades / 2 * limp.blade_inertia
-    inertias = {"flap": limp.flap_inertia, "lag": limp.lag_inertia, "control": limp.pitch_inertia, "gimbal": disk}
+    inertias = {
+        "flap": limp.flap_inertia,
+        "lag": limp.lag_inertia,
+        "control": limp.pitch_inertia,
+        "gimbal": disk,
+    }
     per_rev = {"flap": flap, "lag": lag, "control": pitch, "gimbal": gimbal}
     springs = {f"{name}_stiffness": inertias[name] * (rotor_speed * per_rev[name]) ** 2 for name in inertias}
     return replace(limp, **springs)
@@ -298,7 +304,9 @@ def uniform_rotor(rotor_speed, *, flap, lag, pitch, gimbal, n_blades=3):
 
 def on_soft_support(rotor, rotor_speed, hub_per_rev, **options):
     """In vacuum at a small collective, each hub coordinate on a mass as heavy as the rotor and a spring."""
-    operation = pp.Operation(rotor_speed=rotor_speed, density=0.0, speed_of_sound=340.0, trim={"collective": 0.15})
+    operation = pp.Operation(
+        rotor_speed=rotor_speed, density=0.0, speed_of_sound=340.0, trim={"collective": 0.15}
+    )
     alone = pp.rotor_model(rotor, operation, 0.0, airloads="none", rotor_speed="constant", **options)
     mass = np.diag([alone.M[0, 0]] * 3 + [alone.M[5, 5]] * 3)
     stiffness = 2 * mass * (hub_per_rev * rotor_speed) ** 2
@@ -331,17 +339,32 @@ def test_a_gimbal_below_one_per_rev_is_unstable_although_every_blade_is_above():
         assert (growth(model)[0] > 0.01 * speed) == unstable
 
 
-# Mirrors ------------------------------------------------------------------------------------------------------------
+# Mirrors ------------------------------------------------------------------------------------------
 
 # Seen in a mirror along the I-K plane: vectors lose the sign of y, rotations those of x and z; azimuth runs backwards,
 # trailing is leading and nose up is nose down, on blades that have swapped sides.
-REVERSED = ("y", "alpha_x", "alpha_z", "flap_1s", "lag_0", "lag_1c", "pitch_0", "pitch_1c", "azimuth", "gimbal_1s")
+REVERSED = (
+    "y",
+    "alpha_x",
+    "alpha_z",
+    "flap_1s",
+    "lag_0",
+    "lag_1c",
+    "pitch_0",
+    "pitch_1c",
+    "azimuth",
+    "gimbal_1s",
+)
 MIRROR = np.diag([-1.0 if dof in REVERSED else 1.0 for dof in DOFS])
 
 
 def structure(rotor, rotor_speed, trim):
     """M, C, K without airloads, straight from the generated functions: any sign of the rotor speed."""
-    pool = {entry.name: getattr(rotor, entry.name) for entry in fields(rotor)} | trim | {"rotor_speed": rotor_speed}
+    pool = (
+        {entry.name: getattr(rotor, entry.name) for entry in fields(rotor)}
+        | trim
+        | {"rotor_speed": rotor_speed}
+    )
     pool["pitch"] = trim["collective"] + trim["elastic_pitch"]
     pool["structural_pitch"] = pool["pitch"] + rotor.structural_pitch_offset
     inertia, springs, pitch = equations.inertia, equations.flap_lag_springs, equations.pitch
@@ -372,7 +395,9 @@ def mirrored(rotor):
 def test_a_rotor_turning_the_other_way_is_a_mirror_image(flight):
     """Dampers included."""
     model = trimmed(flight, airloads="none")
-    trim = {name: float(getattr(model.trim, name)) for name in ("coning", "lag", "elastic_pitch", "collective")}
+    trim = {
+        name: float(getattr(model.trim, name)) for name in ("coning", "lag", "elastic_pitch", "collective")
+    }
     reflected = {name: value if name == "coning" else -value for name, value in trim.items()}
     forward = structure(flight.rotor, flight.rotor_speed, trim)
     backward = structure(mirrored(flight.rotor), -flight.rotor_speed, reflected)
@@ -397,10 +422,14 @@ def test_a_mirror_image_run_backwards_in_time_turns_the_same_way(flight, collect
         matrices.assert_equal(name, sign * MIRROR @ getattr(image, name) @ MIRROR, matrices.matrix[name])
 
 
-# Directions and azimuth ---------------------------------------------------------------------------------------------
+# Directions and azimuth ---------------------------------------------------------------------------
 
 
-PAIRS = (("x", "y"), ("alpha_x", "alpha_y"), *((f"{n}_1c", f"{n}_1s") for n in ("flap", "lag", "pitch", "gimbal")))
+PAIRS = (
+    ("x", "y"),
+    ("alpha_x", "alpha_y"),
+    *((f"{n}_1c", f"{n}_1s") for n in ("flap", "lag", "pitch", "gimbal")),
+)
 
 
 def turned_about_shaft(angle, dofs=DOFS):
@@ -481,12 +510,19 @@ def test_a_support_turned_about_the_shaft_keeps_its_eigenvalues(flight, seed, an
     assert error < 1e-14 * np.linalg.cond(unit_diagonal(here.M)) * np.abs(roots).max()
 
 
-# What the mass may depend on ----------------------------------------------------------------------------------------
+# What the mass may depend on ----------------------------------------------------------------------
 
 
 def test_mass_knows_nothing_but_masses_geometry_and_deflection():
     """Not how fast the rotor turns or flies, what holds its blades, or the air."""
-    known = {"lag_first_moment", "lag_inertia", "blade_mass", "pitch_inertia", "pitch_gimbal_coupling", "n_blades"}
+    known = {
+        "lag_first_moment",
+        "lag_inertia",
+        "blade_mass",
+        "pitch_inertia",
+        "pitch_gimbal_coupling",
+        "n_blades",
+    }
     known |= {"cos_cone", "sin_cone", "cos_lag", "sin_lag"}
     known |= set(equations.inertia.TrimIntegrals._fields)
     for function in (equations.inertia.mass, equations.pitch.mass, equations.multiblade.mass):
@@ -510,11 +546,11 @@ def test_mass_of_an_undeflected_rotor_is_the_same_in_any_flight(flight, factor):
 def test_mass_has_no_share_of_airloads_and_dampers(flight):
     """Bit for bit."""
     mass = undamped(flight).M
-    for airloads in ("full", "lift-slope", "none"):
+    for airloads in ("full", "lift-slope"):
         assert np.array_equal(trimmed(flight, airloads=airloads).M, mass)
 
 
-# Air at rest --------------------------------------------------------------------------------------------------------
+# Air at rest --------------------------------------------------------------------------------------
 
 
 @any_rotor
@@ -544,7 +580,7 @@ def test_a_tilted_rotor_that_flies_along_its_shaft_only_tilts_its_loads(flight, 
     matrices.assert_loads_equal("K", tilt, loads - drift, "alpha_x")
 
 
-# Zero cone ----------------------------------------------------------------------------------------------------------
+# Zero cone ----------------------------------------------------------------------------------------
 
 
 def flat_in_vacuum(flight, collective, **options):
@@ -560,7 +596,9 @@ def springs_in_series(rotor, pitch):
     outboard = np.array([rotor.flap_outboard_fraction, rotor.lag_outboard_fraction])
     c, s = np.cos(pitch), np.sin(pitch)
     turn = np.array([[c, s], [-s, c]])
-    return np.linalg.inv(np.diag((1 - outboard) * flexibility) + turn @ np.diag(outboard * flexibility) @ turn.T)
+    return np.linalg.inv(
+        np.diag((1 - outboard) * flexibility) + turn @ np.diag(outboard * flexibility) @ turn.T
+    )
 
 
 @any_rotor
@@ -595,7 +633,7 @@ def test_a_flat_rigid_rotor_is_a_gyroscope(flight):
     matrices.assert_equal("K", model.K, np.zeros((6, 6)))
 
 
-# Units --------------------------------------------------------------------------------------------------------------
+# Units --------------------------------------------------------------------------------------------
 
 KILOGRAM, METRE, SECOND = 1 / 8, 4.0, 2.0
 """In the units of somebody else; powers of two, so that nothing is rounded on the way."""
@@ -606,25 +644,35 @@ IN_OTHER_UNITS = {
     **dict.fromkeys(("blade_first_moment", "flap_first_moment", "lag_first_moment"), KILOGRAM * METRE),
     **dict.fromkeys(("blade_inertia", "flap_inertia", "lag_inertia", "pitch_inertia"), KILOGRAM * METRE**2),
     **dict.fromkeys(
-        ("flap_stiffness", "lag_stiffness", "gimbal_stiffness", "control_stiffness"), KILOGRAM * METRE**2 / SECOND**2
+        ("flap_stiffness", "lag_stiffness", "gimbal_stiffness", "control_stiffness"),
+        KILOGRAM * METRE**2 / SECOND**2,
     ),
-    **dict.fromkeys(("flap_damping", "lag_damping", "pitch_damping", "gimbal_damping"), KILOGRAM * METRE**2 / SECOND),
+    **dict.fromkeys(
+        ("flap_damping", "lag_damping", "pitch_damping", "gimbal_damping"), KILOGRAM * METRE**2 / SECOND
+    ),
     "rotor_speed": 1 / SECOND,
     "density": KILOGRAM / METRE**3,
     "speed_of_sound": METRE / SECOND,
 }
 
 
+def converted(part):
+    """A rotor or an operation with its plain numbers in the other units."""
+    given = {name: getattr(part, name) for name in IN_OTHER_UNITS if hasattr(part, name)}
+    return replace(part, **{name: IN_OTHER_UNITS[name] * value for name, value in given.items()})
+
+
+def along_blade(distribution, unit):
+    """Chord or twist: a number or a table."""
+    if isinstance(distribution, tuple):
+        return METRE * distribution[0], unit * distribution[1]
+    return unit * distribution
+
+
 def in_other_units(flight):
-    rotor, operation = (
-        replace(part, **{name: unit * getattr(part, name) for name, unit in IN_OTHER_UNITS.items() if hasattr(part, name)})
-        for part in (flight.rotor, flight.operation)
-    )
-    tables = {}
-    for name, unit in (("chord", METRE), ("twist", 1.0)):
-        given = getattr(rotor, name)
-        tables[name] = (METRE * given[0], unit * given[1]) if isinstance(given, tuple) else unit * given
-    return Flight(replace(rotor, **tables), operation, METRE / SECOND * flight.airspeed)
+    chord, twist = along_blade(flight.rotor.chord, METRE), along_blade(flight.rotor.twist, 1.0)
+    rotor = replace(converted(flight.rotor), chord=chord, twist=twist)
+    return Flight(rotor, converted(flight.operation), METRE / SECOND * flight.airspeed)
 
 
 @any_rotor

@@ -5,6 +5,8 @@ moment is held to 1e-10 of itself with the loads' signs left out, segment by seg
 size of its own.
 """
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
@@ -89,7 +91,9 @@ def segment_ends(rotor):
 
 
 def kinks(rotor):
-    return np.concatenate([np.asarray(d[0]) for d in (rotor.chord, rotor.twist) if isinstance(d, tuple)] or [[]])
+    return np.concatenate(
+        [np.asarray(d[0]) for d in (rotor.chord, rotor.twist) if isinstance(d, tuple)] or [[]]
+    )
 
 
 def fine_moments(rotor, airspeed, start, end):
@@ -112,7 +116,7 @@ def test_radial_moments_of_section_loads(rotor, airspeed):
     moments = quadrature.moments(loads)
     ends = segment_ends(rotor)
     assert moments.shape == (20, len(ends) - 1, 3)
-    for segment, (start, end) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+    for segment, (start, end) in enumerate(itertools.pairwise(ends)):
         expected, size = fine_moments(rotor, airspeed, start, end)
         assert np.all(np.abs(moments[:, segment] - expected) <= 1e-10 * size)
 
@@ -148,8 +152,11 @@ def test_mass_integrals_of_a_distribution(distribution, flap_hinge, gap):
 
     def integral(power, hinge):
         edges = np.unique([*(r for r in distribution[0] if r > hinge), hinge])
-        pieces = zip(edges[:-1], edges[1:], strict=True)
-        return sum(quad(lambda r: np.interp(r, *distribution) * (r - hinge) ** power, *piece)[0] for piece in pieces)
+
+        def integrand(r):
+            return np.interp(r, *distribution) * (r - hinge) ** power
+
+        return sum(quad(integrand, *piece)[0] for piece in itertools.pairwise(edges))
 
     assert np.isclose(rotor.blade_mass, integral(0, 0.0), rtol=1e-12)
     for name, hinge in (("blade", 0.0), ("flap", flap_hinge), ("lag", lag_hinge)):
@@ -160,7 +167,9 @@ def test_mass_integrals_of_a_distribution(distribution, flap_hinge, gap):
 @pytest.mark.parametrize("hinge", ["flap", "lag"])
 def test_mass_within_a_hinge_does_not_count_for_it(hinge):
     """A blade that is bare outboard of a hinge has nothing to flap or lag."""
-    offsets = {"flap_hinge_offset": 2.5, "lag_hinge_offset": 2.5} if hinge == "flap" else {"lag_hinge_offset": 2.5}
+    offsets = (
+        {"flap_hinge_offset": 2.5, "lag_hinge_offset": 2.5} if hinge == "flap" else {"lag_hinge_offset": 2.5}
+    )
     with pytest.raises(pp.InputError, match=f"{hinge}_inertia = 0.0: must be above zero"):
         pp.Rotor.from_mass_distribution(
             [0.0, 2.0, 2.1, RADIUS],

@@ -219,6 +219,9 @@ CONDITIONS = [
         for c in (-0.01, 0.0, 0.01, 0.04)
     ),
     *((airspeed, {"collective": 0.6}) for airspeed in (20.0, 60.0, 100.0, 235.0)),
+    (70.0, {"thrust_coefficient": 0.0125}),  # a little more induced velocity than is acceptable
+    (180.0, {"collective": 0.69}),  # stalled at half the radius, not at the tip
+    (220.0, {"collective": 0.76}),  # stalled further in only
 ]
 
 

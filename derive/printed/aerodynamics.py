@@ -15,10 +15,9 @@ _, z1, _ = TIME["z"]
 beta, beta1, _ = TIME["flap"]
 zeta, zeta1, _ = TIME["lag"]
 beta_G, beta_G1, _ = TIME["gimbal_flap"]
-ORDER_OF_EQ_17 = (
-    "x y z alpha_x alpha_y alpha_z flap_0 flap_1c flap_1s lag_0 lag_1c lag_1s pitch_0 pitch_1c pitch_1s "
-    "azimuth gimbal_1c gimbal_1s"
-).split()
+ORDER_OF_EQ_17 = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
+ORDER_OF_EQ_17 += tuple(f"{angle}_{wave}" for angle in ("flap", "lag", "pitch") for wave in ("0", "1c", "1s"))
+ORDER_OF_EQ_17 += ("azimuth", "gimbal_1c", "gimbal_1s")
 
 EQUATIONS = (
     PrintedEquation(

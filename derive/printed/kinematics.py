@@ -85,9 +85,15 @@ EQUATIONS = (
     ),
     PrintedEquation(4, 3, "acceleration of the hub, fixed frame", _fixed(DISPLACEMENT, 2), unit="m/s^2"),
     PrintedEquation(5, 3, "angular velocity of the hub, fixed frame", _fixed(ROTATION, 1), unit="rad/s"),
-    PrintedEquation(6, 3, "angular acceleration of the hub, fixed frame", _fixed(ROTATION, 2), unit="rad/s^2"),
-    PrintedEquation(7, 3, "acceleration of the hub, rotating frame", _rotating(DISPLACEMENT, 2), unit="m/s^2"),
-    PrintedEquation(8, 3, "angular velocity of the hub, rotating frame", _rotating(ROTATION, 1), unit="rad/s"),
+    PrintedEquation(
+        6, 3, "angular acceleration of the hub, fixed frame", _fixed(ROTATION, 2), unit="rad/s^2"
+    ),
+    PrintedEquation(
+        7, 3, "acceleration of the hub, rotating frame", _rotating(DISPLACEMENT, 2), unit="m/s^2"
+    ),
+    PrintedEquation(
+        8, 3, "angular velocity of the hub, rotating frame", _rotating(ROTATION, 1), unit="rad/s"
+    ),
     PrintedEquation(
         9, 3, "angular acceleration of the hub, rotating frame", _rotating(ROTATION, 2), unit="rad/s^2"
     ),

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from derive.multiblade import psi
-from derive.symbols import Dimension, dimension_of_unit
+from derive.symbols import QUANTITIES, Dimension, dimension_of_unit
 
 DIMENSIONS: dict[sp.Symbol, Dimension] = {psi: (0, 0, 0)}
 
@@ -60,7 +60,9 @@ TIME = {
     for name, symbol in (FIXED_NAMES | BLADE_NAMES).items()
 }
 AZIMUTH = {
-    name: tuple(printed(TIME[name][0].name + "_prime" * order, "m" if name in _LENGTHS else "") for order in range(3))
+    name: tuple(
+        printed(TIME[name][0].name + "_prime" * order, "m" if name in _LENGTHS else "") for order in range(3)
+    )
     for name in TIME
 }
 
@@ -73,16 +75,19 @@ M_beta_elas, M_zeta_elas = printed("M_beta_elas", "N m"), printed("M_zeta_elas",
 M_beta_aero = printed("M_beta_aero", "N m")
 dM_theta, M_theta = printed("Delta_M_theta", "N m"), printed("M_theta", "N m")
 dM_theta_aero = printed("dM_theta_aero", "N")
-F_x, F_z, F_r = (printed(f"F_{axis}", "N/m") for axis in "xzr")  # F_x and F_z: airloads and inertia; F_r: inertia
+F_x, F_z, F_r = (
+    printed(f"F_{axis}", "N/m") for axis in "xzr"
+)  # F_x and F_z: airloads and inertia; F_r: inertia
 section_inertia = printed("I_theta_section", "kg m")
 K_beta_H, K_beta_B, K_zeta_H, K_zeta_B = (
     printed(f"K_{angle}{place}", "N m/rad") for angle in ("beta", "zeta") for place in "HB"
 )
-beta_in, zeta_in, beta_out, zeta_out = (printed(name) for name in ("beta_in", "zeta_in", "beta_out", "zeta_out"))
-A, B, C, D, W, X, Y, Z = (printed(name) for name in "ABCDWXYZ")
-flexibility_in, flexibility_out = (
-    {pair: printed(f"K_{place}_inverse_{pair}", "rad/N m") for pair in ("bb", "bz", "zz")} for place in ("in", "out")
+beta_in, zeta_in, beta_out, zeta_out = (
+    printed(name) for name in ("beta_in", "zeta_in", "beta_out", "zeta_out")
 )
+A, B, C, D, W, X, Y, Z = (printed(name) for name in "ABCDWXYZ")
+flexibility_in = {pair: printed(f"K_in_inverse_{pair}", "rad/N m") for pair in ("bb", "zz")}
+flexibility_out = {pair: printed(f"K_out_inverse_{pair}", "rad/N m") for pair in ("bb", "bz", "zz")}
 
 
 @dataclass(frozen=True)
@@ -103,3 +108,38 @@ class PrintedEquation:
 
     def dimension(self, part: str) -> Dimension:
         return dimension_of_unit(self.unit[part] if isinstance(self.unit, dict) else self.unit)
+
+
+_GREEK = ("alpha", "beta", "zeta", "theta", "psi", "Delta", "nu", "omega")
+_ACCENTS = {
+    "_ddot": r"\ddot ",
+    "_dot": r"\dot ",
+    "_prime_prime": "''",
+    "_prime": "'",
+    "_out": r"_\mathrm{out}",
+    "_in": r"_\mathrm{in}",
+    "_section": "",
+}
+
+
+def latex_names() -> dict[sp.Symbol, str]:
+    """Notation of every symbol of print and derivation."""
+    names = {symbol: _latex(symbol.name) for symbol in DIMENSIONS}
+    return names | {symbol: known.latex for symbol, known in QUANTITIES.items()}
+
+
+def _latex(name: str) -> str:
+    if name.startswith("Delta_"):
+        return r"\Delta " + _latex(name.removeprefix("Delta_"))
+    accent = next((ending for ending in _ACCENTS if name.endswith(ending)), "")
+    base, _, index = name.removesuffix(accent).partition("_")
+    base = "\\" + base if base in _GREEK else base
+    index = index.removeprefix("s_") if index else ""
+    index = "".join(("\\" + part + " ") if part in _GREEK else part for part in index.split("_"))
+    mark = _ACCENTS.get(accent, "")
+    subscript = f"_{{{index}}}" if index else ""
+    if mark.startswith("_"):
+        return f"{base}{mark}"
+    if mark.startswith("\\"):
+        return f"{mark}{base}{subscript}"
+    return f"{base}{mark}{subscript}"

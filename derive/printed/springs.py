@@ -15,9 +15,9 @@ beta, zeta = TIME["flap"][0], TIME["lag"][0]
 sine, cosine = sp.sin(s.structural_pitch), sp.cos(s.structural_pitch)
 
 stiffness = sp.Matrix([[K_bb, K_bz], [K_bz, K_zz]])
-inner, outer = (
-    sp.Matrix([[f["bb"], f["bz"]], [f["bz"], f["zz"]]]) for f in (n.flexibility_in, n.flexibility_out)
-)
+# The hub's springs are orthogonal in flap and lag, the blade's in its own axes.
+inner = sp.diag(n.flexibility_in["bb"], n.flexibility_in["zz"])
+outer = sp.Matrix(2, 2, [n.flexibility_out[pair] for pair in ("bb", "bz", "bz", "zz")])
 deflection, moments = sp.Matrix([beta, zeta]), sp.Matrix([n.M_beta, n.M_zeta])
 difference = R_beta * K_zeta - R_zeta * K_beta
 flap_group = (R_zeta - K_zeta / K_beta * R_beta) * (R_beta - 1)
@@ -78,11 +78,7 @@ EQUATIONS = (
         23,
         8,
         "flap frequency of a uniform helicopter blade",
-        {
-            "ν_β²": 1
-            + sp.Rational(3, 2) * n.mean_offset
-            + K_beta / (s.flap_inertia * s.rotor_speed**2)
-        },
+        {"ν_β²": 1 + sp.Rational(3, 2) * n.mean_offset + K_beta / (s.flap_inertia * s.rotor_speed**2)},
         doubt="ē is read as e/(R - e)",
     ),
     PrintedEquation(24, 9, "flexibilities in series", _entries(inner + outer), unit="rad/N m"),

@@ -45,10 +45,10 @@ class BladeFrequencies:
     def __post_init__(self) -> None:
         if self.against not in ABSCISSAE:
             raise InputError("against", self.against, f"must be one of {', '.join(ABSCISSAE)}")
-        if self.at is not None and (
-            np.ndim(self.at) != 1 or np.any(np.diff(np.asarray(self.at, dtype=float)) <= 0)
-        ):
-            raise InputError("at", self.at, "must increase")
+        if self.at is not None:
+            at = np.asarray(self.at, dtype=float)
+            if at.ndim != 1 or at.size < 2 or not np.all(np.isfinite(at)) or np.any(np.diff(at) <= 0):
+                raise InputError("at", self.at, "must increase, as a list of at least two numbers")
         for name in ("flap", "lag", "cyclic_flap"):
             self._check(name, getattr(self, name))
 

@@ -264,7 +264,10 @@ def _swashplate(pool: Mapping[str, Any], options: Options, blade: list[NDArray])
     place = BLADE_COORDINATES.index("pitch")
     if options.pitch_is_free:
         mass, damping, stiffness = (np.zeros_like(matrix) for matrix in blade)
-        damping[..., place, place], stiffness[..., place, place] = pool["pitch_damping"], pool["control_stiffness"]
+        damping[..., place, place], stiffness[..., place, place] = (
+            pool["pitch_damping"],
+            pool["control_stiffness"],
+        )
         sign = 1.0
     else:
         (mass, damping, stiffness), sign = blade, -1.0

@@ -150,7 +150,11 @@ def mode_dataset(model: LinearModel, values: NDArray, shapes: NDArray, shares: N
     dominant = np.where(np.isnan(values), "", dominant)
     data = {
         "eigenvalue": (by_mode, values, {"units": "rad/s"}),
-        "frequency": (by_mode, np.where(np.isnan(values), np.nan, np.abs(values.imag)), {"units": "rad/s", "long_name": "damped frequency"}),
+        "frequency": (
+            by_mode,
+            np.where(np.isnan(values), np.nan, np.abs(values.imag)),
+            {"units": "rad/s", "long_name": "damped frequency"},
+        ),
         "natural_frequency": (by_mode, np.abs(values), {"units": "rad/s"}),
         "damping_ratio": (by_mode, ratio, {"units": "1", "long_name": "fraction of critical damping"}),
         "shape": ((*by_mode, "dof"), np.moveaxis(shapes, -1, -2)),

@@ -101,8 +101,10 @@ def gauss_panels(
     share = np.linspace(0, 1, max(2, int(np.ceil(1 / _LONGEST_PANEL)) + 1))[1:-1]
     interior = root[..., None] + (tip - root)[..., None] * share
     if len(knots):
+        tabulated = np.broadcast_to(knots, (*root.shape, len(knots)))
         # Where a table already splits the blade finely, even panels would only add stations.
-        interior = np.broadcast_to(knots, (*root.shape, len(knots)))
+        finely = np.max(np.diff(knots), initial=0) <= _LONGEST_PANEL * tip.min()
+        interior = tabulated if finely else np.concatenate([tabulated, interior], axis=-1)
     ends = [root[..., None], tip[..., None], flap[..., None], lag[..., None], interior]
     edges = np.sort(np.clip(np.concatenate(ends, axis=-1), root[..., None], tip[..., None]), axis=-1)
     widths = np.diff(edges, axis=-1)

@@ -127,7 +127,11 @@ def _own_motion(model: LinearModel, own: list[int], displacement: NDArray, rate:
     moved, turning = ([p for p in own if (p in held) is kept] for kept in (True, False))
     return [
         (tuple(model.dofs[p] for p in moved), displacement[moved], np.zeros((len(moved), len(INPUTS)))),
-        (tuple(f"{model.dofs[p]} rate" for p in turning), rate[turning], np.zeros((len(turning), len(INPUTS)))),
+        (
+            tuple(f"{model.dofs[p]} rate" for p in turning),
+            rate[turning],
+            np.zeros((len(turning), len(INPUTS))),
+        ),
     ]
 
 

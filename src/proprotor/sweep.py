@@ -70,23 +70,25 @@ def sweep(model: LinearModel) -> xarray.Dataset:
     good = np.isfinite(values).all(axis=1)
     kept = _one_of_each_pair(values[good])
     values, shapes, shares = values[:, kept], shapes[..., kept], shares[..., kept]
+    # Of a pair that parts into two real roots the second is a mode only where it is real.
+    values = np.where(values.imag < 0, np.nan, values)
     names, by_frequency = _names(model.dofs, values[good], shares[good])
     data = mode_dataset(model, values[:, by_frequency], shapes[..., by_frequency], shares[..., by_frequency])
     return data.assign_coords(mode=names)
 
 
 def _one_of_each_pair(values: NDArray) -> NDArray:
-    """Columns that are in the upper half plane more than in the lower, and every root that stays real."""
+    """Columns that are in the upper half plane more than in the lower, and those that are real somewhere."""
     if not len(values):  # no point worked: there are no modes
         return np.empty(0, dtype=int)
-    return np.flatnonzero((values.imag.sum(axis=0) > 0) | (np.abs(values.imag).max(axis=0) == 0))
+    return np.flatnonzero((values.imag.sum(axis=0) > 0) | (values.imag == 0).any(axis=0))
 
 
 def _names(dofs: tuple[str, ...], values: NDArray, shares: NDArray) -> tuple[list[str], NDArray]:
     """Names from the coordinates that take part most over the sweep, and the order of their mean frequency."""
     if not len(values):
         return [], np.empty(0, dtype=int)
-    frequency = np.abs(values.imag).mean(axis=0)
+    frequency = np.nan_to_num(np.abs(np.where(np.isnan(values), 0, values.imag)).mean(axis=0))
     order = np.argsort(frequency, kind="stable")
     mean_shares = shares.mean(axis=0)[:, order]
     groups = [_group(dof) for dof in dofs]
