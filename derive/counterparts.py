@@ -511,9 +511,10 @@ def _offset_from_feather_axis() -> tuple[sp.Matrix, sp.Matrix]:
 @functools.cache
 def _work_about_feather_axis() -> sp.Expr:
     """Work of the section's forces per unit turn, to second order in the angles."""
-    axis, offset = _offset_from_feather_axis()
-    force = sp.Matrix([n.F_x, n.F_r, n.F_z])
     small = _ANGLES | {angle: 1 for angle in (n.beta_in, n.beta_out, n.zeta_in, n.zeta_out)}
+    vectors = _offset_from_feather_axis()
+    axis, offset = (vector.applyfunc(lambda part: truncated(part, 2, of=small)) for vector in vectors)
+    force = sp.Matrix([n.F_x, n.F_r, n.F_z])
     # F_r belongs to second order in the angles; the others are perturbations themselves.
     work = truncated(axis.cross(offset).dot(force), 2, of=small | {n.F_x: 1, n.F_z: 1})
     return in_fixed_coordinates(work)

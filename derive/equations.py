@@ -137,7 +137,7 @@ def dimension_of(expression: sp.Expr, where: str = "") -> Dimension:
         )
     if expression.is_Pow:
         exponent = expression.exp
-        return tuple(int(d * exponent) for d in dimension_of(expression.base, where))
+        return tuple(d * exponent for d in dimension_of(expression.base, where))
     for argument in expression.args:
         _require(argument, NUMBER, where)
     return NUMBER

@@ -214,13 +214,16 @@ def test_transfer_functions_of_a_rotor_alone(pitch):
 
 
 def test_eigenvalues_of_the_state_matrix_are_the_modes(mounted):
-    system, modes = mounted.to_state_space(), mounted.modes()
-    found = np.linalg.eigvals(system.A)
-    found = found[found.imag >= 0]
-    expected = modes.eigenvalue.values
-    assert len(found) == len(expected)
-    apart = np.abs(found[:, None] - expected).min(axis=1)
-    assert apart.max() < 1e-10 * np.abs(expected).max()
+    """Each of them, at which the matrices of the model have a motion without load."""
+    found, modes = np.linalg.eigvals(mounted.to_state_space().A), mounted.modes().eigenvalue.values
+    upper = found[found.imag >= 0]
+    assert len(upper) == len(modes)
+    assert np.abs(upper[:, None] - modes).min(axis=1).max() < 1e-10 * np.abs(modes).max()
+    root = np.sqrt(np.diag(mounted.M))
+    M, C, K = (getattr(mounted, name) / np.outer(root, root) for name in "MCK")
+    for s in upper:
+        singular = np.linalg.svd(s**2 * M + s * C + K, compute_uv=False)
+        assert singular[-1] < 1e-10 * singular[0]
 
 
 def test_names_are_those_of_the_physics_and_unique(mounted):

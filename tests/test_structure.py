@@ -31,7 +31,6 @@ def in_vacuum(rotor, collective=0.4, airspeed=0.0, **options):
     operation = pp.Operation(
         rotor_speed=SPEED, density=0.0, speed_of_sound=SPEED_OF_SOUND, trim={"collective": collective}
     )
-    airspeed = np.broadcast_to(airspeed, np.broadcast_shapes(np.shape(airspeed), np.shape(collective)))
     options = {"airloads": "none", "pitch": "rigid", "locked": ("gimbal",)} | options
     return pp.rotor_model(rotor, operation, airspeed, **options).submodel(BLADES)
 
