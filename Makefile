@@ -16,8 +16,11 @@ regenerate-equations: .venv/installed  ## Derive the equations again and write g
 	$(BIN)/python -m derive
 
 lint: .venv/installed  ## Check the style of the source
-	$(BIN)/ruff check src derive tests
-	$(BIN)/ruff format --check src derive tests
+	$(BIN)/ruff check src derive tests benchmarks
+	$(BIN)/ruff format --check src derive tests benchmarks
+
+golden: .venv/installed  ## Accept the modes of every combination of switches as they are, and tell what moved
+	$(BIN)/python -m tests.accept_golden
 
 clean:  ## Remove all that make has made
 	rm -rf .venv .hypothesis .pytest_cache .ruff_cache build dist damping.png
@@ -25,7 +28,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify regenerate-equations lint clean help
+.PHONY: demo test verify regenerate-equations lint golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

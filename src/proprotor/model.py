@@ -44,6 +44,7 @@ HUB = FIXED_COORDINATES[:6]
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
+_COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
 _SOFTEST_SPRING = 1e-12  # of the other spring: a free hinge, without a division by zero in series
 
 
@@ -157,9 +158,8 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed)
     shape = batch_shape(rotor, operation, speed)
-    quantities = rotor_quantities(rotor, operation, speed, shape) | {
-        "section_damping": float(choice.section_damping)
-    }
+    quantities = rotor_quantities(rotor, operation, speed, shape) | _given_couplings(choice, shape)
+    quantities["section_damping"] = float(choice.section_damping)
     points = int(np.prod(shape, dtype=int))
     sections = BladeSections.of(rotor, shape)
     trim = solve_trim(sections, quantities, choice, _flat(trim_target(rotor, operation), shape), points)
@@ -320,12 +320,21 @@ def _with_reactionless(
 
 def _couplings(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
     """Pitch-flap and pitch-lag coupling of the airloads' pitch; a given value stands in place of the closed form."""
-    names = ("pitch_flap_coupling", "pitch_lag_coupling")
     if options.pitch != "coupling":
-        return dict.fromkeys(names, 0.0)
-    closed_form = evaluate(pitch.couplings, pool)._asdict()
-    given = {name: getattr(options, name) for name in names}
-    return closed_form | {name: value for name, value in given.items() if value is not None}
+        return dict.fromkeys(_COUPLINGS, 0.0)
+    return evaluate(pitch.couplings, pool)._asdict() | {
+        name: pool[name] for name in _COUPLINGS if name in pool
+    }
+
+
+def _given_couplings(options: Options, shape: tuple[int, ...]) -> dict[str, Any]:
+    """Couplings that the options give, arrays flattened over the batch."""
+    given = {name: getattr(options, name) for name in _COUPLINGS}
+    return {
+        name: np.broadcast_to(value, shape).reshape(-1) if np.ndim(value) else value
+        for name, value in given.items()
+        if value is not None
+    }
 
 
 def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray, NDArray, NDArray]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from proprotor.drive_train import DriveTrain
 from proprotor.equation_set import EQUATION_SETS, EquationSet
@@ -41,7 +42,7 @@ class Options:
         gives the frequencies of `frequencies`, whatever the rotor's springs are.
     frequencies : BladeFrequencies
         For structure="tabulated".
-    pitch_flap_coupling, pitch_lag_coupling : float, optional
+    pitch_flap_coupling, pitch_lag_coupling : float or array that broadcasts with the airspeeds, optional
         For pitch="coupling": values in place of Eqs. 36 and 37.
     airloads : "full", "lift-slope" or "none"
         Perturbation airloads: all, those proportional to the lift slope, or none. The trim has them all.
@@ -68,8 +69,8 @@ class Options:
     pitch: str = "dynamic"
     structure: str = "coupled"
     frequencies: BladeFrequencies | None = None
-    pitch_flap_coupling: float | None = None
-    pitch_lag_coupling: float | None = None
+    pitch_flap_coupling: ArrayLike | None = None
+    pitch_lag_coupling: ArrayLike | None = None
     airloads: str = "full"
     compressibility: bool = True
     section_damping: bool = False
