@@ -19,6 +19,9 @@ lint: .venv/installed  ## Check the style of the source
 	$(BIN)/ruff check src derive tests benchmarks
 	$(BIN)/ruff format --check src derive tests benchmarks
 
+audit: .venv/installed  ## Judge every equation of the paper against the derivation; writes docs/audit.md
+	$(BIN)/python -m derive.audit
+
 golden: .venv/installed  ## Accept the modes of every combination of switches as they are, and tell what moved
 	$(BIN)/python -m tests.accept_golden
 
@@ -28,7 +31,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify regenerate-equations lint golden clean help
+.PHONY: demo test verify regenerate-equations lint audit golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

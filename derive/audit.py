@@ -262,7 +262,12 @@ def _tables() -> list[str]:
         for name, result in table_verdicts().items()
         for relation in result.relations
     ]
-    return _markdown_table(("", "relation", "verdict", "evidence"), rows)
+    return [
+        "A blade is any non-negative mass along the radius, hinge offsets on a grid of R/160; deviations are in half",
+        "units of the last printed digit.",
+        "",
+        *_markdown_table(("", "relation", "verdict", "evidence"), rows),
+    ]
 
 
 def _doubts() -> list[str]:

@@ -1,7 +1,7 @@
 """Tables 1 and 2 of AIAA-2002-1604: can the printed integrals belong to one blade?
 
 A blade is any non-negative mass along the radius. Whether one has the printed integrals, to the last printed digit,
-is a linear programme for each pair of hinge offsets.
+is a linear programme for each pair of hinge offsets, on a grid of R/160.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def misfit(v: dict[str, float], names: tuple[str, ...], flap_offset: float, lag_
     cost = np.zeros(rows.shape[1] + 1)
     cost[-1] = 1
     solution = linprog(cost, A_ub=bounds_, b_ub=np.concatenate([wanted, -wanted]), method="highs")
-    return float(solution.fun) if solution.status == 0 else math.inf
+    return max(round(float(solution.fun), 6), 0.0) if solution.status == 0 else math.inf
 
 
 def nearest_blade(v: dict[str, float], names: tuple[str, ...]) -> tuple[float, list[float], list[float]]:

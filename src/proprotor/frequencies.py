@@ -63,7 +63,12 @@ class BladeFrequencies:
 
     def _evaluate(self, curve: Curve, abscissa: NDArray) -> NDArray:
         if callable(curve):
-            return np.asarray(curve(abscissa), dtype=float)
+            values = np.asarray(curve(abscissa), dtype=float)
+            if np.any(np.isfinite(abscissa) & ~(values > 0)):
+                raise InputError(
+                    "frequencies", float(np.min(values)), "must be above zero wherever a function gives them"
+                )
+            return values
         if np.ndim(curve) == 0:
             return np.full(np.shape(abscissa), float(curve))
         from scipy.interpolate import PchipInterpolator  # here, because it takes long to import

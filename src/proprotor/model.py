@@ -163,6 +163,8 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     points = int(np.prod(shape, dtype=int))
     sections = BladeSections.of(rotor, shape)
     trim = solve_trim(sections, quantities, choice, _flat(trim_target(rotor, operation), shape), points)
+    if choice.reactionless and np.ndim(rotor.n_blades):
+        raise InputError("n_blades", rotor.n_blades, "must be one number with reactionless=True")
     extra = reactionless_coordinates(int(np.max(rotor.n_blades))) if choice.reactionless else ()
     matrices = _matrices(sections, quantities, choice, trim, extra)
     coordinates = (*FIXED_COORDINATES, *extra)
@@ -257,9 +259,9 @@ def _blade_matrices(
 def _swashplate(pool: Mapping[str, Any], options: Options, blade: list[NDArray]) -> NDArray:
     """Loads (points, 18, 3) on the rotor per unit of swashplate collective and cyclics, held in the fixed frame.
 
-    With the pitch equations kept, the pitch coordinates are then the whole perturbation of blade pitch, and the swashplate
-    pulls at them through control system and pitch damper. Without them the blades follow at once. Rates of the
-    swashplate are left out.
+    With the pitch equations kept, the pitch coordinates are then the whole perturbation of blade pitch, and the
+    swashplate pulls at them through control system and pitch damper. Without them the blades follow at once. Rates of
+    the swashplate are left out.
     """
     place = BLADE_COORDINATES.index("pitch")
     if options.pitch_is_free:

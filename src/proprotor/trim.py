@@ -23,6 +23,9 @@ _BALANCES = 4  # rows of a blade's balance; the thrust is the fifth
 _TORQUE, _THRUST = 3, 4
 _LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
 _ITERATIONS = 40
+_FARTHEST = np.radians(
+    60
+)  # of the collective from the direction of the air: a blade turned farther is another branch
 _CONVERGED = 1e-9  # rad, the last step; convergence is quadratic, so the state is better than that by far
 _INDUCED_SHARE = 0.05  # of the airspeed: above it the neglected induced velocity turns the inflow by degrees
 _OUTBOARD = 0.5  # of the radius: where angle of attack and Mach number matter to the loads
@@ -242,6 +245,9 @@ def _failure(target: Target) -> str:
 
 
 def _result(sections, quantities, options, target, state, reason, iterations) -> Trim:
+    if target.finds_collective:
+        turned = np.abs(state["collective"] - _start(quantities, None, len(reason))["collective"])
+        reason[(reason == "") & ~(turned < _FARTHEST)] = _failure(target)
     for name in ("coning", "lag", "elastic_pitch"):
         reason[(reason == "") & ~(np.abs(state[name]) < np.pi / 2)] = (
             f"trim {name.replace('_', ' ')} beyond 90 deg"
@@ -263,11 +269,15 @@ def _result(sections, quantities, options, target, state, reason, iterations) ->
 def _warnings(sections: BladeSections, pool: Mapping[str, Any], thrust: NDArray, points: int) -> list[str]:
     """What makes each point doubtful: neglected induced velocity, and sections outside what the airfoil knows."""
     notes: list[list[str]] = [[] for _ in range(points)]
-    share = np.abs(thrust) / (
-        2 * pool["density"] * np.pi * np.square(pool["radius"]) * np.square(pool["airspeed"])
-    )
-    for place in np.flatnonzero(np.broadcast_to(share, (points,)) > _INDUCED_SHARE):
+    disk = 2 * pool["density"] * np.pi * np.square(pool["radius"]) * np.square(pool["airspeed"])
+    airspeed = np.broadcast_to(pool["airspeed"], (points,))
+    share = np.broadcast_to(np.abs(thrust) / np.where(disk > 0, disk, np.inf), (points,))
+    for place in np.flatnonzero(share > _INDUCED_SHARE):
         notes[place].append(f"induced velocity, neglected, would be {share[place]:.0%} of the airspeed")
+    for place in np.flatnonzero(
+        (airspeed == 0) & (np.abs(thrust) > 0) & (np.broadcast_to(pool["density"], (points,)) > 0)
+    ):
+        notes[place].append("without airspeed the neglected induced velocity is all the inflow")
     if isinstance(sections.airfoil, Warns):
         air = air_at_stations(sections, segment_quantities(sections, pool))
         shape = (points, sections.quadrature.stations.shape[-1])
