@@ -307,7 +307,8 @@ def sampled(mach, factor) -> AirfoilTable:
 @pytest.mark.parametrize("compressibility", [True, False])
 def test_a_table_of_the_linear_airfoil_gives_its_matrices(compressibility, airloads):
     options = {"compressibility": compressibility, "airloads": airloads}
-    mach = [0.0] if compressibility else [0.0, 0.3, 0.5, 0.9]  # Mach columns would say that it is in the table
+    # With Mach columns the table would be taken to hold compressibility itself.
+    mach = [0.0] if compressibility else [0.0, 0.3, 0.5, 0.9]
     table = sampled(np.array(mach), lambda mach: 1.0)
     model, expected = matrices(table, **options), matrices(LINEAR, **options)
     assert expected.trim.converged.all()

@@ -4,9 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
+from proprotor_equations import lift_slope
 
 import proprotor as pp
-from proprotor_equations import lift_slope
 
 RATIOS = np.array([0.0, 1e-9, 1e-4, 1e-2, 0.05, 0.2, 0.5, 1.0, 1.7, 3.0])
 RADIUS, ROTOR_SPEED, DENSITY, CHORD, SLOPE = 3.81, 47.96, 1.225, 0.3706, 5.7

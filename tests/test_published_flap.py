@@ -15,7 +15,7 @@ GIMBAL = sp.symbols("beta_G beta_G_dot beta_G_ddot")
 
 
 def derived_flap_equation() -> sp.Expr:
-    """Flap row of one blade divided by I_b Omega², derivatives with respect to azimuth, hub motion in the fixed frame."""
+    """Flap row of one blade over I_b Omega², derivatives with respect to azimuth, hub motion in the fixed frame."""
     blade = inertia.blade_inertia(PUBLISHED)
     row = sp.Integer(0)
     transformation = multiblade.blade_coordinates()
@@ -92,7 +92,7 @@ def difference() -> sp.Expr:
 
 
 def test_eq_13_is_reproduced_but_for_the_coriolis_term_of_lag(difference):
-    """The print has + 2 I_beta (beta_P + beta_0) zeta'. Eqs. 11 and 12 give a minus, and with two hinges I_beta_zeta."""
+    """The print has + 2 I_beta (beta_P + beta_0) zeta'; Eqs. 11 and 12 give a minus, and two hinges I_beta_zeta."""
     cone, zeta_rate = s.precone + s.coning, BLADE_ANGLES["lag"][1]
     conflict = -2 * (s.flap_lag_inertia + s.flap_inertia) * cone * zeta_rate / s.blade_inertia
     assert sp.expand(difference - conflict) == 0
