@@ -56,8 +56,8 @@ def expected(rotor: pp.Rotor, operation: pp.Operation) -> tuple[np.ndarray, np.n
     damping, stiffness = np.zeros((18, 18)), np.zeros((18, 18))
     for psi in 0.3 + 2 * np.pi * np.arange(rotor.n_blades) / rotor.n_blades:
         turn = rotation_about_span(psi, rotor)
-        # The rate of a rotating component is the rate of the coordinate and Omega times its change with azimuth; that of
-        # the hub's own turn is no rotation of the hub, which is what the rise of the span takes off again.
+        # The rate of a rotating component is that of the coordinate and Omega times its change with azimuth. A tilt of
+        # the hub has such a change and yet is no rotation, which the rise of the span takes off again.
         change = (rotation_about_span(psi + step, rotor) - rotation_about_span(psi - step, rotor)) / (
             2 * step
         )
