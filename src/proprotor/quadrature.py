@@ -8,10 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 POWERS = 3  # moments of r^0, r^1 and r^2
-# Points for a panel of a given share of the radius: section loads vary over about V/Ω, a tenth of the radius or more.
-# These keep every radial moment within 1e-10 of itself (tests/test_quadrature.py).
+# Points for a panel of a given share of the radius: at high airspeed section loads vary over the radius. At low airspeed
+# they turn within V/Ω of the axis: panels near the root double outward, with points by distance from the axis. These keep
+# every radial moment within 1e-10 of itself (tests/test_quadrature.py).
 _LONGEST_PANEL = 0.1
 _POINTS = ((0.015, 3), (0.03, 4), (0.06, 6), (np.inf, 8))
+_NEAR_ROOT = 0.2 / 2.0 ** np.arange(7)  # of the radius
+_TINY = np.finfo(float).tiny
+_DIGITS, _MOST_POINTS = 13, 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +109,8 @@ def gauss_panels(
         # Where a table already splits the blade finely, even panels would only add stations.
         finely = np.max(np.diff(knots), initial=0) <= _LONGEST_PANEL * tip.min()
         interior = tabulated if finely else np.concatenate([tabulated, interior], axis=-1)
-    ends = [root[..., None], tip[..., None], flap[..., None], lag[..., None], interior]
+    near_root = tip[..., None] * _NEAR_ROOT
+    ends = [root[..., None], tip[..., None], flap[..., None], lag[..., None], interior, near_root]
     edges = np.sort(np.clip(np.concatenate(ends, axis=-1), root[..., None], tip[..., None]), axis=-1)
     widths = np.diff(edges, axis=-1)
     used = (widths > 1e-12 * tip[..., None]).reshape(-1, widths.shape[-1]).any(axis=0)
@@ -114,16 +119,28 @@ def gauss_panels(
 
 
 def _gauss_points(starts: NDArray, widths: NDArray, tip: NDArray) -> tuple[NDArray, NDArray]:
-    """Stations and weights of all panels; panels get points by their share of the radius."""
+    """Stations and weights of all panels; panels get points by their share of the radius and their place."""
     shares = (widths / tip[..., None]).reshape(-1, widths.shape[-1]).max(axis=0)
+    nearness = (widths / np.maximum(starts + widths, _TINY)).reshape(-1, widths.shape[-1]).max(axis=0)
     stations, weights = [], []
     for panel, share in enumerate(shares):
-        points = next(count for limit, count in _POINTS if share <= limit)
+        by_share = next(count for limit, count in _POINTS if share <= limit)
+        points = max(by_share, _points_near_axis(nearness[panel]))
         nodes, gauss = np.polynomial.legendre.leggauss(points)
         half = widths[..., panel, None] / 2
         stations.append(starts[..., panel, None] + half * (1 + nodes))
         weights.append(half * gauss)
     return np.concatenate(stations, axis=-1), np.concatenate(weights, axis=-1)
+
+
+def _points_near_axis(nearness: float) -> int:
+    """Points that resolve what turns at the axis, for a panel whose width is this share of its outer radius.
+
+    Gauss errors fall as rho^(-2n), with rho the size of the ellipse about the panel that reaches the axis.
+    """
+    center = 2 / max(nearness, 1e-3) - 1  # of the panel, in half widths from the axis
+    rho = center + np.sqrt(max(center**2 - 1, 0.0))
+    return _MOST_POINTS if rho <= 1 else min(_MOST_POINTS, int(np.ceil(_DIGITS / (2 * np.log10(rho)))))
 
 
 def _by_segment(
