@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 POWERS = 3  # moments of r^0, r^1 and r^2
-# Points for a panel of a given share of the radius: at high airspeed section loads vary over the radius. At low airspeed
-# they turn within V/Ω of the axis: panels near the root double outward, with points by distance from the axis. These keep
-# every radial moment within 1e-10 of itself (tests/test_quadrature.py).
+# Points for a panel of a given share of the radius: at high airspeed section loads vary over the radius. At low
+# airspeed they turn within V/Ω of the axis: panels near the root double outward, with points by distance from the
+# axis. These keep every radial moment within 1e-10 of itself (tests/test_quadrature.py).
 _LONGEST_PANEL = 0.1
 _POINTS = ((0.015, 3), (0.03, 4), (0.06, 6), (np.inf, 8))
 _NEAR_ROOT = 0.2 / 2.0 ** np.arange(7)  # of the radius
