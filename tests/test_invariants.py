@@ -258,19 +258,20 @@ def growth(model):
 @any_rotor
 @given(flight=flights(hinges="off centre", stiff=True), seed=seeds)
 def test_nothing_grows_when_all_rotating_frequencies_are_above_one_per_rev(locked, flight, seed):
-    """Pitch and gimbal included.
+    """Pitch and gimbal included: as many motions above 1/rev as there are coordinates, none below and none diverging.
 
-    To 1e-12 of the largest root: in coordinates that measure energy the state matrix is skew, so that rounding moves
-    each root by no more than a few units in the last place of the largest. (That is the flap against the gimbal of
-    blades hinged near the centre, up to a thousand per rev.)
+    To 1e-14 of the largest root, times the square root of the mass's condition: in coordinates that measure energy the
+    state matrix is skew, its roots are as good as its entries, and these are divided by a root of the mass. (Flap and
+    gimbal of blades hinged near the centre move almost the same masses: conditions reach 1e8.)
     """
     frequencies = rotating_frequencies(undamped(flight, locked=locked), flight.rotor_speed)
-    assume(frequencies[frequencies > 0].min() > flight.rotor_speed)
+    assume(np.sum(frequencies > flight.rotor_speed) == len(frequencies) / 2)
     support = random_support(flight, seed)
     for speed in ("windmilling", "constant"):
         options = {"airloads": "none", "locked": locked, "rotor_speed": speed}
-        largest, of = growth(flight.without_dampers().on(support, **options))
-        assert largest < 1e-12 * of
+        model = flight.without_dampers().on(support, **options)
+        largest, of = growth(model)
+        assert largest < 1e-14 * np.sqrt(np.linalg.cond(unit_diagonal(model.M))) * of
 
 
 def uniform_rotor(rotor_speed, *, flap, lag, pitch, gimbal, n_blades=3):
@@ -499,7 +500,7 @@ def nearest(roots, others):
 @any_rotor
 @given(flights(hinges="off centre"), seeds, between(-3.2, 3.2))
 def test_a_support_turned_about_the_shaft_keeps_its_eigenvalues(flight, seed, angle):
-    """To 1e-14 of the largest times the condition of the mass, which flap and gimbal alike make large."""
+    """To 1e-12 of the largest, and what the condition of the mass, which may be 1e8, makes of rounding."""
     support, turn = random_support(flight, seed), turned_about_shaft(angle, HUB)
     turned = {name: turn @ getattr(support, name) @ turn.T for name in ("mass", "damping", "stiffness")}
     here, there = flight.on(support), flight.on(replace(support, **turned))
@@ -507,7 +508,8 @@ def test_a_support_turned_about_the_shaft_keeps_its_eigenvalues(flight, seed, an
     roots, others = here.modes().eigenvalue.values, there.modes().eigenvalue.values
     assert roots.shape == others.shape
     error = max(nearest(roots, others).max(), nearest(others, roots).max())
-    assert error < 1e-14 * np.linalg.cond(unit_diagonal(here.M)) * np.abs(roots).max()
+    rounding = 1e-15 * np.linalg.cond(unit_diagonal(here.M))
+    assert error < (1e-12 + rounding) * np.abs(roots).max()
 
 
 # What the mass may depend on ----------------------------------------------------------------------
