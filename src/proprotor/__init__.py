@@ -4,6 +4,7 @@ from proprotor.airfoil import Airfoil
 from proprotor.airfoil_table import AirfoilTable
 from proprotor.assembly import mount
 from proprotor.case import Case, list_cases, load_case
+from proprotor.design import design_inputs
 from proprotor.drive_train import DriveTrain
 from proprotor.errors import InputError
 from proprotor.frequencies import BladeFrequencies
@@ -26,6 +27,7 @@ __all__ = [
     "Operation",
     "Rotor",
     "WhirlDerivatives",
+    "design_inputs",
     "list_cases",
     "load_case",
     "mount",

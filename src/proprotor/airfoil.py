@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -62,7 +62,7 @@ class Airfoil:
     Parameters
     ----------
     lift_slope : float
-        c_lα, 1/rad, not negative.
+        c_lα, 1/rad, not negative. Any of the four may be an array that broadcasts with the airspeeds.
     zero_lift_angle : float
         Angle of attack without lift, rad.
     drag : float
@@ -89,7 +89,7 @@ class Airfoil:
             if not np.all(np.isfinite(value)):
                 raise InputError(entry.name, value, "must be finite")
         for name in ("lift_slope", "drag"):
-            if np.any(np.asarray(getattr(self, name)) < 0):
+            if np.any(np.real(getattr(self, name)) < 0):
                 raise InputError(name, getattr(self, name), "must not be negative")
 
     def coefficients(self, alpha: NDArray, mach: NDArray) -> SectionCoefficients:
@@ -106,9 +106,27 @@ class Airfoil:
             moment_coefficient_mach=0.0,
         )
 
+    def flattened(self, shape: tuple[int, ...]) -> Airfoil:
+        """Arrays of designs broadcast to `shape` and flattened, with a last axis for the stations."""
+        arrays = {entry.name: np.asarray(getattr(self, entry.name)) for entry in fields(self)}
+        return replace(
+            self,
+            **{
+                name: np.broadcast_to(value, shape).reshape(-1, 1)
+                for name, value in arrays.items()
+                if value.ndim
+            },
+        )
+
+    def take(self, rows: NDArray | slice) -> Airfoil:
+        """A flattened airfoil at some of the points."""
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        many = {name: value[rows] for name, value in values.items() if np.ndim(value)}
+        return replace(self, **many) if many else self
+
     def warnings(self, alpha: NDArray, mach: NDArray) -> dict[str, NDArray]:
         """Where linear lift or the Prandtl-Glauert factor is not to be trusted."""
         return {
             f"angle of attack beyond {np.degrees(LINEAR_ALPHA):.0f} deg": np.abs(alpha) > LINEAR_ALPHA,
-            f"Mach number beyond {LINEAR_MACH:g}": mach > LINEAR_MACH,
+            f"Mach number beyond {LINEAR_MACH:g}": np.real(mach) > LINEAR_MACH,
         }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import ModuleType
 from typing import Any
 
@@ -42,12 +42,32 @@ class BladeSections:
     def of(cls, rotor: Rotor, shape: tuple[int, ...]) -> BladeSections:
         """Sections of a rotor, those of many designs flattened over the batch."""
         chord, twist = (flatten_points(part, shape, 1) for part in (rotor.station_chord, rotor.station_twist))
-        return cls(rotor.quadrature.flattened(shape), chord, twist, rotor.airfoil)
+        airfoil = rotor.airfoil.flattened(shape) if isinstance(rotor.airfoil, Airfoil) else rotor.airfoil
+        return cls(rotor.quadrature.flattened(shape), chord, twist, airfoil)
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether any number is complex, for derivatives by a complex step."""
+        numbers = [self.quadrature.stations, self.chord, self.twist]
+        if isinstance(self.airfoil, Airfoil):
+            numbers += [getattr(self.airfoil, entry.name) for entry in fields(self.airfoil)]
+        return any(map(np.iscomplexobj, numbers))
+
+    @property
+    def real(self) -> BladeSections:
+        """The same without imaginary parts."""
+        if not self.is_complex:
+            return self
+        airfoil = self.airfoil
+        if isinstance(airfoil, Airfoil):
+            airfoil = Airfoil(**{e.name: np.real(getattr(airfoil, e.name)) for e in fields(airfoil)})
+        return BladeSections(self.quadrature.real, np.real(self.chord), np.real(self.twist), airfoil)
 
     def take(self, rows: NDArray | slice) -> BladeSections:
         """Sections at some of the points."""
         chord, twist = (part[rows] if part.ndim > 1 else part for part in (self.chord, self.twist))
-        return BladeSections(self.quadrature.take(rows), chord, twist, self.airfoil)
+        airfoil = self.airfoil.take(rows) if isinstance(self.airfoil, Airfoil) else self.airfoil
+        return BladeSections(self.quadrature.take(rows), chord, twist, airfoil)
 
 
 def along_segments(quantities: Quantities) -> dict[str, Any]:
@@ -139,7 +159,10 @@ def load_moments(
     """
     points = max(np.shape(value)[0] if np.ndim(value) > 1 else 1 for value in segments.values())
     shape = (points, len(sections.quadrature.beyond_lag_hinge), POWERS)
-    moments = {name: np.zeros(shape) for name in section.Loads._fields}
+    kind = np.result_type(
+        float, sections.quadrature.stations, sections.chord, sections.twist, *segments.values()
+    )
+    moments = {name: np.zeros(shape, dtype=kind) for name in section.Loads._fields}
     for start in range(0, points, _BLOCK):
         rows = slice(start, start + _BLOCK)
         block = {
@@ -149,7 +172,8 @@ def load_moments(
         here = sections.take(rows)
         for name, load in _section_loads(here, block, compressibility, lift_slope_only, equations).items():
             if np.ndim(load):
-                moments[name][rows] = _block_moments(here.quadrature, load)
+                full = np.broadcast_to(load, (len(moments[name][rows]), load.shape[-1]))
+                moments[name][rows] = _block_moments(here.quadrature, full)
     return {
         f"{name}_{power}": moment[..., power] for name, moment in moments.items() for power in range(POWERS)
     }
@@ -160,7 +184,7 @@ def _block_moments(quadrature: RadialQuadrature, load: NDArray) -> NDArray:
     rows = len(load)
     if quadrature.segment.ndim > 1 or rows == _BLOCK:
         return quadrature.moments(load)
-    full = np.zeros((_BLOCK, load.shape[-1]))
+    full = np.zeros((_BLOCK, load.shape[-1]), dtype=load.dtype)
     full[:rows] = load
     return quadrature.moments(full)[:rows]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -26,7 +26,7 @@ from proprotor.sweep import sweep
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.deck import Section, SupportSection
+    from proprotor.deck import Deck, Section, SupportSection
 
 __all__ = ["Case", "list_cases", "load_case"]
 
@@ -50,6 +50,10 @@ class Case:
         Every number of the deck by its field (``rotor.radius``, ``support.modes[beam].frequency``): the
         value as written, its SI value and unit, status and source. What follows from the deck's
         numbers, such as a stiffness from a frequency, stands here as well.
+    deck : Deck, optional
+        The deck the case was made from, which says how its numbers hang together.
+    given : mapping of str to Datum
+        Those of `sources` that the deck gives.
     """
 
     name: str
@@ -61,6 +65,8 @@ class Case:
     calibration: str = ""
     warnings: tuple[str, ...] = ()
     sources: Mapping[str, Datum] = field(default_factory=dict)
+    deck: Deck | None = field(default=None, repr=False)
+    given: Mapping[str, Datum] = field(default_factory=dict, repr=False)
 
     def linearize(self, airspeed: Any, **options: Any) -> LinearModel:
         """Equations of motion of the rotor on its support.
@@ -72,7 +78,14 @@ class Case:
             See `proprotor.options.Options`.
         """
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **options)
-        return mount(rotor_alone, self.support, rigid_hub_mass(self.rotor))
+        support = self.support.at(rotor_alone.airspeed, self.operation.density)
+        return mount(rotor_alone, support, rigid_hub_mass(self.rotor))
+
+    def vary(self, values: Mapping[str, Any]) -> Case:
+        """The case with other numbers in its deck, and all that follows from them: see `proprotor.design.vary`."""
+        from proprotor.design import vary
+
+        return vary(self, values)
 
     def sweep(self, airspeeds: Any, **options: Any) -> xarray.Dataset:
         """Modes along a list of airspeeds, tracked and named: see `proprotor.sweep.sweep`."""
@@ -96,7 +109,17 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     from proprotor.deck import validate  # here, because pydantic is slow to import
 
     deck = validate(read_tables(name_or_path))
-    numbers = {path: _per_second(n, deck.operation.rotor_speed.si) for path, n in _numbers(deck)}
+    return assemble(deck, {path: _per_second(n, deck.operation.rotor_speed.si) for path, n in _numbers(deck)})
+
+
+def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
+    """The case of a deck with these numbers by path, which may be arrays of many designs or complex.
+
+    Raises
+    ------
+    InputError
+        When a number is not physical, as the deck has it.
+    """
     with _told_as_written("operation", numbers):
         trim = deck.operation.trim
         operation = Operation(
@@ -119,7 +142,9 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
         rotor=rotor,
         operation=operation,
         support=support,
-        sources=numbers | derived,
+        sources=dict(numbers) | derived,
+        deck=deck,
+        given=numbers,
     )
 
 
@@ -152,7 +177,8 @@ def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
 def _value(number: Datum, numbers: Mapping[str, Datum]) -> Any:
     if number.r_over_R is None:
         return number.si
-    return np.array(number.r_over_R) * numbers["rotor.radius"].si, np.array(number.si)
+    radius = np.asarray(numbers["rotor.radius"].si)
+    return np.array(number.r_over_R) * radius[..., None], np.array(number.si)
 
 
 def _airfoil(given: dict[str, Any]) -> SectionModel:
@@ -183,7 +209,7 @@ def _spring(rotor: Rotor, hinge: str, frequency: float) -> Datum:
 
 
 def _chord(rotor: Rotor, lock_number: float, density: float) -> Datum:
-    if density == 0:
+    if np.any(np.asarray(density) == 0):
         raise InputError("lock_number", lock_number, "needs a density above zero; give chord instead")
     if not isinstance(rotor.airfoil, Airfoil):
         raise InputError("lock_number", lock_number, "needs a lift_slope; with an airfoil table give chord")
@@ -196,14 +222,20 @@ def _chord(rotor: Rotor, lock_number: float, density: float) -> Datum:
 def _normal_modes(section: SupportSection, numbers: Mapping[str, Datum]) -> NormalModes:
     names = [mode.name for mode in section.modes]
     modes = [_values(numbers, f"support.modes[{name}]") for name in names]
+    hub = [_side_by_side(mode.get(axis, 0.0) for mode in modes) for axis in HUB_AXES]
     return NormalModes.from_frequencies(
         names=names,
-        generalized_mass=[mode["generalized_mass"] for mode in modes],
-        frequency=[mode["frequency"] for mode in modes],
-        damping_ratio=[mode["damping_ratio"] for mode in modes],
-        hub=[[mode.get(axis, 0.0) for mode in modes] for axis in HUB_AXES],
+        generalized_mass=_side_by_side(mode["generalized_mass"] for mode in modes),
+        frequency=_side_by_side(mode["frequency"] for mode in modes),
+        damping_ratio=_side_by_side(mode["damping_ratio"] for mode in modes),
+        hub=np.stack(np.broadcast_arrays(*hub), axis=-2),
         includes_rotor=section.includes_rotor,
     )
+
+
+def _side_by_side(values: Iterable[Any]) -> np.ndarray:
+    """Numbers of the modes along a last axis; leading axes are those of many designs."""
+    return np.stack(np.broadcast_arrays(*values), axis=-1)
 
 
 @contextmanager

@@ -19,6 +19,7 @@ from proprotor_equations import (
     pitch,
 )
 
+from proprotor.airfoil import Airfoil
 from proprotor.blade_airloads import (
     BladeSections,
     closed_form_moments,
@@ -127,7 +128,10 @@ def rotor_quantities(
 def batch_shape(rotor: Rotor, operation: Operation, airspeed: NDArray) -> tuple[int, ...]:
     """Shape of all arrays among the inputs, broadcast together."""
     inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name != "airfoil"]
-    inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)]
+    leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
+    inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)] + leading
+    if isinstance(rotor.airfoil, Airfoil):
+        inputs += [getattr(rotor.airfoil, entry.name) for entry in fields(rotor.airfoil)]
     inputs += [getattr(operation, name) for name in ("rotor_speed", "density", "speed_of_sound")]
     inputs += [] if operation.windmilling else list(operation.trim.values())
     return np.broadcast_shapes(np.shape(airspeed), *(np.shape(value) for value in inputs))
@@ -225,7 +229,8 @@ def _matrices(
     """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless last; NaN without trim."""
     points, n = len(trim.converged), len(FIXED_COORDINATES) + len(extra)
     columns = dict.fromkeys("MCK", n) | {"B": len(INPUTS)}
-    matrices = {name: np.full((points, n, width), np.nan) for name, width in columns.items()}
+    kind = np.result_type(float, trim.collective, trim.coning, *quantities.values())
+    matrices = {name: np.full((points, n, width), np.nan, dtype=kind) for name, width in columns.items()}
     good = np.flatnonzero(trim.converged)
     if len(good):
         state = {name: getattr(trim, name)[good] for name in UNKNOWNS}
@@ -249,7 +254,7 @@ def _blade_matrices(
     damping, stiffness = (
         np.broadcast_to(matrix, (*points, *matrix.shape[-2:])) for matrix in (damping, stiffness)
     )
-    gusts = np.zeros((*stiffness.shape[:-1], 3))
+    gusts = np.zeros((*stiffness.shape[:-1], 3), dtype=stiffness.dtype)
     if options.airloads != "none":
         air_damping, air_stiffness, gusts = _airloads(sections, pool, options)
         damping, stiffness = damping + air_damping, stiffness + air_stiffness

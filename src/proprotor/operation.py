@@ -42,7 +42,7 @@ class Operation:
 
     def __post_init__(self) -> None:
         for name in ("rotor_speed", "density", "speed_of_sound"):
-            value = np.asarray(getattr(self, name), dtype=float)
+            value = np.real(getattr(self, name))
             if not np.all(np.isfinite(value)):
                 raise InputError(name, getattr(self, name), "must be finite")
             if np.any(value < 0) or (name != "density" and np.any(value == 0)):
@@ -61,7 +61,7 @@ class Operation:
             (name, value), *_ = self.trim.items()
             if name not in TRIM_TARGETS:
                 raise InputError("trim", name, unknown_name(name, TRIM_TARGETS, "trim"))
-            if not np.all(np.isfinite(np.asarray(value, dtype=float))):
+            if not np.all(np.isfinite(np.real(value))):
                 raise InputError(f"trim.{name}", value, "must be finite")
 
     @property

@@ -43,6 +43,13 @@ class RadialQuadrature:
     beyond_flap_hinge: NDArray
     beyond_lag_hinge: NDArray
 
+    @property
+    def real(self) -> RadialQuadrature:
+        """The same without imaginary parts."""
+        return replace(
+            self, **{name: np.real(getattr(self, name)) for name in ("stations", "weights", "edges")}
+        )
+
     def flattened(self, shape: tuple[int, ...]) -> RadialQuadrature:
         """The same with leading axes, if there are any, broadcast to `shape` and flattened."""
         if self.segment.ndim == 1:
@@ -98,30 +105,44 @@ def gauss_panels(
     ----------
     root_cutout, radius, flap_hinge_offset, lag_hinge_offset : float or array (...)
         m; arrays for many blades at once.
-    knots : array (k,)
+    knots : array (..., k)
         Further radii at which chord or twist has a kink, m.
     """
-    root, tip, flap, lag = np.broadcast_arrays(root_cutout, radius, flap_hinge_offset, lag_hinge_offset)
+    at = np.zeros(knots.shape[:-1])
+    root, tip, flap, lag, _ = np.broadcast_arrays(
+        root_cutout, radius, flap_hinge_offset, lag_hinge_offset, at
+    )
     share = np.linspace(0, 1, max(2, int(np.ceil(1 / _LONGEST_PANEL)) + 1))[1:-1]
     interior = root[..., None] + (tip - root)[..., None] * share
-    if len(knots):
-        tabulated = np.broadcast_to(knots, (*root.shape, len(knots)))
+    if knots.shape[-1]:
+        tabulated = np.broadcast_to(knots, (*root.shape, knots.shape[-1]))
         # Where a table already splits the blade finely, even panels would only add stations.
-        finely = np.max(np.diff(knots), initial=0) <= _LONGEST_PANEL * tip.min()
+        longest = np.max(np.diff(np.sort(np.real(knots), axis=-1)), initial=0)
+        finely = longest <= _LONGEST_PANEL * np.real(tip).min()
         interior = tabulated if finely else np.concatenate([tabulated, interior], axis=-1)
     near_root = tip[..., None] * _NEAR_ROOT
     ends = [root[..., None], tip[..., None], flap[..., None], lag[..., None], interior, near_root]
-    edges = np.sort(np.clip(np.concatenate(ends, axis=-1), root[..., None], tip[..., None]), axis=-1)
-    widths = np.diff(edges, axis=-1)
-    used = (widths > 1e-12 * tip[..., None]).reshape(-1, widths.shape[-1]).any(axis=0)
-    stations, weights = _gauss_points(edges[..., :-1][..., used], widths[..., used], tip)
+    edges = np.sort(_within(np.concatenate(ends, axis=-1), root[..., None], tip[..., None]), axis=-1)
+    widths = np.real(np.diff(edges, axis=-1))
+    used = (widths > 1e-12 * np.real(tip)[..., None]).reshape(-1, widths.shape[-1]).any(axis=0)
+    # Between edges that coincide the last one counts for both sides: with complex radii they may differ a little.
+    starts = edges[..., :-1][..., used]
+    widths = np.diff(np.concatenate([starts, tip[..., None]], axis=-1), axis=-1)
+    stations, weights = _gauss_points(starts, widths, tip)
     return _by_segment(stations, weights, root, tip, flap, lag)
+
+
+def _within(edges: NDArray, root: NDArray, tip: NDArray) -> NDArray:
+    """Edges moved onto root or tip where they lie beyond."""
+    edges = np.where(np.real(edges) <= np.real(root), root, edges)
+    return np.where(np.real(edges) >= np.real(tip), tip, edges)
 
 
 def _gauss_points(starts: NDArray, widths: NDArray, tip: NDArray) -> tuple[NDArray, NDArray]:
     """Stations and weights of all panels; panels get points by their share of the radius and their place."""
-    shares = (widths / tip[..., None]).reshape(-1, widths.shape[-1]).max(axis=0)
-    nearness = (widths / np.maximum(starts + widths, _TINY)).reshape(-1, widths.shape[-1]).max(axis=0)
+    long, ends = np.real(widths), np.real(starts + widths)
+    shares = (long / np.real(tip)[..., None]).reshape(-1, widths.shape[-1]).max(axis=0)
+    nearness = (long / np.maximum(ends, _TINY)).reshape(-1, widths.shape[-1]).max(axis=0)
     stations, weights = [], []
     for panel, share in enumerate(shares):
         by_share = next(count for limit, count in _POINTS if share <= limit)
@@ -146,7 +167,7 @@ def _points_near_axis(nearness: float) -> int:
 def _by_segment(
     stations: NDArray, weights: NDArray, root: NDArray, tip: NDArray, flap: NDArray, lag: NDArray
 ) -> RadialQuadrature:
-    beyond_flap, beyond_lag = stations > flap[..., None], stations > lag[..., None]
+    beyond_flap, beyond_lag = (np.real(stations) > np.real(hinge)[..., None] for hinge in (flap, lag))
     kinds = ((False, False), (True, False), (True, True))
     masks = [(beyond_flap == flap_side) & (beyond_lag == lag_side) for flap_side, lag_side in kinds]
     present = [place for place, mask in enumerate(masks) if mask.any()]
@@ -154,7 +175,7 @@ def _by_segment(
     table = np.stack([masks[place][..., None] * moments for place in present], axis=-2)
     segment = np.argmax(np.stack([masks[place] for place in present]), axis=0)
     steps = np.array([kinds[place] for place in present], dtype=float)
-    hinges = np.clip(np.stack([flap, lag], axis=-1), root[..., None], tip[..., None])
+    hinges = _within(np.stack([flap, lag], axis=-1), root[..., None], tip[..., None])
     ends = np.concatenate([root[..., None], hinges, tip[..., None]], axis=-1)
     edges = np.stack([ends[..., present], ends[..., np.add(present, 1)]], axis=-1)
     return RadialQuadrature(stations, segment, table, edges, steps[:, 0], steps[:, 1])

@@ -136,11 +136,8 @@ class Rotor:
 
     def _check_number(self, name: str) -> None:
         value = getattr(self, name)
-        if name in ("chord", "twist") and isinstance(value, tuple):
-            _check_distribution(name, value)
-            return
-        if name in ("chord", "twist") and callable(value):
-            return
+        if name in ("chord", "twist") and (isinstance(value, tuple) or callable(value)):
+            return  # a distribution, checked once the radius it stretches with is known to be positive
         if isinstance(value, tuple | str):
             raise InputError(name, value, "must be a number")
         try:
@@ -160,6 +157,9 @@ class Rotor:
         for name in _FRACTIONS:
             if np.any((np.real(getattr(self, name)) < 0) | (np.real(getattr(self, name)) > 1)):
                 raise InputError(name, getattr(self, name), "must lie between 0 and 1")
+        for name in ("chord", "twist"):
+            if isinstance(getattr(self, name), tuple):
+                _check_distribution(name, getattr(self, name))
         chord = self.station_chord if callable(self.chord) else self.chord
         chord = chord[1] if isinstance(chord, tuple) else chord
         if np.any(np.real(chord) <= 0):
@@ -229,13 +229,13 @@ class Rotor:
     @functools.cached_property
     def quadrature(self) -> RadialQuadrature:
         """Radial stations and weights from cutout to tip, split at hinges and tabulated stations."""
-        knots = [np.asarray(d[0], dtype=float) for d in (self.chord, self.twist) if isinstance(d, tuple)]
+        knots = [np.asarray(d[0]) for d in (self.chord, self.twist) if isinstance(d, tuple)]
         return gauss_panels(
             root_cutout=self.root_cutout,
             radius=self.radius,
             flap_hinge_offset=self.flap_hinge_offset,
             lag_hinge_offset=self.lag_hinge_offset,
-            knots=np.unique(np.concatenate(knots)) if knots else np.empty(0),
+            knots=_joined(knots),
         )
 
     @functools.cached_property
@@ -258,32 +258,24 @@ class Rotor:
     def from_mass_distribution(cls, r: ArrayLike, mass_per_length: ArrayLike, **fields_: Any) -> Rotor:
         """A rotor whose seven mass integrals come from mass per length (kg/m), linear between the stations r (m).
 
-        Exact for that distribution: each interval between stations and hinges is integrated as the cubic it is.
+        Exact for that distribution: each interval between stations and hinges is integrated as the cubic it is. Hinge
+        offsets and, with leading axes, r may be arrays of many designs.
 
         Raises
         ------
         InputError
             When the distribution is not increasing in r or negative, or a field is wrong.
         """
-        r, mass = np.asarray(r, dtype=float), np.asarray(mass_per_length, dtype=float)
+        r, mass = np.asarray(r), np.asarray(mass_per_length, dtype=float)
         _check_distribution("mass_distribution", (r, mass))
         if np.any(mass < 0):
             raise InputError("mass_distribution", float(mass.min()), "must not be negative")
-        flap, lag = fields_.get("flap_hinge_offset", 0.0), fields_.get("lag_hinge_offset", 0.0)
-        edges = np.unique(np.concatenate([r, [e for e in (flap, lag) if r[0] < e < r[-1]]]))
-        nodes, weights = np.polynomial.legendre.leggauss(2)
-        half = np.diff(edges)[:, None] / 2
-        stations = (edges[:-1, None] + half * (1 + nodes)).ravel()
-        m = (half * weights).ravel() * np.interp(stations, r, mass)
-        arms = {
-            "blade": stations,
-            "flap": np.maximum(stations - flap, 0),
-            "lag": np.maximum(stations - lag, 0),
-        }
-        integrals = {"blade_mass": m.sum()}
-        for name, arm in arms.items():
-            integrals |= {f"{name}_first_moment": m @ arm, f"{name}_inertia": m @ arm**2}
-        return cls(**{name: float(value) for name, value in integrals.items()}, **fields_)
+        hinges = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
+        integrals = {"blade_mass": _outboard_moment(r, mass, None, 0)}
+        for name, axis in {"blade": None, **hinges}.items():
+            for power, kind in ((1, "first_moment"), (2, "inertia")):
+                integrals[f"{name}_{kind}"] = _outboard_moment(r, mass, axis, power)
+        return cls(**integrals, **fields_)
 
 
 def _shown(value: ArrayLike) -> str:
@@ -293,8 +285,8 @@ def _shown(value: ArrayLike) -> str:
 
 
 def _check_distribution(name: str, distribution: tuple[ArrayLike, ArrayLike]) -> None:
-    r, values = (np.asarray(part, dtype=float) for part in distribution)
-    if r.ndim != 1 or r.shape != values.shape or r.size < 2:
+    r, values = (np.real(part) for part in distribution)
+    if values.ndim != 1 or r.shape[-1:] != values.shape or values.size < 2:
         raise InputError(
             name, f"arrays of shape {r.shape} and {values.shape}", "must be two lists of equal length"
         )
@@ -304,7 +296,42 @@ def _check_distribution(name: str, distribution: tuple[ArrayLike, ArrayLike]) ->
         raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
 
 
+def _joined(knots: list[np.ndarray]) -> np.ndarray:
+    """Stations of several distributions along the last axis."""
+    if not knots:
+        return np.empty(0)
+    leading = np.broadcast_shapes(*(stations.shape[:-1] for stations in knots))
+    return np.concatenate([np.broadcast_to(s, (*leading, s.shape[-1])) for s in knots], axis=-1)
+
+
 def _interpolate(distribution: Distribution, r: np.ndarray) -> np.ndarray:
+    """Values (..., stations) at radii r (..., stations), linear and constant beyond the ends, complex if r is."""
     if callable(distribution):
         return np.asarray(distribution(r))
-    return np.interp(np.real(r), *(np.asarray(part, dtype=float) for part in distribution))
+    stations, values = np.asarray(distribution[0]), np.asarray(distribution[1])
+    if stations.ndim == 1 and not any(map(np.iscomplexobj, (stations, values, r))):
+        return np.interp(r, stations, values)
+    last = stations.shape[-1] - 2
+    panel = np.sum(np.real(r)[..., None] >= np.real(stations)[..., None, :], axis=-1) - 1
+    panel = np.clip(panel, 0, last)
+    stations = np.broadcast_to(stations, (*r.shape[:-1], last + 2))
+    start, end = (np.take_along_axis(stations, panel + step, axis=-1) for step in (0, 1))
+    share = (r - start) / (end - start)
+    share = np.where(np.real(share) < 0, 0.0, np.where(np.real(share) > 1, 1.0, share))
+    return values[panel] + share * (values[panel + 1] - values[panel])
+
+
+def _outboard_moment(r: np.ndarray, mass: np.ndarray, axis: ArrayLike | None, power: int) -> Any:
+    """∫ m (r - axis)^power outboard of an axis (...), over all the blade about its centre for None."""
+    nodes, weights = np.polynomial.legendre.leggauss(2)
+    inboard, outboard = r[..., :-1], r[..., 1:]
+    center = np.zeros(()) if axis is None else np.asarray(axis)[..., None]
+    start = inboard
+    if axis is not None:
+        start = np.where(np.real(center) > np.real(inboard), center, inboard)
+        start = np.where(np.real(start) > np.real(outboard), outboard, start)
+    half = ((outboard - start) / 2)[..., None]
+    stations = start[..., None] + half * (1 + nodes)
+    slope = (np.diff(mass) / np.diff(r))[..., None]
+    density = mass[:-1, None] + slope * (stations - inboard[..., None])
+    return np.sum(half * weights * density * (stations - center[..., None]) ** power, axis=(-2, -1))[()]

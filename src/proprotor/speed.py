@@ -14,7 +14,8 @@ def in_metres_per_second(airspeed: Any) -> NDArray:
     Parameters
     ----------
     airspeed : float, array (...), text or pint quantity
-        A bare number is in m/s; text such as "250 kt" or "50:400:5kt" and quantities are converted.
+        A bare number is in m/s and may be complex, for derivatives by a complex step; text such as "250 kt" or
+        "50:400:5kt" and quantities are converted.
 
     Raises
     ------
@@ -27,4 +28,4 @@ def in_metres_per_second(airspeed: Any) -> NDArray:
         return (
             units.speeds(airspeed) if isinstance(airspeed, str) else units.as_si(airspeed, "m/s", "airspeed")
         )
-    return np.asarray(airspeed, dtype=float)
+    return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)

@@ -98,7 +98,7 @@ def _outputs(
 ) -> tuple[tuple[str, ...], NDArray, NDArray]:
     """Names, rows of C and of D."""
     hub = np.eye(len(HUB), len(model.dofs)) if model.hub is None else model.hub
-    own = [place for place, name in enumerate(model.dofs) if model.hub is None or not np.any(hub[:, place])]
+    own = [place for place, name in enumerate(model.dofs) if model.hub is None or not np.any(hub[..., place])]
     own = [place for place in own if model.dofs[place] not in HUB]
     displacement, rate, acceleration = motion
     loads, loads_by_input = _hub_loads(model, motion, acceleration_by_input)
@@ -156,4 +156,4 @@ def _to_rotor(model: LinearModel) -> NDArray:
     for place, name in enumerate(own):
         if name in model.dofs:  # a coordinate left out of a submodel stays at zero
             rows[place, model.dofs.index(name)] = 1
-    return np.concatenate([model.hub, rows])
+    return np.concatenate([model.hub, np.broadcast_to(rows, (*model.hub.shape[:-2], *rows.shape))], axis=-2)

@@ -24,10 +24,10 @@ class NormalModes:
     ----------
     names : sequence of str
         One name per coordinate, all different.
-    mass, damping, stiffness : array_like, shape (n, n)
+    mass, damping, stiffness : array_like, shape (..., n, n)
         Symmetric, SI (kg or kg m² and so on, as the coordinate is a length in m or an angle in rad).
-        The mass must have no negative eigenvalue.
-    hub : array_like, shape (6, n)
+        The mass must have no negative eigenvalue. Leading axes are many supports at once.
+    hub : array_like, shape (..., 6, n)
         Φ: displacement (x, y, z) and rotation (αx, αy, αz) of the hub per unit of each coordinate, in the
         inertial axes I, J, K of the rotor, K along the shaft.
     includes_rotor : bool
@@ -56,11 +56,16 @@ class NormalModes:
         object.__setattr__(self, "hub", _finite("hub", self.hub, (6, n)))
         for field in ("mass", "damping", "stiffness"):
             matrix = _finite(field, getattr(self, field), (n, n))
-            if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-12 * np.abs(matrix).max()):
+            turned = np.swapaxes(matrix, -1, -2)
+            if not np.allclose(matrix, turned, rtol=1e-9, atol=1e-12 * np.abs(matrix).max(initial=0)):
                 raise InputError(field, matrix.tolist(), "must be symmetric")
             object.__setattr__(self, field, matrix)
-        if not _nowhere_negative(self.mass):
+        if not _nowhere_negative(np.real(self.mass)):
             raise InputError("mass", self.mass.tolist(), "must not be negative in any direction")
+
+    def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
+        """The support at airspeeds (m/s) and densities (kg/m³): itself, for its matrices depend on neither."""
+        return self
 
     @classmethod
     def from_frequencies(
@@ -76,7 +81,7 @@ class NormalModes:
 
         Parameters
         ----------
-        generalized_mass, frequency, damping_ratio : array_like, shape (n,)
+        generalized_mass, frequency, damping_ratio : array_like, shape (..., n)
             m in kg or kg m², ω in rad/s, ζ as a fraction of critical.
         names, hub, includes_rotor
             As for `NormalModes`.
@@ -87,9 +92,9 @@ class NormalModes:
         zeta = _finite("damping_ratio", damping_ratio, n)
         return cls(
             names=names,
-            mass=np.diag(m),
-            damping=np.diag(2 * zeta * omega * m),
-            stiffness=np.diag(m * omega**2),
+            mass=_diagonal(m),
+            damping=_diagonal(2 * zeta * omega * m),
+            stiffness=_diagonal(m * omega**2),
             hub=hub,
             includes_rotor=includes_rotor,
         )
@@ -136,8 +141,8 @@ def two_axis_pivot(
 
 
 def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    array = np.array(value, dtype=float)
-    if array.shape != shape:
+    array = np.array(value, dtype=complex if np.iscomplexobj(value) else float)
+    if array.shape[-len(shape) :] != shape:
         raise InputError(field, f"array of shape {array.shape}", f"must have the shape {shape}")
     if not np.isfinite(array).all():
         raise InputError(field, array.tolist(), "must be finite")
@@ -147,8 +152,13 @@ def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.
 
 def _nowhere_negative(matrix: NDArray[np.float64]) -> bool:
     # Scaled to a unit diagonal, so that slug and slug·ft² in one matrix do not set the tolerance.
-    diagonal = np.diag(matrix)
+    diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
     if (diagonal < 0).any():
         return False
     scale = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
-    return bool(np.linalg.eigvalsh(matrix / np.outer(scale, scale)).min() > -1e-9)
+    scaled = matrix / (scale[..., :, None] * scale[..., None, :])
+    return bool((np.linalg.eigvalsh(scaled) > -1e-9).all())
+
+
+def _diagonal(values: NDArray) -> NDArray:
+    return values[..., None] * np.eye(values.shape[-1])

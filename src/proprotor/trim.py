@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -67,6 +67,10 @@ class Trim:
     def pitch(self) -> NDArray:
         """Pitch of the blade at 0.75 R, rad."""
         return self.collective + self.elastic_pitch
+
+    def broadcast(self, shape: tuple[int, ...]) -> Trim:
+        """The same at every point of a batch with more axes."""
+        return Trim(**{e.name: np.broadcast_to(getattr(self, e.name), shape) for e in fields(self)})
 
 
 @dataclass(frozen=True)
@@ -145,7 +149,8 @@ def _balance(
 def _start(quantities: Mapping[str, Any], collective: Any, points: int) -> dict[str, NDArray]:
     """First guess: an undeflected blade whose section at 0.75 R meets the air at no angle."""
     at_rest = {name: np.zeros(points) for name in UNKNOWNS}
-    guess = np.arctan2(quantities["airspeed"], 0.75 * quantities["rotor_speed"] * quantities["radius"])
+    speeds = (quantities["airspeed"], 0.75 * np.asarray(quantities["rotor_speed"]) * quantities["radius"])
+    guess = np.arctan2(*map(np.real, speeds))
     at_rest["collective"] = at_rest["collective"] + (guess if collective is None else collective)
     return at_rest
 
@@ -177,6 +182,8 @@ def solve_trim(
     points : int
         Number of points.
     """
+    if _is_complex(sections, quantities, target):
+        return _complex_trim(sections, quantities, options, target, points)
     free = _free_unknowns(options, target.finds_collective)
     state = _start(quantities, target.collective, points)
     prandtl_glauert = options.compressibility and not sections.airfoil.contains_compressibility
@@ -198,12 +205,45 @@ def solve_trim(
         return _result(sections, quantities, options, target, state, reason, iterations)
 
 
+def _is_complex(sections: BladeSections, quantities: Mapping[str, Any], target: Target) -> bool:
+    return sections.is_complex or any(
+        np.iscomplexobj(value) for value in (*quantities.values(), target.collective, target.load)
+    )
+
+
+def _complex_trim(
+    sections: BladeSections, quantities: Mapping[str, Any], options: Options, target: Target, points: int
+) -> Trim:
+    """Trim of inputs with small imaginary parts, for derivatives by a complex step.
+
+    The real trim, and from there one Newton step: exact to first order in the imaginary parts, which are of no other
+    use.
+    """
+    real = {name: np.real(value) for name, value in quantities.items()}
+    real_target = replace(
+        target,
+        collective=None if target.collective is None else np.real(target.collective),
+        load=np.real(target.load),
+    )
+    trim = solve_trim(sections.real, real, options, real_target, points)
+    state = {name: getattr(trim, name).astype(complex) for name in UNKNOWNS}
+    if target.collective is not None:
+        state["collective"] = state["collective"] + 1j * np.imag(target.collective)
+    free = _free_unknowns(options, target.finds_collective)
+    good = np.flatnonzero(trim.converged)
+    if free and len(good):
+        step = _newton_step(sections, quantities, state, options, target, good, free)
+        for place, name in enumerate(UNKNOWNS):
+            state[name][good] -= step[:, place]
+    return _result(sections, quantities, options, target, state, trim.reason.copy(), trim.iterations)
+
+
 def _newton_step(sections, quantities, state, options, target, rows, free) -> NDArray:
     pool = with_trim(take(quantities, rows), options, {name: value[rows] for name, value in state.items()})
     here = replace(target, load=np.broadcast_to(target.load, state["coning"].shape)[rows])
     residual, jacobian, _ = _balance(sections.take(rows), pool, options.compressibility, here)
     balances = [target.row if place == _BALANCES - 1 else place for place in free]
-    step = np.zeros((len(rows), len(UNKNOWNS)))
+    step = np.zeros((len(rows), len(UNKNOWNS)), dtype=np.result_type(residual, jacobian))
     square = jacobian[:, balances][:, :, free]
     try:
         step[:, free] = np.linalg.solve(square, residual[:, balances, None])[..., 0]
@@ -211,7 +251,7 @@ def _newton_step(sections, quantities, state, options, target, rows, free) -> ND
         good = np.isfinite(square).all(axis=(1, 2)) & (np.abs(np.linalg.det(square)) > 0)
         step[:, free] = np.nan
         step[np.ix_(good, free)] = np.linalg.solve(square[good], residual[good][:, balances, None])[..., 0]
-    return np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
+    return step if np.iscomplexobj(step) else np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
 
 
 def _before_trim(
@@ -246,14 +286,15 @@ def _failure(target: Target) -> str:
 
 def _result(sections, quantities, options, target, state, reason, iterations) -> Trim:
     if target.finds_collective:
-        turned = np.abs(state["collective"] - _start(quantities, None, len(reason))["collective"])
+        turned = np.abs(np.real(state["collective"] - _start(quantities, None, len(reason))["collective"]))
         reason[(reason == "") & ~(turned < _FARTHEST)] = _failure(target)
     for name in ("coning", "lag", "elastic_pitch"):
         reason[(reason == "") & ~(np.abs(state[name]) < np.pi / 2)] = (
             f"trim {name.replace('_', ' ')} beyond 90 deg"
         )
     good = np.flatnonzero(reason == "")
-    values = {name: np.full(len(reason), np.nan) for name in (*UNKNOWNS, "thrust", "torque")}
+    kind = np.result_type(float, *state.values())
+    values = {name: np.full(len(reason), np.nan, dtype=kind) for name in (*UNKNOWNS, "thrust", "torque")}
     warning = np.full(len(reason), "", dtype=object)
     for name in UNKNOWNS:
         values[name][good] = state[name][good]
@@ -268,6 +309,8 @@ def _result(sections, quantities, options, target, state, reason, iterations) ->
 
 def _warnings(sections: BladeSections, pool: Mapping[str, Any], thrust: NDArray, points: int) -> list[str]:
     """What makes each point doubtful: neglected induced velocity, and sections outside what the airfoil knows."""
+    sections, thrust = sections.real, np.real(thrust)
+    pool = {name: np.real(value) for name, value in pool.items()}
     notes: list[list[str]] = [[] for _ in range(points)]
     disk = 2 * pool["density"] * np.pi * np.square(pool["radius"]) * np.square(pool["airspeed"])
     airspeed = np.broadcast_to(pool["airspeed"], (points,))
