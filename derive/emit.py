@@ -48,6 +48,15 @@ class ArrayPrinter(NumPyPrinter):
     _kf = {name: f"np.{path.rpartition('.')[2]}" for name, path in NumPyPrinter._kf.items()}  # noqa: RUF012
     _kc = {name: f"np.{path.rpartition('.')[2]}" for name, path in NumPyPrinter._kc.items()}  # noqa: RUF012
 
+    def _print_Pow(self, expr, rational=False):
+        """NumPy squares quickly, but takes a general power for any other exponent."""
+        base, exponent = expr.as_base_exp()
+        if exponent == 3 and base.is_Symbol:
+            return f"{self._print(base)}**2*{self._print(base)}"
+        if exponent == -3 and base.is_Symbol:
+            return f"1/({self._print(base)}**2*{self._print(base)})"
+        return super()._print_Pow(expr, rational=rational)
+
     def _print_Indexed(self, expr):
         row, column = expr.indices
         return f"{expr.base.label}[..., {row}, {column}]"

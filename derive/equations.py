@@ -306,7 +306,7 @@ def section_shared() -> Iterator[Function]:
     yield values(
         "section",
         "air_at_section",
-        "Speed, inflow angle, angle of attack and Mach number of a section.",
+        "Speed and direction of the air, angle of attack and Mach number of a section.",
         "quasi-steady strip theory, as NASA TN D-7677",
         section.air_at_section(),
     )
@@ -317,19 +317,25 @@ def section_shared() -> Iterator[Function]:
         "Prandtl-Glauert similarity rule",
         section.prandtl_glauert(),
     )
-    half_pressure = [(section.pressure_chord, s.density * s.chord / 2)]
+    for name, summary, loads in (
+        ("forces", "Forces of a section per unit span", section.FORCES),
+        ("pitching_moment", "Pitching moment of a section per unit span", ("m",)),
+    ):
+        yield values(
+            "section",
+            name,
+            f"{summary} and derivatives with the air's velocity and the pitch.",
+            "quasi-steady strip theory, as NASA TN D-7677",
+            section.steps_of(loads),
+            tuple(symbol for (load, _), symbol in section.SECTION_LOADS.items() if load in loads),
+        )
     yield values(
         "section",
-        "loads",
-        "Section loads per unit span and their derivatives with the air's velocity and the pitch.",
+        "steady_forces",
+        "Forces of a section per unit span, without derivatives.",
         "quasi-steady strip theory, as NASA TN D-7677",
-        [
-            *half_pressure,
-            *section.coefficients_by_velocity().items(),
-            *section.force_coefficients().items(),
-            *section.load_derivatives().items(),
-        ],
-        tuple(section.SECTION_LOADS.values()),
+        section.steady_steps(),
+        tuple(section.SECTION_LOADS[load, ""] for load in section.FORCES),
     )
 
 

@@ -3,6 +3,9 @@
     L = 1/2 rho c U² c_l, D = 1/2 rho c U² c_d, moment 1/2 rho c² U² c_m, with U² = u_T² + u_P²,
     alpha = pitch - atan(u_P / u_T) and Mach = U / a_s; radial drag 1/2 rho c U c_d u_R against d.
 
+The air is taken by its speed and its inflow angle: in these the loads have few derivatives, from which those with u_T
+and u_P follow by the turn from polar to rectangular components.
+
 A section that turns about d may be given thin-airfoil theory's quasi-steady damping about the quarter chord,
 - pi/8 rho c³ U omega_d, the part of the moment that circulation does not bring.
 """
@@ -26,49 +29,44 @@ section_damping = s.quantity(
 section_pitch = s.quantity("section_pitch", r"\theta", "rad", "pitch of the section: trim pitch and twist")
 section_speed = s.quantity("section_speed", "U", "m/s", "speed of the air in the section's plane")
 inflow_angle = s.quantity("inflow_angle", r"\phi", "rad", "angle of the air's velocity to i'")
+inflow_cosine = s.quantity("inflow_cosine", r"\cos\phi", "", "cosine of the inflow angle, u_T/U")
+inflow_sine = s.quantity("inflow_sine", r"\sin\phi", "", "sine of the inflow angle, u_P/U")
 angle_of_attack = s.quantity("angle_of_attack", r"\alpha", "rad", "angle of attack")
 mach = s.quantity("mach", "M", "", "Mach number of the section")
 pressure_chord = s.quantity("pressure_chord", r"\rho c/2", "kg/m^2", "half the density times the chord")
+pressure_speed = s.quantity(
+    "pressure_speed", r"\rho c U/2", "kg/(m s)", "half the density times chord and section speed"
+)
 
 COEFFICIENTS = ("lift", "drag", "moment")
-_LATEX = {"lift": "c_l", "drag": "c_d", "moment": "c_m"}
-COEFFICIENT = {
-    (name, by): s.quantity(
-        f"{name}_coefficient{suffix}", f"{_LATEX[name]}{latex}", per, f"{name} coefficient{meaning}"
-    )
-    for name in COEFFICIENTS
-    for by, suffix, latex, per, meaning in (
-        ("", "", "", "", ""),
-        ("alpha", "_alpha", r"{}_\alpha", "/rad", ", derivative with angle of attack"),
-        ("mach", "_mach", "{}_M", "", ", derivative with Mach number"),
-    )
-}
-
-VELOCITY = {
-    "_ut": tangential_velocity,
-    "_up": axial_velocity,
-    "_ur": radial_velocity,
-    "_theta": section_pitch,
-}
-VELOCITY["_spin"] = section_spin
-
-# Derivatives of the coefficients with the velocities, through angle of attack and Mach number.
-COEFFICIENT_BY_VELOCITY = {
-    (name, velocity): s.quantity(
-        f"{name}_coefficient{velocity}",
-        f"{_LATEX[name]}{{}}_{{,u}}",
-        "s/m",
-        f"{name} coefficient, derivative with a velocity",
-    )
-    for name in COEFFICIENTS
-    for velocity in ("_ut", "_up")
-}
-chordwise_coefficient = s.quantity(
-    "chordwise_coefficient", "c_x U", "m/s", "section speed times force coefficient along i'"
+_LATEX = {"lift": "c_l", "drag": "c_d", "moment": "c_m", "chordwise": "c_x", "normal": "c_n"}
+_BY = (
+    ("", "", "", ""),
+    ("alpha", "_alpha", r"{}_\alpha", ", derivative with angle of attack"),
+    ("mach", "_mach", "{}_M", ", derivative with Mach number"),
 )
-normal_coefficient = s.quantity(
-    "normal_coefficient", "c_n U", "m/s", "section speed times force coefficient along n"
-)
+
+
+def _coefficients(names: tuple[str, ...]) -> dict[tuple[str, str], sp.Symbol]:
+    return {
+        (name, by): s.quantity(
+            f"{name}_coefficient{suffix}",
+            f"{_LATEX[name]}{latex}",
+            "/rad" if by == "alpha" else "",
+            f"{name} coefficient{meaning}",
+        )
+        for name in names
+        for by, suffix, latex, meaning in _BY
+    }
+
+
+COEFFICIENT = _coefficients(COEFFICIENTS)
+# Lift and drag, turned by the inflow angle: along i' and along n.
+FORCE_COEFFICIENT = _coefficients(("chordwise", "normal"))
+_TURN = {
+    "lift": {"chordwise": inflow_sine, "normal": inflow_cosine},
+    "drag": {"chordwise": inflow_cosine, "normal": -inflow_sine},
+}
 
 
 def _unit(load: str, per: str) -> str:
@@ -88,101 +86,139 @@ SECTION_LOADS = {
     for load, (latex, _, meaning) in LOADS.items()
     for argument, (by, per, by_meaning) in ARGUMENTS.items()
 }
+# Derivatives along the air's velocity, and across it: with the inflow angle, over the speed.
+POLAR_LOADS = {
+    (load, argument): s.quantity(
+        f"{load}_{argument}", f"{latex}{{}}_{{,{by}}}", _unit(load, " s/m"), f"{meaning} per unit span{told}"
+    )
+    for load, (latex, _, meaning) in LOADS.items()
+    for argument, by, told in (
+        ("speed", "U", " per speed"),
+        ("inflow", r"\phi", " per inflow angle, over the speed"),
+    )
+}
+FORCES = ("fx", "fn", "fd")
 
 
 def speed() -> sp.Expr:
     return sp.sqrt(tangential_velocity**2 + axial_velocity**2)
 
 
-def inflow() -> sp.Expr:
-    """Inflow angle; u_T is positive wherever the rotor turns forward."""
-    return sp.atan(axial_velocity / tangential_velocity)
-
-
 def _coefficient(name: str) -> sp.Expr:
-    """A coefficient as it depends on the air and the pitch."""
-    return sp.Function(name)(tangential_velocity, axial_velocity, section_pitch)
+    """A coefficient as it depends on the air, in polar components, and the pitch."""
+    return sp.Function(name)(section_speed, inflow_angle, section_pitch)
 
 
 @functools.cache
 def loads() -> dict[str, sp.Expr]:
-    """f_x, f_n, f_d and m in the velocities and the pitch."""
+    """f_x, f_n, f_d and m in speed, inflow angle, radial velocity, pitch and rotation."""
     lift, drag, moment = (_coefficient(name) for name in COEFFICIENTS)
-    # sin phi = u_P / U and cos phi = u_T / U
+    cosine, sine = sp.cos(inflow_angle), sp.sin(inflow_angle)
     spin_moment = section_damping * sp.pi / 4 * s.chord * section_spin
     return {
-        "fx": pressure_chord * speed() * (lift * axial_velocity + drag * tangential_velocity),
-        "fn": pressure_chord * speed() * (lift * tangential_velocity - drag * axial_velocity),
-        "fd": -pressure_chord * speed() * drag * radial_velocity,
-        "m": pressure_chord * s.chord * speed() * (speed() * moment - spin_moment),
+        "fx": pressure_chord * section_speed**2 * (lift * sine + drag * cosine),
+        "fn": pressure_chord * section_speed**2 * (lift * cosine - drag * sine),
+        "fd": -pressure_chord * section_speed * drag * radial_velocity,
+        "m": pressure_chord * s.chord * section_speed * (section_speed * moment - spin_moment),
     }
 
 
-@functools.cache
-def coefficients_by_velocity() -> dict[sp.Symbol, sp.Expr]:
-    """Chain rule through angle of attack and Mach number."""
-    angle, mach_number = section_pitch - inflow(), speed() / s.speed_of_sound
-    return {
-        symbol: _speed_named(
-            COEFFICIENT[name, "alpha"] * sp.diff(angle, VELOCITY[velocity])
-            + COEFFICIENT[name, "mach"] * sp.diff(mach_number, VELOCITY[velocity])
-        )
-        for (name, velocity), symbol in COEFFICIENT_BY_VELOCITY.items()
-    }
-
-
-@functools.cache
-def force_coefficients() -> dict[sp.Symbol, sp.Expr]:
-    """The sums of lift and drag that every derivative of the forces holds."""
-    lift, drag = COEFFICIENT["lift", ""], COEFFICIENT["drag", ""]
-    return {
-        chordwise_coefficient: lift * axial_velocity + drag * tangential_velocity,
-        normal_coefficient: lift * tangential_velocity - drag * axial_velocity,
-    }
+_DIRECT = {"_ur": radial_velocity, "_theta": section_pitch, "_spin": section_spin}
 
 
 @functools.cache
 def load_derivatives() -> dict[sp.Symbol, sp.Expr]:
-    """Each load and each derivative, in the section's speed, velocities and airfoil coefficients."""
+    """Each load and each derivative: those with speed and inflow angle, and from them those with u_T and u_P."""
+    steps = {}
+    for load, expression in loads().items():
+        steps[SECTION_LOADS[load, ""]] = _named(expression)
+        along, across = POLAR_LOADS[load, "speed"], POLAR_LOADS[load, "inflow"]
+        steps[along] = _named(sp.diff(expression, section_speed))
+        steps[across] = _named(sp.diff(expression, inflow_angle) / section_speed)
+        steps[SECTION_LOADS[load, "_ut"]] = along * inflow_cosine - across * inflow_sine
+        steps[SECTION_LOADS[load, "_up"]] = along * inflow_sine + across * inflow_cosine
+        for argument, variable in _DIRECT.items():
+            steps[SECTION_LOADS[load, argument]] = _named(sp.diff(expression, variable))
+    return steps
+
+
+def force_coefficients() -> dict[sp.Symbol, sp.Expr]:
+    """Lift and drag coefficient and their derivatives, turned by the inflow angle."""
     return {
-        symbol: _named(loads()[load] if not argument else sp.diff(loads()[load], VELOCITY[argument]))
-        for (load, argument), symbol in SECTION_LOADS.items()
+        symbol: sum(_TURN[name][direction] * COEFFICIENT[name, by] for name in ("lift", "drag"))
+        for (direction, by), symbol in FORCE_COEFFICIENT.items()
     }
 
 
+def steps_of(wanted: tuple[str, ...]) -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Steps to some of the loads and their derivatives, f_x, f_n, f_d or m."""
+    names = {symbol for (load, _), symbol in (SECTION_LOADS | POLAR_LOADS).items() if load in wanted}
+    found = [(symbol, value) for symbol, value in load_derivatives().items() if symbol in names]
+    groups = force_coefficients().items() if "fx" in wanted else ()
+    return [
+        (pressure_chord, s.density * s.chord / 2),
+        (pressure_speed, pressure_chord * section_speed),
+        *groups,
+        *found,
+    ]
+
+
+def steady_steps() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Steps to the forces alone."""
+    forces = {SECTION_LOADS[load, ""] for load in FORCES}
+    groups = {FORCE_COEFFICIENT[direction, ""] for direction in ("chordwise", "normal")}
+    kept = forces | groups | {pressure_chord, pressure_speed}
+    return [(symbol, value) for symbol, value in steps_of(FORCES) if symbol in kept]
+
+
 def in_airfoil_coefficients(expression: sp.Expr) -> sp.Expr:
-    """The named groups and chain-rule derivatives written out."""
-    return expression.subs(force_coefficients()).subs(coefficients_by_velocity())
+    """A load or derivative written out in u_T, u_P, the speed and the airfoil's coefficients."""
+    polar = {symbol: load_derivatives()[symbol] for symbol in POLAR_LOADS.values()}
+    for names in (polar, force_coefficients(), _INFLOW, {pressure_speed: pressure_chord * section_speed}):
+        expression = expression.subs(names)
+    return expression
+
+
+_INFLOW = {inflow_cosine: tangential_velocity / section_speed, inflow_sine: axial_velocity / section_speed}
 
 
 def _named(expression: sp.Expr) -> sp.Expr:
-    """Coefficients, their derivatives, groups and speed by name."""
+    """Coefficients and their derivatives by name, lift and drag as force coefficients."""
     names = {}
     for name in COEFFICIENTS:
         function = _coefficient(name)
+        # c = c(pitch - inflow angle, U / a_s): the chain rule, with 1 / a_s = M / U
         names[sp.diff(function, section_pitch)] = COEFFICIENT[name, "alpha"]
-        names |= {sp.diff(function, VELOCITY[v]): COEFFICIENT_BY_VELOCITY[name, v] for v in ("_ut", "_up")}
-    expression = expression.subs(names).subs(
-        {_coefficient(name): COEFFICIENT[name, ""] for name in COEFFICIENTS}
-    )
-    for symbol, group in force_coefficients().items():
-        expression = expression.subs(group, symbol)
-    return sp.factor_terms(_speed_named(expression))
+        names[sp.diff(function, inflow_angle)] = -COEFFICIENT[name, "alpha"]
+        names[sp.diff(function, section_speed)] = COEFFICIENT[name, "mach"] * mach / section_speed
+    expression = expression.subs(names)
+    expression = expression.subs({_coefficient(name): COEFFICIENT[name, ""] for name in COEFFICIENTS})
+    expression = expression.subs({sp.cos(inflow_angle): inflow_cosine, sp.sin(inflow_angle): inflow_sine})
+    if expression.has(inflow_cosine):
+        expression = _in_force_coefficients(expression)
+    expression = sp.expand(expression).subs(pressure_chord, pressure_speed / section_speed)
+    return sp.factor_terms(sp.expand(expression))
 
 
-def _speed_named(expression: sp.Expr) -> sp.Expr:
-    expression = expression.subs(speed(), section_speed)
-    expression = expression.subs(tangential_velocity**2 + axial_velocity**2, section_speed**2)
-    ratio = section_speed**2 / tangential_velocity**2
-    return expression.subs(1 + axial_velocity**2 / tangential_velocity**2, ratio)
+def _in_force_coefficients(expression: sp.Expr) -> sp.Expr:
+    """Lift and drag put back from the force coefficients, so that sines and cosines drop out."""
+    lift_and_drag = {
+        COEFFICIENT[name, by]: sum(
+            _TURN[name][direction] * FORCE_COEFFICIENT[direction, by] for direction in _TURN[name]
+        )
+        for name in _TURN
+        for by, *_ in _BY
+    }
+    expression = sp.expand(expression.subs(lift_and_drag))
+    return sp.expand(expression.subs(inflow_cosine**2, 1 - inflow_sine**2))
 
 
 def air_at_section() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Speed, inflow angle, angle of attack and Mach number."""
+    """Speed and direction of the air, angle of attack and Mach number; u_T > 0 wherever the rotor turns forward."""
     return [
         (section_speed, speed()),
-        (inflow_angle, inflow()),
-        (angle_of_attack, section_pitch - inflow_angle),
+        *_INFLOW.items(),
+        (angle_of_attack, section_pitch - sp.atan(axial_velocity / tangential_velocity)),
         (mach, section_speed / s.speed_of_sound),
     ]
 

@@ -297,7 +297,7 @@ import numpy as np
 import proprotor as pp
 import proprotor_equations
 pp.load_case(pp.list_cases()[0]).sweep(np.array([80.0, 100.0]))
-derivation = {"sympy", "jinja2", "derive"}
+derivation = {"sympy", "derive"}  # xarray may bring jinja2 along, where dask is installed
 print(*sorted(derivation & {name.partition(".")[0] for name in sys.modules}))
 """
 

@@ -30,11 +30,13 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
     Raises
     ------
     InputError
-        When the model does not begin with the hub coordinates, or a rigid mass is asked for and not given.
+        When the model does not begin with the hub coordinates, a coordinate of the support has the name of one of the
+        rotor's, or a rigid mass is asked for and not given.
     """
     if rotor_alone.dofs[: len(HUB)] != HUB:
         raise InputError("dofs", ", ".join(rotor_alone.dofs), f"must begin with {', '.join(HUB)}")
     own = rotor_alone.dofs[len(HUB) :]
+    _check_names(support.names, own)
     additions = {"M": _mass_without_rotor(support, rigid_mass), "C": support.damping, "K": support.stiffness}
     shape = np.broadcast_shapes(
         rotor_alone.M.shape[:-2],
@@ -42,23 +44,43 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
         *(matrix.shape[:-2] for matrix in additions.values()),
     )
     rotor_alone = _broadcast(rotor_alone, shape)
-    transformation = _transformation(support, len(own))
-    virtual = np.swapaxes(transformation, -1, -2)
-    modes = len(support.names)
-    matrices = {}
-    for name, addition in additions.items():
-        matrix = virtual @ getattr(rotor_alone, name) @ transformation
-        matrix = matrix.astype(np.result_type(matrix, addition), copy=False)
-        matrix[..., :modes, :modes] += addition
-        matrices[name] = matrix
+    matrices = {
+        name: _on_support(getattr(rotor_alone, name), support.hub, addition)
+        for name, addition in additions.items()
+    }
+    if rotor_alone.B is not None:
+        at_hub = np.swapaxes(support.hub, -1, -2) @ rotor_alone.B[..., : len(HUB), :]
+        matrices["B"] = np.concatenate([at_hub, rotor_alone.B[..., len(HUB) :, :]], axis=-2)
+    still = np.zeros((*support.hub.shape[:-1], len(own)))
     return replace(
         rotor_alone,
         **matrices,
-        B=None if rotor_alone.B is None else virtual @ rotor_alone.B,
         dofs=(*support.names, *own),
-        hub=transformation[..., : len(HUB), :],
+        hub=np.concatenate([support.hub, still], axis=-1),
         rotor=rotor_alone,
     )
+
+
+def _on_support(matrix: NDArray, hub: NDArray, addition: NDArray) -> NDArray:
+    """Tᵀ (...) T with the support's own added; T = diag(Φ, 1) leaves the block of the rotor's own as it is."""
+    modes, hubs = hub.shape[-1], len(HUB)
+    own = matrix.shape[-1] - hubs
+    virtual = np.swapaxes(hub, -1, -2)
+    columns = matrix[..., :hubs] @ hub
+    kind = np.result_type(columns, addition)
+    whole = np.empty((*matrix.shape[:-2], modes + own, modes + own), dtype=kind)
+    whole[..., :modes, :modes] = virtual @ columns[..., :hubs, :] + addition
+    whole[..., :modes, modes:] = virtual @ matrix[..., :hubs, hubs:]
+    whole[..., modes:, :modes] = columns[..., hubs:, :]
+    whole[..., modes:, modes:] = matrix[..., hubs:, hubs:]
+    return whole
+
+
+def _check_names(support: tuple[str, ...], own: tuple[str, ...]) -> None:
+    """Results tell coordinates by name: two of one name would be taken for each other."""
+    if clashes := [name for name in support if name in own]:
+        rule = f"must not be a name of the rotor's own coordinates, {', '.join(own)}"
+        raise InputError("support.names", ", ".join(clashes), rule)
 
 
 def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
@@ -81,13 +103,3 @@ def _mass_without_rotor(support: NormalModes, rigid_mass: ArrayLike | None) -> N
     if rigid_mass is None:
         raise InputError("rigid_mass", None, "must be given: the support's masses include the rotor")
     return support.mass - np.swapaxes(support.hub, -1, -2) @ np.asarray(rigid_mass) @ support.hub
-
-
-def _transformation(support: NormalModes, own: int) -> NDArray:
-    """T: hub and rotor coordinates from support and rotor coordinates."""
-    modes = len(support.names)
-    shape = (*support.hub.shape[:-2], len(HUB) + own, modes + own)
-    transformation = np.zeros(shape, dtype=support.hub.dtype)
-    transformation[..., : len(HUB), :modes] = support.hub
-    transformation[..., len(HUB) :, modes:] = np.eye(own)
-    return transformation

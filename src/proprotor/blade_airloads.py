@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from types import ModuleType
@@ -11,13 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 from proprotor_equations import airloads, lift_slope, section
 
-from proprotor.airfoil import Airfoil, SectionCoefficients, SectionModel
-from proprotor.evaluation import evaluate
+from proprotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
+from proprotor.evaluation import evaluate, keywords
 from proprotor.quadrature import POWERS, RadialQuadrature, flatten_points
 from proprotor.rotor import Rotor
 
 Quantities = Mapping[str, Any]
-_BLOCK = 64  # points; with some 200 stations an array of loads is then about 100 kB
+# Numbers in an array of section loads, points times stations: some dozen such arrays stay in a core's cache.
+_BLOCK = 12000
+_OUTBOARD = 0.5  # of the radius: where angle of attack and Mach number matter to the loads
+# Names of all radial moments.
+LOAD_MOMENTS = tuple(
+    f"{load}_{power}"
+    for load in (*section.Forces._fields, *section.PitchingMoment._fields)
+    for power in range(POWERS)
+)
 # Inflow ratio that stands for no airspeed: its square vanishes against the logarithm of a blade without cutout.
 _STILL = 1e-150
 
@@ -39,11 +48,15 @@ class BladeSections:
     airfoil: SectionModel
 
     @classmethod
-    def of(cls, rotor: Rotor, shape: tuple[int, ...]) -> BladeSections:
-        """Sections of a rotor, those of many designs flattened over the batch."""
-        chord, twist = (flatten_points(part, shape, 1) for part in (rotor.station_chord, rotor.station_twist))
+    def of(cls, rotor: Rotor, shape: tuple[int, ...], coarse: bool = False) -> BladeSections:
+        """Sections of a rotor, at all its stations or a coarse few; those of many designs flattened over the batch."""
+        quadrature = rotor.coarse_quadrature if coarse else rotor.quadrature
+        profiles = (rotor.station_chord, rotor.station_twist)
+        if coarse:
+            profiles = (rotor.chord_at(quadrature.stations), rotor.twist_at(quadrature.stations))
+        chord, twist = (flatten_points(part, shape, 1) for part in profiles)
         airfoil = rotor.airfoil.flattened(shape) if isinstance(rotor.airfoil, Airfoil) else rotor.airfoil
-        return cls(rotor.quadrature.flattened(shape), chord, twist, airfoil)
+        return cls(quadrature.flattened(shape), chord, twist, airfoil)
 
     @property
     def is_complex(self) -> bool:
@@ -91,26 +104,14 @@ def segment_quantities(
     return pool | evaluate(equations.segment_geometry, pool)._asdict()
 
 
-def _velocities(
-    quadrature: RadialQuadrature, segments: Quantities, equations: ModuleType
-) -> dict[str, NDArray]:
-    """Trim velocity of the air and rotation of the sections at the stations."""
-    line = evaluate(equations.trim_velocity, segments)[..., 0]
-    names = ("tangential_velocity", "axial_velocity", "radial_velocity")
-    air = {
-        name: quadrature.at_stations(line[..., place])
-        + quadrature.at_stations(line[..., place + 3]) * quadrature.stations
-        for place, name in enumerate(names)
-    }
-    return air | {"section_spin": quadrature.at_stations(line[..., 6])}
-
-
-def air_at_stations(
-    sections: BladeSections, segments: Quantities, equations: ModuleType = airloads
-) -> dict[str, Any]:
+def _air(sections: BladeSections, segments: Quantities, equations: ModuleType, spins: bool) -> dict[str, Any]:
     """Air, pitch, angle of attack and Mach number at the stations, by name, (..., stations)."""
+    line = evaluate(equations.trim_velocity, segments)[..., 0]
+    along_lines = sections.quadrature.along_lines
     stations = {name: segments[name] for name in ("density", "speed_of_sound", "section_damping")}
-    stations |= _velocities(sections.quadrature, segments, equations)
+    for place, name in enumerate(("tangential_velocity", "axial_velocity", "radial_velocity")):
+        stations[name] = along_lines(line[..., place], line[..., place + 3])
+    stations["section_spin"] = along_lines(line[..., 6]) if spins else 0.0
     stations |= {"chord": sections.chord, "section_pitch": segments["pitch"] + sections.twist}
     return stations | evaluate(section.air_at_section, stations)._asdict()
 
@@ -123,9 +124,16 @@ def _compressible(coefficients: SectionCoefficients, mach: NDArray) -> SectionCo
         value, alpha, by_mach = (
             getattr(coefficients, f"{name}_coefficient{d}") for d in ("", "_alpha", "_mach")
         )
+        if not _any(value, alpha, by_mach):
+            continue
         scaled |= {f"{name}_coefficient": factor * value, f"{name}_coefficient_alpha": factor * alpha}
-        scaled |= {f"{name}_coefficient_mach": factor * by_mach + slope * value}
+        scaled[f"{name}_coefficient_mach"] = slope * value + (factor * by_mach if _any(by_mach) else 0.0)
     return coefficients._replace(**scaled)
+
+
+def _any(*numbers: Any) -> bool:
+    """Whether any number is not zero."""
+    return any(number != 0 if isinstance(number, float) else np.any(number) for number in numbers)
 
 
 def _lift_slope_alone(coefficients: SectionCoefficients) -> SectionCoefficients:
@@ -141,8 +149,10 @@ def load_moments(
     *,
     compressibility: bool,
     lift_slope_only: bool = False,
+    steady_only: bool = False,
     equations: ModuleType = airloads,
-) -> dict[str, NDArray]:
+    doubts: dict[str, NDArray] | None = None,
+) -> dict[str, Any]:
     """Radial moments of the section loads and their derivatives, by name and power of r, (points, segments).
 
     Points are taken a block at a time, so that the loads at all stations stay in the cache.
@@ -156,54 +166,101 @@ def load_moments(
         Prandtl-Glauert factor on lift and moment, unless the airfoil holds compressibility already.
     lift_slope_only : bool
         Keep the terms proportional to the lift slope and no others.
+    steady_only : bool
+        The loads without their derivatives, which are left out or zero.
+    doubts : dict, optional
+        Filled with the reasons to mistrust the airfoil's coefficients outboard, masks (points,) by reason.
     """
     points = max(np.shape(value)[0] if np.ndim(value) > 1 else 1 for value in segments.values())
     shape = (points, len(sections.quadrature.beyond_lag_hinge), POWERS)
-    kind = np.result_type(
-        float, sections.quadrature.stations, sections.chord, sections.twist, *segments.values()
-    )
-    moments = {name: np.zeros(shape, dtype=kind) for name in section.Loads._fields}
-    for start in range(0, points, _BLOCK):
-        rows = slice(start, start + _BLOCK)
+    numbers = (sections.quadrature.stations, sections.chord, sections.twist, *segments.values())
+    kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
+    moments: dict[str, Any] = {}
+    block_of = max(1, _BLOCK // sections.quadrature.stations.shape[-1])
+    needed = {name: segments[name] for name in _needed(equations)}
+    for start in range(0, points, block_of):
+        rows = slice(start, min(start + block_of, points))
         block = {
             name: value[rows] if np.ndim(value) > 1 and len(value) > 1 else value
-            for name, value in segments.items()
+            for name, value in needed.items()
         }
         here = sections.take(rows)
-        for name, load in _section_loads(here, block, compressibility, lift_slope_only, equations).items():
+        air, coefficients, spins = _aerodynamics(here, block, compressibility, equations)
+        if doubts is not None:
+            _doubt(doubts, here, block, air, rows, points)
+        if lift_slope_only:
+            coefficients = _lift_slope_alone(coefficients)
+        for name, load in _loads(air, coefficients, spins, steady_only).items():
             if np.ndim(load):
-                full = np.broadcast_to(load, (len(moments[name][rows]), load.shape[-1]))
-                moments[name][rows] = _block_moments(here.quadrature, full)
-    return {
+                moment = moments.setdefault(name, np.zeros(shape, dtype=kind))
+                full = np.broadcast_to(load, (rows.stop - rows.start, load.shape[-1]))
+                moment[rows] = _block_moments(here.quadrature, full, block_of)
+    found = {
         f"{name}_{power}": moment[..., power] for name, moment in moments.items() for power in range(POWERS)
     }
+    return dict.fromkeys(LOAD_MOMENTS, 0.0) | found
 
 
-def _block_moments(quadrature: RadialQuadrature, load: NDArray) -> NDArray:
+@functools.cache
+def _needed(equations: ModuleType) -> tuple[str, ...]:
+    """Names of what the section loads need of a segment."""
+    others = ("density", "speed_of_sound", "section_damping", "pitch", "radius")
+    return tuple(dict.fromkeys((*keywords(equations.trim_velocity), *others)))
+
+
+def _block_moments(quadrature: RadialQuadrature, load: NDArray, block_of: int) -> NDArray:
     """Radial moments of a block of points, filled up so that a point's sums do not depend on how many it comes with."""
     rows = len(load)
-    if quadrature.segment.ndim > 1 or rows == _BLOCK:
+    if quadrature.segment.ndim > 1 or rows == block_of:
         return quadrature.moments(load)
-    full = np.zeros((_BLOCK, load.shape[-1]), dtype=load.dtype)
+    full = np.zeros((block_of, load.shape[-1]), dtype=load.dtype)
     full[:rows] = load
     return quadrature.moments(full)[:rows]
 
 
-def _section_loads(
+def _aerodynamics(
+    sections: BladeSections, segments: Quantities, compressibility: bool, equations: ModuleType
+) -> tuple[dict[str, Any], SectionCoefficients, bool]:
+    """Air at the stations, the airfoil's coefficients there, and whether the sections' rotation is damped."""
+    spins = _any(segments["section_damping"])
+    air = _air(sections, segments, equations, spins)
+    coefficients = sections.airfoil.coefficients(air["angle_of_attack"], air["mach"])
+    if compressibility and not sections.airfoil.contains_compressibility:
+        coefficients = _compressible(coefficients, air["mach"])
+    return air, coefficients, spins
+
+
+def _loads(
+    air: Quantities, coefficients: SectionCoefficients, spins: bool, steady_only: bool
+) -> dict[str, Any]:
+    """Loads and derivatives at the stations, by name; a plain number, or nothing, where there are none."""
+    pool = dict(air) | coefficients._asdict()
+    loads = evaluate(section.steady_forces if steady_only else section.forces, pool)._asdict()
+    pitching = [value for name, value in coefficients._asdict().items() if name.startswith("moment")]
+    if spins or _any(*pitching):
+        loads |= evaluate(section.pitching_moment, pool)._asdict()
+    return loads
+
+
+def _doubt(
+    doubts: dict[str, NDArray],
     sections: BladeSections,
     segments: Quantities,
-    compressibility: bool,
-    lift_slope_only: bool,
-    equations: ModuleType,
-) -> dict[str, Any]:
-    """Loads and derivatives at the stations, by name; a plain number where there are none."""
-    stations = air_at_stations(sections, segments, equations)
-    coefficients = sections.airfoil.coefficients(stations["angle_of_attack"], stations["mach"])
-    if compressibility and not sections.airfoil.contains_compressibility:
-        coefficients = _compressible(coefficients, stations["mach"])
-    if lift_slope_only:
-        coefficients = _lift_slope_alone(coefficients)
-    return evaluate(section.loads, stations | coefficients._asdict())._asdict()
+    air: Quantities,
+    rows: slice,
+    points: int,
+) -> None:
+    """Mark the points at which outboard stations are beyond what the airfoil knows."""
+    if not isinstance(sections.airfoil, Warns):
+        return
+    radius = np.ravel(np.real(segments["radius"]))[:, None]
+    outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * radius
+    first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
+    found = sections.airfoil.warnings(*(air[name][..., first:] for name in ("angle_of_attack", "mach")))
+    for text, mask in found.items():
+        if mask.any():
+            told = doubts.setdefault(f"{text} outboard of {_OUTBOARD:g} R", np.zeros(points, dtype=bool))
+            told[rows] = (mask & outboard[..., first:]).any(axis=-1)
 
 
 def has_closed_form(sections: BladeSections) -> bool:
@@ -222,7 +279,6 @@ def closed_form_moments(sections: BladeSections, segments: Quantities) -> dict[s
         "inner_edge": edges[..., 0],
         "outer_edge": edges[..., 1],
     }
-    moments = dict.fromkeys(
-        (f"{load}_{power}" for load in section.Loads._fields for power in range(POWERS)), 0.0
+    return (
+        dict.fromkeys(LOAD_MOMENTS, 0.0) | evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()
     )
-    return moments | evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -20,13 +20,14 @@ from proprotor.errors import InputError
 from proprotor.model import LinearModel, rigid_hub_mass, rotor_model
 from proprotor.operation import Operation
 from proprotor.rotor import Rotor
-from proprotor.support import HUB_AXES, NormalModes
-from proprotor.sweep import sweep
+from proprotor.support import NormalModes
+from proprotor.support_of_deck import support_of
 
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.deck import Deck, Section, SupportSection
+    from proprotor.deck import Deck, Section
+    from proprotor.flutter import Crossings, FlutterPoint
 
 __all__ = ["Case", "list_cases", "load_case"]
 
@@ -87,9 +88,45 @@ class Case:
 
         return vary(self, values)
 
-    def sweep(self, airspeeds: Any, **options: Any) -> xarray.Dataset:
-        """Modes along a list of airspeeds, tracked and named: see `proprotor.sweep.sweep`."""
-        return sweep(self.linearize(airspeeds, **options))
+    def sweep(self, airspeeds: Any, vary: Mapping[str, Any] | None = None, **options: Any) -> xarray.Dataset:
+        """Modes along airspeeds, or along one input, tracked and named: see `proprotor.sweep.sweep_case`."""
+        from proprotor.sweep import sweep_case
+
+        return sweep_case(self, airspeeds, vary, **options)
+
+    def boundaries(
+        self, airspeeds: Any, vary: Mapping[str, Any] | None = None, *, level: float = 0.0, **options: Any
+    ) -> Crossings:
+        """All crossings of a damping level along airspeeds, or one input: see `proprotor.flutter.boundaries`."""
+        from proprotor.flutter import boundaries
+
+        return boundaries(self, airspeeds, vary, level=level, **options)
+
+    def flutter_point(self, airspeeds: Any = None, *, level: float = 0.0, **options: Any) -> FlutterPoint:
+        """The lowest airspeed at which a mode becomes unstable: see `proprotor.flutter.flutter_point`."""
+        from proprotor.flutter import flutter_point
+
+        return flutter_point(self, airspeeds, level=level, **options)
+
+    def sensitivity(
+        self, of: str = "flutter_speed", wrt: Sequence[str] | None = None, **options: Any
+    ) -> xarray.Dataset:
+        """Exact derivatives by inputs of the deck: see `proprotor.sensitivity.sensitivity`."""
+        from proprotor.sensitivity import sensitivity
+
+        return sensitivity(self, of, wrt, **options)
+
+    def attribution(self, airspeed: Any, mode: str | None = None, **options: Any) -> xarray.Dataset:
+        """What drives and what damps each mode, by physical origin: see `proprotor.attribution.attribution`."""
+        from proprotor.attribution import attribution
+
+        return attribution(self, airspeed, mode, **options)
+
+    def stability_map(self, axes: Mapping[str, Any], **options: Any) -> xarray.Dataset:
+        """Where in the plane of two inputs the case is stable: see `proprotor.stability_map.stability_map`."""
+        from proprotor.stability_map import stability_map
+
+        return stability_map(self, axes, **options)
 
 
 def load_case(name_or_path: str | os.PathLike[str]) -> Case:
@@ -132,7 +169,7 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
         given = {"airfoil": airfoil, "propeller_moment": deck.rotor.propeller_moment}
         rotor, derived = _rotor(_values(numbers, "rotor") | given, operation.density)
     with _told_as_written("support", numbers):
-        support = _normal_modes(deck.support, numbers)
+        support = support_of(deck.support, numbers)
     return Case(
         name=deck.case.name,
         title=deck.case.title,
@@ -154,7 +191,7 @@ def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
         entry, here = getattr(section, name), f"{path}.{name}" if path else name
         if isinstance(entry, Datum):
             yield here, entry
-        elif name == "modes":
+        elif name == "modes" and entry is not None:
             for mode in entry:
                 yield from _numbers(mode, f"{here}[{mode.name}]")
         elif hasattr(type(entry), "model_fields"):
@@ -217,25 +254,6 @@ def _chord(rotor: Rotor, lock_number: float, density: float) -> Datum:
     return Datum(
         "γ I_b / (ρ c_lα R⁴)", chord, "m", "derived", "lock_number, density, lift_slope, blade_inertia"
     )
-
-
-def _normal_modes(section: SupportSection, numbers: Mapping[str, Datum]) -> NormalModes:
-    names = [mode.name for mode in section.modes]
-    modes = [_values(numbers, f"support.modes[{name}]") for name in names]
-    hub = [_side_by_side(mode.get(axis, 0.0) for mode in modes) for axis in HUB_AXES]
-    return NormalModes.from_frequencies(
-        names=names,
-        generalized_mass=_side_by_side(mode["generalized_mass"] for mode in modes),
-        frequency=_side_by_side(mode["frequency"] for mode in modes),
-        damping_ratio=_side_by_side(mode["damping_ratio"] for mode in modes),
-        hub=np.stack(np.broadcast_arrays(*hub), axis=-2),
-        includes_rotor=section.includes_rotor,
-    )
-
-
-def _side_by_side(values: Iterable[Any]) -> np.ndarray:
-    """Numbers of the modes along a last axis; leading axes are those of many designs."""
-    return np.stack(np.broadcast_arrays(*values), axis=-1)
 
 
 @contextmanager

@@ -14,8 +14,10 @@ import click
 
 from proprotor.deck_file import list_cases, read_tables
 from proprotor.errors import InputError
+from proprotor.figures_command import figures
 from proprotor.options import CHOICES, LOCKABLE, Options
 from proprotor.output_file import write_whole
+from proprotor.study_command import study_command
 from proprotor.waiting import waiting
 
 # pint, xarray, rich and matplotlib are slow to import: each is imported where it is needed.
@@ -84,7 +86,13 @@ def main() -> None:
       proprotor cases                               the bundled cases
       proprotor sweep xv15 --speed 50:400:5kt       frequency and damping of each mode
       proprotor sweep --help                        all there is to choose
+      proprotor study --help                        many designs
+      proprotor figures                             the figures of AIAA-2002-1604
     """
+
+
+main.add_command(figures)
+main.add_command(study_command(_model_options, _EXIT_CODES))
 
 
 @main.command(epilog=_EXIT_CODES)

@@ -24,10 +24,7 @@ linear between its stations and constant beyond them.
 ``[operation]``
     rotor_speed, density, speed_of_sound, trim = "windmill" or { collective = "30 deg" }.
 ``[support]``
-    kind = "normal-modes"; includes_rotor, whether the generalised masses hold the rotor's rigid-body share.
-``[[support.modes]]``
-    name; coordinate, "length" or "angle"; generalized_mass, frequency, damping_ratio; and the motion of the
-    hub per unit of the coordinate, x, y, z, alpha_x, alpha_y, alpha_z, zero where left out.
+    kind and the fields of that kind: `proprotor.support_sections` lists them.
 
 A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution at the deck's rotor
 speed. `proprotor.units` lists the units.
@@ -35,95 +32,42 @@ speed. `proprotor.units` lists the units.
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    PlainValidator,
-    StringConstraints,
-    ValidationError,
-    ValidationInfo,
-    model_validator,
-)
+from pydantic import Field, PlainValidator, ValidationError, model_validator
 
-from proprotor.datum import (
-    ANY,
-    BELOW_CRITICAL,
-    FRACTION,
-    NOT_NEGATIVE,
-    POSITIVE,
-    Bound,
-    Datum,
-    read_count,
-    read_distribution,
-    read_file,
-    read_frequency,
-    read_profile,
-    read_quantity,
+from proprotor.datum import read_quantity
+from proprotor.deck_fields import (
+    Angle,
+    Chord,
+    Count,
+    Damping,
+    Density,
+    File,
+    FirstMoment,
+    Fraction,
+    Frequency,
+    Inertia,
+    InertiaOrNone,
+    Length,
+    Mass,
+    MassDistribution,
+    Name,
+    NotNegative,
+    Number,
+    Positive,
+    PositiveLength,
+    RotorSpeed,
+    Section,
+    Slope,
+    Speed,
+    Stiffness,
+    Text,
+    Twist,
 )
 from proprotor.deck_file import ALTERNATIVES
 from proprotor.errors import InputError, unknown_name
-from proprotor.support import HUB_AXES
-
-
-def _field(reader: Any, *args: Any) -> Any:
-    return Annotated[Datum | None, PlainValidator(lambda raw: reader(raw, *args))]
-
-
-_quantity = partial(_field, read_quantity)
-
-Number = _quantity("", ANY)
-NotNegative = _quantity("", NOT_NEGATIVE)
-Positive = _quantity("", POSITIVE)
-Fraction = _quantity("", FRACTION)
-Angle = _quantity("rad", ANY)
-Length = _quantity("m", NOT_NEGATIVE)
-PositiveLength = _quantity("m", POSITIVE)
-Mass = _quantity("kg", POSITIVE)
-FirstMoment = _quantity("kg*m", NOT_NEGATIVE)
-Inertia = _quantity("kg*m**2", POSITIVE)
-InertiaOrNone = _quantity("kg*m**2", NOT_NEGATIVE)
-Stiffness = _quantity("N*m/rad", NOT_NEGATIVE)
-Damping = _quantity("N*m*s/rad", NOT_NEGATIVE)
-Slope = _quantity("1/rad", POSITIVE)
-RotorSpeed = _quantity("rad/s", POSITIVE)
-Density = _quantity("kg/m**3", NOT_NEGATIVE)
-Speed = _quantity("m/s", POSITIVE)
-DampingRatio = _quantity("", BELOW_CRITICAL)
-Frequency = _field(read_frequency)
-Count = _field(read_count, 3)
-Chord = _field(read_profile, "m", POSITIVE)
-Twist = _field(read_profile, "rad", ANY)
-File = _field(read_file)
-MassDistribution = _field(read_distribution, "kg/m", NOT_NEGATIVE)
-
-Text = Annotated[str, StringConstraints(min_length=1, max_length=2000)]
-Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]*$", max_length=60)]
-
-
-def _by_coordinate(of_length: str, of_angle: str, bound: Bound = ANY) -> Any:
-    """A quantity whose unit follows the mode's coordinate, a field that must be read before it."""
-
-    def read(raw: Any, info: ValidationInfo) -> Datum | None:
-        if "coordinate" not in info.data:  # itself wrong, and reported
-            return None
-        return read_quantity(raw, of_length if info.data["coordinate"] == "length" else of_angle, bound)
-
-    return Annotated[Datum | None, PlainValidator(read)]
-
-
-GeneralizedMass = _by_coordinate("kg", "kg*m**2", POSITIVE)
-HubDisplacement = _by_coordinate("", "m/rad")
-HubRotation = _by_coordinate("rad/m", "")
-
-
-class Section(BaseModel):
-    """A table of a deck: no field of another type, none unknown."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+from proprotor.support_sections import SUPPORT_KINDS, SUPPORT_TABLES, SupportSection
 
 
 class CaseSection(Section):
@@ -131,7 +75,7 @@ class CaseSection(Section):
     title: Text
     description: str = ""
     calibration: str = ""
-    warnings: list[Text] = []
+    warnings: list[Text] = Field(default_factory=list)
 
 
 class AirfoilSection(Section):
@@ -224,40 +168,6 @@ class OperationSection(Section):
     trim: Annotated[Any, PlainValidator(_read_trim)] = "windmill"
 
 
-class ModeSection(Section):
-    name: Name
-    coordinate: Literal["length", "angle"]
-    generalized_mass: GeneralizedMass
-    frequency: Frequency
-    damping_ratio: DampingRatio
-    x: HubDisplacement = None
-    y: HubDisplacement = None
-    z: HubDisplacement = None
-    alpha_x: HubRotation = None
-    alpha_y: HubRotation = None
-    alpha_z: HubRotation = None
-
-    @model_validator(mode="after")
-    def _moves_the_hub(self) -> ModeSection:
-        if not self.model_fields_set.intersection(HUB_AXES):
-            raise InputError("", None, f"must move the hub; give one or more of {', '.join(HUB_AXES)}")
-        return self
-
-
-class SupportSection(Section):
-    kind: Literal["normal-modes"]
-    includes_rotor: bool
-    modes: Annotated[list[ModeSection], Field(min_length=1)]
-
-    @model_validator(mode="after")
-    def _names_differ(self) -> SupportSection:
-        names = [mode.name for mode in self.modes]
-        for name in names:
-            if names.count(name) > 1:
-                raise InputError("modes.name", name, "must not name two modes")
-        return self
-
-
 class Deck(Section):
     case: CaseSection
     rotor: RotorSection
@@ -271,13 +181,15 @@ _SECTIONS: dict[tuple[str, ...], type[Section]] = {
     ("rotor",): RotorSection,
     ("rotor", "airfoil"): AirfoilSection,
     ("operation",): OperationSection,
-    ("support",): SupportSection,
-    ("support", "modes"): ModeSection,
+    **{("support", *place): section for place, section in SUPPORT_TABLES.items()},
 }
 
 # How a message states what pydantic found, by pydantic's name for it.
 _RULES = {
     "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+    "dict_type": "must be a table",
+    "int_type": "must be a whole number",
     "list_type": "must be a list",
     "string_type": "must be text",
     "bool_type": "must be true or false",
@@ -304,7 +216,7 @@ def validate(tables: dict[str, Any]) -> Deck:
 
 def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
     place, kind = problem["loc"], problem["type"]
-    field = field_name(place, tables)
+    field = field_name(_in_the_deck(place), tables)
     if kind == "value_error":
         return problem["ctx"]["error"].within(field)
     if kind == "extra_forbidden":
@@ -312,9 +224,17 @@ def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
         return InputError(field, problem["input"], unknown_name(str(place[-1]), known))
     if kind == "literal_error":
         return InputError(field, problem["input"], f"must be {problem['ctx']['expected']}")
-    if kind == "missing":
-        return InputError(field, None, "is missing")
+    if kind in ("missing", "union_tag_not_found"):
+        return InputError(field if kind == "missing" else f"{field}.kind", None, "is missing")
+    if kind == "union_tag_invalid":
+        rule = f"must be {', '.join(map(repr, SUPPORT_KINDS))}"
+        return InputError(f"{field}.kind", problem["ctx"]["tag"], rule)
     return InputError(field, problem["input"], _RULES.get(kind, problem["msg"]))
+
+
+def _in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
+    """A place without the kind of support, which pydantic puts in."""
+    return (place[0], *place[2:]) if place[:1] == ("support",) and len(place) > 1 else place
 
 
 def field_name(place: tuple[str | int, ...], tables: Any) -> str:

@@ -24,7 +24,10 @@ ALTERNATIVES = (
 )
 # Fields of [rotor.airfoil]: one side only.
 AIRFOIL_ALTERNATIVES = ((("lift_slope", "zero_lift_angle", "drag", "moment"), ("table",)),)
-_FILE = ("rotor", "airfoil", "table", "value")
+_FILES = (
+    ("rotor", "airfoil", "table", "value"),
+    *(("support", name, "value") for name in ("file", "mass", "stiffness", "damping", "dofs")),
+)
 
 _LARGEST = 1_000_000  # bytes
 
@@ -49,7 +52,8 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
     file = _find(name, folder)
     tables = _parse(file, name)
     folder = file.parent if isinstance(file, Path) else folder
-    _locate_file(tables, folder, _FILE)
+    for place in _FILES:
+        _locate_file(tables, folder, place)
     if "base" not in tables:
         return tables
     base = tables.pop("base")
@@ -109,9 +113,12 @@ def _locate_file(tables: Any, folder: Path, place: tuple[str, ...]) -> None:
 
 
 def _altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
-    """The base with the changes put in; a name belongs to one deck only."""
+    """The base with the changes put in; a name belongs to one deck only, and a support to its kind."""
     superseded = _superseded(changes, ("rotor",), ALTERNATIVES)
     superseded += _superseded(changes, ("rotor", "airfoil"), AIRFOIL_ALTERNATIVES)
+    superseded += (
+        [("support",)] if _is_section(changes.get("support")) and "kind" in changes["support"] else []
+    )
     for place in (("case", "name"), *superseded):
         base = _without(base, place)
     return _merged(base, changes)

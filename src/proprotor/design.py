@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.datum import Datum
 
-_COUNTS = ("rotor.n_blades",)  # whole numbers, which do not vary as others do
+_FIXED = (str, int)  # files, and whole numbers, which do not vary as others do
 
 
 def design_inputs(case: Case) -> dict[str, Datum]:
@@ -35,7 +35,7 @@ def design_inputs(case: Case) -> dict[str, Datum]:
     return {
         path: number
         for path, number in case.given.items()
-        if path not in _COUNTS and number.r_over_R is None and not isinstance(number.si, str)
+        if number.r_over_R is None and not isinstance(number.si, _FIXED)
     }
 
 

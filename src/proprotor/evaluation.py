@@ -9,7 +9,8 @@ from typing import Any
 
 
 @cache
-def _keywords(function: Callable) -> tuple[str, ...]:
+def keywords(function: Callable) -> tuple[str, ...]:
+    """Names of the quantities a generated function takes."""
     parameters = inspect.signature(function).parameters.values()
     return tuple(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
 
@@ -24,4 +25,4 @@ def evaluate(function: Callable, quantities: Mapping[str, Any], *matrices: Any) 
     KeyError
         When a quantity the function needs is not there.
     """
-    return function(*matrices, **{name: quantities[name] for name in _keywords(function)})
+    return function(*matrices, **{name: quantities[name] for name in keywords(function)})

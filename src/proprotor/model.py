@@ -34,7 +34,8 @@ from proprotor.operation import Operation
 from proprotor.options import Options, parse_options
 from proprotor.rotor import Rotor
 from proprotor.speed import in_metres_per_second
-from proprotor.trim import UNKNOWNS, Target, Trim, solve_trim, take, trim_target, with_trim
+from proprotor.trim import UNKNOWNS, Target, Trim, trim_target
+from proprotor.trim_solver import Settled, solve_trim
 
 if TYPE_CHECKING:
     import xarray
@@ -165,22 +166,20 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     quantities = rotor_quantities(rotor, operation, speed, shape) | _given_couplings(choice, shape)
     quantities["section_damping"] = float(choice.section_damping)
     points = int(np.prod(shape, dtype=int))
-    sections = BladeSections.of(rotor, shape)
-    trim = solve_trim(sections, quantities, choice, _flat(trim_target(rotor, operation), shape), points)
+    sections, coarse = (BladeSections.of(rotor, shape, coarse) for coarse in (False, True))
+    target = _flat(trim_target(rotor, operation), shape)
+    settled = solve_trim(sections, coarse, quantities, choice, target, points)
+    trim = settled.trim
     if choice.reactionless and np.ndim(rotor.n_blades):
         raise InputError("n_blades", rotor.n_blades, "must be one number with reactionless=True")
     extra = reactionless_coordinates(int(np.max(rotor.n_blades))) if choice.reactionless else ()
-    matrices = _matrices(sections, quantities, choice, trim, extra)
+    matrices = _matrices(sections, choice, settled, extra)
     coordinates = (*FIXED_COORDINATES, *extra)
     dofs = _free_coordinates(choice, coordinates)
-    places = [coordinates.index(name) for name in dofs]
-    inputs = matrices.pop("B")[:, places].reshape(*shape, len(dofs), len(INPUTS))
-    parts = {
-        name: matrix[:, places][:, :, places].reshape(*shape, len(dofs), len(dofs))
-        for name, matrix in matrices.items()
-    }
+    parts = {name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()}
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    return LinearModel(**parts, B=inputs, dofs=dofs, trim=shaped, airspeed=np.broadcast_to(speed, shape))
+    model = LinearModel(**parts, dofs=coordinates, trim=shaped, airspeed=np.broadcast_to(speed, shape))
+    return model if dofs == coordinates else model.submodel(dofs)
 
 
 def _flat(target: Target, shape: tuple[int, ...]) -> Target:
@@ -220,33 +219,36 @@ def _free_coordinates(options: Options, coordinates: tuple[str, ...]) -> tuple[s
 
 
 def _matrices(
-    sections: BladeSections,
-    quantities: Mapping[str, Any],
-    options: Options,
-    trim: Trim,
-    extra: tuple[str, ...],
+    sections: BladeSections, options: Options, settled: Settled, extra: tuple[str, ...]
 ) -> dict[str, NDArray]:
     """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless last; NaN without trim."""
-    points, n = len(trim.converged), len(FIXED_COORDINATES) + len(extra)
-    columns = dict.fromkeys("MCK", n) | {"B": len(INPUTS)}
-    kind = np.result_type(float, trim.collective, trim.coning, *quantities.values())
-    matrices = {name: np.full((points, n, width), np.nan, dtype=kind) for name, width in columns.items()}
-    good = np.flatnonzero(trim.converged)
-    if len(good):
-        state = {name: getattr(trim, name)[good] for name in UNKNOWNS}
-        pool = with_trim(take(quantities, good), options, state)
-        pool |= _couplings(options, pool)
-        *blade, gusts = _blade_matrices(sections.take(good), pool, options)
+    points, n, rows = len(settled.trim.converged), len(FIXED_COORDINATES) + len(extra), settled.rows
+    found: dict[str, NDArray] = {}
+    if len(rows):
+        pool = settled.pool | _couplings(options, settled.pool)
+        *blade, gusts = _blade_matrices(sections.take(rows), pool, settled.segments, options)
         inputs = [_swashplate(pool, options, blade), evaluate(multiblade.gust_loads, pool, gusts)]
-        matrices["B"][good] = 0.0
-        matrices["B"][good, : len(FIXED_COORDINATES)] = np.concatenate(inputs, axis=-1)
-        for name, matrix in _fixed_frame(pool, options, blade, extra).items():
-            matrices[name][good] = matrix
-    return matrices
+        found = _fixed_frame(pool, options, blade, extra)
+        found["B"] = np.zeros((len(rows), n, len(INPUTS)), dtype=gusts.dtype)
+        found["B"][:, : len(FIXED_COORDINATES)] = np.concatenate(inputs, axis=-1)
+    return {
+        name: _at_all_points(found.get(name), points, rows, (n, columns))
+        for name, columns in (dict.fromkeys("MCK", n) | {"B": len(INPUTS)}).items()
+    }
+
+
+def _at_all_points(matrix: NDArray | None, points: int, rows: NDArray, shape: tuple[int, int]) -> NDArray:
+    """A matrix of the rows that have one at all points, NaN at the others."""
+    if matrix is not None and matrix.shape[0] == points == len(rows):
+        return matrix
+    whole = np.full((points, *shape), np.nan, dtype=float if matrix is None else matrix.dtype)
+    if matrix is not None:
+        whole[rows] = matrix
+    return whole
 
 
 def _blade_matrices(
-    sections: BladeSections, pool: Mapping[str, Any], options: Options
+    sections: BladeSections, pool: Mapping[str, Any], at_trim: Mapping[str, Any], options: Options
 ) -> tuple[NDArray, ...]:
     """Mass, damping and stiffness (points, 12, 12) of one blade in rotating axes, and its gusts (points, 12, 3)."""
     mass, damping, stiffness = _structure(pool, options.equation_set)
@@ -256,7 +258,7 @@ def _blade_matrices(
     )
     gusts = np.zeros((*stiffness.shape[:-1], 3), dtype=stiffness.dtype)
     if options.airloads != "none":
-        air_damping, air_stiffness, gusts = _airloads(sections, pool, options)
+        air_damping, air_stiffness, gusts = _airloads(sections, pool, at_trim, options)
         damping, stiffness = damping + air_damping, stiffness + air_stiffness
     return mass, damping, stiffness, gusts
 
@@ -356,12 +358,15 @@ def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray
 
 
 def _airloads(
-    sections: BladeSections, pool: Mapping[str, Any], options: Options
+    sections: BladeSections, pool: Mapping[str, Any], at_trim: Mapping[str, Any], options: Options
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Airload damping and stiffness of one blade, and what gusts load it with."""
     equations = options.equation_set.airloads
-    segments = segment_quantities(sections, pool, equations)
-    segments |= _moments(sections, segments, options)
+    if equations is airloads and options.airloads == "full":
+        segments = dict(at_trim) | {name: np.asarray(pool[name])[..., None] for name in _COUPLINGS}
+    else:
+        segments = segment_quantities(sections, pool, equations)
+        segments |= _moments(sections, segments, options)
     motions = ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion")
     segments |= {name: evaluate(getattr(equations, name), segments) for name in motions}
     segments["load_derivatives"] = evaluate(airloads.load_derivatives, segments)

@@ -6,6 +6,7 @@ azimuth has no stiffness unless a shaft gives it one, and enters as a rate: n co
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -13,11 +14,15 @@ from numpy.typing import NDArray
 
 from proprotor.errors import InputError
 from proprotor.model import ROTOR_SPEED, LinearModel
+from proprotor.tracking import Spectrum
 
 if TYPE_CHECKING:
     import xarray
 
+    from proprotor.path import Line
+
 _NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping ratio
+_BLOCK = 64  # points whose vectors stay in the cache
 _NO_INERTIA = 1e13  # condition number of a mass matrix, scaled to a unit diagonal, that has no inverse
 
 
@@ -72,28 +77,80 @@ def _good(model: LinearModel) -> NDArray:
 
 
 def eigensystem(model: LinearModel) -> Eigensystem:
-    """All eigenvalues and vectors; eigenvalues of a point in no particular order."""
-    good = _good(model)
-    shape, n = model.M.shape[:-2], len(model.dofs)
+    """All eigenvalues and vectors; eigenvalues of a point in no particular order, each pair side by side."""
+    values, right, left = decomposition(model)
     held = held_coordinates(model)
-    states = len(held) + n
-    values = np.full((*shape, states), np.nan, dtype=complex)
-    right, left = (np.full((*shape, states, states), np.nan, dtype=complex) for _ in range(2))
+    return Eigensystem(values, right, left, coordinate_motion(held, len(model.dofs), values, right))
+
+
+def decomposition(model: LinearModel) -> Spectrum:
+    """Eigenvalues and vectors in the state space alone; of a complex model, those of its real part."""
+    good = _good(model)
+    states = len(held_coordinates(model)) + len(model.dofs)
+    if good.all():
+        return _decomposed(state_matrix(_real(model)))
+    values = np.full((*good.shape, states), np.nan, dtype=complex)
+    right, left = (np.full((*good.shape, states, states), np.nan, dtype=complex) for _ in range(2))
     if good.any():
-        part = LinearModel(
-            model.M[good], model.C[good], model.K[good], model.dofs, model.trim, model.airspeed
-        )
-        values[good], right[good] = np.linalg.eig(state_matrix(part))
-        left[good] = np.linalg.inv(right[good])
-    return Eigensystem(values, right, left, _displacement(held, n, values, right))
+        values[good], right[good], left[good] = _decomposed(state_matrix(some_points(_real(model), good)))
+    return Spectrum(values, right, left)
 
 
-def _displacement(held: list[int], n: int, values: NDArray, right: NDArray) -> NDArray:
-    """Motion of the coordinates: that of a rate is the rate divided by the eigenvalue."""
-    velocities = right[..., -n:, :]
-    with np.errstate(all="ignore"):
-        shapes = velocities / np.where(values == 0, np.nan, values)[..., None, :]
+def _real(model: LinearModel) -> LinearModel:
+    if not np.iscomplexobj(model.K):
+        return model
+    return replace(model, M=model.M.real, C=model.C.real, K=model.K.real)
+
+
+def some_points(model: LinearModel, points: NDArray) -> LinearModel:
+    """M, C and K of a model at some of its points."""
+    return replace(
+        model, M=model.M[points], C=model.C[points], K=model.K[points], B=None, hub=None, rotor=None
+    )
+
+
+def _decomposed(matrix: NDArray) -> Spectrum:
+    """Eigenvalues, right vectors in columns and left vectors in rows of real matrices, blocks of points at a time."""
+    shape, states = matrix.shape[:-2], matrix.shape[-1]
+    flat = matrix.reshape(-1, states, states)
+    values = np.empty((len(flat), states), dtype=complex)
+    right, left = (np.empty((len(flat), states, states), dtype=complex) for _ in range(2))
+    for start in range(0, len(flat), _BLOCK):
+        rows = slice(start, start + _BLOCK)
+        values[rows], right[rows] = np.linalg.eig(flat[rows])
+        left[rows] = left_vectors(values[rows], right[rows])
+    return Spectrum(values.reshape(*shape, states), right.reshape(matrix.shape), left.reshape(matrix.shape))
+
+
+def left_vectors(values: NDArray, right: NDArray) -> NDArray:
+    """Rows (..., states, states) with rows @ right = 1, for a real matrix whose pairs stand side by side.
+
+    The columns a + ib and a - ib span what a and b span: their inverse is had from that of the real matrix with the
+    columns a and b, at a third of the cost. A defective matrix has no inverse; there the rows are those of least
+    squares.
+    """
+    upper, lower = values.imag > 0, values.imag < 0
+    real = np.where(lower[..., None, :], -right.imag, right.real)
+    try:
+        rows = np.linalg.inv(real)
+    except np.linalg.LinAlgError:
+        rows = np.linalg.pinv(real)
+    left = np.empty(right.shape, dtype=complex)
+    left.real, left.imag = rows, 0.0
+    *point, place = np.nonzero(upper)
+    first, second = rows[(*point, place)], rows[(*point, place + 1)]
+    left[(*point, place)] = 0.5 * (first - 1j * second)
+    left[(*point, place + 1)] = 0.5 * (first + 1j * second)
+    return left
+
+
+def coordinate_motion(held: list[int], n: int, values: NDArray, right: NDArray) -> NDArray:
+    """Motion (..., n, modes) of the coordinates: that of a rate alone is the rate divided by the eigenvalue."""
+    shapes = right[..., -n:, :].copy()
     shapes[..., held, :] = right[..., : len(held), :]
+    rates = [place for place in range(n) if place not in held]
+    with np.errstate(all="ignore"):
+        shapes[..., rates, :] /= np.where(values == 0, np.nan, values)[..., None, :]
     return shapes
 
 
@@ -102,8 +159,13 @@ def participation(model: LinearModel, system: Eigensystem) -> NDArray:
 
     Free of units and of how vectors are scaled, unlike the largest component of a mode that mixes lengths and angles.
     """
-    n, held = len(model.dofs), held_coordinates(model)
-    products = np.abs(np.swapaxes(system.left, -1, -2) * system.right)
+    return coordinate_shares(held_coordinates(model), len(model.dofs), system.left, system.right)
+
+
+def coordinate_shares(held: list[int], n: int, left: NDArray, right: NDArray) -> NDArray:
+    """Shares (..., n, modes) as `participation`, of left vectors in rows and right ones in columns."""
+    products = np.swapaxes(left, -1, -2) * right
+    products = np.sqrt(products.real**2 + products.imag**2)
     shares = products[..., -n:, :].copy()
     shares[..., held, :] += products[..., : len(held), :]
     return shares / shares.sum(axis=-2, keepdims=True)
@@ -133,15 +195,15 @@ def modes(model: LinearModel) -> xarray.Dataset:
     return mode_dataset(model, values, shapes, shares)
 
 
-def mode_dataset(model: LinearModel, values: NDArray, shapes: NDArray, shares: NDArray) -> xarray.Dataset:
+def mode_dataset(
+    model: LinearModel, values: NDArray, shapes: NDArray, shares: NDArray, line: Line | None = None
+) -> xarray.Dataset:
     """The dataset of `modes` from eigenvalues (..., mode), motions and participations (..., n, mode)."""
     import xarray  # here, because it takes long to import
 
-    leading = (
-        tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
-        if model.airspeed.ndim != 1
-        else ("airspeed",)
-    )
+    leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
+    if len(leading) == 1:
+        leading = ("airspeed" if line is None else line.name,)
     by_mode = (*leading, "mode")
     with np.errstate(all="ignore"):
         neutral = np.abs(values) < _NEUTRAL * np.nanmax(np.abs(values), initial=0)
@@ -166,4 +228,6 @@ def mode_dataset(model: LinearModel, values: NDArray, shapes: NDArray, shares: N
         "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
     }
     coordinates = {"dof": list(model.dofs), "airspeed": (leading, model.airspeed, {"units": "m/s"})}
+    if line is not None and line.name != "airspeed":
+        coordinates[line.name] = (leading, line.positions, {"units": line.units})
     return xarray.Dataset(data, coords=coordinates)

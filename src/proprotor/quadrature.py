@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,10 +14,11 @@ POWERS = 3  # moments of r^0, r^1 and r^2
 # airspeed they turn within V/Ω of the axis: panels near the root double outward, with points by distance from the
 # axis. These keep every radial moment within 1e-10 of itself (tests/test_quadrature.py).
 _LONGEST_PANEL = 0.1
-_POINTS = ((0.015, 3), (0.03, 4), (0.06, 6), (np.inf, 8))
+_POINTS = ((0.021, 3), (0.03, 4), (0.06, 6), (np.inf, 8))
 _NEAR_ROOT = 0.2 / 2.0 ** np.arange(7)  # of the radius
 _TINY = np.finfo(float).tiny
-_DIGITS, _MOST_POINTS = 13, 16
+_DIGITS, _MOST_POINTS = 11, 16
+_COARSE_POINTS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,11 +69,39 @@ class RadialQuadrature:
             self, **{name: getattr(self, name)[rows] for name in ("stations", "segment", "weights", "edges")}
         )
 
-    def at_stations(self, at_segments: NDArray) -> NDArray:
-        """Values (..., stations) of a quantity (..., segments) that is constant along a segment."""
+    def along_lines(self, at_axis: NDArray, per_radius: NDArray | None = None) -> NDArray:
+        """Values (..., stations) of what is linear in r along each segment.
+
+        Parameters
+        ----------
+        at_axis, per_radius : array (..., segments)
+            Value at r = 0, and its change with r; without the latter it is constant.
+        """
+        if self.segment.ndim > 1:
+            start, slope = (self._spread(values) for values in (at_axis, per_radius))
+            return start if slope is None else start + slope * self.stations
+        line = np.empty(
+            (*at_axis.shape[:-1], len(self.stations)), dtype=np.result_type(at_axis, self.stations)
+        )
+        for place, own in enumerate(self._slices):
+            segment = min(place, at_axis.shape[-1] - 1)
+            if per_radius is None:
+                line[..., own] = at_axis[..., segment, None]
+            else:
+                np.multiply(per_radius[..., segment, None], self.stations[own], out=line[..., own])
+                line[..., own] += at_axis[..., segment, None]
+        return line
+
+    @functools.cached_property
+    def _slices(self) -> list[slice]:
+        """Stations of each segment, which follow each other."""
+        ends = np.searchsorted(self.segment, np.arange(len(self.beyond_lag_hinge)), side="right")
+        return [slice(start, end) for start, end in itertools.pairwise([0, *ends])]
+
+    def _spread(self, at_segments: NDArray | None) -> NDArray | None:
+        if at_segments is None:
+            return None
         segments = np.broadcast_to(at_segments, (*at_segments.shape[:-1], self.weights.shape[-2]))
-        if self.segment.ndim == 1:
-            return segments[..., self.segment]
         places = np.broadcast_to(self.segment, (*segments.shape[:-1], self.segment.shape[-1]))
         return np.take_along_axis(segments, places, axis=-1)
 
@@ -130,6 +161,29 @@ def gauss_panels(
     widths = np.diff(np.concatenate([starts, tip[..., None]], axis=-1), axis=-1)
     stations, weights = _gauss_points(starts, widths, tip)
     return _by_segment(stations, weights, root, tip, flap, lag)
+
+
+def coarse_panels(
+    *,
+    root_cutout: ArrayLike,
+    radius: ArrayLike,
+    flap_hinge_offset: ArrayLike,
+    lag_hinge_offset: ArrayLike,
+) -> RadialQuadrature:
+    """One panel for each segment and two outboard of the hinges, with few points; parameters as `gauss_panels`.
+
+    Coarse moments are within some thousandths of the fine ones: enough for first iterations and for slopes.
+    """
+    root, tip, flap, lag = np.broadcast_arrays(root_cutout, radius, flap_hinge_offset, lag_hinge_offset)
+    hinges = [_within(hinge, root, tip) for hinge in (flap, lag)]
+    edges = np.stack([root, *hinges, (hinges[-1] + tip) / 2, tip], axis=-1)
+    widths = np.diff(edges, axis=-1)
+    used = (np.real(widths) > 1e-12 * np.real(tip)[..., None]).reshape(-1, widths.shape[-1]).any(axis=0)
+    nodes, gauss = np.polynomial.legendre.leggauss(_COARSE_POINTS)
+    half = widths[..., used, None] / 2
+    stations = edges[..., :-1][..., used][..., None] + half * (1 + nodes)
+    flat = (*root.shape, -1)
+    return _by_segment(stations.reshape(flat), (half * gauss).reshape(flat), root, tip, flap, lag)
 
 
 def _within(edges: NDArray, root: NDArray, tip: NDArray) -> NDArray:

@@ -14,7 +14,7 @@ from proprotor_equations import inertia
 from proprotor.airfoil import SectionModel
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
-from proprotor.quadrature import RadialQuadrature, gauss_panels
+from proprotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
 
 MASS_INTEGRALS = (
     "blade_mass",
@@ -239,16 +239,33 @@ class Rotor:
         )
 
     @functools.cached_property
+    def coarse_quadrature(self) -> RadialQuadrature:
+        """A few stations, enough to come near the trim."""
+        return coarse_panels(
+            root_cutout=self.root_cutout,
+            radius=self.radius,
+            flap_hinge_offset=self.flap_hinge_offset,
+            lag_hinge_offset=self.lag_hinge_offset,
+        )
+
+    @functools.cached_property
     def station_chord(self) -> np.ndarray:
         """Chord at the stations of the quadrature, m."""
-        if isinstance(self.chord, tuple) or callable(self.chord):
-            return _interpolate(self.chord, self.quadrature.stations)
-        return np.asarray(self.chord)[..., None]
+        return self.chord_at(self.quadrature.stations)
 
     @functools.cached_property
     def station_twist(self) -> np.ndarray:
         """Twist at the stations of the quadrature, from the pitch at 0.75 R, rad."""
-        r = self.quadrature.stations
+        return self.twist_at(self.quadrature.stations)
+
+    def chord_at(self, r: np.ndarray) -> np.ndarray:
+        """Chord at radii (..., stations) in m; a constant chord has one station."""
+        if isinstance(self.chord, tuple) or callable(self.chord):
+            return _interpolate(self.chord, r)
+        return np.asarray(self.chord)[..., None]
+
+    def twist_at(self, r: np.ndarray) -> np.ndarray:
+        """Twist at radii (..., stations) in m, from the pitch at 0.75 R, rad."""
         reference = 0.75 * np.asarray(self.radius)[..., None]
         if isinstance(self.twist, tuple) or callable(self.twist):
             return _interpolate(self.twist, r) - _interpolate(self.twist, reference)

@@ -1,10 +1,10 @@
-"""What carries the rotor: a wing given by normal modes and their motion at the hub, or a two-axis pivot."""
+"""What carries the rotor: coordinates of a support and their motion at the hub, a two-axis pivot, or nothing."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -23,7 +23,7 @@ class NormalModes:
     Parameters
     ----------
     names : sequence of str
-        One name per coordinate, all different.
+        One name per coordinate, all different and none of them a rotor's own.
     mass, damping, stiffness : array_like, shape (..., n, n)
         Symmetric, SI (kg or kg m² and so on, as the coordinate is a length in m or an angle in rad).
         The mass must have no negative eigenvalue. Leading axes are many supports at once.
@@ -47,9 +47,11 @@ class NormalModes:
     hub: ArrayLike
     includes_rotor: bool
 
+    symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
+
     def __post_init__(self) -> None:
         names = tuple(self.names)
-        if len(set(names)) < len(names) or not names:
+        if len(set(names)) < len(names) or (not names and np.size(self.mass)):
             raise InputError("names", ", ".join(names), "must name each mode, all differently")
         n = len(names)
         object.__setattr__(self, "names", names)
@@ -57,7 +59,8 @@ class NormalModes:
         for field in ("mass", "damping", "stiffness"):
             matrix = _finite(field, getattr(self, field), (n, n))
             turned = np.swapaxes(matrix, -1, -2)
-            if not np.allclose(matrix, turned, rtol=1e-9, atol=1e-12 * np.abs(matrix).max(initial=0)):
+            tolerance = {"rtol": 1e-9, "atol": 1e-12 * np.abs(matrix).max(initial=0)}
+            if field in self.symmetric and not np.allclose(matrix, turned, **tolerance):
                 raise InputError(field, matrix.tolist(), "must be symmetric")
             object.__setattr__(self, field, matrix)
         if not _nowhere_negative(np.real(self.mass)):
@@ -114,9 +117,9 @@ def two_axis_pivot(
 
     Parameters
     ----------
-    distance : float
+    distance : float or array (...)
         From the pivot forward to the hub, m.
-    inertia, stiffness, damping : array_like, shape (2,)
+    inertia, stiffness, damping : array_like, shape (..., 2)
         Of pitch and yaw about the pivot: kg m², N m/rad, N m s/rad (viscous; for hysteretic damping see
         `proprotor.structural_damping`).
     includes_rotor : bool
@@ -127,17 +130,24 @@ def two_axis_pivot(
     InputError
         When a value is not finite or an inertia negative.
     """
-    hub = np.zeros((len(HUB_AXES), 2))
-    hub[HUB_AXES.index("x"), 0], hub[HUB_AXES.index("alpha_y"), 0] = distance, 1.0
-    hub[HUB_AXES.index("y"), 1], hub[HUB_AXES.index("alpha_x"), 1] = distance, -1.0
+    shape = (*np.shape(distance), len(HUB_AXES), 2)
+    hub = np.zeros(shape, dtype=np.result_type(distance, float))
+    hub[..., HUB_AXES.index("x"), 0], hub[..., HUB_AXES.index("alpha_y"), 0] = distance, 1.0
+    hub[..., HUB_AXES.index("y"), 1], hub[..., HUB_AXES.index("alpha_x"), 1] = distance, -1.0
     return NormalModes(
         names=("pitch", "yaw"),
-        mass=np.diag(_finite("inertia", inertia, (2,))),
-        damping=np.diag(_finite("damping", damping, (2,))),
-        stiffness=np.diag(_finite("stiffness", stiffness, (2,))),
+        mass=_diagonal(_finite("inertia", inertia, (2,))),
+        damping=_diagonal(_finite("damping", damping, (2,))),
+        stiffness=_diagonal(_finite("stiffness", stiffness, (2,))),
         hub=hub,
         includes_rotor=includes_rotor,
     )
+
+
+def rigid_support() -> NormalModes:
+    """A support that does not move: no coordinate, the hub fixed."""
+    none = np.zeros((0, 0))
+    return NormalModes((), none, none, none, hub=np.zeros((len(HUB_AXES), 0)), includes_rotor=False)
 
 
 def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:

@@ -2,56 +2,78 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from itertools import pairwise
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from proprotor.errors import InputError
-from proprotor.model import LinearModel
-from proprotor.modes import Eigensystem, eigensystem, mode_dataset, participation
+from proprotor.mode_names import SECOND, assign_names, name_list, name_shares, whirl
+from proprotor.model import LinearModel, batch_shape
+from proprotor.modes import (
+    Eigensystem,
+    coordinate_motion,
+    coordinate_shares,
+    held_coordinates,
+    mode_dataset,
+)
+from proprotor.path import Line, Path, follow, path_of
+from proprotor.speed import in_metres_per_second
+from proprotor.tracking import Spectrum, link, side_by_side
 
 if TYPE_CHECKING:
     import xarray
 
-_CYCLIC = ("_1c", "_1s")
+    from proprotor.case import Case
+
+_ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where modes get their names, the first that has a trim
+_STRIDE = 0.02  # of the tip speed, between the first points of the way there
 
 
-def track(system: Eigensystem) -> NDArray:
+def track(system: Eigensystem | Spectrum) -> NDArray:
     """Order (points, states) that keeps each state of the eigensystem in its place along the points.
 
-    One-to-one assignment by the product of left and right vectors of neighbouring points, which is 1 for the same mode
-    and 0 for another, and by distance in the complex plane where vectors do not tell. Failed points are passed over.
+    States may come in any order. Failed points are passed over.
     """
-    points, states = system.values.shape
-    order = np.tile(np.arange(states), (points, 1))
-    good = np.flatnonzero(np.isfinite(system.values).all(axis=1))
-    for before, after in pairwise(good):
-        order[after] = _assign(system, before, order[before], after)
-    return order
+    places = side_by_side(system.values)
+    paired = Spectrum(
+        np.take_along_axis(system.values, places, 1),
+        np.take_along_axis(system.right, places[:, None, :], 2),
+        np.take_along_axis(system.left, places[:, :, None], 1),
+    )
+    return np.take_along_axis(places, path_of(paired).order(len(places)), 1)
 
 
-def _assign(system: Eigensystem, before: int, order: NDArray, after: int) -> NDArray:
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
-    forward = np.abs(system.left[before][order] @ system.right[after])
-    backward = np.abs(system.left[after] @ system.right[before][:, order]).T
-    likeness = np.sqrt(forward * backward)
-    distance = np.abs(system.values[before][order, None] - system.values[after][None, :])
-    scale = np.abs(system.values[before]).max()
-    _, columns = linear_sum_assignment(distance / scale - likeness)
-    return columns
-
-
-def sweep(model: LinearModel) -> xarray.Dataset:
+def sweep(
+    model: LinearModel,
+    line: Line | None = None,
+    *,
+    rotor_speed: float | None = None,
+    approach: Line | None = None,
+) -> xarray.Dataset:
     """Modes of a line of points, tracked and named.
+
+    Parameters
+    ----------
+    model : LinearModel
+        One point for each position of the line.
+    line : Line, optional
+        Airspeeds of the model by default; with its `linearize`, steps that do not tell which mode is which are divided.
+    rotor_speed : float, optional
+        rad/s, where the modes get their names. Without it, regressive and progressive are told by the whirl in the
+        fixed frame alone.
+    approach : Line, optional
+        From the anchor, where modes get their names, to the point of the line that is nearest to it, both included:
+        names then do not depend on where the line begins and ends. Without it, or where it fails, they are given at
+        the first point that works.
 
     Returns
     -------
     xarray.Dataset
-        As `LinearModel.modes`, with mode names as coordinate and the same mode in the same place at every point.
+        As `LinearModel.modes`, with mode names (`proprotor.mode_names`) as coordinate and the same mode in the same
+        place at every point; whirl (-1 against the rotor to 1 with it, in the fixed frame); tracking_quality, the
+        trust in the steps that led to a point, 0 to 1. Attributes: eigen_solves, and named_at, where names were given.
 
     Raises
     ------
@@ -62,70 +84,222 @@ def sweep(model: LinearModel) -> xarray.Dataset:
         raise InputError(
             "airspeed", f"array of shape {model.airspeed.shape}", "must be a list of speeds to sweep"
         )
-    system = eigensystem(model)
-    order = track(system)
-    values = np.take_along_axis(system.values, order, 1)
-    shapes = np.take_along_axis(system.displacement, order[:, None, :], 2)
-    shares = np.take_along_axis(participation(model, system), order[:, None, :], 2)
-    good = np.isfinite(values).all(axis=1)
-    kept = _one_of_each_pair(values[good])
-    values, shapes, shares = values[:, kept], shapes[..., kept], shares[..., kept]
+    line = Line(model.airspeed) if line is None else line
+    points, n, held = len(model.airspeed), len(model.dofs), held_coordinates(model)
+    path = follow(model, line)
+    order = path.order(points)
+    named = state_names(model, line, path, rotor_speed, approach)
+    columns, modes = _columns(model.dofs, path, named)
+    values, right, left = path.spectrum.of(points).modes(order[:, columns])
     # Of a pair that parts into two real roots the second is a mode only where it is real.
     values = np.where(values.imag < 0, np.nan, values)
-    names, by_frequency = _names(model.dofs, values[good], shares[good])
-    data = mode_dataset(model, values[:, by_frequency], shapes[..., by_frequency], shares[..., by_frequency])
-    return data.assign_coords(mode=names)
+    shapes = coordinate_motion(held, n, values, right)
+    data = mode_dataset(model, values, shapes, coordinate_shares(held, n, left, right), line)
+    by_mode = data.eigenvalue.dims
+    sense = np.where(np.isnan(values), np.nan, whirl(model.dofs, held, values, left, right))
+    trust = np.where(np.isnan(path.spectrum.values[:points, :1]), np.nan, path.trust(points)[:, columns])
+    data["whirl"] = by_mode, sense, {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
+    data["tracking_quality"] = by_mode, trust, {"units": "1", "long_name": "trust in the steps to a point"}
+    data.attrs = {"eigen_solves": len(path.points) + named.eigen_solves, "named_at": named.told}
+    return data.assign_coords(mode=modes)
 
 
-def _one_of_each_pair(values: NDArray) -> NDArray:
-    """Columns that are in the upper half plane more than in the lower, and those that are real somewhere."""
-    if not len(values):  # no point worked: there are no modes
-        return np.empty(0, dtype=int)
-    return np.flatnonzero((values.imag.sum(axis=0) > 0) | (values.imag == 0).any(axis=0))
+class Named(NamedTuple):
+    """Names of the states of one point of a path, in the order of its spectrum.
+
+    point : place of the point in the path; names : one for each state; told : where names were given;
+    eigen_solves : what that took beyond the path's own.
+    """
+
+    point: int
+    names: list[str]
+    told: str
+    eigen_solves: int
 
 
-def _names(dofs: tuple[str, ...], values: NDArray, shares: NDArray) -> tuple[list[str], NDArray]:
-    """Names from the coordinates that take part most over the sweep, and the order of their mean frequency."""
-    if not len(values):
-        return [], np.empty(0, dtype=int)
-    frequency = np.nan_to_num(np.abs(np.where(np.isnan(values), 0, values.imag)).mean(axis=0))
-    order = np.argsort(frequency, kind="stable")
-    mean_shares = shares.mean(axis=0)[:, order]
-    groups = [_group(dof) for dof in dofs]
-    labels = sorted(set(groups), key=groups.index)
-    by_group = np.stack([mean_shares[[g == label for g in groups]].sum(axis=0) for label in labels])
-    names = [labels[place] for place in by_group.argmax(axis=0)]
-    real = frequency[order] == 0
-    return _distinct(names, real), order
+def state_names(
+    model: LinearModel, line: Line, path: Path, rotor_speed: float | None, approach: Line | None
+) -> Named:
+    """Names of states at the point nearest to the anchor, followed from there; else given at the first point."""
+    held = held_coordinates(model)
+    if not len(path.points):
+        return Named(0, [], "", 0)
+    if approach is not None:
+        leg = follow(approach.linearize(approach.positions), approach)
+        ends = [0, len(approach.positions) - 1]
+        if len(leg.points) and [leg.points[0], leg.points[-1]] == ends:
+            nearest = int(np.argmin(np.abs(path.positions[path.points] - approach.end)))
+            given = names_at(model.dofs, held, leg.spectrum, 0, rotor_speed)
+            successor = _same_point(leg, ends[1], path, int(path.points[nearest]))
+            names = {int(state): given[first] for first, state in zip(leg.places[0], successor, strict=True)}
+            told = f"{approach.name} {approach.positions[0]:.6g} {approach.units}"
+            return Named(nearest, [names[state] for state in range(len(names))], told, len(leg.points))
+    first = int(path.points[0])
+    told = f"{line.name} {float(line.positions[first]):.6g} {line.units}"
+    return Named(0, names_at(model.dofs, held, path.spectrum, first, rotor_speed), told, 0)
 
 
-def _group(dof: str) -> str:
-    """A mode's family: support mode, rotor speed, or collective or cyclic motion of a blade angle or the gimbal."""
-    if dof == "azimuth":
-        return "rotor speed"
-    if dof.startswith("gimbal"):
-        return "gimbal"
-    if dof.endswith(_CYCLIC):
-        return f"cyclic {dof[: dof.rindex('_')]}"
-    if dof.endswith("_0"):
-        return {"flap_0": "coning"}.get(dof, f"collective {dof[:-2]}")
-    return dof
+def _same_point(leg: Path, last: int, path: Path, point: int) -> NDArray:
+    """Which states of a point of a path the followed states of another path are at the same point."""
+    parts = zip(leg.spectrum, path.spectrum, strict=True)
+    both = Spectrum(*(np.stack([one[last], other[point]]) for one, other in parts))
+    return link(both, np.array([0]), np.array([1])).successor[0][leg.places[-1]]
 
 
-def _distinct(names: list[str], real: NDArray) -> list[str]:
-    """The same family twice is told apart as low and high, more often by number; a real root is said to be one."""
-    names = [
-        f"{name} (real)" if is_real and name != "rotor speed" else name
-        for name, is_real in zip(names, real, strict=True)
-    ]
-    count, seen = Counter(names), Counter()
-    distinct = []
-    for name in names:
-        seen[name] += 1
-        if count[name] == 1:
-            distinct.append(name)
-        elif count[name] == 2:
-            distinct.append(f"{'low' if seen[name] == 1 else 'high'} {name}")
-        else:
-            distinct.append(f"{name} {seen[name]}")
-    return distinct
+def names_at(
+    dofs: tuple[str, ...], held: list[int], spectrum: Spectrum, point: int, rotor_speed: float | None
+) -> list[str]:
+    values, right, left = (part[point] for part in spectrum)
+    shares = name_shares(dofs, held, values, left, right, rotor_speed)
+    return assign_names(dofs, held, shares, values)
+
+
+def _columns(dofs: tuple[str, ...], path: Path, named: Named) -> tuple[NDArray, list[str]]:
+    """Which followed states are modes, in the order of the coordinates, and what they are called.
+
+    A state is a mode where it is in the upper half plane, or real; of each pair the one above is, and the other only if
+    it is real somewhere, as the second root.
+    """
+    if not len(path.points):  # no point worked: there are no modes
+        return np.empty(0, dtype=int), []
+    values = path.values
+    names = [named.names[state] for state in path.places[named.point]]
+    above, real = (values.imag > 0).sum(axis=0), (values.imag == 0).any(axis=0)
+    below = (values.imag < 0).sum(axis=0)
+    slow = np.abs(values).mean(axis=0)
+    columns, modes = [], []
+    for name in name_list(dofs):
+        own = [c for c, called in enumerate(names) if called == name]
+        own.sort(key=lambda c: (below[c] - above[c], slow[c]))
+        for place, column in enumerate(own):
+            if place == 0 or real[column]:
+                columns.append(column)
+                modes.append(name + SECOND * (place > 0))
+    return np.array(columns, dtype=int), modes
+
+
+def sweep_case(
+    case: Case, airspeeds: Any, vary: Mapping[str, ArrayLike] | None = None, **options: Any
+) -> xarray.Dataset:
+    """Modes of a case along airspeeds, or along one input at one airspeed: see `sweep`.
+
+    Modes get their names at the case's own inputs and near cruise (`anchor_speed`), and are followed from there, so
+    that names are the same in any range. Steps that do not tell modes apart are divided.
+
+    Parameters
+    ----------
+    case : Case
+    airspeeds : array (points,) in m/s, text such as "50:400:5kt", or pint quantity
+        One airspeed with `vary`.
+    vary : mapping of str to array (points,), optional
+        One input by its path in the deck (`proprotor.design.design_inputs`), and its values in SI.
+    **options
+        See `proprotor.options.Options`.
+
+    Raises
+    ------
+    InputError
+        For an unknown option or input, airspeeds that do not form a line, or more than one input.
+    """
+    line = line_of_case(case, airspeeds, vary, options)
+    if line is None:  # points differ in more than their airspeed
+        return sweep(case.linearize(airspeeds, **options), rotor_speed=rotor_speed_of(case))
+    model = line.linearize(line.positions)
+    return sweep(
+        model, line, rotor_speed=rotor_speed_of(case), approach=approach_to(case, line, model, options)
+    )
+
+
+def line_of_case(
+    case: Case, airspeeds: Any, vary: Mapping[str, ArrayLike] | None, options: Mapping[str, Any]
+) -> Line | None:
+    """The line of airspeeds, or of an input; None where points differ in more than one number.
+
+    Raises
+    ------
+    InputError
+        For airspeeds that do not form a line, more than one input, or an unknown one.
+    """
+    speeds = in_metres_per_second(airspeeds)
+    if vary is not None:
+        return _line_of_input(case, speeds.reshape(-1), vary, options)
+    if _is_batch(case, options):
+        return None
+    if speeds.ndim != 1:
+        raise InputError("airspeed", f"array of shape {speeds.shape}", "must be a list of speeds to sweep")
+    return Line(speeds, lambda speed: case.linearize(speed, **options))
+
+
+def _line_of_input(
+    case: Case, speed: NDArray, vary: Mapping[str, ArrayLike], options: Mapping[str, Any]
+) -> Line:
+    from proprotor.design import design_inputs
+
+    if len(vary) != 1:
+        raise InputError("vary", ", ".join(vary), "must be one input to sweep")
+    (path, given), *_ = vary.items()
+    values = np.asarray(given, dtype=float)
+    if len(speed) != 1 or values.ndim != 1:
+        raise InputError("vary", path, "needs a list of values, and one airspeed")
+
+    def linearize(positions: NDArray) -> LinearModel:
+        return case.vary({path: positions}).linearize(speed[0], **options)
+
+    case.vary({path: values})  # which tells what is wrong with the path
+    return Line(values, linearize, path, design_inputs(case)[path].unit)
+
+
+def approach_to(case: Case, line: Line, model: LinearModel, options: Mapping[str, Any]) -> Line | None:
+    """The way to a line from the anchor: the case's own inputs near cruise (`anchor_speed`).
+
+    Along airspeeds to the line's own, or to its one airspeed; there, from the case's own value of the input to its
+    nearest on the line. None where there is no anchor, or the line has no point that works.
+    """
+    start, works = anchor_speed(case, **options), np.flatnonzero(model.trim.converged)
+    if start is None or not len(works):
+        return None
+    tip, values = tip_speed(case), np.asarray(line.positions)
+    if line.name == "airspeed":
+        end = float(values[works[np.argmin(np.abs(values[works] - start))]])
+        count = 2 + int(abs(end - start) / (_STRIDE * tip))
+        return Line(np.linspace(start, end, count), line.linearize)
+    from proprotor.design import design_inputs
+
+    own, speed = float(design_inputs(case)[line.name].si), float(np.real(model.airspeed.flat[0]))
+    end = float(values[works[np.argmin(np.abs(values[works] - own))]])
+    first, second = abs(speed - start) / tip, abs(end - own) / max(abs(own), abs(end), 1e-300)
+
+    def linearize(way: NDArray) -> LinearModel:
+        done = np.clip(way / first, 0, 1) if first > 0 else np.ones_like(way)
+        beyond = np.clip((way - first) / second, 0, 1) if second > 0 else np.zeros_like(way)
+        varied = case.vary({line.name: own + beyond * (end - own)})
+        return varied.linearize(start + done * (speed - start), **options)
+
+    count = 2 + int((first + second) / _STRIDE)
+    return Line(np.linspace(0.0, first + second, count), linearize, "way from the anchor", "1", end)
+
+
+def tip_speed(case: Case) -> float:
+    """Rotor speed times radius of a case, m/s."""
+    return float(case.operation.rotor_speed) * float(case.rotor.radius)
+
+
+def anchor_speed(case: Case, **options: Any) -> float | None:
+    """Airspeed in m/s at which the modes of a case get their names.
+
+    Seven tenths of the tip speed, which is near cruise; less where there is no trim; None where there is none at all.
+    """
+    speeds = tip_speed(case) * np.array(_ANCHORS)
+    works = np.flatnonzero(case.linearize(speeds, **options).trim.converged)
+    return float(speeds[works[0]]) if len(works) else None
+
+
+def rotor_speed_of(case: Case) -> float | None:
+    """rad/s of a case that has one rotor speed."""
+    return float(case.operation.rotor_speed) if np.ndim(case.operation.rotor_speed) == 0 else None
+
+
+def _is_batch(case: Case, options: Mapping[str, Any]) -> bool:
+    return batch_shape(case.rotor, case.operation, np.zeros(())) != () or any(
+        np.ndim(value) > 0 for name, value in options.items() if name.endswith("_coupling")
+    )

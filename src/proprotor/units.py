@@ -68,6 +68,9 @@ _MEANINGS = {
     "kg*m**2": ("a moment of inertia", '"105 slug*ft**2"'),
     "kg/m": ("a mass per length", '"0.2 slug/ft"'),
     "kg/m**3": ("a density", '"1.225 kg/m**3"'),
+    "kg*m**2/m": ("a moment of inertia per length", '"2 lb*ft**2/ft"'),
+    "N": ("a force", '"1.5e8 lbf"'),
+    "N*m**2": ("a bending or torsion stiffness", '"3.7e9 lbf*in**2"'),
     "N*m/rad": ("a moment per angle", '"2700 in*lbf/deg"'),
     "N*m*s/rad": ("a moment per rate of angle", '"12 N*m*s/rad"'),
 }

@@ -1,0 +1,93 @@
+"""What makes a mode grow or decay: its eigenvalue by the physical origin of the matrices.
+
+If all terms of one origin grew by a small part ε, an eigenvalue would move by ε times
+
+    λ_g = -yᴴ(λ² M_g + λ C_g + K_g) x / yᴴ(2λM + C) x ,
+
+which is what is told here for each origin g, with trim, mode and all other terms held. Where Re λ_g is positive the
+origin drives the mode. Terms of all origins that grow alike move nothing: the sum of λ_g is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor.eigenvalue_derivatives import eigenvalue_change
+from proprotor.errors import InputError, unknown_name
+from proprotor.model import LinearModel
+from proprotor.model_parts import Part, model_parts
+from proprotor.modes import decomposition
+from proprotor.speed import in_metres_per_second
+from proprotor.sweep import sweep_case
+from proprotor.tracking import Spectrum
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+
+
+def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Spectrum) -> NDArray:
+    """λ_g of each part and mode (..., parts, modes), rad/s; the sum over parts that make up the model is zero."""
+    return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
+
+
+def attribution(case: Case, airspeed: Any, mode: str | None = None, **options: Any) -> xarray.Dataset:
+    """What drives and what damps the modes of a case at one airspeed.
+
+    Parameters
+    ----------
+    case : Case
+    airspeed : float in m/s, text such as "300 kt", or pint quantity
+    mode : str, optional
+        One mode by name; all by default.
+    **options
+        See `proprotor.options.Options`.
+
+    Returns
+    -------
+    xarray.Dataset
+        contribution (origin, mode), rad/s: the change of the eigenvalue if all terms of an origin grew by 100 %, to
+        first order; growth, its real part, positive where the origin drives the mode; eigenvalue (mode,).
+
+    Raises
+    ------
+    InputError
+        For an airspeed that is not one, or that cannot be analysed, and an unknown mode.
+    """
+    speed = in_metres_per_second(airspeed).reshape(-1)
+    if len(speed) != 1:
+        raise InputError("airspeed", airspeed, "must be one speed")
+    named = sweep_case(case, speed, **options).isel(airspeed=0)
+    if named.reason.item():
+        raise InputError("airspeed", airspeed, named.reason.item())
+    names = [str(name) for name in named.mode.values[np.isfinite(named.eigenvalue.values.real)]]
+    if mode is not None and mode not in names:
+        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
+    names = names if mode is None else [mode]
+    model = case.linearize(speed[0], **options)
+    spectrum = decomposition(model)
+    wanted = named.eigenvalue.sel(mode=names).values
+    places = np.abs(spectrum.values[None, :] - wanted[:, None]).argmin(axis=1)
+    parts = model_parts(case, model, **options)
+    return _dataset(
+        names, list(parts), spectrum.values[places], contributions(model, parts, spectrum.modes(places))
+    )
+
+
+def _dataset(modes: list[str], origins: list[str], values: NDArray, found: NDArray) -> xarray.Dataset:
+    import xarray  # here, because it takes long to import
+
+    units = {"units": "rad/s"}
+    return xarray.Dataset(
+        {
+            "contribution": (("origin", "mode"), found, units),
+            "growth": (("origin", "mode"), found.real, units),
+            "eigenvalue": ("mode", values, units),
+        },
+        coords={"origin": origins, "mode": modes},
+    )

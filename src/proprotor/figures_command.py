@@ -1,0 +1,105 @@
+"""The command `proprotor figures`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from proprotor.errors import InputError
+from proprotor.output_file import write_whole
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+_BAND_WORK = 10  # a sample takes about as long as so many figures
+
+
+@click.command()
+@click.argument("numbers", nargs=-1, type=int, metavar="[NUMBER]...")
+@click.option(
+    "--out",
+    default="figures",
+    show_default=True,
+    metavar="FOLDER",
+    help="Where to write figure-04.png, figure-04.csv and so on; made if it is not there.",
+)
+@click.option(
+    "--samples",
+    default=300,
+    show_default=True,
+    type=click.IntRange(0, 100_000),
+    help="Designs of the uncertainty bands; 0 for none.",
+)
+@click.option(
+    "--step",
+    default=5.0,
+    show_default=True,
+    type=click.FloatRange(0.5, 50),
+    help="Between airspeeds, kt.",
+)
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Of the samples.")
+def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed: int) -> None:
+    """Make the analytical figures of AIAA-2002-1604, each with its numbers as CSV.
+
+    NUMBER is a figure of the paper: 4 to 12, 14 to 18, 21 to 24; all of them without any. Bands show what the
+    doubtful inputs of a case leave of a result; ranges and reasons stand in proprotor/input_ranges.py.
+
+    \b
+    Examples:
+      proprotor figures --out figures/
+      proprotor figures 4 5 6 --samples 0
+    """
+    from proprotor.figures import NUMBERS, Analyses, csv_of, decks_with_bands, make_figure
+    from proprotor.figures.catalogue import check_number
+    from proprotor.figures.drawing import save
+
+    wanted = sorted(set(numbers)) or NUMBERS
+    for number in wanted:
+        check_number(number)
+    folder = _folder(out)
+    bands = decks_with_bands(wanted) if samples else ()
+    with _progress() as progress:
+        task = progress.add_task("Analysing", total=len(wanted) + _BAND_WORK * len(bands))
+        analyses = Analyses(step, samples, seed, lambda share: progress.advance(task, _BAND_WORK * share))
+        for number in wanted:
+            progress.update(task, description=f"Figure {number}")
+            content = make_figure(number, analyses)
+            with _told(folder):
+                write_whole(folder / f"figure-{number:02}.png", lambda file, it=content: save(it, file))
+                write_whole(
+                    folder / f"figure-{number:02}.csv", lambda file, it=content: file.write(csv_of(it))
+                )
+            progress.advance(task)
+    told = "1 figure" if len(wanted) == 1 else f"{len(wanted)} figures"
+    click.echo(f"Wrote {told} to {folder}, a .png and a .csv each", err=True)
+
+
+def _folder(out: str) -> Path:
+    folder = Path(out)
+    if folder.exists() and not folder.is_dir():
+        raise InputError("--out", out, "must be a folder")
+    with _told(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+@contextmanager
+def _told(folder: Path) -> Iterator[None]:
+    """An output that cannot be written, in one message."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or error
+        raise click.ClickException(f"--out = {folder}: cannot be written ({reason})") from None
+
+
+def _progress() -> Progress:
+    from rich.console import Console  # here, because rich takes long to import
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description:<10}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
+    return Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True))

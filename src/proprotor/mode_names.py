@@ -1,0 +1,200 @@
+"""Names of modes, from the coordinates that take part in them and the way they whirl.
+
+A model has as many names as modes: one for each coordinate of the support, for coning and the collective motion of
+each other blade angle, for the rotor speed, and two for the cyclic motion of each blade angle and of the gimbal,
+regressive and progressive. A mode gets its name at one point, the anchor, by the assignment with the largest sum of
+participations, one name to one mode, and keeps it wherever it is followed.
+
+Progressive and regressive are meant as the blades see it. A cyclic motion of frequency ν in the rotating frame appears
+in the fixed frame at ν + 1 per revolution, whirling with the rotor, when it runs round the rotor forwards, and at
+|ν - 1| when it runs backwards; the latter whirls against the rotor in the fixed frame for ν > 1 and with it, but slower
+than the blades, for ν < 1. So a mode is progressive where its eigenvector whirls with the rotor faster than the rotor,
+and regressive otherwise. How it whirls in the fixed frame is another number, `whirl`. From one to the other,
+β_1c + i β_1s is what whirls with the rotor and β_1c - i β_1s what whirls against it, for s = iω, ω > 0 and an azimuth
+that grows with rotation (β = β_1c cos ψ + β_1s sin ψ).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor.model import ROTOR_SPEED
+
+_COLLECTIVE = {"flap": "coning"}
+_AZIMUTH = "rotor speed"
+SECOND = ", second root"
+
+
+class Motion(NamedTuple):
+    """A coordinate, or a cyclic pair of them, and the names of its modes.
+
+    Attributes
+    ----------
+    names : tuple of str
+        One, or regressive and progressive.
+    places : tuple of int
+        Of the coordinate, or of its cosine and its sine part, among the coordinates of the model.
+    """
+
+    names: tuple[str, ...]
+    places: tuple[int, ...]
+
+
+def motions(dofs: tuple[str, ...]) -> list[Motion]:
+    """The motions of a model, in the order of its coordinates."""
+    found = []
+    for place, dof in enumerate(dofs):
+        partner = dof[:-1] + "s"
+        if _is_cosine(dof) and partner in dofs:
+            found.append(Motion(_cyclic_names(dof), (place, dofs.index(partner))))
+        elif not (_is_cosine(dof[:-1] + "c") and dof[:-1] + "c" in dofs and dof.endswith("s")):
+            found.append(Motion((_single_name(dof),), (place,)))
+    return found
+
+
+def _is_cosine(dof: str) -> bool:
+    stem, _, part = dof.rpartition("_")
+    return bool(stem) and part.endswith("c") and part[:-1].isdigit()
+
+
+def _cyclic_names(dof: str) -> tuple[str, str]:
+    stem, _, part = dof.rpartition("_")
+    motion = stem if part == "1c" else f"{stem} {part[:-1]}"
+    return f"regressive {motion}", f"progressive {motion}"
+
+
+def _single_name(dof: str) -> str:
+    stem, _, part = dof.rpartition("_")
+    if dof == ROTOR_SPEED:
+        return _AZIMUTH
+    if stem and part == "0":
+        return _COLLECTIVE.get(stem, f"collective {stem}")
+    if stem and part == "d":
+        return f"differential {stem}"
+    return dof
+
+
+def name_list(dofs: tuple[str, ...]) -> list[str]:
+    """All names of a model, in the order of its coordinates."""
+    return [name for motion in motions(dofs) for name in motion.names]
+
+
+def whirl_shares(motion: Motion, held: list[int], left: NDArray, right: NDArray) -> tuple[NDArray, NDArray]:
+    """Participation of what whirls against and with the rotor in each state, two arrays (..., states).
+
+    Parameters
+    ----------
+    motion : Motion
+        A cyclic one.
+    held : list of int
+        Coordinates whose displacement is a state.
+    left, right : array (..., states, states)
+        Left vectors in rows, right ones in columns.
+    """
+    with_rotor, against = 0.0, 0.0
+    for cosine, sine in zip(*(_states(place, held, right.shape[-2]) for place in motion.places), strict=True):
+        c, s = right[..., cosine, :], right[..., sine, :]
+        lc, ls = left[..., :, cosine], left[..., :, sine]
+        with_rotor = with_rotor + np.abs((c + 1j * s) * (lc - 1j * ls)) / 2
+        against = against + np.abs((c - 1j * s) * (lc + 1j * ls)) / 2
+    return against, with_rotor
+
+
+def _states(place: int, held: list[int], states: int) -> list[int]:
+    """States of a coordinate: its displacement, unless it has none, and its rate."""
+    rate = len(held) + place
+    return [held.index(place), rate] if place in held else [rate]
+
+
+def whirl(dofs: tuple[str, ...], held: list[int], values: NDArray, left: NDArray, right: NDArray) -> NDArray:
+    """Sense of whirl in the fixed frame (..., states): 1 with the rotor, -1 against it, by participation.
+
+    NaN for real roots and where a model has no cyclic motion.
+    """
+    against, with_rotor = np.zeros(values.shape), np.zeros(values.shape)
+    for motion in motions(dofs):
+        if len(motion.places) == 2:
+            shares = whirl_shares(motion, held, left, right)
+            against, with_rotor = against + shares[0], with_rotor + shares[1]
+    total = against + with_rotor
+    turned = np.where(values.imag < 0, -1.0, 1.0) * (with_rotor - against)
+    return np.where((total > 0) & (values.imag != 0), turned / np.where(total > 0, total, 1), np.nan)
+
+
+def name_shares(
+    dofs: tuple[str, ...],
+    held: list[int],
+    values: NDArray,
+    left: NDArray,
+    right: NDArray,
+    rotor_speed: float | None,
+) -> NDArray:
+    """Share of each name in each state of one point (names, states); sums to 1 over the names."""
+    columns = []
+    faster = np.abs(values.imag) > (np.inf if rotor_speed is None else abs(rotor_speed))
+    for motion in motions(dofs):
+        if len(motion.places) == 1:
+            places = _states(motion.places[0], held, right.shape[-2])
+            columns.append(sum(np.abs(left[:, place] * right[place]) for place in places))
+            continue
+        against, with_rotor = whirl_shares(motion, held, left, right)
+        swapped = values.imag < 0  # the conjugate of a state whirls as the state does
+        against, with_rotor = (
+            np.where(swapped, with_rotor, against),
+            np.where(swapped, against, with_rotor),
+        )
+        if rotor_speed is None:
+            columns += [against, with_rotor]
+        else:
+            columns += [against + np.where(faster, 0, with_rotor), np.where(faster, with_rotor, 0)]
+    shares = np.array(columns)
+    return shares / shares.sum(axis=0)
+
+
+def assign_names(dofs: tuple[str, ...], held: list[int], shares: NDArray, values: NDArray) -> list[str]:
+    """The name of each state of one point; both states of a pair have the same one.
+
+    Parameters
+    ----------
+    dofs : tuple of str
+    held : list of int
+    shares : array (names, states)
+        Of `name_shares`.
+    values : array (states,)
+        Eigenvalues, each pair side by side.
+    """
+    slots = _slots(dofs, held)
+    fixed: dict[int, int] = {}
+    while True:
+        given = _assignment(shares, slots, fixed)
+        torn = [k for k in np.flatnonzero(values.imag > 0) if given[k] != given[k + 1]]
+        if not torn:
+            names = name_list(dofs)
+            return [names[name] for name in given]
+        # A pair has one name: the likelier of the two, and whoever has its other half finds another.
+        surest = max(torn, key=lambda k: shares[[given[k], given[k + 1]], k].max())
+        name = max((given[surest], given[surest + 1]), key=lambda name: shares[name, surest])
+        fixed |= {int(surest): int(name), int(surest) + 1: int(name)}
+
+
+def _slots(dofs: tuple[str, ...], held: list[int]) -> NDArray:
+    """The name of each of as many places as there are states: two for each mode, one for a rate alone."""
+    slots, count = [], 0
+    for motion in motions(dofs):
+        for _ in motion.names:
+            rate_alone = len(motion.places) == 1 and motion.places[0] not in held
+            slots += [count] * (1 if rate_alone else 2)
+            count += 1
+    return np.array(slots)
+
+
+def _assignment(shares: NDArray, slots: NDArray, fixed: dict[int, int]) -> NDArray:
+    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
+
+    gain = shares[slots].T.copy()  # (states, slots)
+    for state, name in fixed.items():
+        gain[state] = np.where(slots == name, 1e3, 0)
+    return slots[linear_sum_assignment(gain, maximize=True)[1]]

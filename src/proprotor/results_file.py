@@ -1,0 +1,113 @@
+"""Results in netCDF files that every reader opens: complex numbers are stored as real and imaginary parts."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from proprotor.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray
+
+PARTS = ("_real", "_imag")
+_COMPLEX = "complex_of"  # attribute of both parts: the name of the number they make
+
+
+def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
+    """Write a dataset of this package, such as a study or a sweep, as netCDF.
+
+    A complex variable ``eigenvalue`` is stored as ``eigenvalue_real`` and ``eigenvalue_imag``.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+    path : str or path
+        Ends in ``.nc``. A file that exists is replaced, and stays as it is when writing fails.
+
+    Raises
+    ------
+    InputError
+        When the path is no such file, or a variable is in the way of a part.
+    OSError
+        When the file cannot be written.
+    """
+    check_path(path)
+    place = Path(path).resolve()
+    unfinished = place.with_name(f".{place.name}.{os.getpid()}.tmp")
+    try:
+        _in_parts(results).to_netcdf(unfinished, engine="netcdf4", format="NETCDF4")
+        os.replace(unfinished, place)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
+    """See that results can be written there, before they are computed.
+
+    Raises
+    ------
+    InputError
+        When the path does not end in ``.nc``, is a folder, or lies in none.
+    """
+    place = Path(path).resolve()
+    if place.suffix.lower() != ".nc":
+        raise InputError(field, path, "must end in .nc")
+    if place.exists() and not place.is_file():
+        raise InputError(field, path, "must be a file")
+    if not place.parent.is_dir():
+        raise InputError(field, path, "must be in a folder that exists")
+
+
+def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
+    """Read what `save_results` has written, complex numbers as such.
+
+    Raises
+    ------
+    InputError
+        When the file does not exist or is no netCDF file.
+    """
+    import xarray  # here, because it takes long to import
+
+    if not Path(path).is_file():
+        raise InputError("path", path, "must be a file that exists")
+    try:
+        with xarray.open_dataset(path, engine="netcdf4") as stored:
+            return _whole(stored.load())
+    except OSError as error:
+        raise InputError("path", path, f"cannot be read as netCDF ({error.strerror or error})") from None
+
+
+def _in_parts(results: xarray.Dataset) -> xarray.Dataset:
+    """Complex variables as two; the parts are views, and no copies."""
+    parts = {}
+    for name, variable in results.variables.items():
+        if not np.iscomplexobj(variable.values):
+            continue
+        if name in results.coords:
+            raise InputError(str(name), None, "cannot be stored: it is a complex coordinate")
+        for ending, array in zip(PARTS, (variable.values.real, variable.values.imag), strict=True):
+            if f"{name}{ending}" in results.variables:
+                raise InputError(
+                    f"{name}{ending}", None, f"has the name that a part of {name} is stored under"
+                )
+            parts[f"{name}{ending}"] = (variable.dims, array, {**variable.attrs, _COMPLEX: name})
+    whole = {attributes[_COMPLEX] for _, _, attributes in parts.values()}
+    return results.drop_vars(whole).assign(parts)
+
+
+def _whole(stored: xarray.Dataset) -> xarray.Dataset:
+    names = dict.fromkeys(v.attrs[_COMPLEX] for v in stored.data_vars.values() if _COMPLEX in v.attrs)
+    for name in names:
+        real, imaginary = (stored[f"{name}{ending}"] for ending in PARTS)
+        number = np.empty(
+            real.shape, dtype=complex
+        )  # not real + 1j * imaginary, which loses signs and infinities
+        number.real, number.imag = real.values, imaginary.values
+        attributes = {key: value for key, value in real.attrs.items() if key != _COMPLEX}
+        stored = stored.assign({name: (real.dims, number, attributes)})
+        stored = stored.drop_vars([f"{name}{ending}" for ending in PARTS])
+    return stored

@@ -1,0 +1,254 @@
+"""Exact derivatives of eigenvalues, damping and flutter speed by the inputs of a case.
+
+Every input is moved by a complex step, all of them in one batch of models, through trim, airloads, springs and support:
+the imaginary parts of the matrices are their derivatives to rounding. The change of an eigenvalue follows from its two
+vectors without another eigenvalue problem. A boundary G(V, p) = 0 moves by dV/dp = -G_p / G_V; with the level of no
+damping that is -Re λ_p / Re λ_V.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor.eigenvalue_derivatives import STEP, defect, eigenvalue_change, matrix_derivatives
+from proprotor.errors import InputError, unknown_name
+from proprotor.flutter import Boundary, flutter_point, growth_rate
+from proprotor.model import LinearModel
+from proprotor.modes import decomposition
+from proprotor.speed import in_metres_per_second
+from proprotor.sweep import sweep_case
+from proprotor.tracking import Spectrum
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+    from proprotor.datum import Datum
+
+QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
+NEARLY_DEFECTIVE = (
+    10.0  # times the parting of a mode that nothing couples: derivatives hold in a small range only
+)
+
+
+def input_rates(
+    linearize: Callable[[Mapping[str, NDArray]], LinearModel],
+    values: Mapping[str, float],
+    model: LinearModel,
+    modes: Spectrum,
+) -> NDArray:
+    """Derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
+
+    Parameters
+    ----------
+    linearize : callable
+        Models for arrays (inputs,) of the inputs by name, analytic in them.
+    values : mapping of str to float
+        Where the derivatives are wanted.
+    model : LinearModel
+        At these values; one point.
+    modes : Spectrum
+        Of that point: values (modes,), right (states, modes), left (modes, states).
+    """
+    count = len(values)
+    moved = {
+        name: value + 1j * STEP * (np.arange(count) == place)
+        for place, (name, value) in enumerate(values.items())
+    }
+    return eigenvalue_change(model, matrix_derivatives(linearize(moved)), modes)
+
+
+def damping_rate(values: NDArray, changes: NDArray) -> NDArray:
+    """Change of the damping ratio -Re λ/|λ| with a change of λ; NaN for a root at zero."""
+    size = np.abs(values)
+    with np.errstate(all="ignore"):
+        turned = values.real * (values.conj() * changes).real / size**3
+        return np.where(size > 0, -changes.real / size + turned, np.nan)
+
+
+def sensitivity(
+    case: Case,
+    of: str = "flutter_speed",
+    wrt: Sequence[str] | None = None,
+    *,
+    airspeed: Any = None,
+    mode: str | None = None,
+    level: float = 0.0,
+    **options: Any,
+) -> xarray.Dataset:
+    """Exact derivatives by inputs of a case's deck.
+
+    Parameters
+    ----------
+    case : Case
+    of : "flutter_speed", "damping" or "eigenvalue"
+        Damping is the ratio -Re λ/|λ|.
+    wrt : sequence of str, optional
+        Paths of inputs, see `proprotor.design.design_inputs`; all by default.
+    airspeed : float in m/s, text such as "300 kt", or pint quantity
+        Where damping or eigenvalues are; for the flutter speed optionally the airspeeds of the scan.
+    mode : str, optional
+        One mode by name; all by default. For the flutter speed the first boundary of this mode, onset or not, instead
+        of the lowest onset of any.
+    level : float
+        Damping ratio that counts as the boundary of the flutter speed.
+    **options
+        See `proprotor.options.Options`.
+
+    Returns
+    -------
+    xarray.Dataset
+        derivative (input,) or (input, mode), SI units per SI unit of the input; relative, the derivative times the
+        input: the change per change of the input by its own size; value, unit and status of every input; defect and
+        nearly_defective of the modes (`proprotor.eigenvalue_derivatives.defect`): there derivatives hold in a small
+        range only. For the flutter speed also frequency_derivative, of the frequency at the boundary as it moves.
+        Attributes: of, its value where there is one, eigen_solves.
+
+    Raises
+    ------
+    InputError
+        For an unknown quantity, input, mode or option, or where nothing becomes unstable.
+    """
+    if of not in QUANTITIES:
+        raise InputError("of", of, f"must be one of {', '.join(QUANTITIES)}")
+    inputs = _chosen(case, wrt)
+    if of == "flutter_speed":
+        return _of_flutter_speed(case, inputs, airspeed, mode, level, options)
+    if airspeed is None:
+        raise InputError("airspeed", None, f"must be given for the {of}")
+    return _of_modes(case, of, inputs, airspeed, mode, options)
+
+
+def _chosen(case: Case, wrt: Sequence[str] | None) -> dict[str, Datum]:
+    from proprotor.design import design_inputs
+
+    known = design_inputs(case)
+    for path in wrt or ():
+        if path not in known:
+            raise InputError("wrt", path, unknown_name(path, known, "input"))
+    return known if wrt is None else {path: known[path] for path in wrt}
+
+
+def _rates(
+    case: Case,
+    inputs: Mapping[str, Datum],
+    airspeed: float,
+    modes: Spectrum,
+    model: LinearModel,
+    options: Any,
+) -> NDArray:
+    def linearize(values: Mapping[str, NDArray]) -> LinearModel:
+        return case.vary(values).linearize(airspeed, **options)
+
+    return input_rates(linearize, {path: float(n.si) for path, n in inputs.items()}, model, modes)
+
+
+def _of_flutter_speed(
+    case: Case,
+    inputs: Mapping[str, Datum],
+    airspeeds: Any,
+    mode: str | None,
+    level: float,
+    options: Mapping[str, Any],
+) -> xarray.Dataset:
+    found = flutter_point(case, airspeeds, level=level, **options)
+    wanted = [b for b in found.boundaries if (b.onset if mode is None else b.mode == mode)]
+    if not wanted:
+        rule = "has no boundary" if mode else "nothing becomes unstable"
+        low, high = found.searched
+        raise InputError("flutter_speed", mode, f"{rule} between {low:.6g} and {high:.6g} m/s")
+    return at_boundary(case, wanted[0], inputs, level, options, found.eigen_solves)
+
+
+def at_boundary(
+    case: Case,
+    boundary: Boundary,
+    inputs: Mapping[str, Datum],
+    level: float,
+    options: Mapping[str, Any],
+    eigen_solves: int = 0,
+) -> xarray.Dataset:
+    """Derivatives of the airspeed of one boundary: see `sensitivity`. One more eigen-solve, for the vectors."""
+    speed = boundary.position
+    model = case.linearize(speed, **options)
+    spectrum = decomposition(model)
+    modes = spectrum.modes(np.array([np.argmin(np.abs(spectrum.values - boundary.eigenvalue))]))
+    rates = _rates(case, inputs, speed, modes, model, options)[:, 0]
+    moves = -growth_rate(modes.values, rates, level) / boundary.rate
+    frequency = rates.imag + boundary.eigenvalue_rate.imag * moves
+    data = _dataset(inputs, ("input",), moves, "m/s")
+    data["frequency_derivative"] = ("input", frequency, {"units": "rad/s per SI unit of the input"})
+    data["defect"] = ((), float(defect(modes)[0]))
+    data["nearly_defective"] = ((), bool(data.defect > NEARLY_DEFECTIVE))
+    data.attrs = {
+        "of": "flutter_speed",
+        "value": speed,
+        "units": "m/s",
+        "mode": boundary.mode,
+        "level": level,
+        "eigen_solves": eigen_solves + 1,
+    }
+    return data
+
+
+def _of_modes(
+    case: Case,
+    of: str,
+    inputs: Mapping[str, Datum],
+    airspeed: Any,
+    mode: str | None,
+    options: Mapping[str, Any],
+) -> xarray.Dataset:
+    speed = in_metres_per_second(airspeed).reshape(-1)
+    if len(speed) != 1:
+        raise InputError("airspeed", airspeed, "must be one speed")
+    named = sweep_case(case, speed, **options).isel(airspeed=0)
+    if named.reason.item():
+        raise InputError("airspeed", airspeed, named.reason.item())
+    named = named.isel(mode=np.flatnonzero(np.isfinite(named.eigenvalue.values.real)))
+    names = named.mode.values.tolist()
+    if mode is not None and mode not in names:
+        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
+    model = case.linearize(speed[0], **options)
+    spectrum = decomposition(model)
+    distance = np.abs(spectrum.values[None, :] - named.eigenvalue.values[:, None])
+    places = distance.argmin(axis=1)
+    if mode is not None:
+        places, names = places[[names.index(mode)]], [mode]
+    modes = spectrum.modes(places)
+    rates = _rates(case, inputs, speed[0], modes, model, options)
+    value, units = modes.values, "rad/s"
+    if of == "damping":
+        value, units = -modes.values.real / np.abs(modes.values), "1"
+        rates = damping_rate(modes.values, rates)
+    data = _dataset(inputs, ("input", "mode"), rates, units).assign_coords(mode=names)
+    data[of] = ("mode", value, {"units": units})
+    data["defect"] = ("mode", defect(modes))
+    data["nearly_defective"] = ("mode", data.defect.values > NEARLY_DEFECTIVE)
+    data.attrs = {"of": of, "airspeed": float(speed[0]), "eigen_solves": named.attrs["eigen_solves"] + 1}
+    return data
+
+
+def _dataset(
+    inputs: Mapping[str, Datum], dims: tuple[str, ...], derivative: NDArray, units: str
+) -> xarray.Dataset:
+    import xarray  # here, because it takes long to import
+
+    size = np.array([float(number.si) for number in inputs.values()])
+    per = {"units": f"{units} per SI unit of the input"}
+    return xarray.Dataset(
+        {
+            "derivative": (dims, derivative, per),
+            "relative": (dims, derivative * size.reshape(-1, *[1] * (len(dims) - 1)), {"units": units}),
+        },
+        coords={
+            "input": list(inputs),
+            "value": ("input", size),
+            "unit": ("input", [number.unit for number in inputs.values()]),
+            "status": ("input", [number.status for number in inputs.values()]),
+        },
+    )

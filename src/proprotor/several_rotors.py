@@ -1,0 +1,113 @@
+"""Several rotors on one support, such as the two of an aircraft that turn opposite ways."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from proprotor.errors import InputError
+from proprotor.model import HUB, LinearModel
+from proprotor.support import NormalModes
+
+# A mirror across the plane of I and K turns y around, and of the rotations (axial vectors) the other two.
+MIRROR = np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+
+
+class MountedRotor(NamedTuple):
+    """A rotor and the place it has on a support.
+
+    model : LinearModel
+        The rotor alone on its six hub coordinates.
+    hub : array (6, n)
+        Motion of its hub per coordinate of the support, in the support's I, J, K.
+    mirrored : bool
+        Whether it is the model's mirror image: on the left side, turning the other way.
+    rigid_mass : array (6, 6), optional
+        M_hub of the model, only needed where the support's masses include the rotors.
+    """
+
+    model: LinearModel
+    hub: ArrayLike
+    mirrored: bool = False
+    rigid_mass: ArrayLike | None = None
+
+
+def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> LinearModel:
+    """The coupled model of a support and its rotors.
+
+    Coordinates of a rotor are named after it, "right gimbal_1c". The own coordinates of a mirrored rotor are mirrored
+    with it: in the same motion of both, the aircraft stays symmetric. Azimuths are displacements here, each with a
+    root at zero; rotor_speed="constant" leaves them out. The trim is that of the first rotor.
+
+    Parameters
+    ----------
+    rotors : mapping of str to MountedRotor
+        By name, all at the same points.
+    support : NormalModes
+        Its own `hub` is not used: each rotor has one.
+
+    Raises
+    ------
+    InputError
+        Without a rotor, for a model that does not begin with the hub coordinates, a hub of another shape, or a rigid
+        mass that is missing.
+    """
+    if not rotors:
+        raise InputError("rotors", None, "must be one or more")
+    names = list(support.names)
+    n = len(names)
+    placed = {}
+    for name, rotor in rotors.items():
+        hub = _hub_of(name, rotor, n)
+        own = rotor.model.dofs[len(HUB) :]
+        placed[name] = (rotor, hub, slice(len(names), len(names) + len(own)))
+        names += [f"{name} {dof}" for dof in own]
+    if len(set(names)) < len(names):
+        raise InputError(
+            "support.names", ", ".join(support.names), "must differ from the rotors' coordinates"
+        )
+    shape = np.broadcast_shapes(
+        *(rotor.model.M.shape[:-2] for rotor in rotors.values()), support.mass.shape[:-2]
+    )
+    matrices = {}
+    for kind, own in (("M", _mass_alone(support, placed)), ("C", support.damping), ("K", support.stiffness)):
+        whole = np.zeros((*shape, len(names), len(names)))
+        whole[..., :n, :n] = own
+        for rotor, hub, places in placed.values():
+            to_rotor = np.zeros((len(rotor.model.dofs), len(names)))
+            to_rotor[: len(HUB), :n] = hub
+            to_rotor[len(HUB) :, places] = np.eye(places.stop - places.start)
+            whole += to_rotor.T @ getattr(rotor.model, kind) @ to_rotor
+        matrices[kind] = whole
+    (first, hub, _), *_ = placed.values()
+    motion = np.pad(hub, ((0, 0), (0, len(names) - n)))
+    return replace(first.model, **matrices, B=None, dofs=tuple(names), hub=motion, rotor=None)
+
+
+def _hub_of(name: str, rotor: MountedRotor, n: int) -> NDArray:
+    """Hub motion in the axes of the rotor's own model."""
+    if rotor.model.dofs[: len(HUB)] != HUB:
+        raise InputError(
+            f"rotors[{name}].model", ", ".join(rotor.model.dofs), f"must begin with {', '.join(HUB)}"
+        )
+    hub = np.asarray(rotor.hub, dtype=float)
+    if hub.shape != (len(HUB), n) or not np.isfinite(hub).all():
+        raise InputError(
+            f"rotors[{name}].hub", f"array of shape {hub.shape}", f"must be finite, {(len(HUB), n)}"
+        )
+    return MIRROR @ hub if rotor.mirrored else hub
+
+
+def _mass_alone(support: NormalModes, placed: Mapping[str, tuple]) -> NDArray:
+    mass = np.array(support.mass)
+    if support.includes_rotor:
+        for name, (rotor, hub, _) in placed.items():
+            if rotor.rigid_mass is None:
+                rule = "must be given: the support's masses include the rotors"
+                raise InputError(f"rotors[{name}].rigid_mass", None, rule)
+            mass = mass - hub.T @ np.asarray(rotor.rigid_mass) @ hub
+    return mass

@@ -1,0 +1,259 @@
+"""Where in the plane of two inputs a case is stable, and the line between.
+
+A grid of points is evaluated as one batch. Where the largest growth changes sign between two neighbours of the grid,
+the crossing on the edge between them is found to rounding, all edges at once; marching squares joins them into lines.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from proprotor.errors import InputError
+from proprotor.flutter import growth
+from proprotor.model import LinearModel
+from proprotor.modes import some_points, state_matrix
+from proprotor.speed import in_metres_per_second
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+
+AIRSPEED = "airspeed"
+_AT_ONCE = 4096  # points of one batch
+_HALVINGS = 60
+_CLOSE = 1e-10  # of an edge
+_NEUTRAL = 1e-9  # of the largest eigenvalue: growth that says nothing
+
+Plane = Callable[[NDArray, NDArray], LinearModel]  # x and y (k,) to the models there
+
+
+class Edges(NamedTuple):
+    """Edges of the grid on which the boundary crosses: the places of both ends and the crossing, (k, 2) each."""
+
+    first: NDArray
+    last: NDArray
+    crossing: NDArray
+
+
+def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[NDArray, NDArray]:
+    """Largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points."""
+    good = np.isfinite(model.M).all(axis=(-2, -1))
+    best, value = np.full(good.shape, np.nan), np.full(good.shape, np.nan, dtype=complex)
+    if good.any():
+        values = np.linalg.eigvals(state_matrix(some_points(model, good))).astype(complex)
+        found = growth(values, level)
+        found = np.where(np.abs(found) <= _NEUTRAL * np.abs(values).max(axis=-1, keepdims=True), 0.0, found)
+        place = found.argmax(axis=-1)[:, None]
+        best[good] = np.take_along_axis(found, place, -1)[:, 0]
+        critical = np.take_along_axis(values, place, -1)[:, 0]
+        value[good] = critical.real + 1j * np.abs(critical.imag)
+    return best, value
+
+
+def stability_map(
+    case: Case,
+    axes: Mapping[str, ArrayLike],
+    *,
+    airspeed: Any = None,
+    level: float = 0.0,
+    **options: Any,
+) -> xarray.Dataset:
+    """Stability of a case over two inputs.
+
+    Parameters
+    ----------
+    case : Case
+    axes : mapping of str to array
+        Two inputs, x and y, and their values in SI, rising: paths in the deck
+        (`proprotor.design.design_inputs`), or "airspeed", which may be text such as "50:400:5kt".
+    airspeed : float in m/s, text such as "300 kt", or pint quantity
+        Where it is not one of the axes.
+    level : float
+        Damping ratio that counts as the boundary.
+    **options
+        See `proprotor.options.Options`.
+
+    Returns
+    -------
+    xarray.Dataset
+        growth (y, x), the largest Re λ + ζ0 |λ| of all modes, 1/s, positive where a mode is beyond the level; frequency
+        of that mode, rad/s; reason of points that failed. boundary (vertex, axis): the line between, in lines parted
+        by NaN. Attributes: level, eigen_solves.
+
+    Raises
+    ------
+    InputError
+        For axes that are not two, values that do not rise, an unknown input, or an airspeed that is missing.
+    """
+    names, values = _axes(axes)
+    plane = _plane(case, names, airspeed, options)
+    x, y = values
+    grid_x, grid_y = (part.reshape(-1) for part in np.meshgrid(x, y))
+    parts = [
+        _evaluated(plane, grid_x[start : start + _AT_ONCE], grid_y[start : start + _AT_ONCE], level)
+        for start in range(0, len(grid_x), _AT_ONCE)
+    ]
+    shape = (len(y), len(x))
+    largest, value, reason = (np.concatenate(part).reshape(shape) for part in zip(*parts, strict=True))
+    edges, solves = _crossings(plane, x, y, largest, level)
+    return _dataset(names, values, largest, value, reason, _lines(edges, largest)).assign_attrs(
+        level=level, eigen_solves=int(np.isfinite(largest).sum()) + solves
+    )
+
+
+def _axes(axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[NDArray, NDArray]]:
+    if len(axes) != 2:
+        raise InputError("axes", ", ".join(axes), "must be two inputs")
+    names = tuple(axes)
+    values = tuple(
+        in_metres_per_second(given) if name == AIRSPEED else np.asarray(given, dtype=float)
+        for name, given in axes.items()
+    )
+    for name, given in zip(names, values, strict=True):
+        if given.ndim != 1 or len(given) < 2 or not np.all(np.diff(given) > 0):
+            raise InputError(name, given.tolist(), "must be a list of values that rise")
+    return names, values
+
+
+def _plane(case: Case, names: tuple[str, str], airspeed: Any, options: Mapping[str, Any]) -> Plane:
+    if AIRSPEED not in names and airspeed is None:
+        raise InputError("airspeed", None, "must be given, or be one of the axes")
+    if AIRSPEED in names and airspeed is not None:
+        raise InputError("airspeed", airspeed, "is one of the axes already")
+
+    def linearize(x: NDArray, y: NDArray) -> LinearModel:
+        given = dict(zip(names, (x, y), strict=True))
+        speed = given.pop(AIRSPEED, airspeed)
+        return case.vary(given).linearize(speed, **options)
+
+    return linearize
+
+
+def _evaluated(plane: Plane, x: NDArray, y: NDArray, level: float) -> tuple[NDArray, NDArray, NDArray]:
+    model = plane(x, y)
+    return *largest_growth(model, level), model.trim.reason
+
+
+def _crossings(plane: Plane, x: NDArray, y: NDArray, largest: NDArray, level: float) -> tuple[Edges, int]:
+    """The boundary on the edges of the grid, by false position with halving (Illinois) on all of them at once."""
+    unstable = largest > 0
+    good = np.isfinite(largest)
+    along_x = np.argwhere((unstable[:, 1:] != unstable[:, :-1]) & good[:, 1:] & good[:, :-1])
+    along_y = np.argwhere((unstable[1:] != unstable[:-1]) & good[1:] & good[:-1])
+    first = np.concatenate([along_x, along_y])
+    last = np.concatenate([along_x + np.array([0, 1]), along_y + np.array([1, 0])])
+    start, end = (np.stack([x[place[:, 1]], y[place[:, 0]]], axis=1) for place in (first, last))
+    values = np.stack([largest[tuple(place.T)] for place in (first, last)])
+    low, high = np.zeros(len(first)), np.ones(len(first))
+    share, solves = np.full(len(first), 0.5), 0
+    active, side = np.arange(len(first)), np.full(len(first), -1)
+    for _ in range(_HALVINGS):
+        if not len(active):
+            break
+        previous = share[active]
+        share[active] = _between(low[active], high[active], values[:, active])
+        moved = np.abs(share[active] - previous)
+        at = start[active] + share[active, None] * (end[active] - start[active])
+        found, *_ = _evaluated(plane, at[:, 0], at[:, 1], level)
+        solves += len(active)
+        # A point that fails between two that do not ends the search on its edge.
+        works = np.isfinite(found)
+        active, found, moved = active[works], found[works], moved[works]
+        same = (found > 0) == (values[0, active] > 0)
+        # An end that stays twice running counts half, so that it does not stay for ever.
+        again = np.where(same == side[active], 0.5, 1.0)
+        side[active] = same
+        kept = values[:, active] * again
+        low[active] = np.where(same, share[active], low[active])
+        high[active] = np.where(same, high[active], share[active])
+        values[:, active] = np.where(same, found, kept[0]), np.where(same, kept[1], found)
+        active = active[(np.abs(found) > 0) & (moved > _CLOSE) & (high[active] - low[active] > _CLOSE)]
+    return Edges(first, last, start + share[:, None] * (end - start)), solves
+
+
+def _between(low: NDArray, high: NDArray, values: NDArray) -> NDArray:
+    """Where the line through both values is zero, kept off the ends."""
+    width = high - low
+    with np.errstate(all="ignore"):
+        part = values[0] / (values[0] - values[1])
+    part = np.where(np.isfinite(part), part, 0.5)
+    return low + width * np.clip(part, 1e-9, 1 - 1e-9)
+
+
+def _lines(edges: Edges, largest: NDArray) -> NDArray:
+    """Crossings (vertices, 2) in the order of the lines they form, parted by NaN."""
+    place = {
+        (tuple(first), tuple(last)): number
+        for number, (first, last) in enumerate(zip(edges.first.tolist(), edges.last.tolist(), strict=True))
+    }
+    neighbours: dict[int, list[int]] = defaultdict(list)
+    for row, column in np.ndindex(largest.shape[0] - 1, largest.shape[1] - 1):
+        for one, other in _in_cell(place, row, column, largest):
+            neighbours[one].append(other)
+            neighbours[other].append(one)
+    ordered: list[NDArray] = []
+    left = set(neighbours)
+    while left:
+        ends = [number for number in left if len(neighbours[number]) == 1]
+        line = _walk(min(ends or left), neighbours, left)
+        ordered += [*edges.crossing[line], np.full(2, np.nan)]
+    return np.array(ordered[:-1]).reshape(-1, 2)
+
+
+def _walk(start: int, neighbours: Mapping[int, list[int]], left: set[int]) -> list[int]:
+    """Vertices from one end of a line to the other; a closed line ends where it began."""
+    line, here = [start], start
+    left.discard(start)
+    while ahead := [number for number in neighbours[here] if number in left]:
+        here = ahead[0]
+        line.append(here)
+        left.discard(here)
+    if len(line) > 2 and start in neighbours[here]:
+        line.append(start)
+    return line
+
+
+def _in_cell(place: Mapping[tuple, int], row: int, column: int, largest: NDArray) -> list[tuple[int, int]]:
+    """Pairs of crossings that the boundary joins within one cell; two pairs at a saddle, by the mean of its corners."""
+    a, b, c, d = (row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)
+    sides = {
+        name: place.get(edge) for name, edge in zip("sent", ((a, b), (b, c), (d, c), (a, d)), strict=True)
+    }
+    found = [number for number in sides.values() if number is not None]
+    if len(found) == 2:
+        return [(found[0], found[1])]
+    if len(found) < 4:
+        return []
+    centre = np.mean([largest[corner] for corner in (a, b, c, d)]) > 0
+    if centre == (largest[a] > 0):  # a and c are joined: the boundary cuts off b and d
+        return [(sides["s"], sides["e"]), (sides["n"], sides["t"])]
+    return [(sides["s"], sides["t"]), (sides["e"], sides["n"])]
+
+
+def _dataset(
+    names: tuple[str, str],
+    values: tuple[NDArray, NDArray],
+    largest: NDArray,
+    value: NDArray,
+    reason: NDArray,
+    boundary: NDArray,
+) -> xarray.Dataset:
+    import xarray  # here, because it takes long to import
+
+    dims = names[::-1]
+    frequency = np.where(np.isnan(largest), np.nan, value.imag)
+    return xarray.Dataset(
+        {
+            "growth": (dims, largest, {"units": "1/s", "long_name": "largest growth of all modes"}),
+            "frequency": (dims, frequency, {"units": "rad/s", "long_name": "of the mode that grows most"}),
+            "reason": (dims, reason.astype(str), {"long_name": "why a point failed"}),
+            "boundary": (("vertex", "axis"), boundary),
+        },
+        coords={names[0]: values[0], names[1]: values[1], "axis": list(names)},
+    )

@@ -1,0 +1,381 @@
+"""What a study finds out about one batch of designs: eigenvalues, the least stable mode, trim, flutter speed.
+
+A design that cannot be, or a point that fails, has its reason and NaN; the rest of the batch is as if it were alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor import flutter_scan
+from proprotor.errors import InputError
+from proprotor.modes import coordinate_motion, eigensystem, held_coordinates, participation, state_matrix
+from proprotor.sampling import AIRSPEED
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+    from proprotor.model import LinearModel
+
+QUANTITIES = ("eigenvalue", "least_stable", "trim", "flutter", "vectors")
+DEFAULT_QUANTITIES = QUANTITIES[:3]
+_NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping
+_BLOCK = 64  # points whose vectors stay in the cache
+_BAD_INPUT = (InputError, np.linalg.LinAlgError)
+
+POINT, DESIGN = "point", "design"
+
+
+class Variable(NamedTuple):
+    """A variable of the results: on points or designs, further dimensions, type, unit and meaning."""
+
+    on: str
+    dims: tuple[str, ...]
+    dtype: Any
+    units: str
+    meaning: str
+
+
+VARIABLES: dict[str, dict[str, Variable]] = {
+    "eigenvalue": {
+        "eigenvalue": Variable(POINT, ("state",), complex, "rad/s", "all eigenvalues, by frequency |Im s|"),
+    },
+    "least_stable": {
+        "growth_rate": Variable(POINT, (), float, "1/s", "largest real part of all eigenvalues"),
+        "damping_ratio": Variable(
+            POINT, (), float, "1", "-Re s/|s| of the mode with the lowest damping ratio"
+        ),
+        "frequency": Variable(POINT, (), float, "rad/s", "|Im s| of the mode with the lowest damping ratio"),
+    },
+    "trim": {
+        "collective": Variable(POINT, (), float, "rad", "pitch at 0.75 R without the elastic pitch"),
+        "coning": Variable(POINT, (), float, "rad", "trim flap angle beyond the precone"),
+        "lag": Variable(POINT, (), float, "rad", "trim lag angle"),
+        "elastic_pitch": Variable(POINT, (), float, "rad", "trim elastic pitch"),
+        "thrust": Variable(POINT, (), float, "N", "of the airloads on the rotor"),
+        "torque": Variable(
+            POINT, (), float, "N*m", "of the airloads on the rotor, positive where it speeds it up"
+        ),
+    },
+    "flutter": {
+        "flutter_speed": Variable(
+            DESIGN, (), float, "m/s", "lowest airspeed of the range at which stability is lost"
+        ),
+        "flutter_frequency": Variable(
+            DESIGN, (), float, "rad/s", "|Im s| of the mode that loses it; 0: divergence"
+        ),
+        "flutter_coordinate": Variable(DESIGN, (), str, "", "coordinate that takes part in it most"),
+        "flutter_note": Variable(DESIGN, (), str, "", "why there is no flutter speed"),
+    },
+    "vectors": {
+        "vector": Variable(
+            POINT, ("dof", "state"), complex, "", "motion of the coordinates; largest component 1"
+        ),
+    },
+}
+ALWAYS = {
+    "reason": Variable(POINT, (), str, "", "why a point failed"),
+    "warning": Variable(POINT, (), str, "", "what makes a point doubtful"),
+}
+
+_SCAN = {  # what the search for a flutter speed needs of every point, whether or not it is among the results
+    "growth_rate": VARIABLES["least_stable"]["growth_rate"],
+    "neutral_growth": Variable(POINT, (), float, "1/s", "growth that is rounding of a neutral root"),
+}
+
+
+def variables(quantities: tuple[str, ...]) -> dict[str, Variable]:
+    """The variables of the chosen quantities, by name."""
+    return {name: it for quantity in quantities for name, it in VARIABLES[quantity].items()} | ALWAYS
+
+
+def empty(variable: Variable, shape: tuple[int, ...]) -> NDArray:
+    """An array of a variable with nothing found yet."""
+    dtype = object if variable.dtype is str else variable.dtype
+    return np.full(shape, "" if variable.dtype is str else np.nan, dtype=dtype)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """A block of designs at a block of airspeeds.
+
+    inputs: SI values (designs,) by deck path, airspeed among them where it varies with the design; airspeed (speeds,).
+    """
+
+    inputs: Mapping[str, NDArray]
+    airspeed: NDArray | None
+
+    def some(self, rows: Any, columns: Any = slice(None)) -> Batch:
+        """Some of the designs, at some of the airspeeds."""
+        speeds = None if self.airspeed is None else self.airspeed[columns]
+        return Batch({name: values[rows] for name, values in self.inputs.items()}, speeds)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Designs and airspeeds."""
+        speeds = 1 if self.airspeed is None else len(self.airspeed)
+        return len(next(iter(self.inputs.values()))) if self.inputs else 1, speeds
+
+    @property
+    def speeds(self) -> NDArray:
+        """Airspeeds that broadcast to the shape of the batch."""
+        return self.inputs[AIRSPEED][:, None] if self.airspeed is None else self.airspeed
+
+    @property
+    def numbers(self) -> dict[str, NDArray]:
+        """Numbers of the deck that vary, (designs, 1)."""
+        return {name: values[:, None] for name, values in self.inputs.items() if name != AIRSPEED}
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What to find for any batch; the same everywhere in a study, and sent to its workers once.
+
+    Parameters
+    ----------
+    case : Case
+    quantities : tuple of str
+        Of `QUANTITIES`.
+    options : mapping
+        Of `Case.linearize`.
+    dofs : tuple of str
+        Coordinates of the model.
+    states : int
+        Its number of eigenvalues.
+    tolerance : float
+        On a flutter speed, m/s.
+    """
+
+    case: Case
+    quantities: tuple[str, ...]
+    options: Mapping[str, Any] = field(default_factory=dict)
+    dofs: tuple[str, ...] = ()
+    states: int = 0
+    tolerance: float = flutter_scan.TOLERANCE
+
+    def __call__(self, batch: Batch) -> dict[str, NDArray]:
+        """All variables of a batch: (designs, speeds, …) those of points, (designs,) those of designs."""
+        found = self._blank(batch.shape)
+        refused = self._refusals(batch)
+        found["reason"][:] = refused[:, None]
+        self._fill(found, batch, np.flatnonzero(refused == ""), np.arange(batch.shape[1]))
+        if "flutter" in self.quantities:
+            self._find_flutter(found, batch)
+        return {name: found[name] for name in variables(self.quantities)}
+
+    def _blank(self, shape: tuple[int, int]) -> dict[str, NDArray]:
+        sizes = {"state": self.states, "dof": len(self.dofs)}
+        wanted = variables(self.quantities) | (_SCAN if "flutter" in self.quantities else {})
+        return {
+            name: empty(it, (*(shape if it.on == POINT else shape[:1]), *(sizes[dim] for dim in it.dims)))
+            for name, it in wanted.items()
+        }
+
+    def _refusals(self, batch: Batch) -> NDArray:
+        """Why each design cannot be, empty where it can: those refused together are halved until one stands alone."""
+        reasons = np.full(batch.shape[0], "", dtype=object)
+        parts = [np.arange(batch.shape[0])] if batch.numbers else []
+        while parts:
+            rows = parts.pop()
+            try:
+                self.case.vary(batch.some(rows).numbers)
+            except InputError as error:
+                if len(rows) > 1:
+                    parts.extend(np.array_split(rows, 2))
+                else:
+                    reasons[rows] = self._told(batch.some(rows), error)
+        return reasons
+
+    def _told(self, single: Batch, error: Exception) -> str:
+        """A refusal on one line, with plain numbers of the design in place of arrays."""
+        try:
+            self.case.vary({name: float(values[0, 0]) for name, values in single.numbers.items()})
+        except InputError as plain:
+            error = plain
+        return " ".join(str(error).split("\n"))
+
+    def _fill(self, found: dict[str, NDArray], batch: Batch, rows: NDArray, columns: NDArray) -> None:
+        """Analyse designs and airspeeds at once; where that fails, halves of them, until what is wrong stands alone."""
+        if not len(rows):
+            return
+        part = batch.some(rows, columns)
+        try:
+            points = self._points(part)
+        except _BAD_INPUT as error:
+            if len(rows) > 1:
+                for half in np.array_split(rows, 2):
+                    self._fill(found, batch, half, columns)
+            elif len(columns) > 1:
+                for half in np.array_split(columns, 2):
+                    self._fill(found, batch, rows, half)
+            else:
+                found["reason"][np.ix_(rows, columns)] = self._told(part, error)
+            return
+        for name in found.keys() & points.keys():
+            found[name][np.ix_(rows, columns)] = points[name]
+
+    def _model(self, batch: Batch, speeds: NDArray) -> LinearModel:
+        case = self.case.vary(batch.numbers) if batch.numbers else self.case
+        shape = np.broadcast_shapes(np.shape(speeds), (batch.shape[0], 1))
+        return case.linearize(np.broadcast_to(speeds, shape), **self.options)
+
+    def _points(self, batch: Batch) -> dict[str, NDArray]:
+        model = self._model(batch, batch.speeds)
+        found: dict[str, NDArray] = {name: getattr(model.trim, name) for name in ALWAYS}
+        if "trim" in self.quantities:
+            found |= {name: getattr(model.trim, name) for name in VARIABLES["trim"]}
+        if "vectors" in self.quantities:
+            found |= _eigenvalues_and_vectors(model, self.states)
+        else:
+            found["eigenvalue"] = _eigenvalues(model, self.states)
+        if {"least_stable", "flutter"} & set(self.quantities):
+            found |= _least_stable(found["eigenvalue"])
+        return found
+
+    # Flutter speed --------------------------------------------------------------------------------
+
+    def _find_flutter(self, found: dict[str, NDArray], batch: Batch) -> None:
+        scan = (found["growth_rate"], batch.airspeed, found["reason"], found["neutral_growth"])
+        bracket = flutter_scan.brackets(*scan)
+        found["flutter_note"][:] = bracket.note
+        failure = np.full(batch.shape[0], "", dtype=object)
+
+        def growth(rows: NDArray, speeds: NDArray) -> NDArray:
+            values, failure[rows] = self._one_speed_each(batch.some(rows), speeds, self._growth_of)
+            return values.get("growth_rate", np.full(len(rows), np.nan))
+
+        speed = flutter_scan.refine(bracket, growth, self.tolerance)
+        found["flutter_speed"][:] = speed
+        rows = np.flatnonzero(np.isfinite(speed))
+        if len(rows):
+            values, _ = self._one_speed_each(batch.some(rows), speed[rows], self._mode_at_boundary)
+            for name, array in values.items():
+                found[name][rows] = array
+        for row in np.flatnonzero(np.isnan(speed) & (bracket.note == "")):
+            found["flutter_note"][row] = failure[row] or "the search between two airspeeds did not converge"
+
+    def _one_speed_each(
+        self, batch: Batch, speeds: NDArray, analyse: Callable[[LinearModel], dict[str, NDArray]]
+    ) -> tuple[dict[str, NDArray], NDArray]:
+        """What an analysis finds for each design at an airspeed of its own (designs,), and why it failed."""
+        try:
+            model = self._model(batch, speeds[:, None])
+            return {name: array[:, 0] for name, array in analyse(model).items()}, model.trim.reason[:, 0]
+        except _BAD_INPUT as error:
+            if len(speeds) == 1:
+                return {}, np.array([self._told(batch, error)], dtype=object)
+        parts = np.array_split(np.arange(len(speeds)), 2)
+        halves = [self._one_speed_each(batch.some(part), speeds[part], analyse) for part in parts]
+        values = {}
+        for part, (half, _) in zip(parts, halves, strict=True):
+            for name, array in half.items():
+                missing = "" if array.dtype == object else np.nan
+                values.setdefault(name, np.full(len(speeds), missing, dtype=array.dtype))[part] = array
+        return values, np.concatenate([reason for _, reason in halves])
+
+    def _growth_of(self, model: LinearModel) -> dict[str, NDArray]:
+        return _least_stable(_eigenvalues(model, self.states))
+
+    @staticmethod
+    def _mode_at_boundary(model: LinearModel) -> dict[str, NDArray]:
+        """Frequency and main coordinate of the mode with the largest real part."""
+        system = eigensystem(model)
+        place = np.nan_to_num(_growth(system.values), nan=-np.inf).argmax(axis=-1)[..., None]
+        shares = np.take_along_axis(participation(model, system), place[..., None], -1)[..., 0]
+        frequency = np.abs(np.take_along_axis(system.values, place, -1)[..., 0].imag)
+        main = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-1)]
+        return {"flutter_frequency": frequency, "flutter_coordinate": main}
+
+
+def _good_part(model: LinearModel) -> tuple[NDArray | None, LinearModel]:
+    """Which points have a trim, None for all of them, and the model there."""
+    good = np.asarray(model.trim.converged)
+    if good.all():
+        return None, model
+    parts = {name: getattr(model, name)[good] for name in ("M", "C", "K", "airspeed")}
+    return good, replace(model, **parts)
+
+
+def _at(good: NDArray | None, found: NDArray, shape: tuple[int, ...]) -> NDArray:
+    """What was found at the good points, in the shape of the batch, NaN at the others."""
+    if good is None:
+        return found
+    whole = np.full((*shape, *found.shape[1:]), np.nan, dtype=found.dtype)
+    whole[good] = found
+    return whole
+
+
+def _eigenvalues(model: LinearModel, states: int) -> NDArray:
+    """All eigenvalues (..., states), by |Im s| and the one above the real axis first; NaN at failed points."""
+    good, part = _good_part(model)
+    if good is not None and not good.any():
+        return np.full((*good.shape, states), np.nan, dtype=complex)
+    values = np.linalg.eigvals(state_matrix(part)).astype(complex, copy=False)
+    values = np.take_along_axis(values, _by_frequency(values), -1)
+    return _at(good, values, model.M.shape[:-2])
+
+
+def _by_frequency(values: NDArray) -> NDArray:
+    return np.lexsort((values.real, values.imag < 0, np.abs(values.imag)), axis=-1)
+
+
+def _eigenvalues_and_vectors(model: LinearModel, states: int) -> dict[str, NDArray]:
+    """The same with the motion of the coordinates (..., n, states), its largest component 1."""
+    good, part = _good_part(model)
+    n, shape = len(model.dofs), model.M.shape[:-2]
+    if good is not None and not good.any():
+        sizes = {"eigenvalue": (states,), "vector": (n, states)}
+        return {name: np.full((*shape, *size), np.nan, dtype=complex) for name, size in sizes.items()}
+    matrix = state_matrix(part)
+    flat = matrix.reshape(-1, *matrix.shape[-2:])
+    values, vectors = (
+        np.empty((len(flat), states), dtype=complex),
+        np.empty((len(flat), n, states), dtype=complex),
+    )
+    for start in range(0, len(flat), _BLOCK):
+        rows = slice(start, start + _BLOCK)
+        found, right = np.linalg.eig(flat[rows])
+        order = _by_frequency(found)
+        values[rows] = np.take_along_axis(found, order, -1)
+        shapes = coordinate_motion(held_coordinates(part), n, found, right)
+        vectors[rows] = _largest_one(np.take_along_axis(shapes, order[:, None, :], -1))
+    leading = matrix.shape[:-2]
+    return {
+        name: _at(good, array.reshape(*leading, *array.shape[1:]), shape)
+        for name, array in (("eigenvalue", values), ("vector", vectors))
+    }
+
+
+def _largest_one(shapes: NDArray) -> NDArray:
+    """Columns divided by their largest component."""
+    size = np.nan_to_num(shapes.real**2 + shapes.imag**2)
+    with np.errstate(all="ignore"):
+        return shapes / np.take_along_axis(shapes, size.argmax(axis=-2)[..., None, :], -2)
+
+
+def _growth(values: NDArray) -> NDArray:
+    """Real part of each eigenvalue; that of a root at zero does not count."""
+    size = np.abs(values)
+    return np.where(size <= _NEUTRAL * size.max(axis=-1, keepdims=True), -np.inf, values.real)
+
+
+def _least_stable(values: NDArray) -> dict[str, NDArray]:
+    """Growth of the batch's points, damping and frequency of the mode damped least, from eigenvalues (..., states)."""
+    size = np.abs(values)
+    largest = size.max(axis=-1)
+    counts = size > _NEUTRAL * largest[..., None]
+    with np.errstate(all="ignore"):
+        ratio = np.where(counts, -values.real / size, np.inf)
+    place = ratio.argmin(axis=-1)[..., None]
+    failed = np.isnan(largest)
+    growth = np.where(counts, values.real, -np.inf).max(axis=-1)
+    return {
+        "growth_rate": np.where(failed, np.nan, growth),
+        "neutral_growth": flutter_scan.NOT_UNSTABLE * largest,
+        "damping_ratio": np.where(failed, np.nan, np.take_along_axis(ratio, place, -1)[..., 0]),
+        "frequency": np.where(failed, np.nan, np.abs(np.take_along_axis(values.imag, place, -1)[..., 0])),
+    }

@@ -1,0 +1,70 @@
+"""What a process does that analyses batches for a study.
+
+It reads pickled messages from its standard input and answers on its standard output, one answer to each: an `Analysis`
+(answered by None) for all batches that follow, or a batch, answered by what was found. An exception is an answer too.
+It ends with its input, so that it never outlives the study.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import struct
+import sys
+import traceback
+from typing import IO, Any
+
+_LENGTH = struct.Struct("<Q")
+
+
+def send(stream: IO[bytes], message: Any) -> None:
+    """Write one message."""
+    content = pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)
+    stream.write(_LENGTH.pack(len(content)))
+    stream.write(content)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> Any:
+    """Read one message.
+
+    Raises
+    ------
+    EOFError
+        When the other side has ended.
+    """
+    length = stream.read(_LENGTH.size)
+    if len(length) < _LENGTH.size:
+        raise EOFError
+    content = stream.read(_LENGTH.unpack(length)[0])
+    if len(content) < _LENGTH.unpack(length)[0]:
+        raise EOFError
+    return pickle.loads(content)
+
+
+def main() -> None:
+    """Answer messages until there are no more."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the study ends its workers
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # whatever prints must not get among the answers
+    analysis = None
+    while True:
+        try:
+            message = receive(sys.stdin.buffer)
+        except EOFError:
+            return
+        except Exception as error:  # what was sent cannot be loaded here
+            answer: Any = error
+        else:
+            try:
+                analysis, answer = (message, None) if callable(message) else (analysis, analysis(message))
+            except Exception as error:
+                error.add_note(traceback.format_exc())  # a traceback itself cannot be sent
+                answer = error
+        try:
+            send(answers, answer)
+        except BrokenPipeError:
+            return
+        except Exception as error:  # an exception that cannot be sent
+            send(answers, RuntimeError(f"{type(answer).__name__}: {answer} ({error})"))

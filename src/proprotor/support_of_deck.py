@@ -1,0 +1,198 @@
+"""The support of a deck, for one design or a batch of designs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.errors import InputError
+from proprotor.support import HUB_AXES, NormalModes, rigid_support, two_axis_pivot
+
+if TYPE_CHECKING:
+    from proprotor.datum import Datum
+    from proprotor.support_sections import (
+        BeamWingSection,
+        MatricesSection,
+        NastranSection,
+        NormalModesSection,
+        PivotSection,
+        RigidSection,
+        SupportSection,
+    )
+    from proprotor.wing_aerodynamics import Strips
+
+_KINDS_OF_STRAIN = ("beam", "chord", "torsion")
+
+
+def support_of(section: SupportSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    """The support of a section of a deck.
+
+    Parameters
+    ----------
+    section : SupportSection
+    numbers : mapping of str to Datum
+        The deck's numbers by path, perhaps arrays of many designs, or complex. Those of the structure of a beam
+        wing, and the units of a file, must be real.
+
+    Raises
+    ------
+    InputError
+        When a number or a file is not that of a support.
+    """
+    return _BUILDERS[section.kind](section, numbers)
+
+
+def _normal_modes(section: NormalModesSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    names = [mode.name for mode in section.modes]
+    modes = [_values(numbers, f"support.modes[{name}]") for name in names]
+    hub = [_side_by_side(mode.get(axis, 0.0) for mode in modes) for axis in HUB_AXES]
+    support = NormalModes.from_frequencies(
+        names=names,
+        generalized_mass=_side_by_side(mode["generalized_mass"] for mode in modes),
+        frequency=_side_by_side(mode["frequency"] for mode in modes),
+        damping_ratio=_side_by_side(mode["damping_ratio"] for mode in modes),
+        hub=np.stack(np.broadcast_arrays(*hub), axis=-2),
+        includes_rotor=section.includes_rotor,
+    )
+    return _with_assumed_airloads(support, section, numbers)
+
+
+def _pivot(section: PivotSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    given = _values(numbers, "support")
+    pairs = {
+        name: _side_by_side(given.get(f"{axis}_{name}", 0.0) for axis in ("pitch", "yaw"))
+        for name in ("inertia", "stiffness", "damping")
+    }
+    return two_axis_pivot(given["distance"], **pairs, includes_rotor=section.includes_rotor)
+
+
+def _rigid(section: RigidSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    return rigid_support()
+
+
+def _matrices(section: MatricesSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    from proprotor.support_file import read_matrix_market, read_npz
+
+    given = _values(numbers, "support")
+    _must_be_real(given)
+    read = read_matrix_market if section.file is None else read_npz
+    support = read(**given, hub=section.hub, includes_rotor=section.includes_rotor)
+    return _with_assumed_airloads(support, section, numbers)
+
+
+def _nastran(section: NastranSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    from proprotor.nastran import nastran_modes
+
+    given = _values(numbers, "support")
+    _must_be_real(given)
+    support = nastran_modes(**given, hub=section.hub, includes_rotor=section.includes_rotor)
+    return _with_assumed_airloads(support, section, numbers)
+
+
+def _beam_wing(section: BeamWingSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    from proprotor.wing_aerodynamics import WingAerodynamics, in_airstream
+
+    given = _values(numbers, "support")
+    _must_be_real(given)
+    support, strips = _stacked(_each_design(given, lambda one: _one_beam_wing(one, section.downstop)))
+    if section.wing_aerodynamics is None:
+        return support
+    airloads = _values(numbers, "support.wing_aerodynamics")
+    return in_airstream(support, strips, WingAerodynamics(**airloads, sweep=given.get("sweep", 0.0)))
+
+
+def _one_beam_wing(given: dict[str, Any], downstop: bool) -> tuple[NormalModes, Strips]:
+    from proprotor.beam_wing import Pylon, Wing, beam_structure, on_coordinates
+    from proprotor.wing_aerodynamics import beam_strips
+
+    spring = given.get("downstop_stiffness_on" if downstop else "downstop_stiffness_off")
+    wing, pylon = (
+        {entry.name: given[entry.name] for entry in fields(kind) if entry.name in given}
+        for kind in (Wing, Pylon)
+    )
+    structure = beam_structure(Wing(**wing), Pylon(**pylon, pitch_stiffness=spring))
+    every = given["damping_ratio"] if "damping_ratio" in given else given["loss_factor"] / 2
+    ratios = {kind: given.get(f"{kind}_damping_ratio", every) for kind in _KINDS_OF_STRAIN} | {"axial": every}
+    found = on_coordinates(structure, given.get("modes"), ratios, given["rotor_mass"])
+    return found.support, beam_strips(structure, found.shapes)
+
+
+def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[str, Datum]) -> NormalModes:
+    if section.wing_aerodynamics is None:
+        return support
+    from proprotor.wing_aerodynamics import WingAerodynamics, cantilever_strips, in_airstream
+
+    given = _values(numbers, "support.wing_aerodynamics")
+    strips = cantilever_strips(support, given.pop("span"), given.pop("mast_length"))
+    return in_airstream(support, strips, WingAerodynamics(**given))
+
+
+_BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
+    "normal-modes": _normal_modes,
+    "beam-wing": _beam_wing,
+    "matrices": _matrices,
+    "nastran": _nastran,
+    "pivot": _pivot,
+    "rigid": _rigid,
+}
+
+
+def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any]) -> Any:
+    """What `build` makes of each design of a batch, in an array of the batch's shape."""
+    varied = {name: value for name, value in given.items() if isinstance(value, np.ndarray)}
+    shape = np.broadcast_shapes(*(value.shape for value in varied.values()))
+    spread = {name: np.broadcast_to(value, shape) for name, value in varied.items()}
+    made = np.empty(shape, dtype=object)
+    for place in np.ndindex(shape):
+        made[place] = build(dict(given) | {name: float(value[place]) for name, value in spread.items()})
+    return made
+
+
+def _stacked(made: np.ndarray) -> tuple[NormalModes, Strips]:
+    """One support and its strips, with the axes of the batch in front."""
+    from proprotor.wing_aerodynamics import Strips
+
+    first, strips = made.flat[0]
+    if not made.shape:
+        return first, strips
+
+    def stack(pick: Callable[[Any], Any]) -> np.ndarray:
+        parts = np.stack([pick(one) for one in made.flat])
+        return parts.reshape(*made.shape, *parts.shape[1:])
+
+    matrices = {
+        name: stack(lambda one, name=name: getattr(one[0], name))
+        for name in ("mass", "damping", "stiffness", "hub")
+    }
+    return (
+        replace(first, **matrices),
+        Strips(*(stack(lambda one, k=k: one[1][k]) for k in range(len(strips)))),
+    )
+
+
+def _must_be_real(given: Mapping[str, Any]) -> None:
+    for name, value in given.items():
+        if np.iscomplexobj(value):
+            raise InputError(
+                name, None, "must be real here; take differences for the derivative with respect to it"
+            )
+
+
+def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
+    """The SI values of a section's own numbers by field; one along the wing as (stations, values)."""
+    own = {
+        path.removeprefix(f"{section}."): n for path, n in numbers.items() if path.startswith(f"{section}.")
+    }
+    return {
+        name: n.si if n.r_over_R is None else (np.array(n.r_over_R), np.array(n.si))
+        for name, n in own.items()
+        if "." not in name
+    }
+
+
+def _side_by_side(values: Iterable[Any]) -> np.ndarray:
+    """Numbers of the modes along a last axis; leading axes are those of many designs."""
+    return np.stack(np.broadcast_arrays(*values), axis=-1)

@@ -1,0 +1,200 @@
+"""How uncertain a result is, and because of which inputs: distributions and Sobol indices from a study of a sample."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor.errors import InputError
+from proprotor.flutter_scan import STABLE, UNSTABLE
+
+if TYPE_CHECKING:
+    import xarray
+
+PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
+_MOST_LEFT_OUT = 0.05  # of the base samples, before indices say little about the sample that was drawn
+
+
+def distribution(
+    results: xarray.Dataset, of: str = "flutter_speed", percentiles: Sequence[float] = PERCENTILES
+) -> xarray.Dataset:
+    """Percentiles of a result over the designs of a sample.
+
+    Designs that stay stable throughout the airspeeds have a flutter speed above them, and those unstable from the
+    start one below: they count as such, and a percentile among them is inf or -inf, not a number made up. Failed
+    designs are left out and counted.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        A study of `latin_hypercube`, `sobol`, or `points`. Of a Saltelli sample too, whose designs repeat values.
+    of : str
+        A variable with one number for each design.
+    percentiles : sequence of float
+
+    Returns
+    -------
+    xarray.Dataset
+        ``value`` over ``percentile``, and how many designs are ``known``, ``above`` or ``below`` the range, ``failed``.
+
+    Raises
+    ------
+    InputError
+        For a variable that is not there or not one number a design, or when no design is left.
+    """
+    import xarray
+
+    values, above, below = _one_a_design(results, of)
+    known = np.isfinite(values)
+    failed = ~(known | above | below)
+    if failed.all():
+        raise InputError(of, None, "has no value for any design")
+    wanted = np.asarray(percentiles, dtype=float)
+    if wanted.ndim != 1 or not np.all((wanted >= 0) & (wanted <= 100)):
+        raise InputError("percentiles", percentiles, "must be a list of numbers from 0 to 100")
+    ordered = np.where(above, np.inf, np.where(below, -np.inf, values))[~failed]
+    # The value itself that a share of the designs does not exceed: between a number and infinity nothing lies.
+    found = np.quantile(ordered, wanted / 100, method="inverted_cdf")
+    counts = {"known": known, "above": above, "below": below, "failed": failed}
+    return xarray.Dataset(
+        {
+            "value": (
+                "percentile",
+                found,
+                {"units": results[of].attrs.get("units", "1"), "long_name": f"of {of}"},
+            )
+        }
+        | {name: ((), int(mask.sum())) for name, mask in counts.items()},
+        coords={"percentile": wanted},
+        attrs={"of": of} | {name: text for name, text in results.attrs.items() if name == "reservations"},
+    )
+
+
+def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed") -> float:
+    """Share of the designs whose result is below a limit (SI), such as those that flutter below a speed.
+
+    Raises
+    ------
+    InputError
+        As `distribution`; and when designs beyond the range of the study leave it open.
+    """
+    values, above, below = _one_a_design(results, of)
+    known = np.isfinite(values)
+    if not (known | above | below).any():
+        raise InputError(of, None, "has no value for any design")
+    lowest, highest = _range(results)
+    if (above.any() and limit > highest) or (below.any() and limit < lowest):
+        raise InputError(
+            "limit", limit, f"must lie in the airspeeds of the study, {lowest:g} to {highest:g} m/s"
+        )
+    return float((below.sum() + (values[known] < limit).sum()) / (known | above | below).sum())
+
+
+def sobol_indices(
+    results: xarray.Dataset, of: str = "flutter_speed", confidence: float = 0.95, resamples: int = 100
+) -> xarray.Dataset:
+    """Share of the variance that each input of a Saltelli sample is behind (SALib).
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        A study of `proprotor.sampling.saltelli`.
+    of : str
+        A variable with one number for each design. Base samples with a design that has none are left out, at most
+        5 % of them.
+    confidence : float
+        Level of the intervals, from 0 to 1.
+    resamples : int
+        Of the bootstrap that finds them.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``input``: ``first``, the share of the input alone, ``total``, with all its interactions, and half the
+        width of their intervals; ``second`` over two inputs where the sample has what it needs.
+
+    Raises
+    ------
+    InputError
+        When the results are of no Saltelli sample, too many designs have no value, or all have the same.
+    """
+    import xarray
+    from SALib.analyze import sobol as salib_sobol
+
+    sample = _saltelli_of(results)
+    names, second_order = sample["inputs"], sample["second_order"]
+    block = len(names) * (2 if second_order else 1) + 2
+    values, above, below = _one_a_design(results, of)
+    values = values.reshape(-1, block)
+    whole = np.isfinite(values).all(axis=1)
+    _check_left_out(of, whole, int(above.sum() + below.sum()))
+    values = values[whole]
+    if np.ptp(values) == 0:
+        raise InputError(
+            of, float(values.flat[0]), "is the same for every design: there is no variance to share out"
+        )
+    problem = {"num_vars": len(names), "names": names, "bounds": [[0, 1]] * len(names)}
+    found = salib_sobol.analyze(
+        problem,
+        values.reshape(-1),
+        calc_second_order=second_order,
+        num_resamples=resamples,
+        conf_level=confidence,
+        seed=sample["seed"] + 1,  # SALib takes 0 for none
+    )
+    table: dict[str, Any] = {
+        "first": ("input", found["S1"]),
+        "first_half_interval": ("input", found["S1_conf"]),
+        "total": ("input", found["ST"]),
+        "total_half_interval": ("input", found["ST_conf"]),
+        "left_out": ((), int((~whole).sum()), {"long_name": "base samples with a design that has no value"}),
+    }
+    if second_order:
+        table["second"] = (("input", "other_input"), _both_ways(found["S2"]))
+    coordinates = {"input": names} | ({"other_input": names} if second_order else {})
+    return xarray.Dataset(table, coordinates, {"of": of, "confidence": confidence})
+
+
+def _one_a_design(results: xarray.Dataset, of: str) -> tuple[NDArray, NDArray, NDArray]:
+    """Values of the designs, and which of them lie above and below the airspeeds of the study."""
+    if of not in results.data_vars:
+        known = ", ".join(str(name) for name in results.data_vars)
+        raise InputError("of", of, f"must be a variable of the results ({known})")
+    values = results[of]
+    if values.dims != ("design",) or values.dtype.kind not in "fiu":
+        rule = 'must have one number for each design: choose an airspeed, or quantities="flutter"'
+        raise InputError("of", of, rule)
+    notes = np.full(values.shape, "", dtype=object)
+    if of.startswith("flutter_") and "flutter_note" in results:
+        notes = results["flutter_note"].values
+    return (values.values.astype(float), notes == STABLE, notes == UNSTABLE)
+
+
+def _range(results: xarray.Dataset) -> tuple[float, float]:
+    if "airspeed" not in results.dims:
+        return -np.inf, np.inf
+    return float(results.airspeed.min()), float(results.airspeed.max())
+
+
+def _saltelli_of(results: xarray.Dataset) -> dict[str, Any]:
+    sample = json.loads(results.attrs.get("sample", "{}"))
+    if sample.get("method") != "saltelli":
+        raise InputError("results", sample.get("method"), "must be a study of proprotor.sampling.saltelli")
+    return sample
+
+
+def _check_left_out(of: str, whole: NDArray, beyond: int) -> None:
+    left_out = len(whole) - whole.sum()
+    if left_out > _MOST_LEFT_OUT * len(whole):
+        hint = f"; {beyond} designs are stable or unstable throughout: widen the airspeeds" if beyond else ""
+        told = f"no value in {left_out} of {len(whole)} base samples"
+        raise InputError(of, told, f"must be known in {1 - _MOST_LEFT_OUT:.0%} of them{hint}")
+
+
+def _both_ways(upper: NDArray) -> NDArray:
+    """A symmetric table from the half that SALib fills; NaN on the diagonal."""
+    return np.where(np.isnan(upper), upper.T, upper)
