@@ -101,6 +101,27 @@ def test_a_batch_of_designs_is_its_designs(case):
         assert np.array_equal(batch[place], matrices(case.vary(one)))
 
 
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"pitch": "coupling"},
+        {"equations": "published"},
+        {"equations": "published", "airloads": "lift-slope", "compressibility": False},
+        {"airloads": "none"},
+        {"section_damping": True},
+    ],
+)
+def test_one_of_many_designs_is_that_design_bit_for_bit(case, options):
+    cone, density = np.radians([1.0, 2.0, 3.0]), np.array([0.8, 1.0, 1.2])
+    airspeeds = np.array([40.0, 120.0, 180.0])
+    batch = case.vary({"rotor.precone": cone, "operation.density": density}).linearize(airspeeds, **options)
+    for place in range(3):
+        one = case.vary({"rotor.precone": cone[place], "operation.density": density[place]})
+        model = one.linearize(airspeeds[place], **options)
+        assert all(np.array_equal(getattr(batch, name)[place], getattr(model, name)) for name in "MCKB")
+
+
 def test_supports_alone_may_be_many(case):
     frequencies = np.array([20.0, 25.0])
     model = case.vary({"support.modes[beam].frequency": frequencies}).linearize(AIRSPEED)

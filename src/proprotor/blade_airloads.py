@@ -116,7 +116,7 @@ def _air(sections: BladeSections, segments: Quantities, equations: ModuleType, s
     return stations | evaluate(section.air_at_section, stations)._asdict()
 
 
-def _compressible(coefficients: SectionCoefficients, mach: NDArray) -> SectionCoefficients:
+def compressible(coefficients: SectionCoefficients, mach: NDArray) -> SectionCoefficients:
     """Prandtl-Glauert on lift and moment, and on their derivatives."""
     factor, slope = section.prandtl_glauert(mach=mach)
     scaled = {}
@@ -226,7 +226,7 @@ def _aerodynamics(
     air = _air(sections, segments, equations, spins)
     coefficients = sections.airfoil.coefficients(air["angle_of_attack"], air["mach"])
     if compressibility and not sections.airfoil.contains_compressibility:
-        coefficients = _compressible(coefficients, air["mach"])
+        coefficients = compressible(coefficients, air["mach"])
     return air, coefficients, spins
 
 

@@ -16,7 +16,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 _CLOSEST = 1e-9  # nodes nearer than this are one
 _FASTEST = 10.0  # Mach number
@@ -147,11 +146,12 @@ def _horner(coefficients: NDArray, t: NDArray) -> tuple[NDArray, NDArray]:
 
 def _slopes(x: NDArray, values: NDArray) -> NDArray:
     """Slopes at the nodes along the first axis."""
+    from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
+
     if len(x) == 1:
         return np.zeros_like(values)
-    with np.errstate(
-        over="ignore"
-    ):  # of reciprocals of the smallest differences, which end up as zero slopes
+    # Reciprocals of the smallest differences overflow, and end up as zero slopes.
+    with np.errstate(over="ignore"):
         return PchipInterpolator(x, values, axis=0)(x, nu=1)
 
 

@@ -260,6 +260,7 @@ def _blade_matrices(
     if options.airloads != "none":
         air_damping, air_stiffness, gusts = _airloads(sections, pool, at_trim, options)
         damping, stiffness = damping + air_damping, stiffness + air_stiffness
+        gusts = np.broadcast_to(gusts, (*stiffness.shape[:-1], 3))  # the same at all points, it may be one
     return mass, damping, stiffness, gusts
 
 

@@ -18,8 +18,8 @@ from proprotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.assembly import mount
 from proprotor.blade_airloads import (
     BladeSections,
-    _compressible,
     closed_form_moments,
+    compressible,
     has_closed_form,
     load_moments,
     segment_quantities,
@@ -72,7 +72,7 @@ class _SomeCoefficients:
         """Those kept, and zero for the others."""
         found = self.airfoil.coefficients(alpha, mach)
         if self.compressible and not self.airfoil.contains_compressibility:
-            found = _compressible(found, mach)
+            found = compressible(found, mach)
         dropped = dict.fromkeys(set(SectionCoefficients._fields) - set(self.kept), 0.0)
         return found._replace(**dropped)
 

@@ -17,7 +17,7 @@ _LONGEST_PANEL = 0.1
 _POINTS = ((0.021, 3), (0.03, 4), (0.06, 6), (np.inf, 8))
 _NEAR_ROOT = 0.2 / 2.0 ** np.arange(7)  # of the radius
 _TINY = np.finfo(float).tiny
-_DIGITS, _MOST_POINTS = 11, 16
+_DIGITS, _MOST_POINTS = 12, 16
 _COARSE_POINTS = 12
 
 

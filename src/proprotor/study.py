@@ -21,6 +21,7 @@ from proprotor.options import parse_options
 from proprotor.sampling import AIRSPEED, Designs, Plan, as_plan
 from proprotor.speed import in_metres_per_second
 from proprotor.study_batch import (
+    ALONG_AIRSPEEDS,
     DEFAULT_QUANTITIES,
     POINT,
     QUANTITIES,
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 BATCH = 2000  # points at most: enough for NumPy's own cost to vanish beside LAPACK's
-_BYTES_PER_POINT = 300_000  # at most, while a batch is analysed
+_BYTES_PER_POINT = 100_000  # while a batch is analysed; the XV-15 takes 30 kB, 46 kB with vectors
 _SHARE_OF_MEMORY = 0.25  # of what is free, for the batches of all processes together
 _SMALL = 4000  # points that are analysed before worker processes have started
 _MOST_TRIED = 25  # airspeeds, to see the coordinates of the model
@@ -71,7 +72,7 @@ def study(
         For every design; not where it is among the inputs.
     quantities : str or sequence of str
         "eigenvalue", "least_stable", "trim" (these three by default); "flutter", the lowest airspeed of the range at
-        which each design loses stability; "vectors", mode shapes. See `proprotor.study_batch.VARIABLES`.
+        which each design loses stability; "vectors", mode shapes; "modes", eigenvalues followed along the airspeeds. See `proprotor.study_batch.VARIABLES`.
     workers : int, optional
         Processes, by default one for each core, and none for a small study; 1 is this process alone.
     client : distributed.Client, optional
@@ -142,8 +143,8 @@ class _Study:
             raise InputError(
                 AIRSPEED, f"array of shape {speeds.shape}", "must be a speed or a list of speeds"
             )
-        if "flutter" in quantities:
-            _check_range(speeds)
+        if set(ALONG_AIRSPEEDS) & set(quantities):
+            _check_range(speeds, next(name for name in ALONG_AIRSPEEDS if name in quantities))
         tried = designs.values[AIRSPEED] if speeds is None else np.atleast_1d(speeds)
         dofs, states = _coordinates(case, tried, options)
         own_tolerance = {} if tolerance is None else {"tolerance": _positive("tolerance", tolerance)}
@@ -176,7 +177,7 @@ class _Study:
     def blocks(self, points: int) -> list[tuple[slice, slice]]:
         """Designs and airspeeds of each batch."""
         designs, speeds = self.shape
-        if speeds > points and "flutter" not in self.analysis.quantities:
+        if speeds > points and not set(ALONG_AIRSPEEDS) & set(self.analysis.quantities):
             columns = _slices(speeds, points)
         else:
             columns = [slice(0, speeds)]
@@ -321,10 +322,10 @@ def _known_quantities(quantities: str | Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in QUANTITIES if name in chosen)
 
 
-def _check_range(speeds: NDArray | None) -> None:
+def _check_range(speeds: NDArray | None, quantity: str) -> None:
     if speeds is None or speeds.ndim != 1 or speeds.size < 2 or not np.all(np.diff(speeds) > 0):
         told = "among the inputs" if speeds is None else np.array2string(speeds, threshold=4)
-        raise InputError(AIRSPEED, told, "must be a range of increasing speeds to look for flutter in")
+        raise InputError(AIRSPEED, told, f'must be a range of increasing speeds for quantities="{quantity}"')
 
 
 def _positive(name: str, value: ArrayLike) -> float:

@@ -14,14 +14,24 @@ from numpy.typing import NDArray
 
 from proprotor import flutter_scan
 from proprotor.errors import InputError
-from proprotor.modes import coordinate_motion, eigensystem, held_coordinates, participation, state_matrix
+from proprotor.modes import (
+    coordinate_motion,
+    coordinate_shares,
+    decomposition,
+    eigensystem,
+    held_coordinates,
+    participation,
+    state_matrix,
+)
 from proprotor.sampling import AIRSPEED
+from proprotor.study_modes import follow_designs
 
 if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.model import LinearModel
 
-QUANTITIES = ("eigenvalue", "least_stable", "trim", "flutter", "vectors")
+QUANTITIES = ("eigenvalue", "least_stable", "trim", "flutter", "vectors", "modes")
+ALONG_AIRSPEEDS = ("flutter", "modes")  # need all airspeeds of a design at once
 DEFAULT_QUANTITIES = QUANTITIES[:3]
 _NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping
 _BLOCK = 64  # points whose vectors stay in the cache
@@ -76,6 +86,15 @@ VARIABLES: dict[str, dict[str, Variable]] = {
             POINT, ("dof", "state"), complex, "", "motion of the coordinates; largest component 1"
         ),
     },
+    "modes": {
+        "mode_eigenvalue": Variable(
+            POINT, ("state",), complex, "rad/s", "eigenvalues, followed along the airspeeds"
+        ),
+        "mode_quality": Variable(
+            POINT, ("state",), float, "1", "trust in the step from the airspeed before, 0 to 1"
+        ),
+        "mode_coordinate": Variable(DESIGN, ("state",), str, "", "coordinate that takes part most at first"),
+    },
 }
 ALWAYS = {
     "reason": Variable(POINT, (), str, "", "why a point failed"),
@@ -86,6 +105,7 @@ _SCAN = {  # what the search for a flutter speed needs of every point, whether o
     "growth_rate": VARIABLES["least_stable"]["growth_rate"],
     "neutral_growth": Variable(POINT, (), float, "1/s", "growth that is rounding of a neutral root"),
 }
+VARIABLE = {name: it for of in (*VARIABLES.values(), ALWAYS, _SCAN) for name, it in of.items()}
 
 
 def variables(quantities: tuple[str, ...]) -> dict[str, Variable]:
@@ -200,7 +220,7 @@ class Analysis:
 
     def _fill(self, found: dict[str, NDArray], batch: Batch, rows: NDArray, columns: NDArray) -> None:
         """Analyse designs and airspeeds at once; where that fails, halves of them, until what is wrong stands alone."""
-        if not len(rows):
+        if not len(rows) or not len(columns):
             return
         part = batch.some(rows, columns)
         try:
@@ -210,13 +230,25 @@ class Analysis:
                 for half in np.array_split(rows, 2):
                     self._fill(found, batch, half, columns)
             elif len(columns) > 1:
-                for half in np.array_split(columns, 2):
-                    self._fill(found, batch, rows, half)
+                alone = np.array([self._is_refused(batch.some(rows, [column])) for column in columns])
+                if not alone.any():
+                    raise
+                for column in columns[alone]:
+                    self._fill(found, batch, rows, np.array([column]))
+                self._fill(found, batch, rows, columns[~alone])
             else:
                 found["reason"][np.ix_(rows, columns)] = self._told(part, error)
             return
         for name in found.keys() & points.keys():
-            found[name][np.ix_(rows, columns)] = points[name]
+            place = np.ix_(rows, columns) if VARIABLE[name].on == POINT else rows
+            found[name][place] = points[name]
+
+    def _is_refused(self, point: Batch) -> bool:
+        try:
+            self._points(point)
+        except _BAD_INPUT:
+            return True
+        return False
 
     def _model(self, batch: Batch, speeds: NDArray) -> LinearModel:
         case = self.case.vary(batch.numbers) if batch.numbers else self.case
@@ -228,7 +260,9 @@ class Analysis:
         found: dict[str, NDArray] = {name: getattr(model.trim, name) for name in ALWAYS}
         if "trim" in self.quantities:
             found |= {name: getattr(model.trim, name) for name in VARIABLES["trim"]}
-        if "vectors" in self.quantities:
+        if "modes" in self.quantities:
+            found |= _followed(model, "vectors" in self.quantities)
+        elif "vectors" in self.quantities:
             found |= _eigenvalues_and_vectors(model, self.states)
         else:
             found["eigenvalue"] = _eigenvalues(model, self.states)
@@ -348,6 +382,27 @@ def _eigenvalues_and_vectors(model: LinearModel, states: int) -> dict[str, NDArr
         name: _at(good, array.reshape(*leading, *array.shape[1:]), shape)
         for name, array in (("eigenvalue", values), ("vector", vectors))
     }
+
+
+def _followed(model: LinearModel, with_vectors: bool) -> dict[str, NDArray]:
+    """Eigenvalues by frequency and followed along the airspeeds, and the motion of the coordinates if asked for."""
+    values, right, left = decomposition(model)
+    held, n = held_coordinates(model), len(model.dofs)
+    order = _by_frequency(values)
+    places, quality, first = follow_designs(values, right, left, order)
+    designs = np.arange(len(values))
+    shares = coordinate_shares(held, n, left[designs, first], right[designs, first])
+    main = np.take_along_axis(np.nan_to_num(shares).argmax(axis=-2), places[designs, first], -1)
+    found = {
+        "eigenvalue": np.take_along_axis(values, order, -1),
+        "mode_eigenvalue": np.take_along_axis(values, places, -1),
+        "mode_quality": quality,
+        "mode_coordinate": np.where((first < 0)[:, None], "", np.array(model.dofs, dtype=object)[main]),
+    }
+    if with_vectors:
+        shapes = coordinate_motion(held, n, values, right)
+        found["vector"] = _largest_one(np.take_along_axis(shapes, order[..., None, :], -1))
+    return found
 
 
 def _largest_one(shapes: NDArray) -> NDArray:

@@ -1,0 +1,54 @@
+"""Modes of many designs, each followed along the airspeeds of its own design, all designs at once."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor.tracking import Spectrum, link
+
+
+class Followed(NamedTuple):
+    """Where each state of a design is at each airspeed.
+
+    places (designs, speeds, states) of int, by the frequency at the design's first good airspeed; quality
+    (designs, speeds, states) of the step from the good airspeed before, see `proprotor.tracking.link`: NaN at the first
+    and at failed points. first (designs,) is the place of the first good airspeed, -1 where there is none.
+    """
+
+    places: NDArray
+    quality: NDArray
+    first: NDArray
+
+
+def follow_designs(values: NDArray, right: NDArray, left: NDArray, start: NDArray) -> Followed:
+    """Follow states over failed points.
+
+    Parameters
+    ----------
+    values : array (designs, speeds, states)
+        Eigenvalues, conjugates side by side, NaN at failed points.
+    right, left : array (designs, speeds, states, states)
+        Right vectors in columns, left ones in rows.
+    start : array (designs, speeds, states) of int
+        The order of the states that a design begins with.
+    """
+    designs, speeds, states = values.shape
+    good = np.isfinite(values).all(axis=-1)
+    points = np.flatnonzero(good)
+    same_design = np.diff(points // speeds) == 0
+    before, after = points[:-1][same_design], points[1:][same_design]
+    flat = Spectrum(*(array.reshape(designs * speeds, *array.shape[2:]) for array in (values, right, left)))
+    steps = link(flat, before, after)
+    first = np.where(good.any(axis=1), good.argmax(axis=1), -1)
+    places = start.reshape(-1, states).copy()
+    quality = np.full(places.shape, np.nan)
+    for speed in range(1, speeds):
+        rows = np.flatnonzero(after % speeds == speed)
+        here = places[before[rows]]
+        places[after[rows]] = np.take_along_axis(steps.successor[rows], here, -1)
+        quality[after[rows]] = np.take_along_axis(steps.quality[rows], here, -1)
+    shape = (designs, speeds, states)
+    return Followed(places.reshape(shape), quality.reshape(shape), first)
