@@ -6,8 +6,11 @@ A boundary is where a mode's damping falls through zero, by linear interpolation
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 import proprotor as pp
+from proprotor.mode_following import follow_support_modes
+from proprotor.modes import eigensystem
 
 KNOT = 1852 / 3600
 SPEEDS = np.arange(100, 521, 5) * KNOT
@@ -16,16 +19,28 @@ WING = ("beam", "chord", "torsion")
 
 def boundaries(case: pp.Case, **options) -> dict[str, float]:
     """Lowest speed (kt) at which each wing mode, and any of the rotor's own, loses its damping; else NaN."""
-    modes = case.sweep(SPEEDS, **options)
-    found = {}
-    for name in modes.mode.values.tolist():
-        damping = modes.damping_ratio.sel(mode=name).values
-        crossing = np.flatnonzero((damping[:-1] > 0) & (damping[1:] <= 0))
-        if len(crossing):
-            i = crossing[0]
-            found[name] = float(np.interp(0, [damping[i + 1], damping[i]], SPEEDS[[i + 1, i]] / KNOT))
-    wing = {name: min((v for n, v in found.items() if n.endswith(name)), default=np.nan) for name in WING}
-    return wing | {"rotor": min((v for n, v in found.items() if not n.endswith(WING)), default=np.nan)}
+    model = case.linearize(SPEEDS[None], **options)
+    system = eigensystem(model)
+    wing = follow_support_modes(model, system)[0]
+    values = system.values[0]
+    of_wing = (values[:, :, None] == wing[:, None, :]).any(axis=-1)
+    of_rotor = np.where(of_wing | ~(values.imag > 0), np.nan, _ratio(values))
+    columns = dict(zip(WING, _ratio(wing).T, strict=True)) | {"rotor": np.fmin.reduce(of_rotor, axis=1)}
+    return {name: _first_fall(damping) for name, damping in columns.items()}
+
+
+def _ratio(values: NDArray) -> NDArray:
+    with np.errstate(all="ignore"):
+        return -values.real / np.abs(values)
+
+
+def _first_fall(damping: NDArray) -> float:
+    """Where damping first falls through zero, kt; NaN where it does not."""
+    crossing = np.flatnonzero((damping[:-1] > 0) & (damping[1:] <= 0))
+    if not len(crossing):
+        return np.nan
+    i = crossing[0]
+    return float(np.interp(0, [damping[i + 1], damping[i]], SPEEDS[[i + 1, i]] / KNOT))
 
 
 def lowest_of_wing(found: dict[str, float]) -> float:

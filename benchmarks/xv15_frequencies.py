@@ -13,8 +13,7 @@ from rich.table import Table
 
 import proprotor as pp
 from benchmarks.xv15_boundary import KNOT
-from proprotor.model import HUB
-from proprotor.sweep import sweep
+from proprotor.figures.blade_state import on_rigid_hub
 
 SPEEDS = np.arange(50, 451, 50) * KNOT
 MODES = ("coning", "low cyclic lag", "low gimbal", "high gimbal")
@@ -24,22 +23,14 @@ STATEMENTS = (
 )
 
 
-def on_rigid_hub(case: pp.Case, airspeeds: np.ndarray = SPEEDS, **options) -> dict[str, np.ndarray]:
-    """Frequencies per rev of the coning, low cyclic lag and gimbal modes; NaN where no mode has the name."""
-    model = pp.rotor_model(case.rotor, case.operation, airspeeds, **options)
-    modes = sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB)))
-    per_rev = modes.frequency.values.T / case.operation.rotor_speed
-    named = dict(zip(modes.mode.values.tolist(), per_rev, strict=True))
-    return {name: named.get(name, np.full(len(airspeeds), np.nan)) for name in MODES}
-
-
 def main() -> None:
     console = Console(width=120)
     case = pp.load_case("xv15")
     console.print(f"[bold]{case.title}[/bold]  calibrated: {case.calibration}")
     for airloads in ("none", "full"):
         for rotor_speed in ("windmilling", "constant"):
-            columns = on_rigid_hub(case, airloads=airloads, rotor_speed=rotor_speed).values()
+            found = on_rigid_hub(case, SPEEDS, airloads=airloads, rotor_speed=rotor_speed)
+            columns = (found[name] for name in MODES)
             title = f"airloads {airloads}, rotor speed {'free' if rotor_speed == 'windmilling' else 'locked'}"
             table = Table("kt", *MODES, title=title)
             for speed, *values in zip(SPEEDS / KNOT, *columns, strict=True):

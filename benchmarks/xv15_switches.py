@@ -8,61 +8,20 @@ has the baseline here.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from proprotor_equations import pitch
 from rich.console import Console
 from rich.table import Table
 from scipy.optimize import brentq
 
 import proprotor as pp
 from benchmarks.xv15_boundary import KNOT, SPEEDS, WING, boundaries, told
-from benchmarks.xv15_frequencies import on_rigid_hub
-from proprotor.evaluation import evaluate
+from proprotor.figures.blade_state import blade_state, on_rigid_hub
+from proprotor.figures.published import PAPER_FREQUENCIES
 from proprotor.frequencies import BladeFrequencies
-from proprotor.model import rotor_quantities
-from proprotor.options import Options
-from proprotor.trim import UNKNOWNS, with_trim
 
-# The lag frequency falls from 1.8 per rev at low speed to 1.2 at high, and coning is at 1.85 (AIAA-2002-1604,
-# Figs. 14 and 18). A straight line between 50 and 400 kt is assumed: the curve is not printed as numbers.
-PAPER_FREQUENCIES = BladeFrequencies(
-    flap=1.85, lag=(1.8, 1.2), against="airspeed", at=np.array([50, 400]) * KNOT
-)
 TABLE_SPEEDS = np.arange(50, 451, 50) * KNOT
-
-
-class BladeState(NamedTuple):
-    """What the couplings follow from, arrays over airspeed: angles in rad, frequency per rev."""
-
-    structural_pitch: NDArray
-    coning: NDArray
-    lag: NDArray
-    pitch_flap_coupling: NDArray
-    pitch_lag_coupling: NDArray
-    pitch_lag_coupling_without_lag: NDArray
-    lag_frequency: NDArray
-
-
-def blade_state(case: pp.Case, airspeed: NDArray) -> BladeState:
-    """Trim, the couplings of Eqs. 36 and 37, and the uncoupled lag frequency √(K_ζζ/I_ζ + Ω² e S/I)/Ω."""
-    airspeed = np.atleast_1d(airspeed)
-    rotor, operation = case.rotor, case.operation
-    trim = pp.rotor_model(rotor, operation, airspeed, pitch="coupling").trim
-    quantities = rotor_quantities(rotor, operation, airspeed, airspeed.shape)
-    pool = with_trim(quantities, Options(pitch="coupling"), {name: getattr(trim, name) for name in UNKNOWNS})
-    centrifugal = rotor.lag_hinge_offset * rotor.lag_first_moment
-    squared = centrifugal + pool["lag_lag_stiffness"] / operation.rotor_speed**2
-    return BladeState(
-        pool["structural_pitch"],
-        trim.coning,
-        trim.lag,
-        *evaluate(pitch.couplings, pool),
-        evaluate(pitch.couplings, pool | {"lag": 0.0}).pitch_lag_coupling,
-        np.sqrt(squared / rotor.lag_inertia),
-    )
 
 
 def switches(case: pp.Case) -> dict[str, dict[str, Any]]:

@@ -72,7 +72,8 @@ def study(
         For every design; not where it is among the inputs.
     quantities : str or sequence of str
         "eigenvalue", "least_stable", "trim" (these three by default); "flutter", the lowest airspeed of the range at
-        which each design loses stability; "vectors", mode shapes; "modes", eigenvalues followed along the airspeeds. See `proprotor.study_batch.VARIABLES`.
+        which each design loses stability; "vectors", mode shapes; "modes", eigenvalues followed along the airspeeds.
+        See `proprotor.study_batch.VARIABLES`.
     workers : int, optional
         Processes, by default one for each core, and none for a small study; 1 is this process alone.
     client : distributed.Client, optional
@@ -337,8 +338,12 @@ def _positive(name: str, value: ArrayLike) -> float:
 def _coordinates(case: Case, speeds: NDArray, options: Mapping[str, Any]) -> tuple[tuple[str, ...], int]:
     """Coordinates and number of eigenvalues of the case's model."""
     few = speeds[np.unique(np.linspace(0, len(speeds) - 1, _MOST_TRIED).astype(int))]
-    model = case.linearize(few, **options)
-    if model.M.shape[:-2] != few.shape:
+    few = np.roll(few, -(len(few) // 2))  # the middle is the likeliest to have a trim
+    for tried in (few[:1], few):
+        model = case.linearize(tried, **options)
+        if model.trim.converged.any():
+            break
+    if model.M.shape[:-2] != tried.shape:
         raise InputError(
             "options", ", ".join(options), "must not hold arrays: vary the case's inputs instead"
         )

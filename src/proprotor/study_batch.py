@@ -180,9 +180,13 @@ class Analysis:
     def __call__(self, batch: Batch) -> dict[str, NDArray]:
         """All variables of a batch: (designs, speeds, …) those of points, (designs,) those of designs."""
         found = self._blank(batch.shape)
-        refused = self._refusals(batch)
-        found["reason"][:] = refused[:, None]
-        self._fill(found, batch, np.flatnonzero(refused == ""), np.arange(batch.shape[1]))
+        every = np.arange(batch.shape[0]), np.arange(batch.shape[1])
+        try:
+            self._put(found, *every, self._points(batch))
+        except _BAD_INPUT:
+            refused = self._refusals(batch)
+            found["reason"][:] = refused[:, None]
+            self._fill(found, batch, np.flatnonzero(refused == ""), every[1])
         if "flutter" in self.quantities:
             self._find_flutter(found, batch)
         return {name: found[name] for name in variables(self.quantities)}
@@ -239,9 +243,12 @@ class Analysis:
             else:
                 found["reason"][np.ix_(rows, columns)] = self._told(part, error)
             return
+        self._put(found, rows, columns, points)
+
+    @staticmethod
+    def _put(found: dict[str, NDArray], rows: NDArray, columns: NDArray, points: dict[str, NDArray]) -> None:
         for name in found.keys() & points.keys():
-            place = np.ix_(rows, columns) if VARIABLE[name].on == POINT else rows
-            found[name][place] = points[name]
+            found[name][np.ix_(rows, columns) if VARIABLE[name].on == POINT else rows] = points[name]
 
     def _is_refused(self, point: Batch) -> bool:
         try:
