@@ -12,12 +12,23 @@ verify: .venv/verify-installed  ## Check the equations: generated against derive
 	$(BIN)/python -m derive --check
 	$(BIN)/python -m pytest tests/verify
 
-regenerate-equations: .venv/installed  ## Derive the equations again and write generated/
+regenerate-equations: .venv/installed  ## Derive the equations again, write generated/ and the index of equations
 	$(BIN)/python -m derive
+	$(BIN)/python -m derive.index
 
 lint: .venv/installed  ## Check the style of the source
-	$(BIN)/ruff check src derive tests benchmarks
-	$(BIN)/ruff format --check src derive tests benchmarks
+	$(BIN)/ruff check src derive tests benchmarks notebooks
+	$(BIN)/ruff format --check src derive tests benchmarks notebooks
+
+notebooks: .venv/installed  ## Run the audit's notebooks and render them into docs/notebooks/
+	$(BIN)/python -m derive.notebooks
+	$(BIN)/python -m derive.index
+
+figures: .venv/installed  ## Make every analytical figure of the paper, with its numbers, in figures/
+	$(BIN)/proprotor figures --out figures
+
+validation: .venv/installed  ## Write docs/validation.md and its figures
+	$(BIN)/python -m benchmarks.validation
 
 audit: .venv/installed  ## Judge every equation of the paper against the derivation; writes docs/audit.md
 	$(BIN)/python -m derive.audit
@@ -26,12 +37,12 @@ golden: .venv/installed  ## Accept the modes of every combination of switches as
 	$(BIN)/python -m tests.accept_golden
 
 clean:  ## Remove all that make has made
-	rm -rf .venv .hypothesis .pytest_cache .ruff_cache build dist damping.png
+	rm -rf .venv .hypothesis .pytest_cache .ruff_cache build dist damping.png figures
 
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify regenerate-equations lint audit golden clean help
+.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

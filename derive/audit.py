@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import csv
 import functools
-import math
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -22,7 +21,9 @@ from rich.table import Table
 
 from derive import consequences, invariants, printed
 from derive.comparison import ABSENT_FROM_PRINT, AFTER_READING, VERDICTS, EquationVerdict, audit
+from derive.consequences import in_knots
 from derive.counterparts import COUNTERPARTS
+from derive.headings import anchor, heading
 from derive.invariants import Finding
 from derive.printed.notation import latex_names
 from derive.published import DROPPED_TERMS
@@ -44,9 +45,13 @@ Row = tuple[str, ...]
 
 
 @functools.cache
+def equation_verdict(number: int | str) -> EquationVerdict:
+    return audit((printed.EQUATIONS | printed.NOMENCLATURE)[number])
+
+
+@functools.cache
 def equation_verdicts() -> dict[int | str, EquationVerdict]:
-    equations = printed.EQUATIONS | printed.NOMENCLATURE
-    return {number: audit(equation) for number, equation in equations.items()}
+    return {number: equation_verdict(number) for number in (*printed.EQUATIONS, *printed.NOMENCLATURE)}
 
 
 @functools.cache
@@ -55,10 +60,15 @@ def table_verdicts() -> dict[str, TableVerdict]:
 
 
 @functools.cache
+def findings() -> tuple[Finding, ...]:
+    return tuple(invariants.findings())
+
+
+@functools.cache
 def broken_invariants() -> dict[int | str, list[Finding]]:
     """Findings of the invariants the print does not obey, by equation."""
     broken: dict[int | str, list[Finding]] = {}
-    for finding in invariants.findings():
+    for finding in findings():
         if not finding.holds:
             broken.setdefault(finding.number, []).append(finding)
     return broken
@@ -132,20 +142,22 @@ def dropped_terms_of(result: EquationVerdict) -> list[str]:
     return [name for name in DROPPED_TERMS if name in names]
 
 
-def _knots(value: float) -> str:
-    return "none below 520 kt" if math.isnan(value) else f"{value:.1f} kt"
+@functools.cache
+def consequence_of_conflict(number: int | str) -> str:
+    """The XV-15's boundary with a conflict as printed; nothing where it has none."""
+    if number not in consequences.OF_CONFLICT:
+        return ""
+    label, changed, base = consequences.OF_CONFLICT[number]()
+    return f"{label}: {in_knots(changed)} instead of {in_knots(base)}"
 
 
 @functools.cache
 def _consequences() -> dict[int | str, str]:
     """The XV-15's boundary with each conflict as printed, and without each absent term."""
-    found = {}
-    for number, of_conflict in consequences.OF_CONFLICT.items():
-        label, changed, base = of_conflict()
-        found[number] = f"{label}: {_knots(changed)} instead of {_knots(base)}"
+    found = {number: consequence_of_conflict(number) for number in consequences.OF_CONFLICT}
     names = {name for result in equation_verdicts().values() for name in dropped_terms_of(result)}
     for name in track(sorted(names), description="boundaries without a term"):
-        found[name] = f"{_knots(consequences.without(name))} instead of {_knots(consequences.base())}"
+        found[name] = f"{in_knots(consequences.without(name))} instead of {in_knots(consequences.base())}"
     return found
 
 
@@ -165,7 +177,7 @@ def markdown() -> str:
         "Written by `python -m derive.audit`; every verdict is computed. A term is a product of coordinates,",
         "harmonics and parameters of the expanded equation. The derivation is taken to the paper's own order: first",
         "order in the cone, no trim lag in the blade's position. Boundaries are the XV-15's,",
-        f"{_knots(consequences.base())} with the consistent equations; several inputs of that deck are assumed or",
+        f"{in_knots(consequences.base())} with the consistent equations; several inputs of that deck are assumed or",
         "recalled, so differences matter here, not the boundary itself.",
         "",
         *_markdown_table(
@@ -206,11 +218,13 @@ def _markdown_table(header, rows) -> list[str]:
 
 
 def _derived_by(number: str) -> str:
-    known = {str(key): function for key, function in COUNTERPARTS.items()}
-    if number not in known:
-        return "`table_audit.audit_table`"
-    function = getattr(known[number], "func", known[number])
-    return f"`counterparts.{function.__name__}`"
+    """The function, with a link to where the index has it."""
+    known = {str(key): key for key in COUNTERPARTS}
+    name = "table_audit.audit_table"
+    if number in known:
+        function = COUNTERPARTS[known[number]]
+        name = f"counterparts.{getattr(function, 'func', function).__name__}"
+    return f"[`{name}`](equations.md#{anchor(heading(known.get(number, number)))})"
 
 
 def _math(expression: sp.Expr) -> str:
@@ -251,7 +265,7 @@ def _gimbal() -> list[str]:
         "",
         *_markdown_table(
             ("equations", "XV-15 boundary"),
-            ((label, _knots(value)) for label, value in consequences.gimbal_question().items()),
+            ((label, in_knots(value)) for label, value in consequences.gimbal_question().items()),
         ),
     ]
 
@@ -263,8 +277,8 @@ def _tables() -> list[str]:
         for relation in result.relations
     ]
     return [
-        "A blade is any non-negative mass along the radius, hinge offsets on a grid of R/160; deviations are in half",
-        "units of the last printed digit.",
+        "A blade is any non-negative mass along the radius, hinge offsets on a grid of R/160 and, where no blade is",
+        "found there, from its best point on; deviations are in half units of the last printed digit.",
         "",
         *_markdown_table(("", "relation", "verdict", "evidence"), rows),
     ]
@@ -282,7 +296,7 @@ def _doubts() -> list[str]:
 
 def _invariants() -> list[str]:
     by_name: dict[str, list[Finding]] = {}
-    for finding in invariants.findings():
+    for finding in findings():
         by_name.setdefault(finding.invariant, []).append(finding)
     rows = []
     for name, found in by_name.items():
@@ -314,9 +328,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--accept", action="store_true", help="record the verdicts as they are")
     parser.add_argument("--quick", action="store_true", help="leave out the boundaries and docs/audit.md")
     options = parser.parse_args(arguments)
-    equations = printed.EQUATIONS | printed.NOMENCLATURE
-    for equation in track(equations.values(), description="equations"):
-        audit(equation)  # derives; what it finds is kept
+    for number in track([*printed.EQUATIONS, *printed.NOMENCLATURE], description="equations"):
+        equation_verdict(number)  # derives; what it finds is kept
     _print_summary((lambda number: "") if options.quick else consequence)
     now = computed()
     if options.accept:

@@ -6,14 +6,17 @@ boundary is the lowest speed at which a mode loses its damping.
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from types import ModuleType, SimpleNamespace
 from unittest import mock
 
 import numpy as np
+import sympy as sp
+import xarray
 from proprotor_equations import BLADE_COORDINATES
 
 import proprotor as pp
@@ -21,7 +24,7 @@ from derive import multiblade
 from derive import symbols as s
 from derive.counterparts import COUNTERPARTS
 from derive.emit import MODULE_TITLES, render_module
-from derive.equations import reduced_functions
+from derive.equations import REDUCED_MODULES, STEPS
 from derive.printed import TABLES
 from derive.printed.notation import TIME
 from derive.published import PUBLISHED
@@ -33,31 +36,39 @@ KNOT = 1852 / 3600
 SPEEDS = np.arange(100, 521, 5) * KNOT
 SLUG_FT2 = 1.3558179483
 
-# Modules a dropped term changes; inertia alone where nothing is said.
-_CHANGED = {
-    "yoke_roll": ("inertia", "flap_lag_springs", "pitch", "airloads"),
-    "cone_in_airloads": ("airloads",),
-    "steady_airloads_on_moving_blade": ("airloads",),
-    "springs_follow_pitch": ("flap_lag_springs",),
-    "spring_curvature": ("flap_lag_springs",),
-    "gimbal_pitch_inertia": ("pitch",),
-    "propeller_moment": ("pitch",),
-}
-
 
 @functools.cache
 def xv15() -> pp.Case:
     return pp.load_case("xv15")
 
 
+def modes_of(case: pp.Case | None = None, **options) -> xarray.Dataset:
+    """Modes of the XV-15, or of another case, over `SPEEDS`."""
+    return (case or xv15()).sweep(SPEEDS, **options)
+
+
 def boundary(case: pp.Case | None = None, **options) -> float:
     """Lowest speed at which the damping of a mode goes through zero, kt; NaN where none does."""
-    modes = (case or xv15()).sweep(SPEEDS, **options)
-    crossings = []
-    for damping in modes.damping_ratio.values.T:
-        for i in np.flatnonzero((damping[:-1] > 0) & (damping[1:] <= 0)):
-            crossings.append(np.interp(0, [damping[i + 1], damping[i]], SPEEDS[[i + 1, i]] / KNOT))
-    return float(min(crossings, default=np.nan))
+    return lowest(boundaries(modes_of(case, **options)))
+
+
+def boundaries(modes: xarray.Dataset) -> dict[str, float]:
+    """Lowest speed at which each mode loses its damping, kt; modes that do not lose it are left out."""
+    found = {}
+    for name, damping in zip(modes.mode.values.tolist(), modes.damping_ratio.values.T, strict=True):
+        for i in np.flatnonzero((damping[:-1] > 0) & (damping[1:] <= 0))[:1]:
+            speeds = SPEEDS[[i + 1, i]] / KNOT
+            found[name] = float(np.interp(0, [damping[i + 1], damping[i]], speeds))
+    return found
+
+
+def lowest(of: dict[str, float]) -> float:
+    return min(of.values(), default=np.nan)
+
+
+def in_knots(boundary: float) -> str:
+    """A boundary as tables show it."""
+    return f"none below {SPEEDS[-1] / KNOT:.0f} kt" if np.isnan(boundary) else f"{boundary:.1f} kt"
 
 
 @functools.cache
@@ -65,36 +76,78 @@ def base(equations: str = "consistent", pitch: str = "dynamic") -> float:
     return boundary(equations=equations, pitch=pitch)
 
 
+class _Asking(frozenset):
+    """No dropped term at all; keeps the names it is asked for. Equal to nothing else, so no cached result answers."""
+
+    def __init__(self):
+        self.asked: set[str] = set()
+
+    def __contains__(self, term: object) -> bool:
+        self.asked.add(str(term))
+        return False
+
+    __hash__ = object.__hash__
+    __eq__ = object.__eq__
+
+
+@functools.cache
+def _derivation(module: str) -> tuple[frozenset[str], dict[str, tuple]]:
+    """Dropped terms the derivation of a module asks for, and the arguments of its functions with none dropped."""
+    _, changing = STEPS[module]
+    dropped = _Asking()
+    arguments = {function.name: tuple(function.arguments) for function in changing(dropped)}
+    return frozenset(dropped.asked), arguments
+
+
+def reached_by(term: str) -> tuple[str, ...]:
+    """Modules whose derivation asks whether a term is dropped: no other one can change without it."""
+    return tuple(module for module in REDUCED_MODULES if term in _derivation(module)[0])
+
+
 @functools.cache
 def _module(name: str, dropped: frozenset[str]) -> ModuleType:
+    _, changing = STEPS[name]
+    _, arguments = _derivation(name)
+    functions = [replace(function, signature=arguments[function.name]) for function in changing(dropped)]
     module = ModuleType(f"reduced_{name}")
-    exec(render_module(reduced_functions(name, dropped), MODULE_TITLES[name]), vars(module))
+    exec(render_module(functions, MODULE_TITLES[name]), vars(module))
     return module
-
-
-def _reached_by(term: str) -> tuple[str, ...]:
-    return _CHANGED.get(term, ("inertia",))
 
 
 def equations_without(dropped: frozenset[str], of: str, changed: frozenset[str]) -> EquationSet:
     """The set `of` with the modules derived again that the terms of `changed` reach."""
-    names = sorted({module for term in changed for module in _reached_by(term)})
-    in_module = {name: frozenset(term for term in dropped if name in _reached_by(term)) for name in names}
+    names = sorted({module for term in changed for module in reached_by(term)})
+    in_module = {name: dropped & _derivation(name)[0] for name in names}
     return replace(EQUATION_SETS[of], **{name: _module(name, in_module[name]) for name in names})
 
 
+def consistent_but(*terms: str) -> EquationSet:
+    """The consistent equations without some terms."""
+    dropped = frozenset(terms)
+    return equations_without(dropped, "consistent", dropped)
+
+
+def published_and(*terms: str) -> EquationSet:
+    """The published equations with terms put back."""
+    back = frozenset(terms)
+    return equations_without(PUBLISHED - back, "published", back)
+
+
 @functools.cache
+def boundaries_without(term: str) -> dict[str, float]:
+    """Boundary of each mode by the consistent equations without one term."""
+    return boundaries(modes_of(equations=consistent_but(term)))
+
+
 def without(term: str) -> float:
     """Boundary of the consistent equations without one term."""
-    dropped = frozenset({term})
-    return boundary(equations=equations_without(dropped, "consistent", dropped))
+    return lowest(boundaries_without(term))
 
 
 @functools.cache
 def published_with(*terms: str) -> float:
     """Boundary of the published equations with terms put back."""
-    back = frozenset(terms)
-    return boundary(equations=equations_without(PUBLISHED - back, "published", back))
+    return boundary(equations=published_and(*terms))
 
 
 def gimbal_question() -> dict[str, float]:
@@ -110,7 +163,7 @@ def gimbal_question() -> dict[str, float]:
     }
 
 
-def _with_printed_coriolis_sign(of: str) -> EquationSet:
+def with_printed_coriolis_sign(of: str) -> EquationSet:
     """The flap row's lag rate with the sign of Eq. 13; the lag row keeps its own."""
     inertia = EQUATION_SETS[of].inertia
 
@@ -124,11 +177,12 @@ def _with_printed_coriolis_sign(of: str) -> EquationSet:
 
 
 def printed_coriolis_sign() -> tuple[str, float, float]:
-    changed = boundary(equations=_with_printed_coriolis_sign("published"))
+    changed = boundary(equations=with_printed_coriolis_sign("published"))
     return "published, ζ' term of Eq. 13 as printed", changed, base("published")
 
 
-def printed_coupling_sign() -> tuple[str, float, float]:
+@contextlib.contextmanager
+def couplings_turned() -> Iterator[None]:
     """Eq. 35 taken by its sign turns both couplings round."""
     couplings = runtime.pitch.couplings
 
@@ -138,6 +192,11 @@ def printed_coupling_sign() -> tuple[str, float, float]:
         return values._replace(**{name: -value for name, value in values._asdict().items()})
 
     with mock.patch.object(runtime, "pitch", SimpleNamespace(**vars(runtime.pitch) | {"couplings": turned})):
+        yield
+
+
+def printed_coupling_sign() -> tuple[str, float, float]:
+    with couplings_turned():
         changed = boundary(pitch="coupling")
     return "K_Pβ and K_Pζ by the sign of Eq. 35", changed, base(pitch="coupling")
 
@@ -152,8 +211,17 @@ def with_flap_hub_inertia(value: float) -> pp.Case:
 def printed_flap_hub_inertia() -> tuple[str, float, float]:
     printed = TABLES[0].values["I_βα"] * SLUG_FT2
     consistent = xv15().rotor.flap_hub_inertia / SLUG_FT2
-    label = f"I_βα = {TABLES[0].values['I_βα']:g} as printed, for {consistent:.1f} slug ft² of one blade"
-    return label, boundary(with_flap_hub_inertia(printed)), base()
+    case = with_flap_hub_inertia(printed)
+    label = f"I_βα = {TABLES[0].values['I_βα']:g} as printed, for {consistent:.1f} slug ft² of one blade; "
+    label += (
+        f"a mode has {100 * least_damping_at_best(case):.0f} % of critical or less at every speed, the others"
+    )
+    return label, boundary(case), base()
+
+
+def least_damping_at_best(case: pp.Case) -> float:
+    """Damping ratio of the worst mode where it is best; below zero, the case is unstable at every speed."""
+    return float(modes_of(case).damping_ratio.min("mode").max())
 
 
 # Consequences of conflicts, by equation or table; those of absent terms are `without` each.
@@ -164,21 +232,27 @@ OF_CONFLICT: dict[int | str, Callable[[], tuple[str, float, float]]] = {
 }
 
 
-def steady_tilt() -> dict[str, float]:
-    """In-plane acceleration of the XV-15's tip per degree of steady gimbal tilt, m/s²: one term alone, rigid yoke."""
+def steady_tilt(azimuth: float = 0.0) -> dict[str, float]:
+    """In-plane acceleration of the XV-15's tip per degree of steady tilt beta_GS, m/s²: a term alone, rigid yoke."""
+    of = {
+        "Coriolis term alone": frozenset({"yoke_roll"}),
+        "roll of the yoke alone": frozenset({"gimbal_coriolis"}),
+        "rigid yoke": frozenset(),
+    }
+    at = {multiblade.psi: azimuth}
+    return {label: float(_tip_acceleration(dropped).subs(at)) for label, dropped in of.items()}
+
+
+@functools.cache
+def _tip_acceleration(dropped: frozenset[str]) -> sp.Expr:
+    """Along i, of the azimuth."""
     rotor = xv15().rotor
     numbers = {
         s.radial_station: rotor.radius,
         s.precone: rotor.precone,
         s.coning: 0,
         s.rotor_speed: xv15().operation.rotor_speed,
-        multiblade.psi: 0,
         TIME["gimbal_1s"][0]: np.radians(1),
     }
     still = {q: 0 for motion in TIME.values() for q in motion}
-
-    def at_tip(dropped: frozenset[str]) -> float:
-        along_i = COUNTERPARTS[3](dropped)["i"].subs(numbers).subs(still)
-        return float(along_i)
-
-    return {"Coriolis term alone": at_tip(frozenset({"yoke_roll"})), "rigid yoke": at_tip(frozenset())}
+    return COUNTERPARTS[3](dropped)["i"].subs(numbers).subs(still)

@@ -253,7 +253,7 @@ def spring_shared() -> Iterator[Function]:
         "flap_lag_springs",
         "effective_stiffness",
         "Hub and blade springs in series, and their derivatives with structural pitch.",
-        "AIAA-2002-1604, Eqs. 18-24",
+        "AIAA-2002-1604, Eqs. 18-31",
         flap_lag_springs.effective_stiffness(),
         tuple(flap_lag_springs.STIFFNESS.values()),
     )

@@ -5,6 +5,7 @@ Each yields findings: the equation, the invariant, whether the print obeys it, a
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -224,8 +225,14 @@ def _springs(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
 _PITCH = 0.7
 
 
+@functools.cache
+def _compiled(expression: sp.Expr, symbols: tuple[sp.Symbol, ...]):
+    return sp.lambdify(symbols, expression, "math")
+
+
 def _number(expression: sp.Expr, sample: dict, pitch: float = _PITCH) -> float:
-    return float(expression.subs(sample).subs(s.structural_pitch, pitch))
+    values = {**sample, s.structural_pitch: pitch}
+    return float(_compiled(expression, tuple(values))(*values.values()))
 
 
 def _worst(expression: sp.Expr, sample_set) -> float:

@@ -30,12 +30,12 @@ DROPPED_TERMS = {
         "neglected, as the paper says of Eqs. 36 and 37",
     ),
     "hub_turn_of_raised_blade": DroppedTerm(
-        "in-plane acceleration of the coned blade when the hub tilts: (alpha'' x k) r (beta_P + beta_0)",
+        "in-plane acceleration of the coned blade when the hub tilts: (alpha'' x k) (r beta_P + (r - e) beta_0)",
         "Eq. 11, components i and j",
         "absent; first order in the cone",
     ),
     "gimbal_coriolis": DroppedTerm(
-        "in-plane acceleration of the coned blade when it flaps with the gimbal: 2 Omega r (beta_P + beta_0) beta_G'",
+        "in-plane acceleration of the coned blade as it flaps with the gimbal: 2 Omega (r beta_P + (r - e) beta_0) beta_G'",
         "Eqs. 3 and 11, components i and j",
         "absent, although the same term of the blade's own flapping is there",
     ),

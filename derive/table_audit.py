@@ -1,7 +1,7 @@
 """Tables 1 and 2 of AIAA-2002-1604: can the printed integrals belong to one blade?
 
 A blade is any non-negative mass along the radius. Whether one has the printed integrals, to the last printed digit,
-is a linear programme for each pair of hinge offsets, on a grid of R/160.
+is a linear programme for each pair of hinge offsets, on a grid of R/160 and from its best point on freely.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 import numpy as np
-from scipy.optimize import linprog
+from scipy.optimize import linprog, minimize
 
 from derive.comparison import AFTER_READING, CONTRADICTS, REPRODUCED, VERDICTS
 from derive.printed import PrintedTable
+from derive.printed.tables import PrintedNumber
 
 CAUCHY_SCHWARZ = "Cauchy-Schwarz"
 MASS_DISTRIBUTION = "non-negative mass"
@@ -57,9 +58,9 @@ def audit_table(table: PrintedTable) -> TableVerdict:
     return TableVerdict(table, tuple(relations))
 
 
-def rounding(value: float) -> float:
+def rounding(value: PrintedNumber) -> float:
     """Half a unit of the last printed digit."""
-    return float(Decimal(1).scaleb(Decimal(str(value)).as_tuple().exponent)) / 2
+    return float(Decimal(1).scaleb(Decimal(value.text).as_tuple().exponent)) / 2
 
 
 def _cauchy_schwarz(v: dict[str, float], mixed: str, own: str) -> Relation:
@@ -108,9 +109,35 @@ def nearest_blade(v: dict[str, float], names: tuple[str, ...]) -> tuple[float, l
     lag_offsets = [implied_offset(v, "ζ")] if "I_ζα" in names or not of_lag else grid[:: _OFFSETS // 8]
     flap_offsets = [*grid, implied_offset(v, "β")] if of_flap else [0.0]
     found = [(misfit(v, names, flap, lag), flap, lag) for lag in lag_offsets for flap in flap_offsets]
+    if 1 < min(found)[0] < math.inf:
+        found.append(_refined(v, names, *min(found)[1:]))
     least = min(found)[0]
     near = [(flap, lag) for deviation, flap, lag in found if deviation <= max(least, 1)]
     return least, sorted({flap for flap, _ in near}), sorted({lag for _, lag in near})
+
+
+def _refined(v: dict[str, float], names: tuple[str, ...], *start: float) -> tuple[float, float, float]:
+    """The misfit and offsets that a simplex search reaches from a point of the grid."""
+    moves = [any(angle in name for name in names) for angle in "βζ"]
+    step = v["R"] / 160
+
+    def offsets(moved: np.ndarray) -> list[float]:
+        rest = iter(moved)
+        return [max(float(next(rest)), 0.0) if free else at for free, at in zip(moves, start, strict=True)]
+
+    first = np.array([at for free, at in zip(moves, start, strict=True) if free])
+    found = minimize(
+        lambda moved: misfit(v, names, *offsets(moved)),
+        first,
+        method="Nelder-Mead",
+        options={
+            "initial_simplex": np.vstack([first, first + step * np.eye(len(first))]),
+            "xatol": step / 100,
+            "fatol": 1e-2,
+            "maxfev": 120,
+        },
+    )
+    return float(found.fun), *offsets(found.x)
 
 
 def implied_offset(v: dict[str, float], angle: str) -> float:

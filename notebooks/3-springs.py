@@ -1,0 +1,127 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 3 Springs
+#
+# Eqs. 18–22 and 24–31 of AIAA-2002-1604: flap and lag springs inboard and outboard of the pitch bearing.
+#
+# The derivation adds two flexibilities, that of the hub, which stays, and that of the blade, which turns with
+# the pitch $\vartheta = \Theta + \delta_s$ of its structural axes (`derive/flap_lag_springs.py`). The text of
+# the paper at hand has lost subscripts β and ζ in Eqs. 21, 22, 30 and 31; they are restored, and the audit
+# says so on each term.
+
+# %%
+from derive import figures
+from derive.display import Picture, equation
+
+# %% [markdown]
+# ## Two springs in series
+#
+# ### Eq. 18
+
+# %%
+equation(18)
+
+# %% [markdown]
+# ### Eq. 19
+
+# %%
+equation(19)
+
+# %% [markdown]
+# ### Eq. 20
+
+# %%
+equation(20)
+
+# %% [markdown]
+# ## The effective stiffness
+#
+# ### Eq. 21
+
+# %%
+equation(21)
+
+# %% [markdown]
+# ### Eq. 22
+#
+# The derivation has $\Delta$ as the determinant of the summed flexibility times $K_\beta K_\zeta$.
+
+# %%
+equation(22)
+
+# %% [markdown]
+# What it means for the two rotors of the paper. On the XV-15 all flexibility lies outboard of the bearing, so
+# from 0° to 90° flap and lag change places, and $K_{\beta\zeta}$ is largest between. On the model with
+# $R_\beta$ and $R_\zeta$ near the hub's side little of it is left.
+
+# %%
+Picture(figures.frequencies_against_collective)
+
+# %% [markdown]
+# ## Deflections inboard and outboard
+#
+# ### Eq. 24
+
+# %%
+equation(24)
+
+# %% [markdown]
+# ### Eq. 25
+
+# %%
+equation(25)
+
+# %% [markdown]
+# ### Eq. 26
+
+# %%
+equation(26)
+
+# %% [markdown]
+# ### Eq. 27
+
+# %%
+equation(27)
+
+# %% [markdown]
+# ### Eq. 28
+
+# %%
+equation(28)
+
+# %% [markdown]
+# ### Eq. 29
+
+# %%
+equation(29)
+
+# %% [markdown]
+# ## Shares of the deflection
+#
+# ### Eq. 30
+
+# %%
+equation(30)
+
+# %% [markdown]
+# ### Eq. 31
+#
+# Checked without the derivation as well, with random springs: what is inboard and what is outboard adds up,
+# $A + W = D + Z = 1$ and $B + X = C + Y = 0$.
+
+# %%
+equation(31)
+
+# %% [markdown]
+# Next: [4 Airloads](4-airloads.py)

@@ -1,0 +1,94 @@
+"""What the audit's variants of the equations are made of, and the digits the tables are printed with."""
+
+import inspect
+
+import numpy as np
+import pytest
+
+from derive import consequences, printed, table_audit
+from derive.equations import REDUCED_MODULES
+from derive.published import DROPPED_TERMS, PUBLISHED
+
+
+@pytest.mark.parametrize("term", DROPPED_TERMS)
+def test_a_module_that_a_term_does_not_reach_does_not_name_it(term):
+    """The derivation of a module names the terms it can lose, in its own source or in that of the kinematics."""
+    reached = consequences.reached_by(term)
+    assert reached
+    for module in REDUCED_MODULES:
+        source = inspect.getsource(__import__(f"derive.{module}", fromlist=["derive"]))
+        if f'"{term}"' in source:
+            assert module in reached
+        elif term != "yoke_roll":  # asked for by the kinematics, which all modules use
+            assert module not in reached
+
+
+def test_yoke_roll_reaches_every_module_that_has_the_gimbal():
+    assert set(consequences.reached_by("yoke_roll")) == set(REDUCED_MODULES)
+
+
+def test_with_all_terms_dropped_a_variant_is_the_published_set():
+    """The module made in memory and the one checked in are the same function."""
+    made = consequences.equations_without(PUBLISHED, "consistent", frozenset({"propeller_moment"})).pitch
+    checked_in = consequences.EQUATION_SETS["published"].pitch
+    quantities = {
+        name: 0.1 + 0.37 * place
+        for place, name in enumerate(inspect.signature(checked_in.stiffness).parameters)
+    }
+    assert inspect.signature(made.stiffness) == inspect.signature(checked_in.stiffness)
+    np.testing.assert_array_equal(made.stiffness(**quantities), checked_in.stiffness(**quantities))
+
+
+def test_boundaries_are_told_by_mode():
+    modes = consequences.modes_of()
+    of = consequences.boundaries(modes)
+    assert consequences.lowest(of) == min(of.values()) == consequences.boundary()
+    name = min(of, key=of.get)
+    damping = modes.damping_ratio.sel(mode=name)
+    speeds = consequences.SPEEDS / consequences.KNOT
+    assert float(damping[speeds <= of[name]].min()) > 0 > float(damping[speeds > of[name]][0])
+    assert np.isnan(consequences.lowest({})) and consequences.in_knots(np.nan) == "none below 520 kt"
+
+
+def test_the_printed_i_beta_alpha_makes_a_mode_that_grows_at_every_speed():
+    printed_value = printed.TABLES[0].values["I_βα"] * consequences.SLUG_FT2
+    case = consequences.with_flap_hub_inertia(printed_value)
+    assert np.linalg.eigvalsh(case.linearize(120.0).M)[0] < 0
+    assert np.linalg.eigvalsh(consequences.xv15().linearize(120.0).M)[0] > 0
+    assert (
+        consequences.least_damping_at_best(case)
+        < -0.5
+        < 0
+        < consequences.least_damping_at_best(consequences.xv15())
+    )
+
+
+def test_a_steady_tilt_shakes_the_blade_once_per_revolution_with_half_of_the_pair():
+    """2 Omega r cone beta_G' with beta_G' = Omega beta_GS cos psi, worked out by hand, against the derivation."""
+    rotor, speed = consequences.xv15().rotor, consequences.xv15().operation.rotor_speed
+    amplitude = 2 * speed**2 * rotor.radius * rotor.precone * np.radians(1)
+    for azimuth in (0.0, 1.1, 2.5):
+        tilt = consequences.steady_tilt(azimuth)
+        assert tilt["Coriolis term alone"] == pytest.approx(amplitude * np.cos(azimuth))
+        assert tilt["roll of the yoke alone"] == pytest.approx(-amplitude * np.cos(azimuth))
+        assert tilt["rigid yoke"] == pytest.approx(0, abs=1e-12)
+
+
+def test_a_printed_number_keeps_its_digits():
+    """0.200 is known to a thousandth, 0.2 to a tenth."""
+    model = printed.TABLES[1].values
+    assert table_audit.rounding(model["I_βα"]) == pytest.approx(0.0005)
+    assert table_audit.rounding(model["S_β"]) == pytest.approx(0.00005)
+    assert table_audit.rounding(model["R_β"]) == pytest.approx(0.005)
+    assert table_audit.rounding(printed.TABLES[0].values["I_b"]) == pytest.approx(0.5)
+
+
+def test_the_search_for_a_blade_does_not_stop_at_the_grid():
+    """Table 2: on the grid no blade is within the printed digits, beside it one is."""
+    v = printed.TABLES[1].values
+    least, flap, lag = table_audit.nearest_blade(v, table_audit.INTEGRALS)
+    assert least <= 1
+    assert table_audit.misfit(v, table_audit.INTEGRALS, flap[0], lag[0]) == pytest.approx(least)
+    grid = np.linspace(0.19, 0.26, 8)
+    implied = table_audit.implied_offset(v, "ζ")
+    assert min(table_audit.misfit(v, table_audit.INTEGRALS, offset, implied) for offset in grid) > 1

@@ -1,0 +1,127 @@
+"""The notebooks run, hold no physics of their own, show every equation, and are what docs/notebooks has."""
+
+import ast
+import io
+import re
+
+import jupytext
+import pytest
+from PIL import Image
+
+from derive import notebooks, printed
+from derive.headings import heading
+
+SOURCES = notebooks.sources()
+NAMES = ["kinematics", "inertia", "springs", "airloads", "pitch-and-couplings", "assembly-and-errata"]
+NUMBERS = [
+    *range(1, 38),
+    *printed.NOMENCLATURE,
+    "Table 1",
+    "Table 2",
+]
+NUMBER = re.compile(r"\d+\.\d+")
+# A boundary is interpolated between points 5 kt apart: another linear algebra library may move its last digit.
+TOLERANCE = {"rel": 0.005, "abs": 0.06}
+
+
+def cells(source, kind):
+    return [cell for cell in jupytext.read(source).cells if cell.cell_type == kind and cell.source]
+
+
+def test_there_are_six_notebooks_in_the_order_of_the_derivation():
+    assert [source.stem for source in SOURCES] == [f"{n}-{name}" for n, name in enumerate(NAMES, start=1)]
+    pages = {path.stem for path in notebooks.PAGES.glob("*.md")}
+    assert pages == {source.stem for source in SOURCES}
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.stem)
+def test_a_notebook_runs_without_a_warning_and_shows_what_its_page_shows(source):
+    executed = notebooks.executed(source)
+    outputs = [output for cell in executed.cells for output in cell.get("outputs", ())]
+    assert not [output for output in outputs if output.output_type in ("error", "stream")]
+    assert all(
+        cell.outputs for cell in executed.cells if cell.cell_type == "code" and "import" not in cell.source
+    )
+    text, pictures = notebooks.rendered(source, executed)
+    page = notebooks.page_of(source).read_text(encoding="utf-8")
+    told = f"`python -m derive.notebooks {source.stem}` writes the page anew"
+    assert NUMBER.split(page) == NUMBER.split(text), told
+    shown, wanted = ([float(number) for number in NUMBER.findall(of)] for of in (page, text))
+    assert shown == pytest.approx(wanted, **TOLERANCE), told
+    assert {path.name for path in notebooks.PAGES.glob(f"{source.stem}-*.png")} == set(pictures), told
+    for name, data in pictures.items():
+        assert _is_drawn(data) and _is_drawn((notebooks.PAGES / name).read_bytes()), name
+
+
+def _is_drawn(data: bytes) -> bool:
+    """More than a frame on white."""
+    with Image.open(io.BytesIO(data)) as image:
+        grey = image.convert("L")
+        return min(grey.size) > 200 and sum(grey.histogram()[:128]) > 1000
+
+
+def test_every_equation_and_table_has_its_cell_below_its_heading():
+    found = []
+    for source in SOURCES:
+        name = None
+        for cell in jupytext.read(source).cells:
+            if cell.cell_type == "markdown":
+                headings = re.findall(r"^### (.*)$", cell.source, re.MULTILINE)
+                assert len(headings) <= 1 and (name is None or not headings), cell.source
+                name = headings[0] if headings else name
+            elif name is not None:
+                (call,) = (statement.value for statement in ast.parse(cell.source).body)
+                assert call.func.id == ("table" if name.startswith("Table") else "equation")
+                shown = call.args[0].value
+                assert (f"Table {shown}" if call.func.id == "table" else heading(shown)) == name
+                found.append(name)
+                name = None
+    assert sorted(found) == sorted(heading(number) for number in NUMBERS)
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.stem)
+def test_a_notebook_only_calls_what_derive_has(source):
+    """Imports of derive and calls by name: no arithmetic, no symbol, no number but that of an equation."""
+    allowed = (
+        ast.Module,
+        ast.Expr,
+        ast.ImportFrom,
+        ast.alias,
+        ast.Call,
+        ast.Name,
+        ast.Attribute,
+        ast.Constant,
+    )
+    for cell in cells(source, "code"):
+        tree = ast.parse(cell.source)
+        for node in ast.walk(tree):
+            assert isinstance(node, (*allowed, ast.expr_context)), ast.unparse(node)
+            if isinstance(node, ast.ImportFrom):
+                assert node.module.partition(".")[0] in ("derive", "proprotor")
+            if isinstance(node, ast.Constant):
+                assert node.value in NUMBERS or isinstance(node.value, str), ast.unparse(tree)
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.stem)
+def test_a_page_shows_print_beside_derivation_and_links_to_the_index(source):
+    page = notebooks.page_of(source).read_text(encoding="utf-8")
+    sections = re.split(r"^### ", page, flags=re.MULTILINE)[1:]
+    assert sections
+    for section in sections:
+        name = section.partition("\n")[0]
+        header = (
+            "| relation | verdict |" if name.startswith("Table") else "|  | printed | derived | verdict |"
+        )
+        assert header in section, name
+        assert f"](../equations.md#{name.lower().replace('. ', '-').replace(' ', '-')})" in section
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.stem)
+def test_mathematics_is_safe_from_markdown(source):
+    """Forges read emphasis and escapes before formulas: no underscore after a mark or blank, no escaped mark."""
+    page = notebooks.page_of(source).read_text(encoding="utf-8")
+    formulas = re.findall(r"\$\$\n(.*?)\n\$\$|\$([^$\n]+)\$", page)
+    assert formulas and all(line.count("$") % 2 == 0 for line in page.splitlines())
+    for formula in (display or inline for display, inline in formulas):
+        assert not re.search(r"[^\w]_|[*|]|\\[^A-Za-z]|^\s|\s$", formula), formula
+        assert formula.count("{") == formula.count("}")
