@@ -16,6 +16,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any
 from unittest import mock
 
@@ -27,7 +28,7 @@ import proprotor as pp
 from proprotor import blade_airloads, model, sampling, study_batch, study_workers, trim_solver
 from proprotor import case as case_module
 from proprotor.modes import state_matrix
-from proprotor.study import study
+from proprotor.study import BATCH, study
 from proprotor.study_batch import DEFAULT_QUANTITIES
 
 POINTS = 10_000
@@ -91,6 +92,15 @@ def best(*tasks: tuple[Callable[[], Any], Callable[[], float]]) -> list[float]:
     return times.tolist()
 
 
+def processor_time_of_workers() -> float:
+    """Of the worker processes that wait for a study, s (Linux)."""
+    fields = [
+        Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        for pid in study_workers.process_ids()
+    ]
+    return sum(int(field[11]) + int(field[12]) for field in fields) / os.sysconf("SC_CLK_TCK")
+
+
 def on_two_threads(function: Callable, array: np.ndarray) -> None:
     """A LAPACK function over both halves of a batch at once."""
     with ThreadPoolExecutor(2) as threads:
@@ -119,6 +129,24 @@ class Stopwatch:
         return run
 
 
+def evaluations(case: pp.Case, points: int) -> dict[tuple[int, str], list[float]]:
+    """Processor time of each evaluation of the section loads in the trim of one batch, by stations and kind, s."""
+    numbers = plan(points).resolve(pp.design_inputs(case)).values
+    airspeed = numbers.pop("airspeed")
+    genuine, found = trim_solver.load_moments, defaultdict(list)
+
+    def timed(sections: Any, segments: Any, **wanted: Any) -> Any:
+        start = time.process_time()
+        moments = genuine(sections, segments, **wanted)
+        kind = "steady" if wanted.get("steady_only") else "with derivatives"
+        found[sections.quadrature.stations.shape[-1], kind].append(time.process_time() - start)
+        return moments
+
+    with mock.patch.object(trim_solver, "load_moments", timed):
+        case.vary(numbers).linearize(airspeed)
+    return found
+
+
 def profile(case: pp.Case, points: int) -> dict[str, float]:
     """Processor time of each part of a study of one process, s."""
     watch = Stopwatch()
@@ -132,6 +160,27 @@ def profile(case: pp.Case, points: int) -> dict[str, float]:
     return {part: watch.spent[part] for part in PARTS} | {REST: whole - sum(watch.spent.values())}
 
 
+def floors(case: pp.Case, points: int) -> dict[str, float]:
+    """What a part cannot do without, s a point.
+
+    Of the trim one evaluation of all section loads with their derivatives, which the equations of motion take as well;
+    of the state matrix the solution of its linear equations; of the eigenvalues all.
+    """
+    loads = evaluations(case, points)
+    full = min(loads[max(stations for stations, _ in loads), "with derivatives"])
+    numbers = plan(points).resolve(pp.design_inputs(case)).values
+    airspeed = numbers.pop("airspeed")
+    linear = case.vary(numbers).linearize(airspeed)
+    right = np.concatenate([linear.K, linear.C], axis=-1)[..., 1:]
+    matrix = study_batch.state_matrix(linear)
+    solve, values = best(
+        (lambda: np.linalg.solve(linear.M, right), time.process_time),
+        (lambda: np.linalg.eigvals(matrix), time.process_time),
+    )
+    least = {"trim: section loads": full, "state matrix": solve, "eigenvalues (LAPACK)": values}
+    return {part: spent / points for part, spent in least.items()}
+
+
 def print_ratios(console: Console, case: pp.Case, points: int) -> None:
     A = matrices(case, points)
     vectors = (*DEFAULT_QUANTITIES, "vectors")
@@ -140,7 +189,7 @@ def print_ratios(console: Console, case: pp.Case, points: int) -> None:
         f"{study_workers.idle_workers()} worker processes wait; load of the machine {os.getloadavg()[0]:.1f}"
     )
     processor, clock = time.process_time, time.perf_counter
-    one, values, one_with, followed, pairs, two, threads = best(
+    one, values, one_with, followed, pairs, two, threads, both = best(
         (lambda: study(case, plan(points), workers=1), processor),
         (lambda: np.linalg.eigvals(A), processor),
         (lambda: study(case, plan(points), quantities=vectors, workers=1), processor),
@@ -148,6 +197,7 @@ def print_ratios(console: Console, case: pp.Case, points: int) -> None:
         (lambda: np.linalg.eig(A), processor),
         (lambda: study(case, plan(points), workers=2), clock),
         (lambda: on_two_threads(np.linalg.eigvals, A), clock),
+        (lambda: study(case, plan(points), workers=2), processor_time_of_workers),
     )
     table = Table(
         "",
@@ -166,20 +216,26 @@ def print_ratios(console: Console, case: pp.Case, points: int) -> None:
     for name, ours, lapack, asked in rows:
         table.add_row(name, f"{ours:.2f}", f"{lapack:.2f}", f"{ours / lapack:.2f}", asked)
     console.print(table)
-    console.print(f"two processes against one: {one / two:.2f} × as fast (asked for: 1.6)")
+    console.print(f"two processes against one: {one / two:.2f} × as fast on the clock (asked for: 1.6)")
+    console.print(
+        f"their processor time together: {both:.2f} s, so {2 * one / both:.2f} × on two cores that do nothing else"
+    )
 
 
 def print_profile(console: Console, case: pp.Case, points: int) -> None:
-    times = profile(case, points)
+    times, least = profile(case, points), floors(case, BATCH)
     whole, lapack = sum(times.values()), times["eigenvalues (LAPACK)"]
-    table = Table(
-        "part", "µs a point", "% of the study", "of LAPACK's time", title="where one process spends its time"
-    )
+    columns = ("part", "µs a point", "% of the study", "of LAPACK's time", "floor, µs")
+    table = Table(*columns, title="where one process spends its time")
     for part, spent in (*times.items(), ("the study", whole)):
+        floor = f"{1e6 * least[part]:.1f}" if part in least else ""
         table.add_row(
-            part, f"{spent / points * 1e6:.1f}", f"{100 * spent / whole:.1f}", f"{spent / lapack:.3f}"
+            part, f"{1e6 * spent / points:.1f}", f"{100 * spent / whole:.1f}", f"{spent / lapack:.3f}", floor
         )
     console.print(table)
+    for (stations, kind), spent in evaluations(case, BATCH).items():
+        told = ", ".join(f"{1e6 * one / BATCH:.1f}" for one in spent)
+        console.print(f"section loads in the trim of a batch, {stations} stations, {kind}: {told} µs a point")
 
 
 def main() -> None:

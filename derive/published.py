@@ -35,7 +35,7 @@ DROPPED_TERMS = {
         "absent; first order in the cone",
     ),
     "gimbal_coriolis": DroppedTerm(
-        "in-plane acceleration of the coned blade as it flaps with the gimbal: 2 Omega (r beta_P + (r - e) beta_0) beta_G'",
+        "in-plane acceleration of the coned blade tilting with the gimbal: 2 Omega (r beta_P + (r - e) beta_0) beta_G'",
         "Eqs. 3 and 11, components i and j",
         "absent, although the same term of the blade's own flapping is there",
     ),

@@ -393,12 +393,13 @@ def _eigenvalues_and_vectors(model: LinearModel, states: int) -> dict[str, NDArr
 
 def _followed(model: LinearModel, with_vectors: bool) -> dict[str, NDArray]:
     """Eigenvalues by frequency and followed along the airspeeds, and the motion of the coordinates if asked for."""
-    values, right, left = decomposition(model)
+    spectrum = decomposition(model)
+    values, right = spectrum
     held, n = held_coordinates(model), len(model.dofs)
     order = _by_frequency(values)
-    places, quality, first = follow_designs(values, right, left, order)
+    places, quality, first = follow_designs(spectrum, order)
     designs = np.arange(len(values))
-    shares = coordinate_shares(held, n, left[designs, first], right[designs, first])
+    shares = coordinate_shares(held, n, *reversed(spectrum.at((designs, first)).all_modes[1:]))
     main = np.take_along_axis(np.nan_to_num(shares).argmax(axis=-2), places[designs, first], -1)
     found = {
         "eigenvalue": np.take_along_axis(values, order, -1),

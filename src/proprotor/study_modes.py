@@ -23,24 +23,22 @@ class Followed(NamedTuple):
     first: NDArray
 
 
-def follow_designs(values: NDArray, right: NDArray, left: NDArray, start: NDArray) -> Followed:
+def follow_designs(spectrum: Spectrum, start: NDArray) -> Followed:
     """Follow states over failed points.
 
     Parameters
     ----------
-    values : array (designs, speeds, states)
-        Eigenvalues, conjugates side by side, NaN at failed points.
-    right, left : array (designs, speeds, states, states)
-        Right vectors in columns, left ones in rows.
+    spectrum : Spectrum
+        Of points (designs, speeds).
     start : array (designs, speeds, states) of int
         The order of the states that a design begins with.
     """
-    designs, speeds, states = values.shape
-    good = np.isfinite(values).all(axis=-1)
+    designs, speeds, states = spectrum.values.shape
+    good = spectrum.works
     points = np.flatnonzero(good)
     same_design = np.diff(points // speeds) == 0
     before, after = points[:-1][same_design], points[1:][same_design]
-    flat = Spectrum(*(array.reshape(designs * speeds, *array.shape[2:]) for array in (values, right, left)))
+    flat = Spectrum(*(array.reshape(designs * speeds, *array.shape[2:]) for array in spectrum))
     steps = link(flat, before, after)
     first = np.where(good.any(axis=1), good.argmax(axis=1), -1)
     places = start.reshape(-1, states).copy()

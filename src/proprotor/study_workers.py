@@ -113,6 +113,12 @@ def idle_workers() -> int:
         return len(_idle)
 
 
+def process_ids() -> list[int]:
+    """Of the workers that wait for a study."""
+    with _lock:
+        return [worker.process.pid for worker in _idle]
+
+
 def _take() -> Worker:
     with _lock:
         while _idle:
