@@ -33,6 +33,9 @@ validation: .venv/installed  ## Write docs/validation.md and its figures
 audit: .venv/installed  ## Judge every equation of the paper against the derivation; writes docs/audit.md
 	$(BIN)/python -m derive.audit
 
+mutate: .venv/installed  ## Change every term of the equations, one at a time, and tell which change no test sees
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.mutation --processes 2 --report docs/mutation.md
+
 golden: .venv/installed  ## Accept the modes of every combination of switches as they are, and tell what moved
 	$(BIN)/python -m tests.accept_golden
 
@@ -42,7 +45,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation golden clean help
+.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation mutate golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

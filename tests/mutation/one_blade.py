@@ -1,0 +1,255 @@
+"""One blade of the nonlinear rotor, its matrices in rotating axes by complex steps, and what its sections meet.
+
+The rotor of `tests.oracles` with a single blade at no azimuth has as many coordinates as a blade in rotating axes, so
+every entry of a blade's matrices can be had from it: nothing is hidden by the sum over the blades.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tests.mutation.sections import POLYNOMIAL, Air, section_loads
+from tests.mutation.transform import ONE_BLADE, in_rotating_axes, seen_from_blade
+from tests.oracles.motion import Motion
+from tests.oracles.nonlinear_rotor import (
+    DOFS,
+    FLAP,
+    LAG,
+    PITCH,
+    NonlinearRotor,
+    blades,
+    clock,
+    damper_rows,
+    inertia_rows,
+    linearised,
+    spring_rows,
+)
+from tests.oracles.random_rotors import Pair, random_rotor
+from tests.oracles.virtual_work import Aerodynamics, assembled, quadrature, virtual_nose_up_rotation
+
+STEP = 1e-30
+ORDER = 3  # stations in a panel: both sides use the same, so they need not integrate well
+BALANCES = [DOFS.index(name) for name in ("flap_0", "lag_0", "pitch_0", "azimuth", "z")]
+_PLACES = np.array([DOFS.index(name) for name in ONE_BLADE])
+
+Matrices = tuple[NDArray, NDArray, NDArray]
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A rotor with everything at work, at a steady state that nothing need balance.
+
+    rotor has a single blade and its share of the gimbal's spring and damper; trim are its steady coordinates.
+    """
+
+    pair: Pair
+    rotor: NonlinearRotor
+    trim: NDArray
+    air: Aerodynamics
+    n_blades: int
+    pitch_flap_coupling: float
+    pitch_lag_coupling: float
+
+    @classmethod
+    def random(cls, seed: int) -> Point:
+        """Angles are larger than a rotor's, so that their higher orders count."""
+        rng = np.random.default_rng(1000 + seed)
+        n_blades = 3 + seed % 3
+        pair = random_rotor(
+            seed,
+            n_blades=n_blades,
+            precone=rng.uniform(0.1, 0.2),
+            lag_hinge_offset=0.9 + 0.1 * seed,
+            tables=bool(seed % 2),
+        )
+        state = {
+            "coning": rng.uniform(0.1, 0.2),
+            "lag": rng.uniform(-0.25, -0.15),
+            "elastic_pitch": rng.uniform(-0.1, -0.05),
+            "collective": rng.uniform(0.7, 0.9),
+        }
+        whole, trim = pair.oracle(_State(**state))
+        shares = {name: getattr(whole, name) / n_blades for name in ("gimbal_stiffness", "gimbal_damping")}
+        couplings = rng.uniform(0.2, 0.5, 2)
+        air = pair.air(rng.uniform(90, 130), 1.1)
+        return cls(pair, replace(whole, n_blades=1, **shares), trim, air, n_blades, *couplings)
+
+    @property
+    def state(self) -> dict[str, float]:
+        """Trim state by the names of the derivation."""
+        return {
+            "coning": self.trim[FLAP],
+            "lag": self.trim[LAG],
+            "elastic_pitch": self.trim[PITCH],
+            "collective": self.rotor.collective,
+        }
+
+
+@dataclass(frozen=True)
+class _State:
+    coning: float
+    lag: float
+    elastic_pitch: float
+    collective: float
+
+
+def quantities(point: Point) -> dict[str, float]:
+    """What generated functions take of the whole blade, by name; mass integrals are sums over the point masses."""
+    given = {k: v for k, v in point.pair.fields.items() if k not in ("airfoil", "chord", "twist")}
+    given |= point.state | hub_couplings(point)
+    given["propeller_moment"] = float(given["propeller_moment"])
+    given["pitch"] = given["collective"] + given["elastic_pitch"]
+    given["structural_pitch"] = given["pitch"] + given["structural_pitch_offset"]
+    return given | {
+        "rotor_speed": point.rotor.rotor_speed,
+        "airspeed": point.air.airspeed,
+        "density": point.air.density,
+        "speed_of_sound": point.air.speed_of_sound,
+        "section_damping": 1.0,
+        "pitch_flap_coupling": point.pitch_flap_coupling,
+        "pitch_lag_coupling": point.pitch_lag_coupling,
+    }
+
+
+def arms(point: Point) -> tuple[NDArray, NDArray, NDArray]:
+    """r, ρβ and ρζ of the point masses."""
+    r, rotor = point.rotor.station, point.rotor
+    return r, np.maximum(r - rotor.flap_hinge_offset, 0.0), np.maximum(r - rotor.lag_hinge_offset, 0.0)
+
+
+def hub_couplings(point: Point) -> dict[str, float]:
+    """I_βα, I_ζα and I_βζ."""
+    mass, (r, flap_arm, lag_arm) = point.rotor.mass, arms(point)
+    return {
+        "flap_hub_inertia": mass @ (r * flap_arm),
+        "lag_hub_inertia": mass @ (r * lag_arm),
+        "flap_lag_inertia": mass @ (flap_arm * lag_arm),
+    }
+
+
+# Matrices in rotating axes
+
+
+def blade_matrices(rows: Callable, point: Point, rotor: NonlinearRotor | None = None) -> Matrices:
+    """M, C, K (12, 12) in rotating axes of rows(rotor, q, time)."""
+    rotor = rotor or point.rotor
+    fixed = linearised(lambda q, time: rows(rotor, q, time), point.trim, 0.0)
+    one = tuple(matrix[np.ix_(_PLACES, _PLACES)] for matrix in fixed)
+    return in_rotating_axes(one, rotor.rotor_speed)
+
+
+def without(rotor: NonlinearRotor, *names: str) -> NonlinearRotor:
+    """The rotor with some of its fields at zero; a hinge spring as soft as numbers allow, for it is divided by."""
+    return replace(
+        rotor, **{name: 1e-40 if name in ("flap_stiffness", "lag_stiffness") else 0 for name in names}
+    )
+
+
+@functools.cache
+def mass_matrices(point: Point) -> Matrices:
+    """Of the point masses alone."""
+    return blade_matrices(inertia_rows, point, without(point.rotor, "pitch_inertia"))
+
+
+def spring_matrices(point: Point) -> Matrices:
+    """Of the hinge springs alone."""
+    rotor = without(point.rotor, "control_stiffness", "gimbal_stiffness", "propeller_moment")
+    return blade_matrices(spring_rows, point, rotor)
+
+
+@functools.cache
+def pitch_matrices(point: Point, *gone: str) -> Matrices:
+    """Of pitch inertia, propeller moment, control system, gimbal restraint and dampers."""
+    rotor = without(point.rotor, "flap_stiffness", "lag_stiffness", *gone)
+    rotor = replace(rotor, mass=0 * rotor.mass)
+
+    def rows(rotor, q, time):
+        return inertia_rows(rotor, q, time) + spring_rows(rotor, q, time) + damper_rows(rotor, q, time)
+
+    return blade_matrices(rows, point, rotor)
+
+
+def vacuum_rows(rotor: NonlinearRotor, q: Motion, time: float) -> NDArray:
+    return inertia_rows(rotor, q, time) + spring_rows(rotor, q, time)
+
+
+# The air
+
+
+def stations(point: Point) -> tuple[NDArray, NDArray, NDArray]:
+    """Radius, weight and segment of each station: inboard of the hinges, between them, outboard."""
+    r, weight = quadrature(point.air, point.rotor, ORDER)
+    hinges = np.array([point.rotor.flap_hinge_offset, point.rotor.lag_hinge_offset])
+    return r, weight, (r[:, None] > hinges).sum(axis=1)
+
+
+def air_at(point: Point, r: NDArray, motion, drift=0.0) -> Air:
+    """What sections of the first blade at r meet; `motion` is of `blades`, `drift` the velocity of the air."""
+    velocity = motion.position.rate + np.array([0.0, 0.0, point.air.airspeed]) - drift
+    pitch = motion.pitch.value
+    pitch = pitch - point.pitch_flap_coupling * (motion.flap.value - point.trim[FLAP])
+    pitch = pitch - point.pitch_lag_coupling * (motion.lag.value - point.trim[LAG])
+    return Air(
+        tangential=-(velocity * motion.chordwise.value).sum(-1),
+        axial=(velocity * motion.normal.value).sum(-1),
+        radial=(velocity * motion.spanwise.value).sum(-1),
+        pitch=pitch + np.interp(r, *point.air.twist),
+        spin=virtual_nose_up_rotation(motion),
+        chord=np.interp(r, *point.air.chord),
+        density=point.air.density,
+        speed_of_sound=point.air.speed_of_sound,
+    )
+
+
+def airload_rows(point: Point, rotor: NonlinearRotor, q: Motion, time: float, drift=0.0) -> NDArray:
+    """What the airloads add to the left-hand side."""
+    r, weight, _ = stations(point)
+    motion = blades(rotor, r, q, clock(rotor, time))
+    loads = section_loads(POLYNOMIAL, air_at(point, r, motion, drift))
+    force = loads["fx"][..., None] * motion.chordwise.value
+    force = (
+        force + loads["fn"][..., None] * motion.normal.value + loads["fd"][..., None] * motion.spanwise.value
+    )
+    return -assembled(rotor, r, q, time, motion, force * weight[:, None], loads["m"] * weight)
+
+
+def air_matrices(point: Point) -> Matrices:
+    """Of the airloads."""
+    return blade_matrices(lambda rotor, q, time: airload_rows(point, rotor, q, time), point)
+
+
+def gust_columns(point: Point) -> NDArray:
+    """Loads (12, 3) on the right-hand side per unit velocity of the air along i, j, k."""
+    columns = []
+    for axis in ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)):  # i, j, k at no azimuth
+        rows = airload_rows(point, point.rotor, Motion(point.trim), 0.0, 1j * STEP * np.array(axis))
+        columns.append(-rows[_PLACES].imag / STEP)
+    back = np.linalg.inv(seen_from_blade(ONE_BLADE, 0.0)[0])
+    return back.T @ np.array(columns).T
+
+
+def trim_air(point: Point) -> Air:
+    """What the sections at the stations meet in steady flight, each number (stations,)."""
+    r, _, _ = stations(point)
+    motion = blades(point.rotor, r, Motion(point.trim), clock(point.rotor, 0.0))
+    return air_at(point, r, motion).mapped(lambda number: np.broadcast_to(np.real(number), (1, len(r)))[0])
+
+
+# The steady balance
+
+
+def steady_rows(rows: Callable, point: Point) -> tuple[NDArray, NDArray]:
+    """Steady loads (5,) of rows(rotor, q, time), and derivatives (5, 4) with coning, lag, elastic pitch, collective."""
+    steady = rows(point.rotor, Motion(point.trim), 0.0)[BALANCES]
+    slopes = np.zeros((len(BALANCES), 4))
+    for column, place in enumerate((FLAP, LAG, PITCH)):
+        moved = point.trim + 1j * STEP * np.eye(len(DOFS))[place]
+        slopes[:, column] = rows(point.rotor, Motion(moved), 0.0)[BALANCES].imag / STEP
+    turned = replace(point.rotor, collective=point.rotor.collective + 1j * STEP)
+    slopes[:, 3] = rows(turned, Motion(point.trim), 0.0)[BALANCES].imag / STEP
+    return steady.real, slopes

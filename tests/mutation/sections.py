@@ -1,0 +1,93 @@
+"""Loads of a blade section written down from lift, drag and moment, for an airfoil with every derivative at work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+STEP = 1e-30
+LOADS = ("fx", "fn", "fd", "m")
+DERIVATIVES = {"ut": "tangential", "up": "axial", "ur": "radial", "theta": "pitch", "spin": "spin"}
+
+
+@dataclass(frozen=True)
+class Air:
+    """What a section is and meets: velocities u_T, u_P, u_R, its pitch, and its rotation about the span, nose up."""
+
+    tangential: Any
+    axial: Any
+    radial: Any
+    pitch: Any
+    spin: Any
+    chord: Any
+    density: Any
+    speed_of_sound: Any
+
+    def mapped(self, function: Callable) -> Air:
+        """The same with a function applied to every number."""
+        return Air(**{entry.name: function(getattr(self, entry.name)) for entry in fields(self)})
+
+
+@dataclass(frozen=True)
+class PolynomialAirfoil:
+    """Lift, drag and moment coefficients as polynomials of angle of attack and Mach number: no derivative vanishes."""
+
+    def coefficients(self, alpha: Any, mach: Any) -> tuple[Any, Any, Any]:
+        lift = 0.3 + 5.7 * alpha + 0.8 * alpha * mach + 0.4 * mach**2 - 1.1 * alpha**2
+        drag = 0.05 + 0.3 * alpha**2 + 0.2 * alpha + 0.06 * mach**2 + 0.1 * alpha * mach
+        moment = -0.04 + 0.2 * alpha - 0.09 * mach**2 + 0.07 * alpha * mach
+        return lift, drag, moment
+
+
+POLYNOMIAL = PolynomialAirfoil()
+
+
+def inflow(air: Air) -> tuple[Any, Any, Any]:
+    """Speed in the section's plane, inflow angle and angle of attack."""
+    angle = np.arctan(air.axial / air.tangential)
+    return np.sqrt(air.tangential**2 + air.axial**2), angle, air.pitch - angle
+
+
+def section_loads(airfoil: PolynomialAirfoil, air: Air, damped: float = 1.0) -> dict[str, Any]:
+    """Force along i', n and d and nose-up moment, per length.
+
+    Lift is normal to the air in the section's plane, drag along the air, the part along the span included; thin
+    airfoils resist rotation with π/8 ρ c³ U per rad/s about the quarter chord.
+    """
+    speed, angle, alpha = inflow(air)
+    lift, drag, moment = airfoil.coefficients(alpha, speed / air.speed_of_sound)
+    area = 0.5 * air.density * air.chord
+    return {
+        "fx": area * speed**2 * (lift * np.sin(angle) + drag * np.cos(angle)),
+        "fn": area * speed**2 * (lift * np.cos(angle) - drag * np.sin(angle)),
+        "fd": -area * speed * drag * air.radial,
+        "m": area * air.chord * speed**2 * moment
+        - damped * np.pi / 8 * air.density * air.chord**3 * speed * air.spin,
+    }
+
+
+def section_derivatives(airfoil: PolynomialAirfoil, air: Air, damped: float = 1.0) -> dict[str, NDArray]:
+    """Loads and their derivatives, by the names of the derivation."""
+    found = dict(section_loads(airfoil, air, damped))
+    for name, argument in DERIVATIVES.items():
+        moved = replace(air, **{argument: getattr(air, argument) + 1j * STEP})
+        loads = section_loads(airfoil, moved, damped)
+        found |= {f"{load}_{name}": np.imag(loads[load]) / STEP for load in LOADS}
+    return found
+
+
+def coefficients_of(airfoil: PolynomialAirfoil, air: Air) -> dict[str, NDArray]:
+    """Coefficients of a section and their derivatives, by the names of the derivation."""
+    speed, _, alpha = inflow(air)
+    mach = speed / air.speed_of_sound
+    steps = {"": (0.0, 0.0), "_alpha": (1j * STEP, 0.0), "_mach": (0.0, 1j * STEP)}
+    found = {}
+    for suffix, (da, dm) in steps.items():
+        values = airfoil.coefficients(alpha + da, mach + dm)
+        for name, value in zip(("lift", "drag", "moment"), values, strict=True):
+            found[f"{name}_coefficient{suffix}"] = np.imag(value) / STEP if suffix else value
+    return found
