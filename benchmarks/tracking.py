@@ -4,9 +4,9 @@
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.tracking --every     # every design judged in steps of 0.1 kt
 
 Each bundled case and 200 random designs around the XV-15 are swept from 50 to 400 kt in steps of 5 kt, with the
-division of steps that `Case.sweep` does. The judge follows the same modes in steps of 0.1 kt (every tenth design; 0.5 kt for the
-others) from point to point without dividing any. Where the two differ, the step in question is looked at in steps of
-0.002 kt, which says which of them is right.
+division of steps that `Case.sweep` does. The judge follows the same modes in steps of 0.1 kt (every tenth design; 0.5
+kt for the others) from point to point without dividing any. Where the two differ, the step in question is looked at in
+steps of 0.002 kt, which says which of them is right.
 """
 
 from __future__ import annotations
@@ -18,15 +18,16 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
+from rich.table import Table
 
 import proprotor as pp
-from proprotor.modes import decomposition, left_vectors, state_matrix
+from proprotor.modes import decomposition, state_matrix
 from proprotor.path import Line, Path, follow, path_of
-from proprotor.tracking import chain, link
+from proprotor.tracking import chain, left_vectors, link
 
 KNOT = 1852 / 3600
 COARSE, FINE, LESS_FINE, FINEST = 5.0, 0.1, 0.5, 0.002  # kt
-DESIGNS, POINTS = 200, 10_000
+DESIGNS, POINTS, BATCH = 200, 10_000, 1000
 SAME = 1e-6  # of an eigenvalue
 VARIED = {
     "rotor.precone": 1.0,
@@ -89,46 +90,60 @@ def _agree(case: pp.Case, span: NDArray, ends: NDArray, steps: int) -> bool:
     every = values_of(path_of(decomposition(case.linearize(line))), len(line))
     start = np.abs(ends[0][:, None] - every[0]).argmin(axis=1)
     arrived = every[-1][start]
-    # Two roots of a pair that has parted may be told in either order: neither is the first.
+    # Two roots of a pair that has parted may be told in either order, and two that have joined above or below.
     apart = np.abs(arrived - ends[1]) > SAME * np.abs(ends[1])
     return not np.any(apart & ~_exchangeable(ends, arrived))
 
 
 def _exchangeable(ends: NDArray, arrived: NDArray) -> NDArray:
-    """States of a pair at the start that are real at the end, and have one another's roots."""
+    """States of a pair that are real at the end, and real ones of a pair at the end, with one another's roots."""
     parted = (ends[0].imag != 0) & (ends[1].imag == 0)
     twin = np.abs(ends[0][:, None] - ends[0].conj()).argmin(axis=1)
-    return parted & (np.abs(arrived - ends[1][twin]) <= SAME * np.abs(arrived))
+    parted &= np.abs(arrived - ends[1][twin]) <= SAME * np.abs(arrived)
+    joined = (ends[0].imag == 0) & (ends[1].imag != 0)
+    return parted | (joined & (np.abs(arrived - ends[1].conj()) <= SAME * np.abs(arrived)))
 
 
 def cost(console: Console) -> None:
-    """Time of following 10,000 points, beside `numpy.linalg.eig` on the same matrices."""
+    """Processor time of each part of following 10,000 points, beside `numpy.linalg.eig` on the same matrices."""
     case = pp.load_case("xv15")
-    model = case.linearize(np.linspace(50, 400, POINTS) * KNOT)
-    matrix = state_matrix(model)
+    speeds = np.linspace(50, 400, POINTS) * KNOT
+    model = case.linearize(speeds)
+    matrix, spectrum = state_matrix(model), decomposition(model)
+    ends = np.arange(POINTS - 1), np.arange(1, POINTS)
+    steps = link(spectrum, *ends)
+    parts = {
+        "numpy.linalg.eig alone": lambda: np.linalg.eig(matrix),
+        "matrices of the equations of motion": lambda: in_batches(case, speeds),
+        "state matrices": lambda: state_matrix(model),
+        "eigenvalues and right vectors": lambda: decomposition(model),
+        "likeness, assignment, quality": lambda: link(spectrum, *ends),
+        "chain": lambda: chain(steps.successor, np.arange(matrix.shape[-1])),
+        "left vectors of all modes": lambda: left_vectors(*spectrum),
+    }
     rounds = []
     for _ in range(5):
-        times = [time.perf_counter()]
-        values, right = np.linalg.eig(matrix)
-        times.append(time.perf_counter())
-        spectrum = decomposition(model)
-        times.append(time.perf_counter())
-        steps = link(spectrum, np.arange(POINTS - 1), np.arange(1, POINTS))
-        times.append(time.perf_counter())
-        chain(steps.successor, np.arange(matrix.shape[-1]))
-        times.append(time.perf_counter())
-        for start in range(0, POINTS, 64):
-            left_vectors(values[start : start + 64], right[start : start + 64])
-        times.append(time.perf_counter())
-        rounds.append(np.diff(times))
-    eig, whole, linking, chaining, left = np.median(rounds, axis=0)
-    console.print(
-        f"numpy.linalg.eig of {POINTS} state matrices {matrix.shape[-1]} x {matrix.shape[-1]}: {eig:.2f} s"
-    )
-    console.print(f"  state matrices, eigenvalues, right and left vectors: {whole / eig:.2f} of that")
-    console.print(f"  of it, left vectors: {left / eig:.2f}")
-    console.print(f"  likeness, assignment, quality: {linking / eig:.2f};  chain: {chaining / eig:.3f}")
-    console.print(f"  together {(whole + linking + chaining) / eig:.2f}")
+        times = []
+        for part in parts.values():
+            begin = time.process_time()
+            part()
+            times.append(time.process_time() - begin)
+        rounds.append(times)
+    eig, linearize, state, decomposed, linked, chained, left = np.median(rounds, axis=0)
+    table = Table("part", "of eig", title=f"{POINTS} points, {matrix.shape[-1]} states; eig: {eig:.2f} s")
+    shares = (eig, linearize, state, decomposed - state, linked, chained, left)
+    for name, share in zip(parts, shares, strict=True):
+        table.add_row(name, f"{share / eig:.3f}")
+    table.add_row("followed, from state matrices on", f"{(decomposed + linked + chained) / eig:.2f}")
+    table.add_row("with left vectors", f"{(decomposed + linked + chained + left) / eig:.2f}")
+    table.add_row("and from airspeeds on", f"{(linearize + decomposed + linked + chained + left) / eig:.2f}")
+    console.print(table)
+
+
+def in_batches(case: pp.Case, speeds: NDArray) -> None:
+    """Linearise as a study does, a batch at a time."""
+    for start in range(0, len(speeds), BATCH):
+        case.linearize(speeds[start : start + BATCH])
 
 
 def main() -> None:

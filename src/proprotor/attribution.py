@@ -23,7 +23,7 @@ from proprotor.model_parts import Part, model_parts
 from proprotor.modes import decomposition
 from proprotor.speed import in_metres_per_second
 from proprotor.sweep import sweep_case
-from proprotor.tracking import Spectrum
+from proprotor.tracking import Modes
 
 if TYPE_CHECKING:
     import xarray
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 
-def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Spectrum) -> NDArray:
+def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> NDArray:
     """λ_g of each part and mode (..., parts, modes), rad/s; the sum over parts that make up the model is zero."""
     return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
 

@@ -8,19 +8,51 @@ needs no division by λ.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
+from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import held_coordinates
-from proprotor.tracking import Spectrum
+from proprotor.tracking import Modes
 
+_DIFFERENCE = 1e-3  # of an input that takes no complex step
 STEP = 1e-30  # its square vanishes beside any number of the model
 
 
 def matrix_derivatives(model: LinearModel) -> tuple[NDArray, NDArray, NDArray]:
     """M', C', K' (..., n, n) of a model evaluated `STEP` away in the imaginary direction."""
     return tuple(np.imag(getattr(model, name)) / STEP for name in "MCK")
+
+
+def with_changes(
+    linearize: Callable[[NDArray], LinearModel], positions: NDArray
+) -> tuple[LinearModel, tuple[NDArray, NDArray, NDArray]]:
+    """Models at positions (k,) and how M, C and K change with the position.
+
+    By a complex step; where complex positions are refused, as by finite elements, by extrapolated differences.
+    """
+    try:
+        model = linearize(positions + 1j * STEP)
+    except InputError:
+        return linearize(positions), differences(linearize, positions)
+    return model, matrix_derivatives(model)
+
+
+def differences(
+    linearize: Callable[[NDArray], LinearModel], positions: NDArray
+) -> tuple[NDArray, NDArray, NDArray]:
+    """M', C', K' by central differences of two steps, extrapolated."""
+    by_step = []
+    for step in (_DIFFERENCE, _DIFFERENCE / 2):
+        step = step * np.where(positions == 0, 1.0, np.abs(positions))
+        ends = [linearize(positions + sign * step) for sign in (1, -1)]
+        by_step.append(
+            [(getattr(ends[0], m) - getattr(ends[1], m)) / (2 * step[..., None, None]) for m in "MCK"]
+        )
+    return tuple((4 * fine - coarse) / 3 for coarse, fine in zip(*by_step, strict=True))
 
 
 def second_order_left(model: LinearModel, left: NDArray) -> NDArray:
@@ -33,7 +65,7 @@ def second_order_left(model: LinearModel, left: NDArray) -> NDArray:
 def eigenvalue_change(
     model: LinearModel,
     changes: tuple[NDArray, NDArray, NDArray],
-    modes: Spectrum,
+    modes: Modes,
 ) -> NDArray:
     """First-order change (..., modes) of eigenvalues by changes of M, C and K (..., n, n).
 
@@ -42,8 +74,7 @@ def eigenvalue_change(
     model : LinearModel
         Whose M and coordinates the vectors belong to; its leading axes and those of the changes broadcast.
     changes : three arrays (..., n, n)
-    modes : Spectrum
-        values (..., modes), right (..., states, modes), left (..., modes, states), of `Spectrum.modes`.
+    modes : Modes
     """
     values, right, left = modes
     n, held = len(model.dofs), held_coordinates(model)
@@ -53,7 +84,7 @@ def eigenvalue_change(
     return -np.einsum("...mn,...nm->...m", second_order_left(model, left), load)
 
 
-def defect(modes: Spectrum) -> NDArray:
+def defect(modes: Modes) -> NDArray:
     """How nearly defective modes are (..., modes): the sum of |l_k r_k| over the states, free of units, 1 at best.
 
     It grows without bound where two modes fall into one and derivatives cease to exist.

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from proprotor.path import Line
 
 _NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping ratio
-_BLOCK = 64  # points whose vectors stay in the cache
 _NO_INERTIA = 1e13  # condition number of a mass matrix, scaled to a unit diagonal, that has no inverse
 
 
@@ -78,22 +77,27 @@ def _good(model: LinearModel) -> NDArray:
 
 def eigensystem(model: LinearModel) -> Eigensystem:
     """All eigenvalues and vectors; eigenvalues of a point in no particular order, each pair side by side."""
-    values, right, left = decomposition(model)
-    held = held_coordinates(model)
+    spectrum, held = decomposition(model), held_coordinates(model)
+    values, right, left = spectrum.all_modes
     return Eigensystem(values, right, left, coordinate_motion(held, len(model.dofs), values, right))
 
 
 def decomposition(model: LinearModel) -> Spectrum:
-    """Eigenvalues and vectors in the state space alone; of a complex model, those of its real part."""
-    good = _good(model)
-    states = len(held_coordinates(model)) + len(model.dofs)
+    """Eigenvalues and right vectors in the state space; of a complex model, those of its real part."""
+    good, model = _good(model), _real(model)
     if good.all():
-        return _decomposed(state_matrix(_real(model)))
+        return _solved(state_matrix(model))
+    states = len(held_coordinates(model)) + len(model.dofs)
     values = np.full((*good.shape, states), np.nan, dtype=complex)
-    right, left = (np.full((*good.shape, states, states), np.nan, dtype=complex) for _ in range(2))
+    right = np.full((*good.shape, states, states), np.nan, dtype=complex)
     if good.any():
-        values[good], right[good], left[good] = _decomposed(state_matrix(some_points(_real(model), good)))
-    return Spectrum(values, right, left)
+        values[good], right[good] = _solved(state_matrix(some_points(model, good)))
+    return Spectrum(values, right)
+
+
+def _solved(matrix: NDArray) -> Spectrum:
+    values, right = np.linalg.eig(matrix)
+    return Spectrum(values.astype(complex, copy=False), right.astype(complex, copy=False))
 
 
 def _real(model: LinearModel) -> LinearModel:
@@ -107,41 +111,6 @@ def some_points(model: LinearModel, points: NDArray) -> LinearModel:
     return replace(
         model, M=model.M[points], C=model.C[points], K=model.K[points], B=None, hub=None, rotor=None
     )
-
-
-def _decomposed(matrix: NDArray) -> Spectrum:
-    """Eigenvalues, right vectors in columns and left vectors in rows of real matrices, blocks of points at a time."""
-    shape, states = matrix.shape[:-2], matrix.shape[-1]
-    flat = matrix.reshape(-1, states, states)
-    values = np.empty((len(flat), states), dtype=complex)
-    right, left = (np.empty((len(flat), states, states), dtype=complex) for _ in range(2))
-    for start in range(0, len(flat), _BLOCK):
-        rows = slice(start, start + _BLOCK)
-        values[rows], right[rows] = np.linalg.eig(flat[rows])
-        left[rows] = left_vectors(values[rows], right[rows])
-    return Spectrum(values.reshape(*shape, states), right.reshape(matrix.shape), left.reshape(matrix.shape))
-
-
-def left_vectors(values: NDArray, right: NDArray) -> NDArray:
-    """Rows (..., states, states) with rows @ right = 1, for a real matrix whose pairs stand side by side.
-
-    The columns a + ib and a - ib span what a and b span: their inverse is had from that of the real matrix with the
-    columns a and b, at a third of the cost. A defective matrix has no inverse; there the rows are those of least
-    squares.
-    """
-    upper, lower = values.imag > 0, values.imag < 0
-    real = np.where(lower[..., None, :], -right.imag, right.real)
-    try:
-        rows = np.linalg.inv(real)
-    except np.linalg.LinAlgError:
-        rows = np.linalg.pinv(real)
-    left = np.empty(right.shape, dtype=complex)
-    left.real, left.imag = rows, 0.0
-    *point, place = np.nonzero(upper)
-    first, second = rows[(*point, place)], rows[(*point, place + 1)]
-    left[(*point, place)] = 0.5 * (first - 1j * second)
-    left[(*point, place + 1)] = 0.5 * (first + 1j * second)
-    return left
 
 
 def coordinate_motion(held: list[int], n: int, values: NDArray, right: NDArray) -> NDArray:

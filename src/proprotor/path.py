@@ -104,7 +104,7 @@ class Path:
     def with_points(self, after: NDArray, positions: NDArray, between: Spectrum) -> Path:
         """The path with one more point in each of the steps `after`, at `positions` within them."""
         first = len(self.spectrum.values)
-        spectrum = Spectrum(*(np.concatenate(parts) for parts in zip(self.spectrum, between, strict=True)))
+        spectrum = self.spectrum.joined(between)
         points = np.insert(self.points, after + 1, np.arange(first, len(spectrum.values)))
         successor, quality = (np.insert(part, after, part[after], axis=0) for part in self.steps)
         parted = np.flatnonzero((points[:-1] >= first) | (points[1:] >= first))
@@ -114,7 +114,7 @@ class Path:
 
 def path_of(spectrum: Spectrum, positions: NDArray | None = None) -> Path:
     """The path through points in their order, failed ones passed over."""
-    good = np.flatnonzero(np.isfinite(spectrum.values).all(axis=1))
+    good = np.flatnonzero(spectrum.works)
     return Path(spectrum, good, link(spectrum, good[:-1], good[1:]), positions)
 
 
@@ -135,9 +135,8 @@ def follow(model: LinearModel, line: Line | None = None) -> Path:
         ends = path.positions[path.points]
         middle = (ends[poor] + ends[poor + 1]) / 2
         between = decomposition(line.linearize(middle))
-        works = np.isfinite(between.values).all(axis=1)
+        works = between.works
         hopeless[poor[~works]] = True
-        found = Spectrum(*(part[works] for part in between))
-        path = path.with_points(poor[works], middle[works], found)
+        path = path.with_points(poor[works], middle[works], between.at(works))
         hopeless = np.insert(hopeless, poor[works], hopeless[poor[works]])
     return path

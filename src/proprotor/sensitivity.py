@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from proprotor.eigenvalue_derivatives import STEP, defect, eigenvalue_change, matrix_derivatives
+from proprotor.crossings import growth_rate
+from proprotor.eigenvalue_derivatives import STEP, defect, differences, eigenvalue_change, matrix_derivatives
 from proprotor.errors import InputError, unknown_name
-from proprotor.flutter import Boundary, flutter_point, growth_rate
+from proprotor.flutter import Boundary, flutter_point
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition
 from proprotor.speed import in_metres_per_second
 from proprotor.sweep import sweep_case
-from proprotor.tracking import Spectrum
+from proprotor.tracking import Modes
 
 if TYPE_CHECKING:
     import xarray
@@ -30,16 +31,14 @@ if TYPE_CHECKING:
     from proprotor.datum import Datum
 
 QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
-NEARLY_DEFECTIVE = (
-    10.0  # times the parting of a mode that nothing couples: derivatives hold in a small range only
-)
+NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
 
 
 def input_rates(
     linearize: Callable[[Mapping[str, NDArray]], LinearModel],
     values: Mapping[str, float],
     model: LinearModel,
-    modes: Spectrum,
+    modes: Modes,
 ) -> NDArray:
     """Derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
 
@@ -51,8 +50,8 @@ def input_rates(
         Where the derivatives are wanted.
     model : LinearModel
         At these values; one point.
-    modes : Spectrum
-        Of that point: values (modes,), right (states, modes), left (modes, states).
+    modes : Modes
+        Of that point.
     """
     count = len(values)
     moved = {
@@ -103,8 +102,9 @@ def sensitivity(
     -------
     xarray.Dataset
         derivative (input,) or (input, mode), SI units per SI unit of the input; relative, the derivative times the
-        input: the change per change of the input by its own size; value, unit and status of every input; defect and
-        nearly_defective of the modes (`proprotor.eigenvalue_derivatives.defect`): there derivatives hold in a small
+        input: the change per change of the input by its own size; value, unit and status of every input; exact, whether
+        its matrices were derived by a complex step, or, those of finite elements, by extrapolated differences; defect
+        and nearly_defective of the modes (`proprotor.eigenvalue_derivatives.defect`): there derivatives hold in a small
         range only. For the flutter speed also frequency_derivative, of the frequency at the boundary as it moves.
         Attributes: of, its value where there is one, eigen_solves.
 
@@ -134,17 +134,37 @@ def _chosen(case: Case, wrt: Sequence[str] | None) -> dict[str, Datum]:
 
 
 def _rates(
-    case: Case,
-    inputs: Mapping[str, Datum],
-    airspeed: float,
-    modes: Spectrum,
-    model: LinearModel,
-    options: Any,
-) -> NDArray:
+    case: Case, inputs: Mapping[str, Datum], airspeed: float, modes: Modes, model: LinearModel, options: Any
+) -> tuple[NDArray, NDArray]:
+    """Derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) had them by a complex step."""
+
     def linearize(values: Mapping[str, NDArray]) -> LinearModel:
         return case.vary(values).linearize(airspeed, **options)
 
-    return input_rates(linearize, {path: float(n.si) for path, n in inputs.items()}, model, modes)
+    values = {path: float(number.si) for path, number in inputs.items()}
+    try:
+        return input_rates(linearize, values, model, modes), np.ones(len(values), dtype=bool)
+    except InputError:
+        exact = np.array([_takes_complex(case, path, value) for path, value in values.items()])
+        if exact.all():  # something else is wrong
+            raise
+    rates = np.empty((len(values), len(modes.values)), dtype=complex)
+    if exact.any():
+        analytic = {path: value for (path, value), takes in zip(values.items(), exact, strict=True) if takes}
+        rates[exact] = input_rates(linearize, analytic, model, modes)
+    for place in np.flatnonzero(~exact):
+        path = list(values)[place]
+        changes = differences(lambda value, path=path: linearize({path: value}), np.array(values[path]))
+        rates[place] = eigenvalue_change(model, changes, modes)
+    return rates, exact
+
+
+def _takes_complex(case: Case, path: str, value: float) -> bool:
+    try:
+        case.vary({path: np.array(value + 1j * STEP)})
+    except InputError:
+        return False
+    return True
 
 
 def _of_flutter_speed(
@@ -177,10 +197,11 @@ def at_boundary(
     model = case.linearize(speed, **options)
     spectrum = decomposition(model)
     modes = spectrum.modes(np.array([np.argmin(np.abs(spectrum.values - boundary.eigenvalue))]))
-    rates = _rates(case, inputs, speed, modes, model, options)[:, 0]
+    rates, exact = _rates(case, inputs, speed, modes, model, options)
+    rates = rates[:, 0]
     moves = -growth_rate(modes.values, rates, level) / boundary.rate
     frequency = rates.imag + boundary.eigenvalue_rate.imag * moves
-    data = _dataset(inputs, ("input",), moves, "m/s")
+    data = _dataset(inputs, ("input",), moves, "m/s", exact)
     data["frequency_derivative"] = ("input", frequency, {"units": "rad/s per SI unit of the input"})
     data["defect"] = ((), float(defect(modes)[0]))
     data["nearly_defective"] = ((), bool(data.defect > NEARLY_DEFECTIVE))
@@ -220,12 +241,12 @@ def _of_modes(
     if mode is not None:
         places, names = places[[names.index(mode)]], [mode]
     modes = spectrum.modes(places)
-    rates = _rates(case, inputs, speed[0], modes, model, options)
+    rates, exact = _rates(case, inputs, speed[0], modes, model, options)
     value, units = modes.values, "rad/s"
     if of == "damping":
         value, units = -modes.values.real / np.abs(modes.values), "1"
         rates = damping_rate(modes.values, rates)
-    data = _dataset(inputs, ("input", "mode"), rates, units).assign_coords(mode=names)
+    data = _dataset(inputs, ("input", "mode"), rates, units, exact).assign_coords(mode=names)
     data[of] = ("mode", value, {"units": units})
     data["defect"] = ("mode", defect(modes))
     data["nearly_defective"] = ("mode", data.defect.values > NEARLY_DEFECTIVE)
@@ -234,7 +255,7 @@ def _of_modes(
 
 
 def _dataset(
-    inputs: Mapping[str, Datum], dims: tuple[str, ...], derivative: NDArray, units: str
+    inputs: Mapping[str, Datum], dims: tuple[str, ...], derivative: NDArray, units: str, exact: NDArray
 ) -> xarray.Dataset:
     import xarray  # here, because it takes long to import
 
@@ -249,6 +270,7 @@ def _dataset(
             "input": list(inputs),
             "value": ("input", size),
             "unit": ("input", [number.unit for number in inputs.values()]),
+            "exact": ("input", exact),
             "status": ("input", [number.status for number in inputs.values()]),
         },
     )

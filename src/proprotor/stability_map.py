@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from proprotor.crossings import growth
 from proprotor.errors import InputError
-from proprotor.flutter import growth
 from proprotor.model import LinearModel
 from proprotor.modes import some_points, state_matrix
 from proprotor.speed import in_metres_per_second

@@ -40,7 +40,6 @@ def track(system: Eigensystem | Spectrum) -> NDArray:
     paired = Spectrum(
         np.take_along_axis(system.values, places, 1),
         np.take_along_axis(system.right, places[:, None, :], 2),
-        np.take_along_axis(system.left, places[:, :, None], 1),
     )
     return np.take_along_axis(places, path_of(paired).order(len(places)), 1)
 
@@ -90,7 +89,7 @@ def sweep(
     order = path.order(points)
     named = state_names(model, line, path, rotor_speed, approach)
     columns, modes = _columns(model.dofs, path, named)
-    values, right, left = path.spectrum.of(points).modes(order[:, columns])
+    values, right, left = path.spectrum.at(slice(points)).modes(order[:, columns])
     # Of a pair that parts into two real roots the second is a mode only where it is real.
     values = np.where(values.imag < 0, np.nan, values)
     shapes = coordinate_motion(held, n, values, right)
@@ -141,15 +140,14 @@ def state_names(
 
 def _same_point(leg: Path, last: int, path: Path, point: int) -> NDArray:
     """Which states of a point of a path the followed states of another path are at the same point."""
-    parts = zip(leg.spectrum, path.spectrum, strict=True)
-    both = Spectrum(*(np.stack([one[last], other[point]]) for one, other in parts))
+    both = leg.spectrum.at([last]).joined(path.spectrum.at([point]))
     return link(both, np.array([0]), np.array([1])).successor[0][leg.places[-1]]
 
 
 def names_at(
     dofs: tuple[str, ...], held: list[int], spectrum: Spectrum, point: int, rotor_speed: float | None
 ) -> list[str]:
-    values, right, left = (part[point] for part in spectrum)
+    values, right, left = spectrum.at(point).all_modes
     shares = name_shares(dofs, held, values, left, right, rotor_speed)
     return assign_names(dofs, held, shares, values)
 

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from proprotor_equations import FIXED_COORDINATES
+
+from proprotor.arrays import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -35,20 +36,20 @@ class UnstableRange(NamedTuple):
     open_stop: bool
 
 
-def damped_frequency(sweep: xarray.Dataset) -> NDArray:
+def damped_frequency(sweep: xarray.Dataset) -> Array:
     """|Im s| (airspeed, mode) in rad/s, NaN at failed points."""
     eigenvalue = sweep.eigenvalue.values
     return np.where(np.isnan(eigenvalue), np.nan, np.abs(eigenvalue.imag))
 
 
-def growth_rate(sweep: xarray.Dataset) -> NDArray:
+def growth_rate(sweep: xarray.Dataset) -> Array:
     """Re s (airspeed, mode) in rad/s, exactly zero where it is zero but for rounding."""
     real = sweep.eigenvalue.values.real
     largest = np.nanmax(np.abs(sweep.eigenvalue.values), initial=0)
     return np.where(np.abs(real) <= _ROUNDING * largest, 0.0, real)
 
 
-def damping_percent(sweep: xarray.Dataset) -> NDArray:
+def damping_percent(sweep: xarray.Dataset) -> Array:
     """Damping ratio -Re s/|s| (airspeed, mode) in percent of critical, negative where a mode is unstable."""
     return np.where(growth_rate(sweep) == 0, 0.0, 100 * sweep.damping_ratio.values)
 
@@ -67,22 +68,22 @@ def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
     return ranges
 
 
-def _ranges(airspeed: NDArray, growth: NDArray) -> Iterator[tuple[float, float, bool, bool]]:
+def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[float, float, bool, bool]]:
     unstable = np.concatenate([[False], growth > 0, [False]])
     starts, ends = (
         np.flatnonzero(~unstable[:-1] & unstable[1:]),
         np.flatnonzero(unstable[:-1] & ~unstable[1:]),
     )
-    for first, after in zip(starts, ends, strict=True):
+    for first, after in zip(starts.tolist(), ends.tolist(), strict=True):
         open_start, open_stop = first == 0, after == len(growth)
         start = airspeed[0] if open_start else _zero(airspeed, growth, first - 1)
         stop = airspeed[-1] if open_stop else _zero(airspeed, growth, after - 1)
-        yield float(start), float(stop), bool(open_start), bool(open_stop)
+        yield float(start), float(stop), open_start, open_stop
 
 
-def _zero(airspeed: NDArray, growth: NDArray, i: int) -> float:
+def _zero(airspeed: Array, growth: Array, i: int) -> float:
     """Where the line through points i and i + 1 is zero."""
-    return airspeed[i] - growth[i] * (airspeed[i + 1] - airspeed[i]) / (growth[i + 1] - growth[i])
+    return float(airspeed[i] - growth[i] * (airspeed[i + 1] - airspeed[i]) / (growth[i + 1] - growth[i]))
 
 
 def support_coordinates(sweep: xarray.Dataset) -> list[str]:
@@ -90,7 +91,8 @@ def support_coordinates(sweep: xarray.Dataset) -> list[str]:
     return [name for name in sweep.dof.values.tolist() if name not in FIXED_COORDINATES]
 
 
-def support_share(sweep: xarray.Dataset) -> NDArray:
+def support_share(sweep: xarray.Dataset) -> Array:
     """How much each mode (mode,) moves the support: its largest participation along the sweep, 0 to 1."""
     share = sweep.participation.sel(dof=support_coordinates(sweep)).sum("dof").values
-    return np.nanmax(share, axis=0, initial=0)
+    largest: Array = np.nanmax(share, axis=0, initial=0)
+    return largest

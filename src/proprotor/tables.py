@@ -167,21 +167,28 @@ class SweepTable:
         return f"{value:.{digits}f} {self.unit}"
 
     def records(self) -> Iterator[dict[str, Any]]:
-        """Airspeed by airspeed and mode by mode, with units in the names; None at failed points."""
-        sweep = self.sweep
-        for i, j in np.ndindex(self.damping.shape):
-            s = complex(sweep.eigenvalue.values[i, j])
-            yield {
-                f"airspeed ({self.unit})": self.airspeed[i].item(),
-                "airspeed (m/s)": sweep.airspeed.values[i].item(),
-                "mode": str(sweep.mode.values[j]),
-                "frequency (per rev)": _finite(self.frequency[i, j]),
-                "damping (% of critical)": _finite(self.damping[i, j]),
-                "Re s (rad/s)": _finite(s.real),
-                "Im s (rad/s)": None if np.isnan(s) else s.imag,
-                "warning": str(sweep.warning.values[i]),
-                "failure": str(sweep.reason.values[i]),
-            }
+        """Airspeed by airspeed and mode by mode, with units in the names; None at failed points.
+
+        Where every airspeed failed there is no mode, and each has one record without.
+        """
+        for i in range(len(self.airspeed)):
+            for j in range(self.damping.shape[1]):
+                yield self._record(i, str(self.sweep.mode.values[j]), self.sweep.eigenvalue.values[i, j], j)
+            if not self.damping.shape[1]:
+                yield self._record(i, None, np.nan)
+
+    def _record(self, i: int, mode: str | None, s: complex, j: int | None = None) -> dict[str, Any]:
+        return {
+            f"airspeed ({self.unit})": self.airspeed[i].item(),
+            "airspeed (m/s)": self.sweep.airspeed.values[i].item(),
+            "mode": mode,
+            "frequency (per rev)": None if j is None else _finite(self.frequency[i, j]),
+            "damping (% of critical)": None if j is None else _finite(self.damping[i, j]),
+            "Re s (rad/s)": _finite(s.real),
+            "Im s (rad/s)": None if np.isnan(s) else float(s.imag),
+            "warning": str(self.sweep.warning.values[i]),
+            "failure": str(self.sweep.reason.values[i]),
+        }
 
     def csv(self) -> bytes:
         """`records` as CSV in UTF-8, with all digits; empty cells at failed points."""

@@ -39,24 +39,84 @@ class Steps(NamedTuple):
     quality: NDArray
 
 
-class Spectrum(NamedTuple):
-    """Eigenvalues (points, states), right vectors in columns and left ones in rows (points, states, states)."""
+class Modes(NamedTuple):
+    """Some modes of points: values (..., modes), right vectors (..., states, modes) and left ones (..., modes, states).
+
+    left @ right is 1 for a mode with itself and 0 with any other.
+    """
 
     values: NDArray
     right: NDArray
     left: NDArray
 
-    def of(self, points: int) -> Spectrum:
-        """The first points alone."""
-        return Spectrum(self.values[:points], self.right[:points], self.left[:points])
 
-    def modes(self, places: NDArray) -> Spectrum:
+class Spectrum(NamedTuple):
+    """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side."""
+
+    values: NDArray
+    right: NDArray
+
+    def at(self, points: NDArray | slice | int) -> Spectrum:
+        """Some of the points."""
+        return Spectrum(self.values[points], self.right[points])
+
+    def joined(self, other: Spectrum) -> Spectrum:
+        """The points of both."""
+        return Spectrum(*(np.concatenate(parts) for parts in zip(self, other, strict=True)))
+
+    @property
+    def works(self) -> NDArray:
+        """Which points have not failed."""
+        return np.isfinite(self.values).all(axis=-1)
+
+    @property
+    def all_modes(self) -> Modes:
+        """Every state of every point."""
+        return Modes(self.values, self.right, left_vectors(self.values, self.right))
+
+    def modes(self, places: NDArray) -> Modes:
         """Some states of each point: places (..., modes)."""
-        return Spectrum(
-            np.take_along_axis(self.values, places, -1),
-            np.take_along_axis(self.right, places[..., None, :], -1),
-            np.take_along_axis(self.left, places[..., :, None], -2),
+        values, right, left = self.all_modes
+        return Modes(
+            np.take_along_axis(values, places, -1),
+            np.take_along_axis(right, places[..., None, :], -1),
+            np.take_along_axis(left, places[..., :, None], -2),
         )
+
+
+def left_vectors(values: NDArray, right: NDArray) -> NDArray:
+    """Rows (..., states, states) with rows @ right = 1, for a real matrix whose pairs stand side by side.
+
+    The columns a + ib and a - ib span what a and b span: their inverse is had from that of the real matrix with the
+    columns a and b, at a third of the cost. A defective matrix has no inverse; there the rows are those of least
+    squares. NaN at failed points.
+    """
+    states = values.shape[-1]
+    flat, vectors = values.reshape(-1, states), right.reshape(-1, states, states)
+    left = np.full(vectors.shape, np.nan, dtype=complex)
+    good = np.flatnonzero(np.isfinite(flat).all(axis=-1))
+    for start in range(0, len(good), _BLOCK):
+        rows = _as_slice(good[start : start + _BLOCK])
+        left[rows] = _left_block(flat[rows], vectors[rows])
+    return left.reshape(right.shape)
+
+
+def _left_block(values: NDArray, right: NDArray) -> NDArray:
+    real = np.where((values.imag < 0)[:, None, :], -right.imag, right.real)
+    rows = _inverse(real)
+    left = rows.astype(complex)
+    point, place = np.nonzero(values.imag > 0)
+    first, second = rows[point, place], rows[point, place + 1]
+    left[point, place] = 0.5 * (first - 1j * second)
+    left[point, place + 1] = 0.5 * (first + 1j * second)
+    return left
+
+
+def _inverse(matrices: NDArray) -> NDArray:
+    try:
+        return np.linalg.inv(matrices)
+    except np.linalg.LinAlgError:  # at one point, which is defective
+        return np.linalg.pinv(matrices)
 
 
 def link(spectrum: Spectrum, before: NDArray, after: NDArray) -> Steps:
@@ -73,30 +133,160 @@ def link(spectrum: Spectrum, before: NDArray, after: NDArray) -> Steps:
     state and its other half, where a pair parts into two real roots or two join, do not count as others.
     """
     states = spectrum.values.shape[-1]
-    successor = np.empty((len(before), states), dtype=int)
+    successor = np.full((len(before), states), -1)
     quality = np.empty((len(before), states))
-    for start in range(0, len(before), _BLOCK):
-        rows = slice(start, start + _BLOCK)
-        successor[rows], quality[rows] = _link_block(spectrum, before[rows], after[rows])
+    pairs = (spectrum.values.imag > 0).sum(axis=-1)
+    alike = pairs[before] == pairs[after]
+    for count in np.unique(pairs[before[alike]]):
+        steps = np.flatnonzero(alike & (pairs[before] == count))
+        for start in range(0, len(steps), _BLOCK):
+            rows = _as_slice(steps[start : start + _BLOCK])
+            successor[rows], quality[rows] = _link_block(spectrum, before[rows], after[rows], int(count))
+    for step in np.flatnonzero(successor[:, 0] < 0):
+        successor[step], quality[step] = _link_alone(spectrum.at(before[step]), spectrum.at(after[step]))
     return Steps(successor, quality)
 
 
-def _link_block(spectrum: Spectrum, before: NDArray, after: NDArray) -> tuple[NDArray, NDArray]:
-    before, after = _as_slice(before), _as_slice(after)
-    first, last = spectrum.values[before], spectrum.values[after]
-    half = _upper_half(first)
-    likeness = _likeness(spectrum, before, after, half)
-    here = np.take_along_axis(first, half, 1)
-    distance = _size(here[:, :, None] - last[:, None, :]) / np.abs(first).max(axis=1)[:, None, None]
-    successor = _best(likeness - distance, half, first, last)
-    for step in np.flatnonzero(successor[:, 0] < 0):
-        successor[step] = _assigned(spectrum, _nth(before, step), _nth(after, step))
-    upper = _quality(likeness, half, successor, first, last)
-    quality = np.ones(first.shape)
-    np.put_along_axis(quality, half, upper, 1)
-    twin = conjugate(first)
-    quality = np.where(first.imag < 0, np.take_along_axis(quality, twin, 1), quality)
+class _Packed(NamedTuple):
+    """Points with one number of pairs: places of the states above and of the real ones, eigenvalues, vectors.
+
+    above (n, pairs), real (n, rest), values (n, pairs + rest) of both; columns (n, states, states) real: real parts of
+    the vectors of the pairs, then imaginary parts, then the real vectors; rows, the inverse.
+    """
+
+    above: NDArray
+    real: NDArray
+    values: NDArray
+    columns: NDArray
+    rows: NDArray
+
+    @classmethod
+    def of(cls, spectrum: Spectrum, pairs: int) -> _Packed:
+        values, right = spectrum
+        n, states = values.shape
+        above = np.nonzero(values.imag > 0)[1].reshape(n, pairs)
+        real = np.nonzero(values.imag == 0)[1].reshape(n, states - 2 * pairs)
+        places = np.concatenate([above, real], axis=1)
+        vectors = np.take_along_axis(right, places[:, None, :], 2)
+        columns = np.empty((n, states, states))
+        columns[..., :pairs] = vectors[..., :pairs].real
+        columns[..., pairs : 2 * pairs] = vectors[..., :pairs].imag
+        columns[..., 2 * pairs :] = vectors[..., pairs:].real
+        return cls(above, real, np.take_along_axis(values, places, 1), columns, _inverse(columns))
+
+    def at(self, points: slice) -> _Packed:
+        return _Packed(*(part[points] for part in self))
+
+
+def _link_block(spectrum: Spectrum, before: NDArray, after: NDArray, pairs: int) -> tuple[NDArray, NDArray]:
+    """Steps between points with one number of pairs; -1 where the best candidates are not all different."""
+    n = len(before)
+    if np.array_equal(after, before + 1) and isinstance(_as_slice(before), slice):
+        every = _Packed.of(spectrum.at(slice(int(before[0]), int(after[-1]) + 1)), pairs)
+        first, last = every.at(slice(None, -1)), every.at(slice(1, None))
+    else:
+        first, last = (_Packed.of(spectrum.at(points), pairs) for points in (before, after))
+    likeness = _packed_likeness(first, last, pairs)
+    scale = np.sqrt((first.values.real**2 + first.values.imag**2).max(axis=1))[:, None, None]
+    ends = np.concatenate([last.values[:, :pairs], last.values[:, :pairs].conj(), last.values[:, pairs:]], 1)
+    choice = (likeness - _size(first.values[:, :, None] - ends[:, None, :]) / scale).argmax(axis=2)
+    # Upper states go to pairs, real ones to real ones, each to another.
+    target = np.where((choice >= pairs) & (choice < 2 * pairs), choice - pairs, choice)
+    rows = np.arange(likeness.shape[1])
+    good = (np.sort(target, axis=1) == np.where(rows < pairs, rows, rows + pairs)).all(axis=1)
+    good &= (choice[:, :pairs] < 2 * pairs).all(axis=1)
+    places = np.concatenate([last.above, last.above + 1, last.real], axis=1)
+    successor = np.full((n, spectrum.values.shape[1]), -1)
+    found = np.take_along_axis(places, choice, 1)
+    turned = np.where(choice[:, :pairs] < pairs, 1, -1)  # a state that turns over the real axis
+    np.put_along_axis(successor, first.above, found[:, :pairs], 1)
+    np.put_along_axis(successor, first.above + 1, found[:, :pairs] + turned, 1)
+    np.put_along_axis(successor, first.real, found[:, pairs:], 1)
+    successor[~good] = -1
+    trust = _trust(likeness, choice, first.values, np.take_along_axis(ends, choice, 1))
+    quality = np.empty(successor.shape)
+    np.put_along_axis(quality, first.above, trust[:, :pairs], 1)
+    np.put_along_axis(quality, first.above + 1, trust[:, :pairs], 1)
+    np.put_along_axis(quality, first.real, trust[:, pairs:], 1)
     return successor, quality
+
+
+def _packed_likeness(first: _Packed, last: _Packed, pairs: int) -> NDArray:
+    """S (n, pairs + rest, 2 pairs + rest) of states above and real ones with those above, conjugates and real ones."""
+    forward = _squares(first.rows @ last.columns, pairs)
+    back = _squares(last.rows @ first.columns, pairs)
+    # |l_j(2) r_i(1)| of a conjugate j is that of j with the conjugate of i.
+    above, conjugates, real = slice(0, pairs), slice(pairs, 2 * pairs), slice(2 * pairs, None)
+    rest = slice(pairs, None)
+    for rows, of_above, of_conjugates in ((above, above, conjugates), (rest, real, real)):
+        forward[:, rows, above] *= back[:, above, of_above].swapaxes(1, 2)
+        forward[:, rows, conjugates] *= back[:, above, of_conjugates].swapaxes(1, 2)
+        forward[:, rows, real] *= back[:, rest, of_above].swapaxes(1, 2)
+    np.sqrt(forward, out=forward)
+    return np.sqrt(forward, out=forward)
+
+
+def _squares(product: NDArray, pairs: int) -> NDArray:
+    """|l r|² (n, pairs + rest, 2 pairs + rest) from the products of packed rows and columns.
+
+    With l = (p - iq)/2 and r = a + ib, or a - ib for the conjugate; rows and columns of real states stand alone.
+    """
+    a, b, c = slice(0, pairs), slice(pairs, 2 * pairs), slice(2 * pairs, None)
+    rest = slice(pairs, None)
+    found = np.empty((len(product), product.shape[1] - pairs, product.shape[1]))
+    pa, pb, qa, qb = product[:, a, a], product[:, a, b], product[:, b, a], product[:, b, b]
+    found[:, a, a] = ((pa + qb) ** 2 + (pb - qa) ** 2) / 4
+    found[:, a, b] = ((pa - qb) ** 2 + (pb + qa) ** 2) / 4
+    found[:, a, c] = (product[:, a, c] ** 2 + product[:, b, c] ** 2) / 4
+    found[:, rest, a] = product[:, c, a] ** 2 + product[:, c, b] ** 2
+    found[:, rest, b] = found[:, rest, a]
+    found[:, rest, c] = product[:, c, c] ** 2
+    return found
+
+
+def _trust(likeness: NDArray, choice: NDArray, start: NDArray, end: NDArray) -> NDArray:
+    """Quality (n, m) of states, with what they are like (n, m, any), the successor of each and its eigenvalues."""
+    n, m = choice.shape
+    # mixing[i, k]: likeness of state i to the successor of state k
+    mixing = np.take_along_axis(likeness, np.broadcast_to(choice[:, None, :], (n, m, m)), 2)
+    own = np.diagonal(mixing, axis1=1, axis2=2).copy()
+    mixing[:, np.arange(m), np.arange(m)] = 0
+    step, one, other = np.nonzero(mixing > _COUPLED)
+    index = _index(
+        mixing[step, one, other], start[step, one] - start[step, other], end[step, one] - end[step, other]
+    )
+    mixing[...] = 0
+    mixing[step, one, other] = index
+    worst = np.maximum(mixing.max(axis=2, initial=0), mixing.max(axis=1, initial=0))
+    return np.clip(np.minimum(own, 1) - worst, 0, 1)
+
+
+def _index(mixing: NDArray, apart: NDArray, later: NDArray) -> NDArray:
+    """S max(|Δ1|, |Δ2|) / |Δmin|."""
+    nearest = np.fmax(_nearest_to_zero(apart, later), 1e-300)
+    with np.errstate(over="ignore"):
+        return mixing * np.maximum(np.abs(apart), np.abs(later)) / nearest
+
+
+def _link_alone(first: Spectrum, last: Spectrum) -> tuple[NDArray, NDArray]:
+    """Successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
+    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
+
+    (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
+    likeness = np.sqrt(_size((rows @ later_columns) * (later_rows @ columns).T))
+    distance = _size(start[:, None] - end) / np.abs(start).max()
+    gain = likeness - distance
+    successor = linear_sum_assignment(np.where(np.isfinite(gain), gain, -1e300), maximize=True)[1]
+    mixing = likeness[:, successor]
+    own = np.diagonal(mixing).copy()
+    states, twins = np.arange(len(start)), (conjugate(start), conjugate(end))
+    related = (states[:, None] == states) | (twins[0][:, None] == states)
+    related |= twins[1][successor][:, None] == successor
+    counts = ~related & (mixing > _COUPLED)
+    apart, later = start[:, None] - start, end[successor][:, None] - end[successor]
+    index = np.zeros(mixing.shape)
+    index[counts] = _index(mixing[counts], apart[counts], later[counts])
+    return successor, np.clip(np.minimum(own, 1) - np.maximum(index.max(axis=0), index.max(axis=1)), 0, 1)
 
 
 def _as_slice(points: NDArray) -> slice | NDArray:
@@ -104,10 +294,6 @@ def _as_slice(points: NDArray) -> slice | NDArray:
     if len(points) and points[-1] - points[0] == len(points) - 1 and np.all(np.diff(points) == 1):
         return slice(int(points[0]), int(points[-1]) + 1)
     return points
-
-
-def _nth(points: slice | NDArray, step: int) -> int:
-    return points.start + step if isinstance(points, slice) else int(points[step])
 
 
 def conjugate(values: NDArray) -> NDArray:
@@ -128,72 +314,9 @@ def side_by_side(values: NDArray) -> NDArray:
     return order
 
 
-def _upper_half(values: NDArray) -> NDArray:
-    """Places of all states with Im s >= 0 (points, count), filled up with others where a point has fewer."""
-    lower = values.imag < 0
-    count = values.shape[1] - int(lower.sum(axis=1).min(initial=values.shape[1]))
-    return np.argsort(lower, axis=1, kind="stable")[:, :count]
-
-
-def _likeness(spectrum: Spectrum, before: slice | NDArray, after: slice | NDArray, half: NDArray) -> NDArray:
-    """S of the states `half` with all states of the later point (steps, count, states)."""
-    rows = np.take_along_axis(spectrum.left[before], half[:, :, None], 1)
-    columns = np.take_along_axis(spectrum.right[before], half[:, None, :], 2)
-    product = rows @ spectrum.right[after]
-    product *= (spectrum.left[after] @ columns).swapaxes(1, 2)
-    return np.sqrt(_size(product))
-
-
 def _size(numbers: NDArray) -> NDArray:
     """|z|, without the care that np.abs takes of the largest and smallest of numbers."""
     return np.sqrt(numbers.real**2 + numbers.imag**2)
-
-
-def _best(gain: NDArray, half: NDArray, first: NDArray, last: NDArray) -> NDArray:
-    """The permutation of each step's best candidates (steps, states), -1 where they are not all different."""
-    successor = np.zeros(first.shape, dtype=int)
-    np.put_along_axis(successor, half, gain.argmax(axis=2), 1)
-    of_conjugate = np.take_along_axis(successor, conjugate(first), 1)
-    followed = np.take_along_axis(conjugate(last), of_conjugate, 1)
-    successor = np.where(first.imag < 0, followed, successor)
-    different = (np.sort(successor, axis=1) == np.arange(first.shape[1])).all(axis=1)
-    successor[~different] = -1
-    return successor
-
-
-def _assigned(spectrum: Spectrum, before: int, after: int) -> NDArray:
-    """The assignment with the largest sum, of all states of one step."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
-    every = np.arange(spectrum.values.shape[1])[None]
-    at = np.array([before]), np.array([after])
-    likeness = _likeness(spectrum, *at, every)[0]
-    first, last = spectrum.values[before], spectrum.values[after]
-    distance = _size(first[:, None] - last[None, :]) / np.abs(first).max()
-    return linear_sum_assignment(likeness - distance, maximize=True)[1]
-
-
-def _quality(likeness: NDArray, half: NDArray, successor: NDArray, first: NDArray, last: NDArray) -> NDArray:
-    """Quality (steps, count) of the states `half`."""
-    steps, count = half.shape
-    end = np.take_along_axis(successor, half, 1)
-    own = np.take_along_axis(likeness, end[:, :, None], 2)[..., 0]
-    # mixing[i, k]: likeness of state i to the successor of state k of the half
-    mixing = np.take_along_axis(likeness, np.broadcast_to(end[:, None, :], (steps, count, count)), 2)
-    step, i, k = np.nonzero(mixing > _COUPLED)
-    one, other = half[step, i], half[step, k]
-    twins = conjugate(first), conjugate(last)
-    related = (one == other) | (twins[0][step, one] == other)
-    related |= twins[1][step, successor[step, one]] == successor[step, other]
-    step, i, k, one, other = (index[~related] for index in (step, i, k, one, other))
-    apart = first[step, one] - first[step, other]
-    later = last[step, successor[step, one]] - last[step, successor[step, other]]
-    index = np.zeros((steps, count, count))
-    with np.errstate(all="ignore"):
-        nearest = np.fmax(_nearest_to_zero(apart, later), 1e-300)
-        index[step, i, k] = mixing[step, i, k] * np.maximum(np.abs(apart), np.abs(later)) / nearest
-    worst = np.maximum(index.max(axis=2, initial=0), index.max(axis=1, initial=0))
-    return np.clip(np.minimum(own, 1) - worst, 0, 1)
 
 
 def _nearest_to_zero(start: NDArray, end: NDArray) -> NDArray:
