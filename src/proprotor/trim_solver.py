@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from proprotor_equations import airloads
 from proprotor_equations import trim as equations
 
+from proprotor.arrays import Array
 from proprotor.blade_airloads import BladeSections, load_moments, segment_quantities
 from proprotor.evaluation import evaluate
 from proprotor.options import Options
@@ -29,9 +29,13 @@ _FARTHEST = np.radians(60)
 _CONVERGED = 1e-13
 _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below their own error
 _CLOSE_STEPS = 6
+_ROUNDING = 1e-15  # rad, of the step that would follow
 _INDUCED_SHARE = 0.05  # of the airspeed: above it the neglected induced velocity turns the inflow by degrees
 
-State = dict[str, NDArray]
+State = dict[str, Array]
+Found = tuple[
+    Array, dict[str, Any], dict[str, Any], dict[str, Array]
+]  # work, pool, segments and doubts of a step
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +47,7 @@ class Settled:
     """
 
     trim: Trim
-    rows: NDArray
+    rows: Array
     pool: dict[str, Any]
     segments: dict[str, Any]
 
@@ -58,12 +62,12 @@ class _Balance:
     target: Target
     free: list[int]
 
-    def pool(self, state: State, rows: NDArray) -> dict[str, Any]:
+    def pool(self, state: State, rows: Array) -> dict[str, Any]:
         """Quantities of the whole blade at a state."""
         there = {name: value[rows] for name, value in state.items()}
         return with_trim(take(self.quantities, rows), self.options, there)
 
-    def loads(self, pool: Mapping[str, Any], rows: NDArray, **wanted: Any) -> dict[str, Any]:
+    def loads(self, pool: Mapping[str, Any], rows: Array, **wanted: Any) -> dict[str, Any]:
         """Quantities of each segment and the radial moments of its loads."""
         sections = self.sections.take(rows)
         segments = segment_quantities(sections, pool)
@@ -72,8 +76,8 @@ class _Balance:
         )
 
     def residual(
-        self, pool: Mapping[str, Any], segments: Mapping[str, Any], rows: NDArray
-    ) -> tuple[NDArray, NDArray]:
+        self, pool: Mapping[str, Any], segments: Mapping[str, Any], rows: Array
+    ) -> tuple[Array, Array]:
         """Residual (n, 5) of balances and thrust, and the steady airloads in it."""
         motion = {
             "virtual_motion": evaluate(equations.virtual_motion, segments),
@@ -85,7 +89,7 @@ class _Balance:
         residual[..., self.target.row] += load[rows] if load.ndim else load
         return residual, work
 
-    def slopes(self, pool: Mapping[str, Any], segments: Mapping[str, Any]) -> tuple[NDArray, NDArray]:
+    def slopes(self, pool: Mapping[str, Any], segments: Mapping[str, Any]) -> tuple[Array, Array]:
         """Change (n, 5, k) of the balances with the free unknowns, and the airloads' part in it."""
         motion = {
             name: evaluate(getattr(equations, name), segments)
@@ -102,8 +106,8 @@ class _Balance:
         return [self.target.row if place == len(UNKNOWNS) - 1 else place for place in self.free]
 
     def newton(
-        self, state: State, rows: NDArray, doubts: dict[str, NDArray] | None = None
-    ) -> tuple[NDArray, NDArray, NDArray, dict[str, Any], dict[str, Any]]:
+        self, state: State, rows: Array, doubts: dict[str, Array] | None = None
+    ) -> tuple[Array, Array, Array, dict[str, Any], dict[str, Any]]:
         """Newton's step (n, k), slopes (n, k, k), airloads (n, 5) after the step, quantities and segments before it."""
         pool = self.pool(state, rows)
         segments = self.loads(pool, rows, doubts=doubts)
@@ -155,8 +159,8 @@ def solve_trim(
 
 
 def _come_near(
-    balance: _Balance, state: State, start: State, rows: NDArray, iterations: NDArray
-) -> tuple[NDArray, NDArray]:
+    balance: _Balance, state: State, start: State, rows: Array, iterations: Array
+) -> tuple[Array, Array]:
     """Newton on few stations: the rows that came near their trim, and the slopes (rows, k, k) there."""
     k = len(balance.free)
     slopes = np.full((len(iterations), k, k), np.nan)
@@ -178,40 +182,47 @@ def _come_near(
 def _come_close(
     balance: _Balance, state: State, start: State, rows: NDArray, slopes: NDArray, iterations: NDArray
 ) -> None:
-    """Steps with given slopes on the residual of all stations, until by their rate the next is too small to matter."""
-    active, before = np.arange(len(rows)), np.full(len(rows), np.nan)
-    for _ in range(_CLOSE_STEPS):
+    """Steps on the residual of all stations until by their rate the next would be lost in rounding.
+
+    The slopes are those of few stations, and learn from each step what it showed (Broyden's rank-one update).
+    """
+    active, before = np.arange(len(rows)), np.full(slopes.shape[:2], np.nan)
+    for count in range(_CLOSE_STEPS):
         if not len(active):
             break
         here = rows[active]
         pool = balance.pool(state, here)
         residual, _ = balance.residual(pool, balance.loads(pool, here, steady_only=True), here)
-        step = _step(slopes[active], residual[:, balance.balances])
+        left = residual[:, balance.balances]
+        if count:
+            last = before[active]
+            slopes[active] -= left[:, :, None] * (last / np.sum(last**2, axis=1)[:, None])[:, None, :]
+        step = _step(slopes[active], left)
         _take_step(balance, state, here, step)
         iterations[here] += 1
+        size, last_size = np.abs(step).max(axis=1), np.abs(before[active]).max(axis=1)
         lost = ~np.isfinite(step).all(axis=1)
         _reset(state, start, here[lost])
-        size = np.abs(step).max(axis=1)
-        expected = np.fmin(size, size**2 / before[active])
-        before[active] = size
-        active = active[~lost & (expected > _CONVERGED)]
+        before[active] = step
+        active = active[~lost & (np.fmin(size, size**2 / last_size) > _ROUNDING)]
 
 
 def _newton_steps(
-    balance: _Balance, state: State, rows: NDArray, reason: NDArray, iterations: NDArray
-) -> tuple[State, tuple | None]:
+    balance: _Balance, state: State, rows: Array, reason: Array, iterations: Array
+) -> tuple[State, Found | None]:
     """Newton with everything; the state before each point's last step, and if all made one step what came with it."""
-    active, last, before = rows, None, {name: value.copy() for name, value in state.items()}
+    active, before = rows, {name: value.copy() for name, value in state.items()}
+    last: Found | None = None
     for count in range(_ITERATIONS):
         if not len(active):
             break
-        doubts: dict[str, NDArray] = {}
+        doubts: dict[str, Array] = {}
         _reset(before, state, active)
-        step, _, *found = balance.newton(state, active, doubts)
+        step, _, work, pool, segments = balance.newton(state, active, doubts)
         finite = np.isfinite(step).all(axis=1)
         done = finite & (np.abs(step).max(axis=1) <= _CONVERGED)
         if count == 0 and done.all():
-            last = (*found, doubts)
+            last = work, pool, segments, doubts
         _take_step(balance, state, active, step)
         iterations[active] += 1
         reason[active[~finite]] = _failure(balance.target)
@@ -224,17 +235,19 @@ def _settle(
     balance: _Balance,
     state: State,
     before: State,
-    reason: NDArray,
-    iterations: NDArray,
-    last: tuple | None = None,
+    reason: Array,
+    iterations: Array,
+    last: Found | None = None,
 ) -> Settled:
     """The trim, with loads at the points that have one: those of the last step, made again where points dropped out."""
     beyond = _beyond_reach(balance, state, reason)
     rows = np.flatnonzero(reason == "")
-    if len(rows) and (beyond.any() or last is None):
-        doubts: dict[str, NDArray] = {}
-        last = (*balance.newton(before, rows, doubts)[2:], doubts)
-    work, pool, segments, doubts = last if len(rows) else (np.zeros((0, THRUST + 1)), {"n_blades": 1}, {}, {})
+    if not len(rows):
+        last = np.zeros((0, THRUST + 1)), {"n_blades": 1}, {}, {}
+    elif beyond.any() or last is None:
+        told: dict[str, Array] = {}
+        last = (*balance.newton(before, rows, told)[2:], told)
+    work, pool, segments, doubts = last
     kind = np.result_type(float, *state.values())
     values = {name: np.full(len(reason), np.nan, dtype=kind) for name in (*UNKNOWNS, "thrust", "torque")}
     for name in UNKNOWNS:
@@ -268,7 +281,7 @@ def _complex_trim(balance: _Balance, coarse: BladeSections, points: int) -> Sett
     return _settle(balance, state, state, trim.reason.copy(), trim.iterations)
 
 
-def _numbers(target: Target) -> tuple:
+def _numbers(target: Target) -> tuple[Any, Any]:
     return target.collective, target.load
 
 
@@ -280,12 +293,13 @@ def _start(balance: _Balance, points: int) -> State:
     return state
 
 
-def _air_direction(balance: _Balance) -> NDArray:
+def _air_direction(balance: _Balance) -> Array:
     """Direction of the air at 0.75 R, rad."""
     airspeed, rotor_speed, radius = (
         np.real(balance.quantities[name]) for name in ("airspeed", "rotor_speed", "radius")
     )
-    return np.arctan2(airspeed, 0.75 * rotor_speed * radius)
+    direction: Array = np.arctan2(airspeed, 0.75 * rotor_speed * radius)
+    return direction
 
 
 def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:
@@ -299,7 +313,7 @@ def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:
     return [place for place, name in enumerate(UNKNOWNS) if free[name]]
 
 
-def _step(slopes: NDArray, residual: NDArray) -> NDArray:
+def _step(slopes: Array, residual: Array) -> Array:
     """Step (n, k) to take off the unknowns; NaN where the slopes have no inverse."""
     try:
         step = np.linalg.solve(slopes, residual[..., None])[..., 0]
@@ -310,17 +324,17 @@ def _step(slopes: NDArray, residual: NDArray) -> NDArray:
     return step if np.iscomplexobj(step) else np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
 
 
-def _take_step(balance: _Balance, state: State, rows: NDArray, step: NDArray) -> None:
+def _take_step(balance: _Balance, state: State, rows: Array, step: Array) -> None:
     for column, place in enumerate(balance.free):
         state[UNKNOWNS[place]][rows] -= step[:, column]
 
 
-def _reset(state: State, start: State, rows: NDArray) -> None:
+def _reset(state: State, start: State, rows: Array) -> None:
     for name in UNKNOWNS:
         state[name][rows] = start[name][rows]
 
 
-def _before_trim(balance: _Balance, points: int) -> NDArray:
+def _before_trim(balance: _Balance, points: int) -> Array:
     """Reasons that are known before any iteration."""
     quantities, options = balance.quantities, balance.options
     reason = np.full(points, "", dtype=object)
@@ -349,7 +363,7 @@ def _failure(target: Target) -> str:
     )
 
 
-def _beyond_reach(balance: _Balance, state: State, reason: NDArray) -> NDArray:
+def _beyond_reach(balance: _Balance, state: State, reason: Array) -> Array:
     """Give the points whose trim is on another branch, or beyond what angles mean, their reason; which they are."""
     before = reason == ""
     if balance.target.finds_collective:
@@ -359,12 +373,11 @@ def _beyond_reach(balance: _Balance, state: State, reason: NDArray) -> NDArray:
         reason[(reason == "") & ~(np.abs(state[name]) < np.pi / 2)] = (
             f"trim {name.replace('_', ' ')} beyond 90 deg"
         )
-    return before & (reason != "")
+    dropped: Array = before & (reason != "")
+    return dropped
 
 
-def _warnings(
-    pool: Mapping[str, Any], thrust: NDArray, doubts: Mapping[str, NDArray], points: int
-) -> NDArray:
+def _warnings(pool: Mapping[str, Any], thrust: Array, doubts: Mapping[str, Array], points: int) -> Array:
     """What makes each point doubtful: neglected induced velocity, and sections outside what the airfoil knows."""
     airspeed, density, radius = (np.real(pool[name]) for name in ("airspeed", "density", "radius"))
     thrust = np.abs(np.real(thrust))
