@@ -11,7 +11,7 @@ import argparse
 import csv
 import functools
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 import sympy as sp
@@ -91,14 +91,12 @@ def recorded() -> list[Row]:
 
 def computed() -> list[Row]:
     """One row per term of an equation and per relation of a table."""
-    rows = []
+    rows: list[Row] = []
     for number, result in equation_verdicts().items():
         for t in sorted(result.terms, key=lambda t: (list(result.equation.parts).index(t.part), str(t.term))):
             rows.append((str(number), t.part, str(t.term), str(t.printed), str(t.derived), t.verdict, t.note))
-    for name, result in table_verdicts().items():
-        rows += [
-            (name, r.name, ", ".join(r.values), "", "", r.verdict, r.invariant) for r in result.relations
-        ]
+    for name, table in table_verdicts().items():
+        rows += [(name, r.name, ", ".join(r.values), "", "", r.verdict, r.invariant) for r in table.relations]
     return rows
 
 
@@ -124,12 +122,12 @@ def summary(boundaries: Callable[[int | str], str]) -> Iterator[tuple[str, ...]]
         counts = "; ".join(f"{result.count(v)} {LETTERS[v]}" for v in VERDICTS if result.count(v))
         broken = ", ".join(invariants_of(number))
         yield (str(number), result.equation.title, result.verdict, counts, broken, boundaries(number))
-    for name, result in table_verdicts().items():
-        counts = f"{len(result.relations)} relations; {len(result.conflicts)} contradict"
+    for name, table in table_verdicts().items():
+        counts = f"{len(table.relations)} relations; {len(table.conflicts)} contradict"
         yield (
             name,
-            result.table.title,
-            result.verdict,
+            table.table.title,
+            table.verdict,
             counts,
             ", ".join(invariants_of(name)),
             boundaries(name),
@@ -212,7 +210,7 @@ def markdown() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _markdown_table(header, rows) -> list[str]:
+def _markdown_table(header: Sequence[str], rows: Iterable[Iterable[object]]) -> list[str]:
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     return lines + ["| " + " | ".join(str(cell).replace("|", r"\|") for cell in row) + " |" for row in rows]
 

@@ -87,7 +87,7 @@ def terms_of(expression: sp.Expr) -> Terms:
 
 
 def _without_squared_cosines(expression: sp.Expr) -> sp.Expr:
-    def reduced(base, exponent):
+    def reduced(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
         if isinstance(base, sp.cos) and exponent.is_Integer and exponent >= 2:
             return (1 - sp.sin(*base.args) ** 2) ** (exponent // 2) * base ** (exponent % 2)
         return base**exponent
@@ -118,7 +118,7 @@ def audit(equation: PrintedEquation) -> EquationVerdict:
     derived = derived_terms(equation.number)
     if set(derived) != set(equation.parts):
         raise ValueError(f"Eq. {equation.number}: parts {set(equation.parts)} against {set(derived)}")
-    verdicts = []
+    verdicts: list[TermVerdict] = []
     for part in equation.parts:
         verdicts += _judged(equation, part, printed_terms(equation, part), derived[part])
     return EquationVerdict(equation, tuple(verdicts))
@@ -143,14 +143,17 @@ def _judged(equation: PrintedEquation, part: str, printed: Terms, derived: Terms
 def _agreement(printed: Terms, derived: Terms) -> tuple[Terms, Terms, Terms]:
     """Terms that agree, and what is left of each side."""
     agreed = {term: number for term, number in printed.items() if derived.get(term) == number}
-    return agreed, *({t: v for t, v in terms.items() if t not in agreed} for terms in (printed, derived))
+    left, right = ({t: v for t, v in terms.items() if t not in agreed} for terms in (printed, derived))
+    return agreed, left, right
 
 
 def _read(terms: Terms, reading: str) -> Terms:
     return terms_of(sp.Add(*(number * term for term, number in terms.items())).subs(READINGS[reading]))
 
 
-def _left_over(equation, part, term, printed, derived) -> TermVerdict:
+def _left_over(
+    equation: PrintedEquation, part: str, term: sp.Expr, printed: sp.Expr, derived: sp.Expr
+) -> TermVerdict:
     verdict = CONTRADICTS
     if printed == 0:
         verdict = ABSENT_FROM_PRINT
@@ -181,7 +184,7 @@ def _belongs_to(equation: PrintedEquation, part: str, term: sp.Expr, printed: sp
 
 
 @functools.cache
-def _read_terms(number, part: str, readings: tuple[str, ...], dropped: frozenset[str]) -> Terms:
+def _read_terms(number: int | str, part: str, readings: tuple[str, ...], dropped: frozenset[str]) -> Terms:
     """Derived terms after the equation's readings."""
     terms = derived_terms(number, dropped)[part]
     for name in readings:

@@ -12,12 +12,15 @@ import functools
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from types import ModuleType, SimpleNamespace
+from typing import Any, cast
 from unittest import mock
 
 import numpy as np
 import sympy as sp
 import xarray
+from numpy.typing import NDArray
 from proprotor_equations import BLADE_COORDINATES
+from proprotor_equations import pitch as pitch_equations
 
 import proprotor as pp
 from derive import multiblade
@@ -42,19 +45,19 @@ def xv15() -> pp.Case:
     return pp.load_case("xv15")
 
 
-def modes_of(case: pp.Case | None = None, **options) -> xarray.Dataset:
+def modes_of(case: pp.Case | None = None, **options: Any) -> xarray.Dataset:
     """Modes of the XV-15, or of another case, over `SPEEDS`."""
     return (case or xv15()).sweep(SPEEDS, **options)
 
 
-def boundary(case: pp.Case | None = None, **options) -> float:
+def boundary(case: pp.Case | None = None, **options: Any) -> float:
     """Lowest speed at which the damping of a mode goes through zero, kt; NaN where none does."""
     return lowest(boundaries(modes_of(case, **options)))
 
 
 def boundaries(modes: xarray.Dataset) -> dict[str, float]:
     """Lowest speed at which each mode loses its damping, kt; modes that do not lose it are left out."""
-    found = {}
+    found: dict[str, float] = {}
     for name, damping in zip(modes.mode.values.tolist(), modes.damping_ratio.values.T, strict=True):
         for i in np.flatnonzero((damping[:-1] > 0) & (damping[1:] <= 0))[:1]:
             speeds = SPEEDS[[i + 1, i]] / KNOT
@@ -76,10 +79,10 @@ def base(equations: str = "consistent", pitch: str = "dynamic") -> float:
     return boundary(equations=equations, pitch=pitch)
 
 
-class _Asking(frozenset):
+class _Asking(frozenset[str]):
     """No dropped term at all; keeps the names it is asked for. Equal to nothing else, so no cached result answers."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.asked: set[str] = set()
 
     def __contains__(self, term: object) -> bool:
@@ -91,7 +94,7 @@ class _Asking(frozenset):
 
 
 @functools.cache
-def _derivation(module: str) -> tuple[frozenset[str], dict[str, tuple]]:
+def _derivation(module: str) -> tuple[frozenset[str], dict[str, tuple[Any, ...]]]:
     """Dropped terms the derivation of a module asks for, and the arguments of its functions with none dropped."""
     _, changing = STEPS[module]
     dropped = _Asking()
@@ -168,12 +171,13 @@ def with_printed_coriolis_sign(of: str) -> EquationSet:
     inertia = EQUATION_SETS[of].inertia
 
     @functools.wraps(inertia.gyroscopic)
-    def gyroscopic(**quantities):
+    def gyroscopic(**quantities: Any) -> NDArray[Any]:
         matrix = np.array(inertia.gyroscopic(**quantities))
         matrix[..., _FLAP, _LAG] *= -1
         return matrix
 
-    return replace(EQUATION_SETS[of], inertia=SimpleNamespace(**vars(inertia) | {"gyroscopic": gyroscopic}))
+    changed = SimpleNamespace(**vars(inertia) | {"gyroscopic": gyroscopic})
+    return replace(EQUATION_SETS[of], inertia=cast(ModuleType, changed))
 
 
 def printed_coriolis_sign() -> tuple[str, float, float]:
@@ -184,14 +188,16 @@ def printed_coriolis_sign() -> tuple[str, float, float]:
 @contextlib.contextmanager
 def couplings_turned() -> Iterator[None]:
     """Eq. 35 taken by its sign turns both couplings round."""
-    couplings = runtime.pitch.couplings
+    couplings = pitch_equations.couplings
 
     @functools.wraps(couplings)
-    def turned(**quantities):
+    def turned(**quantities: Any) -> Any:
         values = couplings(**quantities)
         return values._replace(**{name: -value for name, value in values._asdict().items()})
 
-    with mock.patch.object(runtime, "pitch", SimpleNamespace(**vars(runtime.pitch) | {"couplings": turned})):
+    with mock.patch.object(
+        runtime, "pitch", SimpleNamespace(**vars(pitch_equations) | {"couplings": turned})
+    ):
         yield
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import copy
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
 
 import sympy as sp
 
@@ -23,6 +24,7 @@ from derive.printed.notation import AZIMUTH, FIXED_NAMES, TIME
 from derive.published import CONSISTENT
 
 Parts = dict[str, sp.Expr]
+Derivation = TypeVar("Derivation", bound=Callable[..., Parts])
 PAPER_ORDER = frozenset({"finite_trim_angles", "trim_lag"})
 ARMS = {
     kin.inboard_arm: s.flap_hinge_offset,
@@ -34,10 +36,10 @@ _small = sp.Symbol("small")
 COUNTERPARTS: dict[int | str, Callable[[frozenset[str]], Parts]] = {}
 
 
-def counterpart(*numbers: int | str):
+def counterpart(*numbers: int | str) -> Callable[[Derivation], Derivation]:
     """Register the function that derives these equations; with several, it takes the number first."""
 
-    def register(function):
+    def register(function: Derivation) -> Derivation:
         for number in numbers:
             COUNTERPARTS[number] = functools.partial(function, number) if len(numbers) > 1 else function
         return function
@@ -45,7 +47,7 @@ def counterpart(*numbers: int | str):
     return register
 
 
-def truncated(expression, order: int, **orders):
+def truncated(expression: sp.Expr, order: int, **orders: dict[sp.Symbol, int]) -> sp.Expr:
     """Terms of at most `order` when the symbols of `orders["of"]` are small to the power given there."""
     scaled = sp.sympify(expression).subs(
         {symbol: _small**power * symbol for symbol, power in orders["of"].items()}
@@ -57,7 +59,7 @@ def truncated(expression, order: int, **orders):
     return sp.expand(total)
 
 
-def first_order_in_cone(expression):
+def first_order_in_cone(expression: sp.Expr) -> sp.Expr:
     return truncated(expression, 1, of={s.precone: 1, s.coning: 1})
 
 
@@ -95,13 +97,13 @@ def gimbal_flap(by_azimuth: bool = False) -> dict[sp.Symbol, sp.Expr]:
     return dict(zip(symbols["gimbal_flap"], motion("gimbal_flap", by_azimuth), strict=True))
 
 
-def in_fixed_coordinates(expression):
+def in_fixed_coordinates(expression: sp.Expr) -> sp.Expr:
     """Perturbations of one blade by the motions of the fixed frame."""
     return expression.subs({kin.q[name]: motion(name)[0] for name in kin.COORDINATES})
 
 
 @counterpart(1)
-def gimbal_flap_angle(dropped) -> Parts:
+def gimbal_flap_angle(dropped: frozenset[str]) -> Parts:
     return {"β_G": motion("gimbal_flap")[0]}
 
 
@@ -117,7 +119,7 @@ _ANGLES = {kin.q[name]: 1 for name in ("flap", "lag", "azimuth", "gimbal_flap", 
 
 
 @counterpart(2)
-def position(dropped) -> Parts:
+def position(dropped: frozenset[str]) -> Parts:
     vector = [truncated(component, 1, of=_ANGLES) for component in _blade_in_hub_axes()]
     return dict(zip("ijk", map(in_fixed_coordinates, vector), strict=True))
 
@@ -129,7 +131,7 @@ def _inertia(dropped: frozenset[str]) -> inertia.BladeInertia:
     return blade
 
 
-def _in_arms(component) -> sp.Expr:
+def _in_arms(component: Any) -> sp.Expr:
     """A component of a ring vector in r, the hinge offsets and the trim angles, to first order in the cone."""
     expression = (
         component.as_expr().subs(_trim_arms()).subs(dict(temporaries(WHOLE_BLADE_ANGLES))).subs(s.lag, 0)
@@ -156,7 +158,7 @@ def _acceleration_terms(name: str, dropped: frozenset[str]) -> tuple[sp.Matrix, 
     )
 
 
-def _spin(vector: list) -> list:
+def _spin(vector: list[Any]) -> list[Any]:
     return [-vector[1], vector[0], 0 * vector[2]]
 
 
@@ -166,7 +168,7 @@ def _steady_acceleration() -> sp.Matrix:
     return s.rotor_speed**2 * sp.Matrix([_in_arms(part) for part in _spin(_spin(position))])
 
 
-def _acceleration(coordinates, dropped: frozenset[str]) -> sp.Matrix:
+def _acceleration(coordinates: Iterable[str], dropped: frozenset[str]) -> sp.Matrix:
     total = _steady_acceleration()
     for name in coordinates:
         terms = _acceleration_terms(name, dropped)
@@ -178,7 +180,7 @@ _OF_BLADE = ("flap", "lag", "azimuth", "gimbal_flap", "gimbal_roll")
 
 
 @counterpart(3)
-def acceleration_relative_to_hub(dropped) -> Parts:
+def acceleration_relative_to_hub(dropped: frozenset[str]) -> Parts:
     return dict(zip("ijk", _acceleration(_OF_BLADE, dropped), strict=True))
 
 
@@ -207,12 +209,12 @@ _HUB_MOTION = {
 
 
 @counterpart(4, 5, 6)
-def hub_motion(number: int, dropped) -> Parts:
+def hub_motion(number: int, dropped: frozenset[str]) -> Parts:
     return dict(zip("IJK", _HUB_MOTION[number](), strict=True))
 
 
 @counterpart(7, 8, 9)
-def hub_motion_along_the_blade(number: int, dropped) -> Parts:
+def hub_motion_along_the_blade(number: int, dropped: frozenset[str]) -> Parts:
     """The same by the transformation that `derive.multiblade` sums over the blades with."""
     names, order = {7: (kin.HUB_TRANSLATION, 2), 8: (kin.HUB_ROTATION, 1), 9: (kin.HUB_ROTATION, 2)}[number]
     transformation = multiblade.blade_coordinates()
@@ -222,7 +224,7 @@ def hub_motion_along_the_blade(number: int, dropped) -> Parts:
 
 
 @counterpart(10)
-def acceleration_on_moving_hub(dropped) -> Parts:
+def acceleration_on_moving_hub(dropped: frozenset[str]) -> Parts:
     """Second derivative of hub + R_h r, at the moment the hub is not turned."""
     t, v = sp.Symbol("t"), VECTORS
     turn = v["omega_h"] * t + v["alpha_h"] * t**2 / 2
@@ -232,7 +234,7 @@ def acceleration_on_moving_hub(dropped) -> Parts:
 
 
 @counterpart(11)
-def acceleration(dropped) -> Parts:
+def acceleration(dropped: frozenset[str]) -> Parts:
     """Along the axes of the turned hub, as the paper has them."""
     total = _acceleration((*kin.HUB_TRANSLATION, *kin.HUB_ROTATION, *_OF_BLADE), dropped)
     turn = sp.Matrix([motion(name)[0] for name in kin.HUB_ROTATION])
@@ -245,11 +247,11 @@ def acceleration(dropped) -> Parts:
 def airload_sign() -> int:
     """Sign of the airloads' virtual work on the left of the equations of motion."""
     coefficient, _ = airloads.products()["damping"].as_coeff_mmul()
-    return coefficient
+    return int(coefficient)
 
 
 @counterpart(12)
-def flap_moments(dropped) -> Parts:
+def flap_moments(dropped: frozenset[str]) -> Parts:
     """Virtual work per unit of flap; accelerations are perturbations but for the centrifugal a_j."""
     arm = sp.diff(_blade_in_hub_axes(), kin.q["flap"])
     work = n.m * arm.dot(sp.Matrix([n.a_i, n.a_j, n.a_k]))
@@ -272,7 +274,7 @@ def _in_mass_data(expression: sp.Expr) -> sp.Expr:
 
 
 @counterpart(13)
-def flap_equation(dropped) -> Parts:
+def flap_equation(dropped: frozenset[str]) -> Parts:
     blade, omega = _inertia(dropped), s.rotor_speed
     row = sp.Integer(0)
     for name in kin.COORDINATES:
@@ -297,7 +299,7 @@ def frequency_squared(name: str) -> sp.Expr:
 
 
 @counterpart("ν_β", "ν_ζ")
-def nomenclature_frequency(number: str, dropped) -> Parts:
+def nomenclature_frequency(number: str, dropped: frozenset[str]) -> Parts:
     name = {"ν_β": "flap", "ν_ζ": "lag"}[number]
     return {f"{number}²": sp.expand(frequency_squared(name).subs(inertia.dependent_inertias()))}
 
@@ -331,17 +333,17 @@ def _air_perturbation(velocity: str, dropped: frozenset[str]) -> sp.Expr:
 
 
 @counterpart(14)
-def tangential_velocity(dropped) -> Parts:
+def tangential_velocity(dropped: frozenset[str]) -> Parts:
     return {"δu_T": _air_perturbation("ut", dropped)}
 
 
 @counterpart(15)
-def axial_velocity(dropped) -> Parts:
+def axial_velocity(dropped: frozenset[str]) -> Parts:
     return {"δu_P": _air_perturbation("up", dropped)}
 
 
 @counterpart(16)
-def pitch_of_airloads(dropped) -> Parts:
+def pitch_of_airloads(dropped: frozenset[str]) -> Parts:
     changes = (
         airloads.displacement_motion("theta", name, dropped) * motion(name)[0] for name in kin.COORDINATES
     )
@@ -349,7 +351,7 @@ def pitch_of_airloads(dropped) -> Parts:
 
 
 @counterpart(17)
-def coordinates(dropped) -> Parts:
+def coordinates(dropped: frozenset[str]) -> Parts:
     return {f"{place + 1}": TIME[name][0] for place, name in enumerate(multiblade.FIXED_COORDINATES)}
 
 
@@ -377,7 +379,7 @@ def _flexibilities() -> tuple[sp.Matrix, sp.Matrix]:
 def _series() -> dict[sp.Symbol, sp.Expr]:
     """The derivation's springs and shares in the four springs of the paper, from equal flexibilities."""
     inner, outer = _flexibilities()
-    found = {}
+    found: dict[sp.Symbol, sp.Expr] = {}
     for place, (spring, share, hub, blade) in enumerate(
         (
             (s.flap_stiffness, s.flap_outboard_fraction, n.K_beta_H, n.K_beta_B),
@@ -401,17 +403,17 @@ def _flexibilities_of_springs() -> tuple[sp.Matrix, sp.Matrix]:
 
 
 @counterpart(18)
-def series_stiffness(dropped) -> Parts:
+def series_stiffness(dropped: frozenset[str]) -> Parts:
     return {"K_β": _series()[s.flap_stiffness], "K_ζ": _series()[s.lag_stiffness]}
 
 
 @counterpart(19)
-def outboard_shares(dropped) -> Parts:
+def outboard_shares(dropped: frozenset[str]) -> Parts:
     return {"R_β": _series()[s.flap_outboard_fraction], "R_ζ": _series()[s.lag_outboard_fraction]}
 
 
 @counterpart(20)
-def elastic_moments(dropped) -> Parts:
+def elastic_moments(dropped: frozenset[str]) -> Parts:
     """Gradient of the spring energy at trim pitch, the deflection counted from the unloaded springs."""
     energy = flap_lag_springs.spring_energy().subs({s.coning: 0, s.lag: 0})
     pitch_held = {kin.q[name]: 0 for name in kin.COORDINATES if name not in ("flap", "lag")}
@@ -421,7 +423,7 @@ def elastic_moments(dropped) -> Parts:
 
 
 @counterpart(21)
-def effective_stiffness(dropped) -> Parts:
+def effective_stiffness(dropped: frozenset[str]) -> Parts:
     numerators, _ = flap_lag_springs.series_springs()
     names = {"K_ββ": ("flap", "flap"), "K_ζζ": ("lag", "lag"), "K_βζ": ("flap", "lag")}
     return {
@@ -431,12 +433,12 @@ def effective_stiffness(dropped) -> Parts:
 
 
 @counterpart(22)
-def series_determinant(dropped) -> Parts:
+def series_determinant(dropped: frozenset[str]) -> Parts:
     return {"Δ": flap_lag_springs.series_springs()[1]}
 
 
 @counterpart(23)
-def uniform_blade(dropped) -> Parts:
+def uniform_blade(dropped: frozenset[str]) -> Parts:
     """The frequency with the integrals of a uniform blade of length R - e, whose spring is K_beta alone."""
     length, mass, arm = sp.symbols("length mass arm", positive=True)
     moment, second = (sp.integrate(mass * arm**power, (arm, 0, length)) for power in (1, 2))
@@ -455,38 +457,38 @@ def _by_name(vector: sp.Matrix, *names: str) -> Parts:
 
 
 @counterpart(24)
-def flexibility_in_series(dropped) -> Parts:
+def flexibility_in_series(dropped: frozenset[str]) -> Parts:
     inner, outer = _flexibilities_of_springs()
     total = inner + outer
     return {"ββ": total[0, 0], "βζ": total[0, 1], "ζζ": total[1, 1]}
 
 
 @counterpart(25, 26)
-def deflection_under_moments(number: int, dropped) -> Parts:
+def deflection_under_moments(number: int, dropped: frozenset[str]) -> Parts:
     inner, outer = _flexibilities_of_springs()
     return _by_name((inner + outer) * _MOMENTS, "β", "ζ")
 
 
 @counterpart(27)
-def deflection_by_itself(dropped) -> Parts:
+def deflection_by_itself(dropped: frozenset[str]) -> Parts:
     inner, outer = _flexibilities_of_springs()
     return _by_name((inner + outer) * _STIFFNESS * _DEFLECTION, "β", "ζ")
 
 
 @counterpart(28)
-def deflection_inboard(dropped) -> Parts:
+def deflection_inboard(dropped: frozenset[str]) -> Parts:
     deflection = _flexibilities_of_springs()[0] * _STIFFNESS * _DEFLECTION
     return _by_name(deflection, "β_in", "ζ_in") | _by_name(deflection, "β_in by A, B", "ζ_in by C, D")
 
 
 @counterpart(29)
-def deflection_outboard(dropped) -> Parts:
+def deflection_outboard(dropped: frozenset[str]) -> Parts:
     deflection = _flexibilities_of_springs()[1] * _STIFFNESS * _DEFLECTION
     return _by_name(deflection, "β_out", "ζ_out") | _by_name(deflection, "β_out by W, X", "ζ_out by Y, Z")
 
 
 @counterpart(30, 31)
-def shares_of_deflection(number: int, dropped) -> Parts:
+def shares_of_deflection(number: int, dropped: frozenset[str]) -> Parts:
     numerators, _ = flap_lag_springs.series_springs()
     pairs = (("flap", "flap"), ("flap", "lag"), ("lag", "lag"))
     flap, mixed, lag = (numerators[pair] for pair in pairs)
@@ -521,7 +523,7 @@ def _work_about_feather_axis() -> sp.Expr:
 
 
 @counterpart(32)
-def pitch_equation(dropped) -> Parts:
+def pitch_equation(dropped: frozenset[str]) -> Parts:
     """Virtual work of a turn of the outboard blade about the feather axis; what resists stands with a plus."""
     turn = sp.diff(kin.pitch_angles()[0], kin.q["pitch"])
     integrand = -_work_about_feather_axis() + airload_sign() * turn * n.dM_theta_aero
@@ -546,25 +548,25 @@ def _pitch_moment() -> sp.Matrix:
 
 
 @counterpart(33)
-def pitch_moment_of_moments(dropped) -> Parts:
+def pitch_moment_of_moments(dropped: frozenset[str]) -> Parts:
     return {"M_θ": sp.expand((_MOMENTS.T * _pitch_moment() * _MOMENTS)[0])}
 
 
 @counterpart(34)
-def pitch_moment_of_deflection(dropped) -> Parts:
+def pitch_moment_of_deflection(dropped: frozenset[str]) -> Parts:
     moments = _STIFFNESS * _DEFLECTION
     return {"M_θ": sp.expand((moments.T * _pitch_moment() * moments)[0])}
 
 
 @counterpart(35)
-def pitch_deflection(dropped) -> Parts:
+def pitch_deflection(dropped: frozenset[str]) -> Parts:
     """The control system alone resists a moment that does work on the pitch."""
     stiffness = pitch.stiffness("pitch", "pitch", frozenset({"propeller_moment"}))
     return {"Δθ": n.dM_theta / stiffness}
 
 
 @counterpart(36, 37)
-def coupling(number: int, dropped) -> Parts:
+def coupling(number: int, dropped: frozenset[str]) -> Parts:
     """`pitch.couplings`, with the change of K_eff with pitch by that of the flexibility."""
     change = -_STIFFNESS * (2 * _pitch_moment()) * _STIFFNESS
     places = {("flap", "flap"): (0, 0), ("flap", "lag"): (0, 1), ("lag", "lag"): (1, 1)}
@@ -608,7 +610,7 @@ def _pitch_moment_names() -> dict[sp.Symbol, sp.Expr]:
     return names | _deflection_names(_MOMENTS)
 
 
-_MEANINGS = {
+_MEANINGS: dict[int | str, Callable[[], dict[sp.Symbol, sp.Expr]]] = {
     **dict.fromkeys((1, 2, 3, 11, 12, 14, 15, 16, 32), gimbal_flap),
     13: lambda: gimbal_flap(True) | {sp.Symbol("nu_beta_squared", real=True): frequency_squared("flap")},
     19: lambda: {symbol: _series()[symbol] for symbol in (s.flap_stiffness, s.lag_stiffness)},

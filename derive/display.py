@@ -9,6 +9,7 @@ import io
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 from matplotlib.figure import Figure
@@ -107,14 +108,14 @@ def _kind(factor: sp.Expr) -> int:
     return _HARMONIC if base.is_Function else _KINDS.get(base, _CONSTANT)
 
 
-def _factor_key(factor: sp.Expr) -> tuple:
+def _factor_key(factor: sp.Expr) -> tuple[Any, ...]:
     symbols = [symbol for symbol in factor.free_symbols if symbol in _ORDER]
     moves = any(_KINDS.get(symbol) == _MOTION for symbol in symbols)
     first = min(((_KINDS.get(symbol, _CONSTANT), _ORDER[symbol]) for symbol in symbols), default=(-1, -1))
     return (_kind(factor), moves, first, isinstance(factor, sp.cos), sp.default_sort_key(factor))
 
 
-def _term_key(term: sp.Expr) -> tuple:
+def _term_key(term: sp.Expr) -> tuple[Any, ...]:
     """Terms without motion first, then in the order of the coordinates; a positive one before a negative one."""
     motions = sorted(_ORDER[symbol] for symbol in term.free_symbols if _KINDS.get(symbol) == _MOTION)
     factors = [_factor_key(factor) for factor in sorted(sp.Mul.make_args(term), key=_factor_key)]
@@ -131,22 +132,22 @@ def _index_first(name: str) -> str:
     return re.sub(r"^([^'_]+)('+)_(.*)$", r"\1_\3\2", name)
 
 
-class _Notation(LatexPrinter):
+class _Notation(LatexPrinter):  # type: ignore[misc]  # SymPy has no types
     """Products and sums in the order of the eye, no brackets around a single argument."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         names = {symbol: _index_first(name) for symbol, name in n.latex_names().items()} | _NAMES
         super().__init__({"symbol_names": names, "fold_func_brackets": True})
 
-    def _print_Add(self, expr, order=None):
+    def _print_Add(self, expr: sp.Expr, order: object = None) -> str:
         first, *rest = sorted(expr.args, key=_term_key)
-        text = self._print(first)
+        text: str = self._print(first)
         for term in rest:
             negative = _is_negative(term)
             text += (" - " if negative else " + ") + self._print(-term if negative else term)
         return text
 
-    def _print_Mul(self, expr):
+    def _print_Mul(self, expr: sp.Expr) -> str:
         if _is_negative(expr):
             return "- " + self._in_sum(-expr)
         above, below = sp.fraction(expr, exact=True)
@@ -158,12 +159,12 @@ class _Notation(LatexPrinter):
         number, factors = expr.as_coeff_mul()
         factors = sorted(factors, key=_factor_key)
         if len(factors) == 1 and number == 1:
-            return self._print(factors[0])
+            return str(self._print(factors[0]))
         texts = [self._in_sum(factor) for factor in factors]
         return " ".join([self._print(number)] * (number != 1 or not texts) + texts)
 
     def _in_sum(self, factor: sp.Expr) -> str:
-        return rf"\left({self._print(factor)}\right)" if factor.is_Add else self._print(factor)
+        return rf"\left({self._print(factor)}\right)" if factor.is_Add else str(self._print(factor))
 
 
 _printer = _Notation()
@@ -171,7 +172,7 @@ _printer = _Notation()
 
 def latex(expression: sp.Expr) -> str:
     """The expression in the notation of print and derivation."""
-    return _printer.doprint(sp.sympify(expression))
+    return str(_printer.doprint(sp.sympify(expression)))
 
 
 def _mathematics(expression: sp.Expr) -> str:
@@ -211,7 +212,7 @@ def _factored(expression: sp.Expr) -> sp.Expr:
 
 def _by_motion(expression: sp.Expr) -> list[sp.Expr]:
     """Addends of a sum gathered by motion and trim angle of the springs, each group factored."""
-    groups: dict[tuple, list[sp.Expr]] = {}
+    groups: dict[tuple[Any, ...], list[sp.Expr]] = {}
     for term in sp.Add.make_args(sp.expand(expression)):
         motions = [symbol for symbol in term.free_symbols if _KINDS.get(symbol) == _MOTION]
         groups.setdefault(tuple(sorted(_ORDER[symbol] for symbol in motions)), []).append(term)
@@ -250,7 +251,7 @@ def _with_common_factor(expression: sp.Expr) -> tuple[sp.Expr, list[sp.Expr]]:
         else:
             common *= factor
     rest = sp.expand(sp.Mul(*sums))
-    groups: dict[tuple, list[sp.Expr]] = {}
+    groups: dict[tuple[Any, ...], list[sp.Expr]] = {}
     for term in sp.Add.make_args(rest):
         named = [f for f in term.free_symbols if _KINDS.get(f) in (_MOTION, _ANGLE)]
         harmonic = [str(f) for f in sp.Mul.make_args(term) if f.is_Function]

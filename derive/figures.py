@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import sympy as sp
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from proprotor_equations import pitch
 
 import proprotor as pp
@@ -26,12 +26,13 @@ from derive.counterparts import frequency_squared
 from derive.inertia import dependent_inertias
 from derive.printed import TABLES
 from derive.printed.tables import PrintedTable
+from proprotor.arrays import Array
 from proprotor.evaluation import evaluate
 from proprotor.model import HUB, rotor_quantities
 from proprotor.modes import eigensystem
 from proprotor.options import Options
 from proprotor.sweep import sweep
-from proprotor.trim import UNKNOWNS, with_trim
+from proprotor.trim import UNKNOWNS, Trim, with_trim
 
 BLACK, BLUE, RED, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"  # Okabe and Ito
 LOW_SPEEDS = np.arange(50, 451, 10) * KNOT
@@ -113,16 +114,20 @@ def false_growth() -> Figure:
     return figure
 
 
-def _collective(trim) -> NDArray:
-    return np.degrees(trim.pitch + xv15().rotor.structural_pitch_offset)
+def _collective(trim: Trim) -> Array:
+    collective: Array = np.degrees(trim.pitch + xv15().rotor.structural_pitch_offset)
+    return collective
 
 
 # Springs
 
 
-def _numbers(expression: sp.Expr, values: Mapping[sp.Symbol, float], over: sp.Symbol) -> Callable:
+def _numbers(
+    expression: sp.Expr, values: Mapping[sp.Symbol, float], over: sp.Symbol
+) -> Callable[[Array], Array]:
     """The expression as a function of one symbol."""
-    return sp.lambdify(over, sp.sympify(expression).subs(values), "numpy")
+    function: Callable[[Array], Array] = sp.lambdify(over, sp.sympify(expression).subs(values), "numpy")
+    return function
 
 
 def _springs_in(expression: sp.Expr) -> sp.Expr:
@@ -210,7 +215,7 @@ def _frequency_squared(name: str) -> sp.Expr:
 def lag_frequency() -> Figure:
     """Regressive lag mode on a rigid hub: in a vacuum, with the published airloads and with the consistent ones."""
     figure, (ax,) = _figure()
-    variants = (
+    variants: tuple[tuple[str, dict[str, Any], str, str], ...] = (
         ("in a vacuum", {"airloads": "none"}, BLUE, ":"),
         ("published equations", {"equations": "published"}, RED, "--"),
         ("consistent equations", {}, BLACK, "-"),
@@ -224,10 +229,11 @@ def lag_frequency() -> Figure:
     return figure
 
 
-def _regressive_lag(**options) -> NDArray:
+def _regressive_lag(**options: Any) -> Array:
     model = pp.rotor_model(xv15().rotor, xv15().operation, LOW_SPEEDS, **options)
     modes = sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB)))
-    return modes.frequency.sel(mode="regressive lag").values / xv15().operation.rotor_speed
+    per_rev: Array = modes.frequency.sel(mode="regressive lag").values / xv15().operation.rotor_speed
+    return per_rev
 
 
 def published_and_consistent() -> Figure:
@@ -265,7 +271,7 @@ def _of_chord(ax: Axes) -> None:
 
 
 @functools.cache
-def _couplings() -> tuple[NDArray, ...]:
+def _couplings() -> tuple[Array, ...]:
     """Structural pitch in degrees, K_Pβ, K_Pζ and K_Pζ without the trim lag, at the trim of each airspeed."""
     rotor, operation = xv15().rotor, xv15().operation
     trim = pp.rotor_model(rotor, operation, LOW_SPEEDS, pitch="coupling").trim
@@ -302,7 +308,7 @@ def damping_by_coupling_sign() -> Figure:
         _draw_damping(
             ax, consequences.modes_of(pitch="coupling"), "turned round, by the sign of Eq. 35", RED, "--"
         )
-    none = {"pitch_flap_coupling": 0.0, "pitch_lag_coupling": 0.0}
+    none: dict[str, Any] = {"pitch_flap_coupling": 0.0, "pitch_lag_coupling": 0.0}
     _draw_damping(ax, consequences.modes_of(pitch="coupling", **none), "no coupling", BLUE, ":")
     _of_chord(ax)
     ax.set_xlim(200, 520)
@@ -396,7 +402,7 @@ def damping_against_flap_hub_inertia() -> Figure:
     return figure
 
 
-def _least_eigenvalue(mass: NDArray) -> float:
+def _least_eigenvalue(mass: Array) -> float:
     scale = np.sqrt(np.abs(np.diagonal(mass)))
     return float(np.linalg.eigvalsh(mass / np.outer(scale, scale))[0])
 

@@ -31,8 +31,8 @@ GENERATED = ROOT / "generated" / "proprotor_equations"
 PAGE = ROOT / "docs" / "equations.md"
 COUNTERPARTS = "counterparts"
 # Steps of the derivation; what only declares symbols, holds polynomials or prints is none.
-STEPS = ("kinematics", "inertia", "flap_lag_springs", "pitch", "section", "airloads", "lift_slope", "trim")
-STEPS += ("multiblade", "drive_train")
+STEPS: tuple[str, ...] = ("kinematics", "inertia", "flap_lag_springs", "pitch", "section", "airloads")
+STEPS += ("lift_slope", "trim", "multiblade", "drive_train")
 
 Number = int | str
 
@@ -88,10 +88,11 @@ def prints() -> dict[Number, Place]:
         for call in ast.walk(_tree(path)):
             if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.args:
                 first = call.args[0]
-                if call.func.id == "PrintedEquation" and isinstance(first, ast.Constant):
-                    found[first.value] = _place_in_print(path, call)
-                elif call.func.id == "PrintedTable" and isinstance(first, ast.Constant):
-                    found[f"Table {first.value}"] = _place_in_print(path, call)
+                number = first.value if isinstance(first, ast.Constant) else None
+                if call.func.id == "PrintedEquation" and isinstance(number, int | str):
+                    found[number] = _place_in_print(path, call)
+                elif call.func.id == "PrintedTable" and isinstance(number, int):
+                    found[f"Table {number}"] = _place_in_print(path, call)
     return found
 
 
@@ -108,10 +109,12 @@ def counterparts() -> dict[Number, Place]:
     path = DERIVE / f"{COUNTERPARTS}.py"
     found: dict[Number, Place] = {}
     for function in _tree(path).body:
-        for decorator in getattr(function, "decorator_list", ()):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        for decorator in function.decorator_list:
             if isinstance(decorator, ast.Call) and getattr(decorator.func, "id", "") == "counterpart":
                 place = Place(f"{COUNTERPARTS}.{function.name}", path, function.lineno)
-                found |= {argument.value: place for argument in decorator.args}
+                found |= {ast.literal_eval(argument): place for argument in decorator.args}
     audit = DERIVE / "table_audit.py"
     table = Place("table_audit.audit_table", audit, _definitions(audit)["audit_table"].lineno)
     return found | {f"Table {of.number}": table for of in printed.TABLES}
@@ -119,7 +122,7 @@ def counterparts() -> dict[Number, Place]:
 
 def _aliases(path: Path) -> dict[str, str]:
     """Modules of the derivation by the name they are imported under."""
-    found = {}
+    found: dict[str, str] = {}
     for statement in _tree(path).body:
         if isinstance(statement, ast.ImportFrom) and statement.module == "derive":
             found |= {name.asname or name.name: name.name for name in statement.names if name.name in STEPS}
@@ -139,7 +142,8 @@ def derivations(number: Number) -> tuple[Place, ...]:
 def _used(path: Path, name: str) -> list[tuple[str, str]]:
     """(module, name) of the derivation in the order they are met, through the module's own functions."""
     known, aliases = _definitions(path), _aliases(path)
-    queue, seen, found = deque([name]), {name}, {}
+    queue, seen = deque([name]), {name}
+    found: dict[tuple[str, str], None] = {}
     while queue:
         for node in _in_order(known[queue.popleft()]):
             if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
@@ -220,7 +224,7 @@ def _emitted() -> dict[str, set[tuple[str, str]]]:
     for call in ast.walk(_tree(path)):
         if not isinstance(call, ast.Call):
             continue
-        texts = [argument.value for argument in call.args[:2] if isinstance(argument, ast.Constant)]
+        texts = [str(argument.value) for argument in call.args[:2] if isinstance(argument, ast.Constant)]
         if len(texts) == 2 and texts[0] in STEPS:
             found[".".join(texts)] = {
                 (aliases[node.value.id], node.attr)
@@ -270,7 +274,7 @@ def cells() -> dict[str, tuple[str, str]]:
     found = {}
     for source in sources():
         text = source.read_text(encoding="utf-8")
-        title = re.search(r"^# # (.*)$", text, re.MULTILINE).group(1)
+        title = re.findall(r"^# # (.*)$", text, re.MULTILINE)[0]
         page = page_of(source).relative_to(PAGE.parent).as_posix()
         for name in re.findall(r"^# ### (.*)$", text, re.MULTILINE):
             found[name] = (title, f"{page}#{anchor(name)}")
@@ -281,9 +285,9 @@ def cells() -> dict[str, tuple[str, str]]:
 
 
 @functools.cache
-def recorded_verdicts() -> dict[str, Counter]:
+def recorded_verdicts() -> dict[str, Counter[str]]:
     """How many terms, or relations of a table, have each verdict in the record of the audit."""
-    found: dict[str, Counter] = {}
+    found: dict[str, Counter[str]] = {}
     with RECORD.open(newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             found.setdefault(row["number"], Counter())[row["verdict"]] += 1

@@ -6,7 +6,7 @@ Each yields findings: the equation, the invariant, whether the print obeys it, a
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +30,7 @@ SERIES = "deflections in series add up"
 RIGID_TILT = "hub and gimbal tilted against each other leave every mass where it was"
 
 Equations = dict[int | str, PrintedEquation]
+Sample = dict[sp.Symbol, float]
 
 
 @dataclass(frozen=True)
@@ -59,9 +60,11 @@ def dimension_of(expression: sp.Expr) -> Dimension:
     if expression.is_Symbol:
         return n.DIMENSIONS[expression] if expression in n.DIMENSIONS else QUANTITIES[expression].dimension
     if expression.is_Mul:
-        return tuple(map(sum, zip(*(dimension_of(factor) for factor in expression.args), strict=True)))
+        length, mass, time = map(sum, zip(*(dimension_of(part) for part in expression.args), strict=True))
+        return length, mass, time
     if expression.is_Pow:
-        return tuple(int(d * expression.exp) for d in dimension_of(expression.base))
+        length, mass, time = (int(d * expression.exp) for d in dimension_of(expression.base))
+        return length, mass, time
     dimensions = {dimension_of(argument) for argument in expression.args}
     if len(dimensions) != 1:
         raise ValueError(f"terms of different dimension in {expression}")
@@ -69,7 +72,8 @@ def dimension_of(expression: sp.Expr) -> Dimension:
 
 
 def addends(expression: sp.Expr) -> tuple[sp.Expr, ...]:
-    return sp.Add.make_args(sp.expand(expression))
+    terms: tuple[sp.Expr, ...] = sp.Add.make_args(sp.expand(expression))
+    return terms
 
 
 def dimensions(equations: Equations) -> Iterator[Finding]:
@@ -85,7 +89,17 @@ def dimensions(equations: Equations) -> Iterator[Finding]:
 
 # Mirror image: Omega -> -Omega with everything reflected in the plane of I and K
 
-_ODD_MOTIONS = ("y", "alpha_x", "alpha_z", "lag", "lag_0", "lag_1c", "flap_1s", "azimuth", "gimbal_1s")
+_ODD_MOTIONS: tuple[str, ...] = (
+    "y",
+    "alpha_x",
+    "alpha_z",
+    "lag",
+    "lag_0",
+    "lag_1c",
+    "flap_1s",
+    "azimuth",
+    "gimbal_1s",
+)
 _ODD_MOTIONS += ("pitch", "pitch_0", "pitch_1c")
 _ODD = {s.rotor_speed, s.structural_pitch, s.lag, s.pitch_gimbal_coupling, s.pitch_flap_coupling}
 _ODD |= {STIFFNESS["flap", "lag", 0], n.M_zeta, n.M_zeta_elas, n.zeta_in, n.zeta_out, n.B, n.C, n.X, n.Y}
@@ -160,7 +174,7 @@ def _tilted_back(vector: list[sp.Expr]) -> list[sp.Expr]:
     return [sp.expand(component.subs(back).subs(rest)) for component in vector]
 
 
-def _gimbal_flap_against(alpha_x, alpha_y) -> list[sp.Expr]:
+def _gimbal_flap_against(alpha_x: Sequence[sp.Expr], alpha_y: Sequence[sp.Expr]) -> list[sp.Expr]:
     """beta_G of beta_GC = alpha_y and beta_GS = -alpha_x, with its derivatives in time."""
     gc, gs = alpha_y, [-a for a in alpha_x]
     omega, cosine, sine = s.rotor_speed, sp.cos(psi), sp.sin(psi)
@@ -198,7 +212,7 @@ def rigid_tilt(equations: Equations) -> Iterator[Finding]:
 # Springs, by numbers: random springs, shares and pitch
 
 
-def _samples(count: int = 6) -> list[dict[sp.Symbol, float]]:
+def _samples(count: int = 6) -> list[Sample]:
     random = np.random.default_rng(20020422)
     names = (s.flap_stiffness, s.lag_stiffness, s.control_stiffness)
     samples = []
@@ -226,16 +240,17 @@ _PITCH = 0.7
 
 
 @functools.cache
-def _compiled(expression: sp.Expr, symbols: tuple[sp.Symbol, ...]):
-    return sp.lambdify(symbols, expression, "math")
+def _compiled(expression: sp.Expr, symbols: tuple[sp.Symbol, ...]) -> Callable[..., float]:
+    compiled: Callable[..., float] = sp.lambdify(symbols, expression, "math")
+    return compiled
 
 
-def _number(expression: sp.Expr, sample: dict, pitch: float = _PITCH) -> float:
+def _number(expression: sp.Expr, sample: Sample, pitch: float = _PITCH) -> float:
     values = {**sample, s.structural_pitch: pitch}
     return float(_compiled(expression, tuple(values))(*values.values()))
 
 
-def _worst(expression: sp.Expr, sample_set) -> float:
+def _worst(expression: sp.Expr, sample_set: Iterable[Sample]) -> float:
     return max(abs(_number(expression, sample)) for sample in sample_set)
 
 

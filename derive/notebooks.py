@@ -14,7 +14,7 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
@@ -50,12 +50,12 @@ def executed(source: Path) -> NotebookNode:
     class OwnKernel(AsyncKernelManager):
         """ipykernel beside this interpreter, over sockets in the file system."""
 
-        def __init__(self, **options):
+        def __init__(self, **options: Any) -> None:
             super().__init__(
                 transport="ipc", kernel_spec_manager=KernelSpecManager(kernel_dirs=[]), **options
             )
 
-    notebook = jupytext.read(source)
+    notebook: NotebookNode = jupytext.read(source)
     in_root = {"metadata": {"path": str(ROOT)}}
     client = NotebookClient(
         notebook, kernel_manager_class=OwnKernel, kernel_name="python3", timeout=TIMEOUT, resources=in_root

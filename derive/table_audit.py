@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 
@@ -24,6 +25,9 @@ INTEGRALS = ("I_b", "I_β", "I_βα", "I_ζ", "I_ζα", "S_β", "S_ζ")
 STANDARD_DENSITY = 0.0023769  # slug/ft^3
 _STATIONS = 251
 _OFFSETS = 41
+
+
+Values = Mapping[str, PrintedNumber]
 
 
 @dataclass(frozen=True)
@@ -60,10 +64,10 @@ def audit_table(table: PrintedTable) -> TableVerdict:
 
 def rounding(value: PrintedNumber) -> float:
     """Half a unit of the last printed digit."""
-    return float(Decimal(1).scaleb(Decimal(value.text).as_tuple().exponent)) / 2
+    return float(Decimal(1).scaleb(int(Decimal(value.text).as_tuple().exponent))) / 2
 
 
-def _cauchy_schwarz(v: dict[str, float], mixed: str, own: str) -> Relation:
+def _cauchy_schwarz(v: Values, mixed: str, own: str) -> Relation:
     low, high = v[mixed] - rounding(v[mixed]), (v["I_b"] + rounding(v["I_b"])) * (v[own] + rounding(v[own]))
     verdict = REPRODUCED if low**2 <= high else CONTRADICTS
     evidence = f"{mixed}²/(I_b {own}) = {v[mixed] ** 2 / (v['I_b'] * v[own]):.3f}"
@@ -89,7 +93,7 @@ def _arms(radius: float, flap_offset: float, lag_offset: float) -> dict[str, np.
     }
 
 
-def misfit(v: dict[str, float], names: tuple[str, ...], flap_offset: float, lag_offset: float) -> float:
+def misfit(v: Values, names: tuple[str, ...], flap_offset: float, lag_offset: float) -> float:
     """Least largest deviation of any blade's integrals from the printed ones, in half units of the last digit."""
     arms = _arms(v["R"], flap_offset, lag_offset)
     rows = np.array([arms[name] / rounding(v[name]) for name in names])
@@ -102,7 +106,7 @@ def misfit(v: dict[str, float], names: tuple[str, ...], flap_offset: float, lag_
     return max(round(float(solution.fun), 6), 0.0) if solution.status == 0 else math.inf
 
 
-def nearest_blade(v: dict[str, float], names: tuple[str, ...]) -> tuple[float, list[float], list[float]]:
+def nearest_blade(v: Values, names: tuple[str, ...]) -> tuple[float, list[float], list[float]]:
     """Least misfit over the hinge offsets, and the flap and lag offsets that reach it or have a blade at all."""
     grid = list(np.linspace(0, 0.25 * v["R"], _OFFSETS))
     of_flap, of_lag = (any(angle in name for name in names) for angle in "βζ")
@@ -116,7 +120,7 @@ def nearest_blade(v: dict[str, float], names: tuple[str, ...]) -> tuple[float, l
     return least, sorted({flap for flap, _ in near}), sorted({lag for _, lag in near})
 
 
-def _refined(v: dict[str, float], names: tuple[str, ...], *start: float) -> tuple[float, float, float]:
+def _refined(v: Values, names: tuple[str, ...], *start: float) -> tuple[float, float, float]:
     """The misfit and offsets that a simplex search reaches from a point of the grid."""
     moves = [any(angle in name for name in names) for angle in "βζ"]
     step = v["R"] / 160
@@ -137,15 +141,16 @@ def _refined(v: dict[str, float], names: tuple[str, ...], *start: float) -> tupl
             "maxfev": 120,
         },
     )
-    return float(found.fun), *offsets(found.x)
+    flap, lag = offsets(found.x)
+    return float(found.fun), flap, lag
 
 
-def implied_offset(v: dict[str, float], angle: str) -> float:
+def implied_offset(v: Values, angle: str) -> float:
     """e of I_α = I + e S."""
     return (v[f"I_{angle}α"] - v[f"I_{angle}"]) / v[f"S_{angle}"]
 
 
-def _one_blade(v: dict[str, float]) -> list[Relation]:
+def _one_blade(v: Values) -> list[Relation]:
     """All integrals together; if no blade has them, which one has to go for the others to belong to a blade."""
     relations = [_blade_with(v, "one blade has all integrals", INTEGRALS)]
     if relations[0].verdict == CONTRADICTS:
@@ -156,7 +161,7 @@ def _one_blade(v: dict[str, float]) -> list[Relation]:
     return [*relations, _order_of_hinges(v)]
 
 
-def _does_not_belong(v: dict[str, float], left_out: str) -> Relation:
+def _does_not_belong(v: Values, left_out: str) -> Relation:
     """An integral contradicts the others when they have a blade without it."""
     others = _blade_with(v, "", tuple(name for name in INTEGRALS if name != left_out))
     verdict = CONTRADICTS if others.verdict == REPRODUCED else REPRODUCED
@@ -168,7 +173,7 @@ def _of(angle: str) -> tuple[str, ...]:
     return tuple(name for name in INTEGRALS if angle in name)
 
 
-def _blade_with(v: dict[str, float], label: str, names: tuple[str, ...]) -> Relation:
+def _blade_with(v: Values, label: str, names: tuple[str, ...]) -> Relation:
     deviation, flap, lag = nearest_blade(v, names)
     evidence = f"nearest blade {deviation:.2g} half digits away"
     evidence += "".join(
@@ -180,7 +185,7 @@ def _blade_with(v: dict[str, float], label: str, names: tuple[str, ...]) -> Rela
     return Relation(label, names, verdict, evidence, MASS_DISTRIBUTION)
 
 
-def _order_of_hinges(v: dict[str, float]) -> Relation:
+def _order_of_hinges(v: Values) -> Relation:
     """The inertia outboard of a hinge falls as the hinge moves out, so the larger inertia has the smaller offset."""
     order = (implied_offset(v, "ζ") - implied_offset(v, "β")) * (v["I_β"] - v["I_ζ"]) >= 0
     offsets = f"e_β = {implied_offset(v, 'β'):.3f} ft, e_ζ = {implied_offset(v, 'ζ'):.3f} ft"
@@ -194,7 +199,7 @@ def _order_of_hinges(v: dict[str, float]) -> Relation:
 # Other values
 
 
-def _lock_number(v: dict[str, float]) -> Relation:
+def _lock_number(v: Values) -> Relation:
     """gamma = rho c_l_alpha c R^4 / I_b with the chord of the solidity; the paper gives no density."""
     chord = v["σ"] * math.pi * v["R"] / v["N"]
     density = v["γ"] * v["I_b"] / (v["c_lα"] * chord * v["R"] ** 4)
@@ -207,7 +212,7 @@ def _lock_number(v: dict[str, float]) -> Relation:
     return Relation("Lock number and solidity", names, REPRODUCED if standard else AFTER_READING, evidence)
 
 
-def _shares(v: dict[str, float]) -> Relation:
+def _shares(v: Values) -> Relation:
     """Shares of the flexibility, of springs that are there (Eqs. 18, 19)."""
     fine = all(0 <= v[name] <= 1 for name in ("R_β", "R_ζ")) and min(v["ω_β0"], v["ω_ζ0"]) > 0
     speed = v["rpm"] * math.pi / 30
@@ -218,7 +223,7 @@ def _shares(v: dict[str, float]) -> Relation:
     )
 
 
-def _delta_3(v: dict[str, float]) -> Relation:
+def _delta_3(v: Values) -> Relation:
     angle = math.degrees(math.atan(v["K_PG"]))
     whole = abs(angle - round(angle)) <= math.degrees(rounding(v["K_PG"]))
     evidence = f"δ3 = {angle:.2f} deg"

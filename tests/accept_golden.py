@@ -3,19 +3,36 @@
 python -m tests.accept_golden
 """
 
-from tests.golden import switches
+import sys
+
+from tests.golden import decks, switches
+from tests.golden.modes import Modes, Record, accepted, changes
 
 
 def main() -> None:
-    was = switches.kept() if switches.FILE.exists() else {}
-    now = switches.computed()
-    if found := switches.changes(was, now):
-        print(switches.told(found, len(now)))
+    for source in (switches, decks):
+        try:
+            accept(source.RECORD, source.computed())
+        except OSError as error:
+            sys.exit(f"{source.RECORD.file} cannot be written ({error.strerror or error}); it is as it was")
+
+
+def accept(record: Record, now: Modes) -> None:
+    """Put these modes into the file of a record, and print what they change.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written; it then is as it was.
+    """
+    was = record.kept()
+    if found := changes(was, now):
+        print(record.told(found, len(now)))
     if found or set(was) != set(now):
-        switches.keep(switches.accepted(was, now))
-        print(f"written: {switches.FILE.name}")
+        record.keep(accepted(was, now))
+        print(f"written: {record.file.name}")
     else:
-        print("nothing moved; the file is as it was")
+        print(f"nothing moved; {record.file.name} is as it was")
 
 
 if __name__ == "__main__":

@@ -4,11 +4,11 @@ from derive.printed import aerodynamics, flap, kinematics, pitch, springs
 from derive.printed.notation import PrintedEquation
 from derive.printed.tables import TABLES, PrintedTable
 
-EQUATIONS: dict[int, PrintedEquation] = {
+EQUATIONS: dict[int | str, PrintedEquation] = {
     equation.number: equation
     for part in (kinematics, flap, aerodynamics, springs, pitch)
     for equation in part.EQUATIONS
 }
-NOMENCLATURE: dict[str, PrintedEquation] = {equation.number: equation for equation in flap.NOMENCLATURE}
+NOMENCLATURE: dict[int | str, PrintedEquation] = {equation.number: equation for equation in flap.NOMENCLATURE}
 
 __all__ = ["EQUATIONS", "NOMENCLATURE", "TABLES", "PrintedEquation", "PrintedTable"]

@@ -15,7 +15,7 @@ _, z1, _ = TIME["z"]
 beta, beta1, _ = TIME["flap"]
 zeta, zeta1, _ = TIME["lag"]
 beta_G, beta_G1, _ = TIME["gimbal_flap"]
-ORDER_OF_EQ_17 = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
+ORDER_OF_EQ_17: tuple[str, ...] = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
 ORDER_OF_EQ_17 += tuple(f"{angle}_{wave}" for angle in ("flap", "lag", "pitch") for wave in ("0", "1c", "1s"))
 ORDER_OF_EQ_17 += ("azimuth", "gimbal_1c", "gimbal_1s")
 

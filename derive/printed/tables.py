@@ -8,13 +8,15 @@ from dataclasses import dataclass
 class PrintedNumber(float):
     """A number that keeps the digits it is printed with: 0.200 is not 0.2."""
 
-    def __new__(cls, text: str):
+    text: str
+
+    def __new__(cls, text: str) -> PrintedNumber:
         number = super().__new__(cls, text)
         number.text = text
         return number
 
 
-def _numbers(**texts: str) -> dict[str, float]:
+def _numbers(**texts: str) -> dict[str, PrintedNumber]:
     return {symbol: PrintedNumber(text) for symbol, text in texts.items()}
 
 
@@ -25,7 +27,7 @@ class PrintedTable:
     number: int
     page: int
     title: str
-    values: dict[str, float]
+    values: dict[str, PrintedNumber]
     doubt: str = ""
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import ClassVar, NamedTuple, Protocol, runtime_checkable
+from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 
 
@@ -33,9 +34,10 @@ class SectionModel(Protocol):
     put on them.
     """
 
-    contains_compressibility: bool
+    @property
+    def contains_compressibility(self) -> bool: ...
 
-    def coefficients(self, alpha: NDArray, mach: NDArray) -> SectionCoefficients:
+    def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
         """Coefficients and derivatives at angles of attack (rad) and Mach numbers of the same shape."""
         ...
 
@@ -44,7 +46,7 @@ class SectionModel(Protocol):
 class Warns(Protocol):
     """A section model that knows where its coefficients are not to be trusted."""
 
-    def warnings(self, alpha: NDArray, mach: NDArray) -> dict[str, NDArray]:
+    def warnings(self, alpha: Array, mach: Array) -> dict[str, Array]:
         """Reasons for mistrust and where each holds, masks of the shape of `alpha` and `mach` broadcast."""
         ...
 
@@ -92,7 +94,7 @@ class Airfoil:
             if np.any(np.real(getattr(self, name)) < 0):
                 raise InputError(name, getattr(self, name), "must not be negative")
 
-    def coefficients(self, alpha: NDArray, mach: NDArray) -> SectionCoefficients:
+    def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
         """Linear lift, constant drag and moment; shapes as `alpha`."""
         return SectionCoefficients(
             lift_coefficient=self.lift_slope * (alpha - self.zero_lift_angle),
@@ -109,22 +111,18 @@ class Airfoil:
     def flattened(self, shape: tuple[int, ...]) -> Airfoil:
         """Arrays of designs broadcast to `shape` and flattened, with a last axis for the stations."""
         arrays = {entry.name: np.asarray(getattr(self, entry.name)) for entry in fields(self)}
-        return replace(
-            self,
-            **{
-                name: np.broadcast_to(value, shape).reshape(-1, 1)
-                for name, value in arrays.items()
-                if value.ndim
-            },
-        )
+        many: dict[str, Any] = {
+            name: np.broadcast_to(value, shape).reshape(-1, 1) for name, value in arrays.items() if value.ndim
+        }
+        return replace(self, **many)
 
-    def take(self, rows: NDArray | slice) -> Airfoil:
+    def take(self, rows: Array | slice) -> Airfoil:
         """A flattened airfoil at some of the points."""
         values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         many = {name: value[rows] for name, value in values.items() if np.ndim(value)}
         return replace(self, **many) if many else self
 
-    def warnings(self, alpha: NDArray, mach: NDArray) -> dict[str, NDArray]:
+    def warnings(self, alpha: Array, mach: Array) -> dict[str, Array]:
         """Where linear lift or the Prandtl-Glauert factor is not to be trusted."""
         return {
             f"angle of attack beyond {np.degrees(LINEAR_ALPHA):.0f} deg": np.abs(alpha) > LINEAR_ALPHA,

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from proprotor.airfoil import SectionCoefficients
+from proprotor.arrays import Array
 from proprotor.c81 import COEFFICIENTS, Table, read_c81
 from proprotor.coefficient_surface import CoefficientSurface, broken_rules
 from proprotor.errors import InputError
@@ -87,7 +88,7 @@ class AirfoilTable:
             parts = [self._surfaces[name].at(alpha, mach) for name in COEFFICIENTS]
         return SectionCoefficients(*(number for part in parts for number in part))
 
-    def warnings(self, alpha: ArrayLike, mach: ArrayLike) -> dict[str, NDArray]:
+    def warnings(self, alpha: ArrayLike, mach: ArrayLike) -> dict[str, Array]:
         """Where the coefficients are not to be trusted, and why: masks of the broadcast shape by reason.
 
         Stall begins at the first maximum of the lift curve above the angle nearest zero, and at the first
@@ -123,7 +124,7 @@ class AirfoilTable:
         return alpha, mach, values
 
     @cached_property
-    def _stall(self) -> tuple[tuple[NDArray, NDArray], ...]:
+    def _stall(self) -> tuple[tuple[Array, Array], ...]:
         """Mach numbers and, for each, the angle of stall: those below zero, and those above."""
         lift = self._surfaces["lift"]
         start = int(np.argmin(np.abs(lift.alpha)))
@@ -133,7 +134,8 @@ class AirfoilTable:
         return (lift.mach, below), (lift.mach, above)
 
 
-def _first_stop(rises: NDArray, angles: NDArray) -> NDArray:
+def _first_stop(rises: Array, angles: Array) -> Array:
     """The angle (m,) at the start of the first step (n, m) that does not rise, `_NO_STALL` where all do."""
     stops = np.vstack([~rises, np.ones(rises.shape[1], dtype=bool)])
-    return np.append(angles, _NO_STALL)[stops.argmax(axis=0)]
+    found: Array = np.append(angles, _NO_STALL)[stops.argmax(axis=0)]
+    return found

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import HUB, LinearModel
 from proprotor.support import NormalModes
@@ -44,7 +47,7 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
         *(matrix.shape[:-2] for matrix in additions.values()),
     )
     rotor_alone = _broadcast(rotor_alone, shape)
-    matrices = {
+    matrices: dict[str, Any] = {
         name: _on_support(getattr(rotor_alone, name), support.hub, addition)
         for name, addition in additions.items()
     }
@@ -61,7 +64,7 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
     )
 
 
-def _on_support(matrix: NDArray, hub: NDArray, addition: NDArray) -> NDArray:
+def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
     """Tᵀ (...) T with the support's own added; T = diag(Φ, 1) leaves the block of the rotor's own as it is."""
     modes, hubs = hub.shape[-1], len(HUB)
     own = matrix.shape[-1] - hubs
@@ -76,7 +79,7 @@ def _on_support(matrix: NDArray, hub: NDArray, addition: NDArray) -> NDArray:
     return whole
 
 
-def _check_names(support: tuple[str, ...], own: tuple[str, ...]) -> None:
+def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:
     """Results tell coordinates by name: two of one name would be taken for each other."""
     if clashes := [name for name in support if name in own]:
         rule = f"must not be a name of the rotor's own coordinates, {', '.join(own)}"
@@ -97,9 +100,10 @@ def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
     )
 
 
-def _mass_without_rotor(support: NormalModes, rigid_mass: ArrayLike | None) -> NDArray:
+def _mass_without_rotor(support: NormalModes, rigid_mass: ArrayLike | None) -> Array:
     if not support.includes_rotor:
         return support.mass
     if rigid_mass is None:
         raise InputError("rigid_mass", None, "must be given: the support's masses include the rotor")
-    return support.mass - np.swapaxes(support.hub, -1, -2) @ np.asarray(rigid_mass) @ support.hub
+    mass: Array = support.mass - np.swapaxes(support.hub, -1, -2) @ np.asarray(rigid_mass) @ support.hub
+    return mass

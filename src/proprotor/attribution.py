@@ -14,8 +14,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.eigenvalue_derivatives import eigenvalue_change
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 
-def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> NDArray:
+def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
     """λ_g of each part and mode (..., parts, modes), rad/s; the sum over parts that make up the model is zero."""
     return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
 
@@ -79,7 +79,7 @@ def attribution(case: Case, airspeed: Any, mode: str | None = None, **options: A
     )
 
 
-def _dataset(modes: list[str], origins: list[str], values: NDArray, found: NDArray) -> xarray.Dataset:
+def _dataset(modes: list[str], origins: list[str], values: Array, found: Array) -> xarray.Dataset:
     import xarray  # here, because it takes long to import
 
     units = {"units": "rad/s"}

@@ -8,14 +8,15 @@ the wing tip, the downstop.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.modal_reduction import ModalSupport, on_modes
 from proprotor.support import HUB_AXES, NormalModes
@@ -82,7 +83,7 @@ class Wing:
             raise InputError("elements", self.elements, f"must be a whole number from 1 to {_MOST_ELEMENTS}")
 
     @property
-    def tip(self) -> NDArray:
+    def tip(self) -> Array:
         """Where the elastic axis meets the pylon, m (3,)."""
         return self.span * np.array([np.tan(self.dihedral), 1.0, -np.tan(self.sweep)])
 
@@ -147,12 +148,12 @@ class Pylon:
                     raise InputError(entry.name, value, "must not be negative")
 
     @property
-    def hub(self) -> NDArray:
+    def hub(self) -> Array:
         """From the elastic axis at the tip to the hub, m (3,) along I, J, K."""
         return np.array([self.mast_height, self.mast_outboard, self.mast_length])
 
     @property
-    def nacelle(self) -> NDArray:
+    def nacelle(self) -> Array:
         """From the elastic axis at the tip to the nacelle's centre of mass, m (3,)."""
         return np.array([self.nacelle_up, self.nacelle_outboard, self.nacelle_forward])
 
@@ -175,16 +176,16 @@ class BeamStructure(NamedTuple):
     """
 
     names: tuple[str, ...]
-    mass: NDArray
-    stiffness_parts: dict[str, NDArray]
-    hub: NDArray
-    nodes: NDArray
-    positions: NDArray
+    mass: Array
+    stiffness_parts: dict[str, Array]
+    hub: Array
+    nodes: Array
+    positions: Array
 
     @property
-    def stiffness(self) -> NDArray:
+    def stiffness(self) -> Array:
         """The whole stiffness (n, n)."""
-        return sum(self.stiffness_parts.values())
+        return sum(self.stiffness_parts.values(), start=np.zeros(()))
 
 
 def beam_structure(wing: Wing, pylon: Pylon) -> BeamStructure:
@@ -246,13 +247,12 @@ def on_coordinates(
     rotor_mass: float,
 ) -> ModalSupport:
     """The structure as a support on all coordinates, or on its `count` lowest modes, as `beam_wing` has it."""
-    given = damping_ratio
+    given: ArrayLike | Callable[[Array], ArrayLike]
     if isinstance(damping_ratio, Mapping):
         _check_kinds(damping_ratio, structure)
-
-        def given(shapes: NDArray) -> list[float]:
-            return [damping_ratio[kind] for kind in _dominant(structure, shapes)]
-
+        given = partial(_ratios_by_kind, structure, damping_ratio)
+    else:
+        given = damping_ratio
     return on_modes(
         structure.names,
         structure.mass,
@@ -275,14 +275,18 @@ def _check_kinds(damping_ratio: Mapping[str, float], structure: BeamStructure) -
             raise InputError("damping_ratio", kind, rule)
 
 
-def _dominant(structure: BeamStructure, shapes: NDArray) -> list[str]:
+def _dominant(structure: BeamStructure, shapes: Array) -> list[str]:
     """What most of the strain energy of each mode is in."""
     energy = [np.einsum("ij,ij->j", shapes, part @ shapes) for part in structure.stiffness_parts.values()]
     kinds = list(structure.stiffness_parts)
     return [kinds[place] for place in np.argmax(energy, axis=0)]
 
 
-def _named_by_energy(structure: BeamStructure, shapes: NDArray) -> tuple[str, ...]:
+def _ratios_by_kind(structure: BeamStructure, ratios: Mapping[str, float], shapes: Array) -> list[float]:
+    return [ratios[kind] for kind in _dominant(structure, shapes)]
+
+
+def _named_by_energy(structure: BeamStructure, shapes: Array) -> tuple[str, ...]:
     dominant = _dominant(structure, shapes)
     counts = [dominant[: place + 1].count(kind) for place, kind in enumerate(dominant)]
     return tuple(
@@ -290,7 +294,7 @@ def _named_by_energy(structure: BeamStructure, shapes: NDArray) -> tuple[str, ..
     )
 
 
-def wing_elements(wing: Wing) -> tuple[NDArray, dict[str, NDArray], NDArray]:
+def wing_elements(wing: Wing) -> tuple[Array, dict[str, Array], Array]:
     """Mass and stiffness parts on the motions of all nodes, the mount's included, and where the nodes are."""
     from pystran import beam, model, section  # here, because it brings matplotlib along
 
@@ -324,7 +328,7 @@ def wing_elements(wing: Wing) -> tuple[NDArray, dict[str, NDArray], NDArray]:
     return mass, parts, positions
 
 
-def _coordinates(wing: Wing, pylon: Pylon) -> tuple[NDArray, NDArray, tuple[str, ...]]:
+def _coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:
     """Motion of the nodes and of the hub per coordinate, and the coordinates' names."""
     inner = _PER_NODE * (wing.elements - 1)
     free = pylon.pitch_stiffness is not None
@@ -340,7 +344,7 @@ def _coordinates(wing: Wing, pylon: Pylon) -> tuple[NDArray, NDArray, tuple[str,
     return nodes, hub, tuple(names)
 
 
-def _pylon_mass(pylon: Pylon) -> NDArray:
+def _pylon_mass(pylon: Pylon) -> Array:
     """Mass of nacelle and hub hardware (6, 6) on the motion of the hub."""
     inertia = (pylon.nacelle_yaw_inertia, pylon.nacelle_pitch_inertia, pylon.nacelle_roll_inertia)
     nacelle = np.diag([pylon.nacelle_mass] * 3 + list(inertia))
@@ -348,14 +352,14 @@ def _pylon_mass(pylon: Pylon) -> NDArray:
     return motion.T @ nacelle @ motion + pylon.hub_mass * np.diag([1.0] * 3 + [0.0] * 3)
 
 
-def rigid_motion(offset: ArrayLike) -> NDArray:
+def rigid_motion(offset: ArrayLike) -> Array:
     """Motion (6, 6) of a point of a rigid body per motion of another, `offset` (3,) from it to the point, m."""
     motion = np.eye(6)
     motion[:3, 3:] = np.cross(np.eye(3), np.asarray(offset, dtype=float)).T
     return motion
 
 
-def _means(profile: SpanwiseProfile, stations: NDArray) -> NDArray:
+def _means(profile: SpanwiseProfile, stations: Array) -> Array:
     """The mean of a profile over each element."""
     if not isinstance(profile, tuple):
         return np.full(len(stations) - 1, float(profile))
@@ -363,15 +367,17 @@ def _means(profile: SpanwiseProfile, stations: NDArray) -> NDArray:
     corners = np.union1d(given, stations)
     heights = np.interp(corners, given, values)
     areas = np.concatenate([[0.0], np.cumsum(np.diff(corners) * (heights[1:] + heights[:-1]) / 2)])
-    return np.diff(np.interp(stations, corners, areas)) / np.diff(stations)
+    means: Array = np.diff(np.interp(stations, corners, areas)) / np.diff(stations)
+    return means
 
 
-def _symmetric(matrix: NDArray) -> NDArray:
+def _symmetric(matrix: Array) -> Array:
     return (matrix + matrix.T) / 2  # products leave rounding
 
 
 def _check(name: str, value: float, above_zero: bool = False) -> None:
-    if not np.isscalar(value) or not np.isreal(value) or not np.isfinite(value):
+    is_number = np.isscalar(value) and np.isreal(value) and np.isfinite(value)
+    if not is_number:
         raise InputError(name, value, "must be a finite number")
     if above_zero and value <= 0:
         raise InputError(name, value, "must be above zero")

@@ -6,13 +6,13 @@ import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from proprotor_equations import airloads, lift_slope, section
 
 from proprotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
+from proprotor.arrays import Array
 from proprotor.evaluation import evaluate, keywords
 from proprotor.quadrature import POWERS, RadialQuadrature, flatten_points
 from proprotor.rotor import Rotor
@@ -43,8 +43,8 @@ class BladeSections:
     """
 
     quadrature: RadialQuadrature
-    chord: NDArray
-    twist: NDArray
+    chord: Array
+    twist: Array
     airfoil: SectionModel
 
     @classmethod
@@ -76,7 +76,7 @@ class BladeSections:
             airfoil = Airfoil(**{e.name: np.real(getattr(airfoil, e.name)) for e in fields(airfoil)})
         return BladeSections(self.quadrature.real, np.real(self.chord), np.real(self.twist), airfoil)
 
-    def take(self, rows: NDArray | slice) -> BladeSections:
+    def take(self, rows: Array | slice) -> BladeSections:
         """Sections at some of the points."""
         chord, twist = (part[rows] if part.ndim > 1 else part for part in (self.chord, self.twist))
         airfoil = self.airfoil.take(rows) if isinstance(self.airfoil, Airfoil) else self.airfoil
@@ -101,7 +101,8 @@ def segment_quantities(
         "beyond_flap_hinge": quadrature.beyond_flap_hinge,
         "beyond_lag_hinge": quadrature.beyond_lag_hinge,
     }
-    return pool | evaluate(equations.segment_geometry, pool)._asdict()
+    geometry: dict[str, Any] = evaluate(equations.segment_geometry, pool)._asdict()
+    return pool | geometry
 
 
 def _air(sections: BladeSections, segments: Quantities, equations: ModuleType, spins: bool) -> dict[str, Any]:
@@ -113,13 +114,14 @@ def _air(sections: BladeSections, segments: Quantities, equations: ModuleType, s
         stations[name] = along_lines(line[..., place], line[..., place + 3])
     stations["section_spin"] = along_lines(line[..., 6]) if spins else 0.0
     stations |= {"chord": sections.chord, "section_pitch": segments["pitch"] + sections.twist}
-    return stations | evaluate(section.air_at_section, stations)._asdict()
+    air: dict[str, Any] = evaluate(section.air_at_section, stations)._asdict()
+    return stations | air
 
 
-def compressible(coefficients: SectionCoefficients, mach: NDArray) -> SectionCoefficients:
+def compressible(coefficients: SectionCoefficients, mach: Array) -> SectionCoefficients:
     """Prandtl-Glauert on lift and moment, and on their derivatives."""
     factor, slope = section.prandtl_glauert(mach=mach)
-    scaled = {}
+    scaled: dict[str, Any] = {}
     for name in ("lift", "moment"):
         value, alpha, by_mach = (
             getattr(coefficients, f"{name}_coefficient{d}") for d in ("", "_alpha", "_mach")
@@ -151,7 +153,7 @@ def load_moments(
     lift_slope_only: bool = False,
     steady_only: bool = False,
     equations: ModuleType = airloads,
-    doubts: dict[str, NDArray] | None = None,
+    doubts: dict[str, Array] | None = None,
 ) -> dict[str, Any]:
     """Radial moments of the section loads and their derivatives, by name and power of r, (points, segments).
 
@@ -208,7 +210,7 @@ def _needed(equations: ModuleType) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*keywords(equations.trim_velocity), *others)))
 
 
-def _block_moments(quadrature: RadialQuadrature, load: NDArray, block_of: int) -> NDArray:
+def _block_moments(quadrature: RadialQuadrature, load: Array, block_of: int) -> Array:
     """Radial moments of a block of points, filled up so that a point's sums do not depend on how many it comes with."""
     rows = len(load)
     if quadrature.segment.ndim > 1 or rows == block_of:
@@ -235,7 +237,7 @@ def _loads(
 ) -> dict[str, Any]:
     """Loads and derivatives at the stations, by name; a plain number, or nothing, where there are none."""
     pool = dict(air) | coefficients._asdict()
-    loads = evaluate(section.steady_forces if steady_only else section.forces, pool)._asdict()
+    loads: dict[str, Any] = evaluate(section.steady_forces if steady_only else section.forces, pool)._asdict()
     pitching = [value for name, value in coefficients._asdict().items() if name.startswith("moment")]
     if spins or _any(*pitching):
         loads |= evaluate(section.pitching_moment, pool)._asdict()
@@ -243,7 +245,7 @@ def _loads(
 
 
 def _doubt(
-    doubts: dict[str, NDArray],
+    doubts: dict[str, Array],
     sections: BladeSections,
     segments: Quantities,
     air: Quantities,
@@ -268,17 +270,16 @@ def has_closed_form(sections: BladeSections) -> bool:
     return isinstance(sections.airfoil, Airfoil) and sections.chord.shape[-1] == 1
 
 
-def closed_form_moments(sections: BladeSections, segments: Quantities) -> dict[str, NDArray]:
+def closed_form_moments(sections: BladeSections, segments: Quantities) -> dict[str, Any]:
     """Radial moments as `load_moments`, lift slope alone, without compressibility and with u_T = Ωr and u_P = V."""
     edges = sections.quadrature.edges / np.asarray(segments["radius"])[..., None]
     inflow_ratio = segments["airspeed"] / (segments["rotor_speed"] * segments["radius"])
     given = {
         "chord": sections.chord,
-        "lift_slope": sections.airfoil.lift_slope,
+        "lift_slope": cast(Airfoil, sections.airfoil).lift_slope,  # has_closed_form has seen to it
         "inflow_ratio": np.maximum(inflow_ratio, _STILL),
         "inner_edge": edges[..., 0],
         "outer_edge": edges[..., 1],
     }
-    return (
-        dict.fromkeys(LOAD_MOMENTS, 0.0) | evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()
-    )
+    moments: dict[str, Any] = evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()
+    return dict.fromkeys(LOAD_MOMENTS, 0.0) | moments

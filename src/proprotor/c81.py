@@ -18,8 +18,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.coefficient_surface import broken_rules
 from proprotor.errors import InputError
 
@@ -31,7 +31,7 @@ _WIDTH, _TO_A_LINE = 7, 9
 _COUNTS = slice(30, 42)
 _NUMBER = re.compile(r" *[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)? *")
 
-Table = tuple[NDArray, NDArray, NDArray]  # angles in rad (n,), Mach numbers (m,), values (n, m)
+Table = tuple[Array, Array, Array]  # angles in rad (n,), Mach numbers (m,), values (n, m)
 
 
 def read_c81(path: str | os.PathLike[str]) -> tuple[str, dict[str, Table]]:

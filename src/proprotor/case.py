@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -14,6 +14,7 @@ import numpy as np
 from proprotor.airfoil import Airfoil, SectionModel
 from proprotor.airfoil_table import AirfoilTable
 from proprotor.assembly import mount
+from proprotor.atmosphere import standard_air
 from proprotor.datum import PER_REV, Datum
 from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
 from proprotor.errors import InputError
@@ -26,7 +27,8 @@ from proprotor.support_of_deck import support_of
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.deck import Deck, Section
+    from proprotor.deck import Deck
+    from proprotor.deck_fields import Section
     from proprotor.flutter import Crossings, FlutterPoint
 
 __all__ = ["Case", "list_cases", "load_case"]
@@ -129,13 +131,15 @@ class Case:
         return stability_map(self, axes, **options)
 
 
-def load_case(name_or_path: str | os.PathLike[str]) -> Case:
+def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] | None = None) -> Case:
     """The case of a deck.
 
     Parameters
     ----------
     name_or_path : str or path
-        A bundled deck (`list_cases`) or a TOML file; `proprotor.deck` describes its fields.
+        A bundled deck (`list_cases`) or a TOML file; `proprotor describe` tells its fields.
+    settings : mapping of str to str, optional
+        Fields to set first, as text: ``{"rotor.precone": "1.5 deg"}``. See `proprotor.deck_settings`.
 
     Raises
     ------
@@ -145,7 +149,12 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     """
     from proprotor.deck import validate  # here, because pydantic is slow to import
 
-    deck = validate(read_tables(name_or_path))
+    tables = read_tables(name_or_path)
+    if settings:
+        from proprotor.deck_settings import with_settings
+
+        tables = with_settings(tables, settings)
+    deck = validate(tables)
     return assemble(deck, {path: _per_second(n, deck.operation.rotor_speed.si) for path, n in _numbers(deck)})
 
 
@@ -159,8 +168,9 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
     """
     with _told_as_written("operation", numbers):
         trim = deck.operation.trim
+        given, air = _with_air(_values(numbers, "operation"))
         operation = Operation(
-            **_values(numbers, "operation"),
+            **given,
             trim=trim if isinstance(trim, str) else _values(numbers, "operation.trim"),
         )
     with _told_as_written("rotor.airfoil", numbers):
@@ -179,7 +189,7 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
         rotor=rotor,
         operation=operation,
         support=support,
-        sources=dict(numbers) | derived,
+        sources=dict(numbers) | air | derived,
         deck=deck,
         given=numbers,
     )
@@ -218,6 +228,20 @@ def _value(number: Datum, numbers: Mapping[str, Datum]) -> Any:
     return np.array(number.r_over_R) * radius[..., None], np.array(number.si)
 
 
+def _with_air(given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Datum]]:
+    """What an operation is given, and the air that follows from its altitude."""
+    if "altitude" not in given:
+        return given, {}
+    found = standard_air(given.pop("altitude"), given.pop("temperature_offset", 0.0))
+    source = "altitude, temperature_offset: standard atmosphere"
+    air = {
+        "density": Datum("p / R T", found.density, "kg/m**3", "derived", source),
+        "speed_of_sound": Datum("√(γ R T)", found.speed_of_sound, "m/s", "derived", source),
+    }
+    given |= {name: number.si for name, number in air.items()}
+    return given, {f"operation.{name}": number for name, number in air.items()}
+
+
 def _airfoil(given: dict[str, Any]) -> SectionModel:
     return AirfoilTable.from_c81(given["table"]) if "table" in given else Airfoil(**given)
 
@@ -226,7 +250,7 @@ def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datu
     """The rotor, and the numbers that follow from those given."""
     omega = {name: given.pop(f"{name}_frequency") for name in ("flap", "lag") if f"{name}_frequency" in given}
     lock_number = given.pop("lock_number", None)
-    build = Rotor
+    build: Callable[..., Rotor] = Rotor
     if "mass_distribution" in given:
         build = partial(Rotor.from_mass_distribution, *given.pop("mass_distribution"))
     # Springs and chord may follow from inertias that only the rotor knows: hence the stand-ins.

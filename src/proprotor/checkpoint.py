@@ -17,8 +17,8 @@ from typing import Any
 from warnings import warn
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.output_file import write_whole
 
@@ -77,7 +77,7 @@ class Checkpoint:
                 write_whole(place, lambda file: file.write(json.dumps(manifest, indent=1).encode()))
                 return dict(division)
             manifest = json.loads(place.read_text(encoding="utf-8"))
-            stored, division = manifest["identity"], manifest["division"]
+            stored, begun_with = manifest["identity"], dict(manifest["division"])
         except InputError:
             raise
         except OSError as error:
@@ -93,12 +93,13 @@ class Checkpoint:
             what = ", ".join(differ) or "its format"
             rule = f"holds another study (different: {what}); give another folder, or delete this one"
             raise InputError("checkpoint", self.folder, rule)
-        return division
+        return begun_with
 
-    def save(self, number: int, found: Mapping[str, NDArray]) -> None:
+    def save(self, number: int, found: Mapping[str, Array]) -> None:
         """Keep a finished batch."""
         content = io.BytesIO()
-        np.savez(content, **{name: _plain(array) for name, array in found.items()})
+        arrays: dict[str, Any] = {name: _plain(array) for name, array in found.items()}
+        np.savez(content, **arrays)
         payload = content.getbuffer()
 
         def write(file: Any) -> None:
@@ -109,7 +110,7 @@ class Checkpoint:
 
         write_whole(self._place(number), write)
 
-    def load(self, number: int) -> dict[str, NDArray] | None:
+    def load(self, number: int) -> dict[str, Array] | None:
         """A batch kept before, None where there is none.
 
         Raises
@@ -127,7 +128,7 @@ class Checkpoint:
         with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
             return {name: _as_objects(stored[name]) for name in stored.files}
 
-    def finished(self, count: int) -> Iterator[tuple[int, dict[str, NDArray]]]:
+    def finished(self, count: int) -> Iterator[tuple[int, dict[str, Array]]]:
         """The batches kept before, of a study of so many; one that is damaged is told, removed and left out."""
         for number in range(count):
             try:
@@ -158,10 +159,10 @@ class Checkpoint:
             yield
 
 
-def _plain(array: NDArray) -> NDArray:
+def _plain(array: Array) -> Array:
     """Texts with a fixed width, which need no pickle."""
     return array.astype(str) if array.dtype == object else array
 
 
-def _as_objects(array: NDArray) -> NDArray:
+def _as_objects(array: Array) -> Array:
     return array.astype(object) if array.dtype.kind == "U" else array

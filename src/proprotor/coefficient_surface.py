@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+
+from proprotor.arrays import Array
 
 _CLOSEST = 1e-9  # nodes nearer than this are one
 _FASTEST = 10.0  # Mach number
@@ -40,9 +41,9 @@ class CoefficientSurface:
     values : array (n, m)
     """
 
-    alpha: NDArray
-    mach: NDArray
-    values: NDArray
+    alpha: Array
+    mach: Array
+    values: Array
 
     @cached_property
     def wraps(self) -> bool:
@@ -50,7 +51,7 @@ class CoefficientSurface:
         full = np.allclose(self.alpha[[0, -1]], [-np.pi, np.pi], rtol=0, atol=_SAME)
         return full and np.allclose(self.values[0], self.values[-1], rtol=0, atol=_SAME)
 
-    def at(self, alpha: NDArray, mach: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    def at(self, alpha: Array, mach: Array) -> tuple[Array, Array, Array]:
         """Value and exact derivatives with angle of attack (1/rad) and Mach number, (...).
 
         Parameters
@@ -64,24 +65,26 @@ class CoefficientSurface:
         along_alpha, by_mach = _horner(cells, speed)
         return *_horner(along_alpha, angle), _horner(by_mach, angle)[0]
 
-    def beyond_alpha(self, alpha: NDArray) -> NDArray:
+    def beyond_alpha(self, alpha: Array) -> Array:
         """Where an angle of attack lies outside the table, (...)."""
         if self.wraps:
             return np.zeros(np.shape(alpha), dtype=bool)
-        return (np.real(alpha) < self.alpha[0]) | (np.real(alpha) > self.alpha[-1])
+        beyond: Array = (np.real(alpha) < self.alpha[0]) | (np.real(alpha) > self.alpha[-1])
+        return beyond
 
-    def beyond_mach(self, mach: NDArray) -> NDArray:
+    def beyond_mach(self, mach: Array) -> Array:
         """Where a Mach number lies outside the table, (...)."""
         if len(self.mach) == 1:
             return np.zeros(np.shape(mach), dtype=bool)
-        return (np.real(mach) < self.mach[0]) | (np.real(mach) > self.mach[-1])
+        beyond: Array = (np.real(mach) < self.mach[0]) | (np.real(mach) > self.mach[-1])
+        return beyond
 
-    def turned(self, alpha: NDArray) -> NDArray:
+    def turned(self, alpha: Array) -> Array:
         """The same angle of attack, within half a turn if the table closes on itself."""
         return alpha - 2 * np.pi * np.round(np.real(alpha) / (2 * np.pi)) if self.wraps else alpha
 
     @cached_property
-    def _polynomials(self) -> NDArray:
+    def _polynomials(self) -> Array:
         """Coefficients (4, 4, n + 1, m + 1) of the powers of Mach number and angle from each cell's start.
 
         The first and last cell of either direction lie outside the table.
@@ -93,7 +96,7 @@ class CoefficientSurface:
         return np.ascontiguousarray(cells.transpose(1, 2, 3, 0))
 
     @property
-    def _alpha_slopes(self) -> NDArray:
+    def _alpha_slopes(self) -> Array:
         if not self.wraps:
             return _slopes(self.alpha, self.values)
         turn = 2 * np.pi
@@ -101,7 +104,7 @@ class CoefficientSurface:
         return _slopes(alpha, np.concatenate([self.values[-2:-1], self.values, self.values[1:2]]))[1:-1]
 
 
-def broken_rules(alpha: NDArray, mach: NDArray, values: NDArray, least: float) -> Iterator[tuple[int, str]]:
+def broken_rules(alpha: Array, mach: Array, values: Array, least: float) -> Iterator[tuple[int, str]]:
     """What is wrong with a table of the right shape, as row and rule: row 0 is that of the Mach numbers.
 
     Parameters
@@ -124,18 +127,18 @@ def broken_rules(alpha: NDArray, mach: NDArray, values: NDArray, least: float) -
     yield from _first_row(~np.any(values < least, axis=1), f"coefficients must not be less than {least:g}")
 
 
-def _first_row(holds: NDArray, rule: str) -> Iterator[tuple[int, str]]:
+def _first_row(holds: Array, rule: str) -> Iterator[tuple[int, str]]:
     return ((int(row) + 1, rule) for row in np.flatnonzero(~holds)[:1])
 
 
-def _place(nodes: NDArray, x: NDArray) -> tuple[NDArray, NDArray]:
+def _place(nodes: Array, x: Array) -> tuple[Array, Array]:
     """Cell of each x, 0 below the first node, and the distance from its start; nodes count as inside."""
     starts = np.append(nodes[:-1], np.nextafter(nodes[-1], np.inf))
     cell = np.searchsorted(starts, np.real(x), side="right")
     return cell, x - nodes[np.maximum(cell - 1, 0)]
 
 
-def _horner(coefficients: NDArray, t: NDArray) -> tuple[NDArray, NDArray]:
+def _horner(coefficients: Array, t: Array) -> tuple[Array, Array]:
     """A polynomial and its derivative, coefficients along the first axis, the constant term first."""
     value, slope = coefficients[-1], np.zeros_like(t)
     for coefficient in coefficients[-2::-1]:
@@ -144,7 +147,7 @@ def _horner(coefficients: NDArray, t: NDArray) -> tuple[NDArray, NDArray]:
     return value, slope
 
 
-def _slopes(x: NDArray, values: NDArray) -> NDArray:
+def _slopes(x: Array, values: Array) -> Array:
     """Slopes at the nodes along the first axis."""
     from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
 
@@ -152,10 +155,11 @@ def _slopes(x: NDArray, values: NDArray) -> NDArray:
         return np.zeros_like(values)
     # Reciprocals of the smallest differences overflow, and end up as zero slopes.
     with np.errstate(over="ignore"):
-        return PchipInterpolator(x, values, axis=0)(x, nu=1)
+        slopes: Array = PchipInterpolator(x, values, axis=0)(x, nu=1)
+    return slopes
 
 
-def _cubics(x: NDArray, values: NDArray, slopes: NDArray, outside: float) -> NDArray:
+def _cubics(x: Array, values: Array, slopes: Array, outside: float) -> Array:
     """Coefficients (n + 1, 4, ...) of the cubics between n nodes along the first axis, and of lines outside.
 
     `outside` is the part of the end slope that goes on: 1, or 0 to hold the value.

@@ -11,8 +11,8 @@ The level is a damping ratio ζ0, and G = Re λ + ζ0 |λ| is positive where the
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.cubic import hermite, hermite_extrema, hermite_root
 from proprotor.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.modes import decomposition
@@ -26,12 +26,12 @@ NEUTRAL = 1e-9  # of the largest eigenvalue: growth that says nothing
 _SAFETY = 4.0  # the error of a cubic over one step is a sixteenth of that over two; a quarter is taken
 
 
-def growth(values: NDArray, level: float = 0.0) -> NDArray:
+def growth(values: Array, level: float = 0.0) -> Array:
     """G = Re λ + ζ0 |λ|, 1/s: positive where the damping ratio is below the level."""
     return values.real + level * np.abs(values) if level else values.real
 
 
-def growth_rate(values: NDArray, changes: NDArray, level: float = 0.0) -> NDArray:
+def growth_rate(values: Array, changes: Array, level: float = 0.0) -> Array:
     """Change of G with a change of λ."""
     if not level:
         return changes.real
@@ -46,21 +46,21 @@ class Scan:
         self.line, self.level, self.path = line, level, path
         self._changes = np.full(path.spectrum.values.shape, np.nan, dtype=complex)
         if len(path.points):
-            model, changes = with_changes(line.linearize, path.positions[path.points])
+            model, changes = with_changes(line.models, path.positions[path.points])
             here = path.spectrum.at(path.points).all_modes
             self._changes[path.points] = eigenvalue_change(model, changes, here)
 
     @property
-    def positions(self) -> NDArray:
+    def positions(self) -> Array:
         """Of the points of the path (k,)."""
         return self.path.positions[self.path.points]
 
-    def growths(self) -> tuple[NDArray, NDArray]:
+    def growths(self) -> tuple[Array, Array]:
         """Growth and its derivative by the position, of the followed states (k, states)."""
         changes = np.take_along_axis(self._changes[self.path.points], self.path.places, 1)
         return growth(self.path.values, self.level), growth_rate(self.path.values, changes, self.level)
 
-    def put(self, after: NDArray, positions: NDArray) -> bool:
+    def put(self, after: Array, positions: Array) -> bool:
         """Put points into steps; whether any of them could be analysed."""
         found, changes = solved(self.line, positions)
         works = found.works
@@ -70,14 +70,14 @@ class Scan:
         return bool(works.any())
 
 
-def solved(line: Line, positions: NDArray) -> tuple[Spectrum, NDArray]:
+def solved(line: Line, positions: Array) -> tuple[Spectrum, Array]:
     """Eigen-solves at positions (k,), with the derivative of every eigenvalue by the position (k, states)."""
-    model, changes = with_changes(line.linearize, positions)
+    model, changes = with_changes(line.models, positions)
     found = decomposition(model)
     return found, eigenvalue_change(model, changes, found.all_modes)
 
 
-def _cubics(scan: Scan) -> tuple[NDArray, NDArray, NDArray]:
+def _cubics(scan: Scan) -> tuple[Array, Array, Array]:
     """Ends (4, steps, states) of the cubics of all steps, their likely errors, and whether a state counts in a step."""
     x, (value, slope) = scan.positions, scan.growths()
     length = np.diff(x)[:, None]
@@ -139,7 +139,7 @@ class Brackets:
         points = np.stack([path.points[steps], path.points[steps + 1]])
         self.place = np.stack([path.places[steps, self.states], path.places[steps + 1, self.states]])
         self.ends = [path.spectrum.at(row) for row in points]
-        self.found = {}
+        self.found: dict[int, tuple[float, Spectrum, int, complex, float]] = {}
         self.solves = np.zeros(self.count, dtype=int)
 
     def close(self) -> None:
@@ -181,7 +181,7 @@ class Brackets:
             guess[active] = np.where(inside, newton, (low + high) / 2)
             active = active[~done]
 
-    def _place(self, active: NDArray, position: NDArray, spectrum: Spectrum) -> NDArray:
+    def _place(self, active: Array, position: Array, spectrum: Spectrum) -> Array:
         """Which state of each trial point is the one that crosses, followed from the ends of the bracket.
 
         From the nearer end; where a pair parts into real roots between the ends, from the one that is of the trial's
@@ -197,11 +197,10 @@ class Brackets:
             places[end] = successor[rows, own]
             alike[end] = (start.values[rows, own].imag == 0) == (spectrum.values[rows, places[end]].imag == 0)
         chosen = np.where(alike[0] == alike[1], nearer, alike[1].astype(int))
-        return places[chosen, rows]
+        followed: Array = places[chosen, rows]
+        return followed
 
-    def _narrow(
-        self, active: NDArray, position: NDArray, value: NDArray, place: NDArray, spectrum: Spectrum
-    ) -> None:
+    def _narrow(self, active: Array, position: Array, value: Array, place: Array, spectrum: Spectrum) -> None:
         """The trial points take the place of the end on their side."""
         end = (np.sign(value) != np.sign(self.value[0, active])).astype(int)
         for row, crossing in enumerate(active):

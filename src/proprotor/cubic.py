@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from proprotor.arrays import Array
 
 
-def hermite(t: NDArray, ends: NDArray) -> NDArray:
+def hermite(t: Array, ends: Array) -> Array:
     """The cubic with values and slopes `ends` (4, ...): at 0, at 1, slope at 0 and at 1 per unit of t."""
     value0, value1, slope0, slope1 = ends
     rise = value1 - value0
     a, b = slope0 - rise, rise - slope1
-    return value0 + t * (rise + (1 - t) * (a + t * (b - a)))
+    value: Array = value0 + t * (rise + (1 - t) * (a + t * (b - a)))
+    return value
 
 
-def hermite_extrema(ends: NDArray) -> NDArray:
+def hermite_extrema(ends: Array) -> Array:
     """Where the cubics (4, m) have extrema within (0, 1): (m, 2), NaN where they have none."""
     value0, value1, slope0, slope1 = ends
     rise = value1 - value0
@@ -26,7 +28,7 @@ def hermite_extrema(ends: NDArray) -> NDArray:
     return np.where((found > 0) & (found < 1), found, np.nan)
 
 
-def hermite_root(ends: NDArray) -> NDArray:
+def hermite_root(ends: Array) -> Array:
     """A root in (0, 1) of cubics (4, m) with values of opposite sign at the ends, by bisection and then secants."""
     low, high = np.zeros(ends.shape[1]), np.ones(ends.shape[1])
     rising = ends[1] > ends[0]

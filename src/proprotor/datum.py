@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -26,8 +27,8 @@ class Datum:
     ----------
     written : str
         The value as the deck gives it.
-    si : float, int, tuple of float or str
-        The value in `unit`; a tuple for a distribution, the path for a file.
+    si : float, int, array, tuple of float or str
+        The value in `unit`; an array of those of many designs, a tuple for a distribution, the path for a file.
     unit : str
         SI unit, ``""`` for a plain number.
     status : str
@@ -39,7 +40,7 @@ class Datum:
     """
 
     written: str
-    si: float | tuple[float, ...] | str
+    si: Any
     unit: str
     status: str = "unstated"
     source: str = ""
@@ -139,6 +140,26 @@ def read_profile(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
     return read_distribution(raw, unit, bound) if is_distribution else read_quantity(raw, unit, bound)
 
 
+def read_column(raw: Any, unit: str, bound: Bound, radius: float) -> Datum:
+    """A table ``{ file, column, status, source }``: one column of a file of blade stations, see `stations_file`."""
+    from proprotor.stations_file import read_stations  # here, because few decks have one
+
+    table = _as_table(raw, ("file", "column"))
+    try:
+        file = read_file(table["file"])
+    except InputError as error:
+        raise error.within("file") from None
+    column = table["column"]
+    if not isinstance(column, str) or not column:
+        raise InputError("column", column, "must be the name of a column")
+    try:
+        found = read_stations(file.si, column, unit, radius=radius, holds=bound.holds, rule=bound.rule)
+    except InputError as error:
+        raise InputError(error.field, file.written, error.rule) from None
+    written = f"{len(found.values)} values of {column} in {file.written}"
+    return _datum(table, written, found.values, unit, found.r_over_R)
+
+
 def read_file(raw: Any) -> Datum:
     """The name of a file, or a table holding one; plain text starts from the working directory."""
     table = _as_table(raw, ("value",))
@@ -206,5 +227,5 @@ def _check_numbers(key: str, values: Any) -> None:
     if len(values) > _MOST_STATIONS:
         raise InputError(key, f"{len(values)} values", f"must have at most {_MOST_STATIONS} values")
     for value in values:
-        if not abs(value) < float("inf"):  # an integer may be too large for math.isfinite
+        if not abs(value) <= sys.float_info.max:  # also an integer beyond it, which math.isfinite cannot take
             raise InputError(key, value, "must be finite")

@@ -1,5 +1,7 @@
 """The sections and fields of a deck, and what each must be.
 
+`proprotor describe` and docs/decks.md tell them all, from the definitions here.
+
 A deck is a TOML file. A number with a dimension is text, ``radius = "12.5 ft"``, US and SI units as one
 likes; a plain number has none. Either may be a table that says where it comes from::
 
@@ -7,7 +9,8 @@ likes; a plain number has none. Either may be a table that says where it comes f
 
 with a status of published, derived, recalled, calibrated or assumed. Chord and twist take one value (twist:
 the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
-linear between its stations and constant beyond them.
+linear between its stations and constant beyond them; chord, twist and mass_distribution also a column of a CSV
+file, ``{ file = "stations.csv", column = "twist" }`` (`proprotor.stations_file`).
 
 ``base``
     Above all sections: the deck this one alters, a bundled name or a file beside it. A field given here
@@ -22,7 +25,9 @@ linear between its stations and constant beyond them.
     The arguments of `proprotor.Airfoil`, or instead of them: table, a C81 file, its name starting from the
     deck's folder.
 ``[operation]``
-    rotor_speed, density, speed_of_sound, trim = "windmill" or { collective = "30 deg" }.
+    rotor_speed, trim = "windmill" or { collective = "30 deg" }, { thrust_coefficient = 0.008 },
+    { power_coefficient = 0.01 }; density and speed_of_sound, or instead of them: altitude, a pressure altitude in
+    the standard atmosphere, and temperature_offset (`proprotor.atmosphere`).
 ``[support]``
     kind and the fields of that kind: `proprotor.support_sections` lists them.
 
@@ -32,9 +37,9 @@ speed. `proprotor.units` lists the units.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, PlainValidator, ValidationError, model_validator
+from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema, model_validator
 
 from proprotor.datum import read_quantity
 from proprotor.deck_fields import (
@@ -55,81 +60,105 @@ from proprotor.deck_fields import (
     Name,
     NotNegative,
     Number,
+    Offset,
     Positive,
     PositiveLength,
     RotorSpeed,
     Section,
+    Sides,
     Slope,
     Speed,
     Stiffness,
+    TemperatureDifference,
     Text,
     Twist,
+    needed,
+    optional,
 )
-from proprotor.deck_file import ALTERNATIVES
+from proprotor.deck_file import AIR_ALTERNATIVES, AIRFOIL_ALTERNATIVES, ALTERNATIVES, TRIM_ALTERNATIVES
+from proprotor.deck_schema import TRIM_SCHEMA
 from proprotor.errors import InputError, unknown_name
 from proprotor.support_sections import SUPPORT_KINDS, SUPPORT_TABLES, SupportSection
 
 
 class CaseSection(Section):
-    name: Name
-    title: Text
-    description: str = ""
-    calibration: str = ""
-    warnings: list[Text] = Field(default_factory=list)
+    """What the case is, in words."""
+
+    name: Name = needed("Short name; a deck that alters another has its own.")
+    title: Text = needed("Stands above tables and plots.")
+    description: str = optional("What is modelled.", "")
+    calibration: str = optional("Which inputs were matched to which result; repeated with every result.", "")
+    warnings: list[Text] = Field(
+        default_factory=list, description="What a reader of results should know, a text each."
+    )
 
 
 class AirfoilSection(Section):
-    lift_slope: Slope = None
-    zero_lift_angle: Angle = None
-    drag: NotNegative = None
-    moment: Number = None
-    table: File = None
+    """Sections of the blade: a straight lift line with constant drag and moment, or a table."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = AIRFOIL_ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("lift_slope", "table")
+
+    lift_slope: Slope = optional("Slope of the lift coefficient with the angle of attack.")
+    zero_lift_angle: Angle = optional("Angle of attack without lift.")
+    drag: NotNegative = optional("Drag coefficient.")
+    moment: Number = optional("Moment coefficient about the reference line, nose up.")
+    table: File = optional("A C81 file; its name starts from the deck's folder.")
 
     @model_validator(mode="after")
     def _numbers_or_a_table(self) -> AirfoilSection:
         numbers = [name for name in type(self).model_fields if name in self.model_fields_set - {"table"}]
-        if "table" in self.model_fields_set and numbers:
+        if self.table is not None and numbers:
             raise InputError("table", self.table.written, f"must not be given with {', '.join(numbers)}")
-        if "table" not in self.model_fields_set and "lift_slope" not in numbers:
+        if self.table is None and "lift_slope" not in numbers:
             raise InputError("lift_slope", None, "is missing; give lift_slope or table")
         return self
 
 
 class RotorSection(Section):
-    n_blades: Count
-    radius: PositiveLength
-    root_cutout: Length
-    flap_hinge_offset: Length
-    lag_hinge_offset: Length
-    precone: Angle
-    blade_mass: Mass = None
-    blade_first_moment: FirstMoment = None
-    blade_inertia: Inertia = None
-    flap_first_moment: FirstMoment = None
-    flap_inertia: Inertia = None
-    lag_first_moment: FirstMoment = None
-    lag_inertia: Inertia = None
-    mass_distribution: MassDistribution = None
-    flap_stiffness: Stiffness = None
-    flap_frequency: Frequency = None
-    lag_stiffness: Stiffness = None
-    lag_frequency: Frequency = None
-    flap_outboard_fraction: Fraction
-    lag_outboard_fraction: Fraction
-    structural_pitch_offset: Angle = None
-    gimbal_stiffness: Stiffness
-    pitch_gimbal_coupling: Number
-    pitch_inertia: InertiaOrNone
-    control_stiffness: Stiffness
-    flap_damping: Damping = None
-    lag_damping: Damping = None
-    pitch_damping: Damping = None
-    gimbal_damping: Damping = None
-    propeller_moment: bool = True
-    chord: Chord = None
-    lock_number: Positive = None
-    twist: Twist
-    airfoil: AirfoilSection
+    """The rotor: the arguments of `proprotor.Rotor`, and what some of them may follow from."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = tuple(
+        name for choice in ALTERNATIVES for side in choice for name in side
+    )
+
+    n_blades: Count = needed("Number of blades.")
+    radius: PositiveLength = needed("Centre of rotation to tip.")
+    root_cutout: Length = needed("Where the airloads begin, from the centre of rotation.")
+    flap_hinge_offset: Length = needed("Centre of rotation to flap hinge.")
+    lag_hinge_offset: Length = needed("Centre of rotation to lag hinge, not inboard of the flap hinge.")
+    precone: Angle = needed("Cone built into the hub, towards thrust.")
+    blade_mass: Mass = optional("Integral of m over the whole blade.")
+    blade_first_moment: FirstMoment = optional("Integral of m r over the whole blade.")
+    blade_inertia: Inertia = optional("I_b, integral of m r² over the whole blade.")
+    flap_first_moment: FirstMoment = optional("Integral of m (r - e) outboard of the flap hinge.")
+    flap_inertia: Inertia = optional("Integral of m (r - e)² outboard of the flap hinge.")
+    lag_first_moment: FirstMoment = optional("Integral of m (r - e) outboard of the lag hinge.")
+    lag_inertia: Inertia = optional("Integral of m (r - e)² outboard of the lag hinge.")
+    mass_distribution: MassDistribution = optional("Mass per length, which gives all seven integrals.")
+    flap_stiffness: Stiffness = optional("Flap spring, hub and blade in series.")
+    flap_frequency: Frequency = optional("Flap frequency without rotation, K = I ω².")
+    lag_stiffness: Stiffness = optional("Lag spring, hub and blade in series.")
+    lag_frequency: Frequency = optional("Lag frequency without rotation, K = I ω².")
+    flap_outboard_fraction: Fraction = needed("Share of the flap flexibility outboard of the pitch bearing.")
+    lag_outboard_fraction: Fraction = needed("Share of the lag flexibility outboard of the pitch bearing.")
+    structural_pitch_offset: Angle = optional("From the collective reference to the blade's structural axes.")
+    gimbal_stiffness: Stiffness = needed("Hub spring.")
+    pitch_gimbal_coupling: Number = needed("K_PG = tan δ3, pitch per gimbal tilt.")
+    pitch_inertia: InertiaOrNone = needed("Of one blade about its pitch axis.")
+    control_stiffness: Stiffness = needed("Control system of one blade, about its pitch axis.")
+    flap_damping: Damping = optional("Viscous damper of the flap hinge.")
+    lag_damping: Damping = optional("Viscous damper of the lag hinge.")
+    pitch_damping: Damping = optional("Viscous damper of the blade's pitch.")
+    gimbal_damping: Damping = optional("Viscous damper of the gimbal, which does not rotate.")
+    propeller_moment: bool = optional("Whether the propeller moment acts on the blade's pitch.", True)
+    chord: Chord = optional("Chord of the blade, one value or along r.")
+    lock_number: Positive = optional("γ, chord = γ I_b / (ρ c_lα R⁴) at the deck's density.")
+    twist: Twist = needed(
+        "One value: change from centre to tip, linear. Or along r; pitch counts from 0.75 R."
+    )
+    airfoil: AirfoilSection = needed("Sections of the blade.")
 
     @model_validator(mode="after")
     def _one_side_of_each_pair(self) -> RotorSection:
@@ -146,33 +175,84 @@ class RotorSection(Section):
         return self
 
 
-class FixedTrim(Section):
-    collective: Angle
+class TrimSection(Section):
+    """What the rotor is trimmed to instead of windmilling."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = TRIM_ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = (
+        "collective",
+        "thrust_coefficient",
+        "power_coefficient",
+    )
+
+    collective: Angle = optional("Pitch at 0.75 R.")
+    thrust_coefficient: Number = optional("C_T = T/(ρπR²(ΩR)²).")
+    power_coefficient: Number = optional("C_P = P/(ρπR²(ΩR)³), power put into the rotor positive.")
 
 
-def _read_trim(raw: Any) -> str | FixedTrim:
+_TRIM_RULE = (
+    'must be "windmill" or { collective = "30 deg" }, or likewise a thrust_coefficient or power_coefficient'
+)
+
+
+def _read_trim(raw: Any) -> str | TrimSection:
     if raw == "windmill":
-        return raw
-    if not isinstance(raw, dict) or set(raw) != {"collective"}:
-        raise InputError("", raw, 'must be "windmill" or { collective = "30 deg" }')
+        return "windmill"
+    if not isinstance(raw, dict) or len(raw) != 1:
+        raise InputError("", raw, _TRIM_RULE)
+    ((name, given),) = raw.items()
+    if name not in TrimSection.model_fields:
+        raise InputError(name, given, unknown_name(name, TrimSection.model_fields, "trim"))
     try:
-        return FixedTrim.model_construct(collective=read_quantity(raw["collective"], "rad"))
+        number = read_quantity(given, "rad" if name == "collective" else "")
     except InputError as error:
-        raise error.within("collective") from None
+        raise error.within(name) from None
+    target: dict[str, Any] = {name: number}
+    return TrimSection.model_construct(**target)
 
 
 class OperationSection(Section):
-    rotor_speed: RotorSpeed
-    density: Density
-    speed_of_sound: Speed
-    trim: Annotated[Any, PlainValidator(_read_trim)] = "windmill"
+    """How the rotor is run, and in which air."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = AIR_ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("density", "speed_of_sound", "altitude")
+
+    rotor_speed: RotorSpeed = needed("Ω.")
+    density: Density = optional("Of the air; 0 is a vacuum.")
+    speed_of_sound: Speed = optional("Of the air.")
+    altitude: Offset = optional("Pressure altitude in the standard atmosphere (ISA), -610 m to 32 km.")
+    temperature_offset: TemperatureDifference = optional(
+        "Above the standard temperature of that altitude; none by default."
+    )
+    trim: Annotated[Any, PlainValidator(_read_trim), WithJsonSchema(TRIM_SCHEMA)] = optional(
+        '"windmill", the collective without torque, or one target: { collective = "30 deg" }, '
+        "{ thrust_coefficient = 0.008 } or { power_coefficient = 0.01 }.",
+        "windmill",
+    )
+
+    @model_validator(mode="after")
+    def _given_air_or_standard(self) -> OperationSection:
+        ((own, standard),) = AIR_ALTERNATIVES
+        given = [name for name in own if name in self.model_fields_set]
+        by_altitude = [name for name in standard if name in self.model_fields_set]
+        both = f"{_listed(own)} or {_listed(standard)}"
+        if given and by_altitude:
+            raise InputError(by_altitude[0], None, f"must not be given twice over; give {both}")
+        if not given and not by_altitude:
+            raise InputError(own[0], None, f"is missing; give {both}")
+        for name in own if given else standard[:1]:
+            if name not in self.model_fields_set:
+                raise InputError(name, None, "is missing")
+        return self
 
 
 class Deck(Section):
-    case: CaseSection
-    rotor: RotorSection
-    operation: OperationSection
-    support: SupportSection
+    """A case of the whirl-flutter analysis proprotor."""
+
+    case: CaseSection = needed("What the case is, in words.")
+    rotor: RotorSection = needed("The rotor.")
+    operation: OperationSection = needed("How the rotor is run.")
+    support: SupportSection = needed("What carries the rotor.")
 
 
 _SECTIONS: dict[tuple[str, ...], type[Section]] = {
@@ -181,8 +261,24 @@ _SECTIONS: dict[tuple[str, ...], type[Section]] = {
     ("rotor",): RotorSection,
     ("rotor", "airfoil"): AirfoilSection,
     ("operation",): OperationSection,
+    ("operation", "trim"): TrimSection,
     **{("support", *place): section for place, section in SUPPORT_TABLES.items()},
 }
+
+
+def sections_at(place: tuple[str, ...]) -> dict[str, type[Section]]:
+    """The sections that may stand at a place, such as ``("support", "modes")``, by kind of support; "" elsewhere."""
+    return {
+        known[1] if known[:1] == ("support",) else "": section
+        for known, section in _SECTIONS.items()
+        if _in_the_deck(known) == place
+    }
+
+
+def section_places() -> list[tuple[str, ...]]:
+    """Every place of a deck at which a section may stand, the deck itself first."""
+    return list(dict.fromkeys(tuple(map(str, _in_the_deck(known))) for known in _SECTIONS))
+
 
 # How a message states what pydantic found, by pydantic's name for it.
 _RULES = {
@@ -218,7 +314,8 @@ def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
     place, kind = problem["loc"], problem["type"]
     field = field_name(_in_the_deck(place), tables)
     if kind == "value_error":
-        return problem["ctx"]["error"].within(field)
+        error: InputError = problem["ctx"]["error"]
+        return error.within(field)
     if kind == "extra_forbidden":
         known = _SECTIONS[tuple(part for part in place[:-1] if isinstance(part, str))].model_fields
         return InputError(field, problem["input"], unknown_name(str(place[-1]), known))

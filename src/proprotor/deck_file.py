@@ -24,10 +24,24 @@ ALTERNATIVES = (
 )
 # Fields of [rotor.airfoil]: one side only.
 AIRFOIL_ALTERNATIVES = ((("lift_slope", "zero_lift_angle", "drag", "moment"), ("table",)),)
+# Fields of [operation]: the air as it is, or that of the standard atmosphere.
+AIR_ALTERNATIVES = ((("density", "speed_of_sound"), ("altitude", "temperature_offset")),)
+# Fields of [operation.trim] and of [support]: one side only.
+TRIM_ALTERNATIVES = ((("collective",), ("thrust_coefficient",), ("power_coefficient",)),)
+DAMPING_ALTERNATIVES = ((("damping_ratio",), ("loss_factor",)),)
+FILE_ALTERNATIVES = ((("file",), ("mass", "stiffness", "damping", "dofs")),)
+_REPLACING = (
+    (("rotor",), ALTERNATIVES),
+    (("rotor", "airfoil"), AIRFOIL_ALTERNATIVES),
+    (("operation",), AIR_ALTERNATIVES),
+    (("operation", "trim"), TRIM_ALTERNATIVES),
+    (("support",), (*DAMPING_ALTERNATIVES, *FILE_ALTERNATIVES)),
+)
 _FILES = (
     ("rotor", "airfoil", "table", "value"),
     *(("support", name, "value") for name in ("file", "mass", "stiffness", "damping", "dofs")),
 )
+_MAY_BE_COLUMNS = ("chord", "twist", "mass_distribution")  # of [rotor]: { file = ..., column = ... }
 
 _LARGEST = 1_000_000  # bytes
 
@@ -54,6 +68,8 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
     folder = file.parent if isinstance(file, Path) else folder
     for place in _FILES:
         _locate_file(tables, folder, place)
+    for name in _MAY_BE_COLUMNS if isinstance(tables.get("rotor"), dict) else ():
+        _locate_file(tables["rotor"].get(name), folder, ("file",))
     if "base" not in tables:
         return tables
     base = tables.pop("base")
@@ -61,7 +77,8 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
         raise InputError("base", base, "must be the name or path of a deck")
     if str(file) in altered_by:
         raise InputError("base", base, "must not lead back to the deck itself")
-    return _altered(_tables(base, folder, (*altered_by, str(file))), tables)
+    inherited = _without(_tables(base, folder, (*altered_by, str(file))), ("case", "name"))  # one deck's only
+    return altered(inherited, tables)
 
 
 def _bundled() -> dict[str, Traversable]:
@@ -112,14 +129,15 @@ def _locate_file(tables: Any, folder: Path, place: tuple[str, ...]) -> None:
         _locate_file(entry, folder, tuple(further))
 
 
-def _altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
-    """The base with the changes put in; a name belongs to one deck only, and a support to its kind."""
-    superseded = _superseded(changes, ("rotor",), ALTERNATIVES)
-    superseded += _superseded(changes, ("rotor", "airfoil"), AIRFOIL_ALTERNATIVES)
+def altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    """Tables with changes put in: a field replaces its alternatives, and another kind of support all of it."""
+    superseded = [
+        place for section, choices in _REPLACING for place in _superseded(changes, section, choices)
+    ]
     superseded += (
         [("support",)] if _is_section(changes.get("support")) and "kind" in changes["support"] else []
     )
-    for place in (("case", "name"), *superseded):
+    for place in superseded:
         base = _without(base, place)
     return _merged(base, changes)
 
@@ -129,8 +147,15 @@ def _superseded(changes: Any, section: tuple[str, ...], alternatives: Any) -> li
     for key in section:
         changes = changes.get(key) if isinstance(changes, dict) else None
     given = set(changes) if isinstance(changes, dict) else set()
-    sides = [(side, other) for pair in alternatives for side, other in (pair, pair[::-1])]
-    return [(*section, name) for side, other in sides if given.intersection(side) for name in other]
+    return [
+        (*section, name)
+        for choice in alternatives
+        for side in choice
+        if given.intersection(side)
+        for other in choice
+        if other != side
+        for name in other
+    ]
 
 
 def _without(tables: Any, place: tuple[str, ...]) -> Any:
@@ -150,4 +175,4 @@ def _merged(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
 
 
 def _is_section(entry: Any) -> bool:
-    return isinstance(entry, dict) and "value" not in entry
+    return isinstance(entry, dict) and "value" not in entry and "column" not in entry

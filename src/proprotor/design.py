@@ -14,6 +14,7 @@ from proprotor.errors import InputError, unknown_name
 if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.datum import Datum
+    from proprotor.deck import Deck
 
 _FIXED = (str, int)  # files, and whole numbers, which do not vary as others do
 
@@ -30,8 +31,7 @@ def design_inputs(case: Case) -> dict[str, Datum]:
     InputError
         When the case was not made from a deck.
     """
-    if case.deck is None:
-        raise InputError("case", case.name, "must be made from a deck, whose numbers may then vary")
+    _deck_of(case)
     return {
         path: number
         for path, number in case.given.items()
@@ -70,7 +70,13 @@ def vary(case: Case, values: Mapping[str, Any]) -> Case:
         number = _number(path, value)
         written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
         numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
-    return assemble(case.deck, numbers)
+    return assemble(_deck_of(case), numbers)
+
+
+def _deck_of(case: Case) -> Deck:
+    if case.deck is None:
+        raise InputError("case", case.name, "must be made from a deck, whose numbers may then vary")
+    return case.deck
 
 
 def _number(path: str, value: Any) -> np.ndarray:

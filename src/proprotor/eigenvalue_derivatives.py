@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import held_coordinates
@@ -22,14 +22,14 @@ _DIFFERENCE = 1e-3  # of an input that takes no complex step
 STEP = 1e-30  # its square vanishes beside any number of the model
 
 
-def matrix_derivatives(model: LinearModel) -> tuple[NDArray, NDArray, NDArray]:
+def matrix_derivatives(model: LinearModel) -> tuple[Array, Array, Array]:
     """M', C', K' (..., n, n) of a model evaluated `STEP` away in the imaginary direction."""
     return tuple(np.imag(getattr(model, name)) / STEP for name in "MCK")
 
 
 def with_changes(
-    linearize: Callable[[NDArray], LinearModel], positions: NDArray
-) -> tuple[LinearModel, tuple[NDArray, NDArray, NDArray]]:
+    linearize: Callable[[Array], LinearModel], positions: Array
+) -> tuple[LinearModel, tuple[Array, Array, Array]]:
     """Models at positions (k,) and how M, C and K change with the position.
 
     By a complex step; where complex positions are refused, as by finite elements, by extrapolated differences.
@@ -41,13 +41,11 @@ def with_changes(
     return model, matrix_derivatives(model)
 
 
-def differences(
-    linearize: Callable[[NDArray], LinearModel], positions: NDArray
-) -> tuple[NDArray, NDArray, NDArray]:
+def differences(linearize: Callable[[Array], LinearModel], positions: Array) -> tuple[Array, Array, Array]:
     """M', C', K' by central differences of two steps, extrapolated."""
     by_step = []
-    for step in (_DIFFERENCE, _DIFFERENCE / 2):
-        step = step * np.where(positions == 0, 1.0, np.abs(positions))
+    for share in (_DIFFERENCE, _DIFFERENCE / 2):
+        step = share * np.where(positions == 0, 1.0, np.abs(positions))
         ends = [linearize(positions + sign * step) for sign in (1, -1)]
         by_step.append(
             [(getattr(ends[0], m) - getattr(ends[1], m)) / (2 * step[..., None, None]) for m in "MCK"]
@@ -55,7 +53,7 @@ def differences(
     return tuple((4 * fine - coarse) / 3 for coarse, fine in zip(*by_step, strict=True))
 
 
-def second_order_left(model: LinearModel, left: NDArray) -> NDArray:
+def second_order_left(model: LinearModel, left: Array) -> Array:
     """yᴴ / yᴴ(2λM + C)x (..., modes, n) of left vectors in rows of the state space (..., modes, states)."""
     rates = left[..., -len(model.dofs) :]
     mass = np.swapaxes(np.real(model.M), -1, -2)
@@ -64,9 +62,9 @@ def second_order_left(model: LinearModel, left: NDArray) -> NDArray:
 
 def eigenvalue_change(
     model: LinearModel,
-    changes: tuple[NDArray, NDArray, NDArray],
+    changes: tuple[Array, Array, Array],
     modes: Modes,
-) -> NDArray:
+) -> Array:
     """First-order change (..., modes) of eigenvalues by changes of M, C and K (..., n, n).
 
     Parameters
@@ -81,12 +79,14 @@ def eigenvalue_change(
     mass, damping, stiffness = changes
     rates, displacement = right[..., -n:, :], right[..., : len(held), :]
     load = mass @ (values[..., None, :] * rates) + damping @ rates + stiffness[..., held] @ displacement
-    return -np.einsum("...mn,...nm->...m", second_order_left(model, left), load)
+    change: Array = -np.einsum("...mn,...nm->...m", second_order_left(model, left), load)
+    return change
 
 
-def defect(modes: Modes) -> NDArray:
+def defect(modes: Modes) -> Array:
     """How nearly defective modes are (..., modes): the sum of |l_k r_k| over the states, free of units, 1 at best.
 
     It grows without bound where two modes fall into one and derivatives cease to exist.
     """
-    return np.abs(np.swapaxes(modes.left, -1, -2) * modes.right).sum(axis=-2)
+    sums: Array = np.abs(np.swapaxes(modes.left, -1, -2) * modes.right).sum(axis=-2)
+    return sums

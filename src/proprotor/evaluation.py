@@ -9,13 +9,13 @@ from typing import Any
 
 
 @cache
-def keywords(function: Callable) -> tuple[str, ...]:
+def keywords(function: Callable[..., Any]) -> tuple[str, ...]:
     """Names of the quantities a generated function takes."""
     parameters = inspect.signature(function).parameters.values()
     return tuple(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
 
 
-def evaluate(function: Callable, quantities: Mapping[str, Any], *matrices: Any) -> Any:
+def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matrices: Any) -> Any:
     """Result of a generated function whose keyword arguments are looked up by name.
 
     A quantity has one name throughout the derivation, so the names are the interface.

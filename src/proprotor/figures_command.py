@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
+from operator import methodcaller
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from proprotor.commands.arguments import EXIT_CODES
+from proprotor.commands.output import print_json
 from proprotor.errors import InputError
 from proprotor.output_file import write_whole
 
@@ -18,7 +22,7 @@ if TYPE_CHECKING:
 _BAND_WORK = 10  # a sample takes about as long as so many figures
 
 
-@click.command()
+@click.command(epilog=EXIT_CODES, short_help="The analytical figures of AIAA-2002-1604.")
 @click.argument("numbers", nargs=-1, type=int, metavar="[NUMBER]...")
 @click.option(
     "--out",
@@ -42,7 +46,8 @@ _BAND_WORK = 10  # a sample takes about as long as so many figures
     help="Between airspeeds, kt.",
 )
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Of the samples.")
-def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed: int) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print the files written as JSON.")
+def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed: int, as_json: bool) -> None:
     """Make the analytical figures of AIAA-2002-1604, each with its numbers as CSV.
 
     NUMBER is a figure of the paper: 4 to 12, 14 to 18, 21 to 24; all of them without any. Bands show what the
@@ -69,13 +74,17 @@ def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed:
             progress.update(task, description=f"Figure {number}")
             content = make_figure(number, analyses)
             with _told(folder):
-                write_whole(folder / f"figure-{number:02}.png", lambda file, it=content: save(it, file))
-                write_whole(
-                    folder / f"figure-{number:02}.csv", lambda file, it=content: file.write(csv_of(it))
-                )
+                write_whole(folder / f"figure-{number:02}.png", partial(save, content))
+                write_whole(folder / f"figure-{number:02}.csv", methodcaller("write", csv_of(content)))
             progress.advance(task)
     told = "1 figure" if len(wanted) == 1 else f"{len(wanted)} figures"
     click.echo(f"Wrote {told} to {folder}, a .png and a .csv each", err=True)
+    if as_json:
+        names = {
+            number: [str(folder / f"figure-{number:02}.{kind}") for kind in ("png", "csv")]
+            for number in wanted
+        }
+        print_json({"samples": samples, "step (kt)": step, "seed": seed, "figures": names})
 
 
 def _folder(out: str) -> Path:

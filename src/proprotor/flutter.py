@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
@@ -153,7 +154,7 @@ def find_crossings(
     """
     if not -1 < level < 1:
         raise InputError("level", level, "must be a damping ratio, between -1 and 1")
-    model = line.linearize(np.asarray(line.positions, dtype=float))
+    model = line.models(np.asarray(line.positions, dtype=float))
     scan = Scan(line, follow(model, line), level)
     settle(scan)
     path = scan.path
@@ -178,7 +179,7 @@ def find_crossings(
     )
 
 
-def _beyond(values: NDArray, names: list[str], level: float) -> tuple[str, ...]:
+def _beyond(values: Array, names: list[str], level: float) -> tuple[str, ...]:
     """Modes beyond the level."""
     above = growth(values, level) > NEUTRAL * np.abs(values).max()
     return tuple(dict.fromkeys(names[state] for state in np.flatnonzero(above & (values.imag >= 0))))
@@ -255,7 +256,7 @@ def boundaries(
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
-    near = approach_to(case, line, line.linearize(line.positions), options)
+    near = approach_to(case, line, line.models(line.positions), options)
     return find_crossings(line, level=level, rotor_speed=rotor_speed_of(case), approach=near)
 
 

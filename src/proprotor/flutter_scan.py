@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from proprotor.arrays import Array
 
 TOLERANCE = 1e-5  # m/s, on the airspeed
 NOT_UNSTABLE = 1e-9  # of the largest eigenvalue: a growth below that is rounding of a neutral root
@@ -14,7 +15,7 @@ STABLE = "stable throughout"
 UNSTABLE = "unstable at the lowest airspeed"
 _MOST_STEPS = 100
 
-Growth = Callable[[NDArray, NDArray], NDArray]  # rows and airspeeds (m,) to the growth of each, 1/s
+Growth = Callable[[Array, Array], Array]  # rows and airspeeds (m,) to the growth of each, 1/s
 
 
 class Brackets(NamedTuple):
@@ -23,14 +24,14 @@ class Brackets(NamedTuple):
     low, high, growth_low, growth_high (designs,), NaN without a bracket; note (designs,) of str, empty with one.
     """
 
-    low: NDArray
-    high: NDArray
-    growth_low: NDArray
-    growth_high: NDArray
-    note: NDArray
+    low: Array
+    high: Array
+    growth_low: Array
+    growth_high: Array
+    note: Array
 
 
-def brackets(growth: NDArray, airspeed: NDArray, reason: NDArray, neutral: NDArray) -> Brackets:
+def brackets(growth: Array, airspeed: Array, reason: Array, neutral: Array) -> Brackets:
     """First step of the scan over which the growth turns positive.
 
     Parameters
@@ -57,19 +58,20 @@ def brackets(growth: NDArray, airspeed: NDArray, reason: NDArray, neutral: NDArr
         elif not len(crossings):
             note[row] = STABLE + _beyond(np.flatnonzero(np.isnan(line)), airspeed, reason[row])
         else:
-            low, high = good[crossings[0]], good[crossings[0] + 1]
-            ends[:, row] = airspeed[low], airspeed[high], line[low], line[high]
-    return Brackets(*ends, note)
+            last, first = good[crossings[0]], good[crossings[0] + 1]
+            ends[:, row] = airspeed[last], airspeed[first], line[last], line[first]
+    low, high, growth_low, growth_high = ends
+    return Brackets(low, high, growth_low, growth_high, note)
 
 
-def _beyond(failed: NDArray, airspeed: NDArray, reason: NDArray) -> str:
+def _beyond(failed: Array, airspeed: Array, reason: Array) -> str:
     """What leaves open whether a design is stable."""
     if not len(failed):
         return ""
     return f"; {len(failed)} airspeeds failed, at {airspeed[failed[0]]:.6g} m/s: {reason[failed[0]]}"
 
 
-def refine(found: Brackets, growth: Growth, tolerance: float = TOLERANCE) -> NDArray:
+def refine(found: Brackets, growth: Growth, tolerance: float = TOLERANCE) -> Array:
     """Airspeed (designs,) at which the growth vanishes, within the tolerance; NaN without a bracket or a value.
 
     Chandrupatla's method (Advances in Engineering Software 28, 1997) on all designs at once: inverse quadratic
@@ -109,13 +111,23 @@ def refine(found: Brackets, growth: Growth, tolerance: float = TOLERANCE) -> NDA
     return best
 
 
-def _first_share(at_low: NDArray, at_high: NDArray) -> NDArray:
+def _first_share(at_low: Array, at_high: Array) -> Array:
     """Where the straight line between the ends vanishes, kept off them."""
     with np.errstate(all="ignore"):
-        return np.clip(at_low / (at_low - at_high), 0.05, 0.95)
+        share: Array = np.clip(at_low / (at_low - at_high), 0.05, 0.95)
+    return share
 
 
-def _share(newest, other, before, at_newest, at_other, at_before, least) -> NDArray:
+def _share(
+    newest: Array,
+    other: Array,
+    before: Array,
+    at_newest: Array,
+    at_other: Array,
+    at_before: Array,
+    *,
+    least: Array,
+) -> Array:
     """Part of the way from the newest point to the other end of the bracket, where to look next."""
     with np.errstate(all="ignore"):
         x = (newest - other) / (before - other)

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 
-Curve = float | ArrayLike | Callable[[NDArray], NDArray]
+Curve = float | ArrayLike | Callable[[Array], Array]
 ABSCISSAE = ("collective", "airspeed")
 
 
@@ -61,7 +62,7 @@ class BladeFrequencies:
         if not np.all(np.isfinite(values)) or np.any(values <= 0):
             raise InputError(name, curve, "must be above zero")
 
-    def _evaluate(self, curve: Curve, abscissa: NDArray) -> NDArray:
+    def _evaluate(self, curve: Curve, abscissa: Array) -> Array:
         if callable(curve):
             values = np.asarray(curve(abscissa), dtype=float)
             if np.any(np.isfinite(abscissa) & ~(values > 0)):
@@ -69,14 +70,16 @@ class BladeFrequencies:
                     "frequencies", float(np.min(values)), "must be above zero wherever a function gives them"
                 )
             return values
-        if np.ndim(curve) == 0:
-            return np.full(np.shape(abscissa), float(curve))
+        given = np.asarray(curve, dtype=float)
+        if given.ndim == 0:
+            return np.full(np.shape(abscissa), float(given))
         from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
 
         at = np.asarray(self.at, dtype=float)
-        return PchipInterpolator(at, np.asarray(curve, dtype=float))(np.clip(abscissa, at[0], at[-1]))
+        found: Array = PchipInterpolator(at, given)(np.clip(abscissa, at[0], at[-1]))
+        return found
 
-    def rotating(self, collective: NDArray, airspeed: NDArray, rotor_speed: NDArray) -> dict[str, NDArray]:
+    def rotating(self, collective: Array, airspeed: Array, rotor_speed: Array) -> dict[str, Array]:
         """Rotating frequencies in rad/s by the names of the derivation, shapes of the arguments broadcast."""
         abscissa = np.asarray(collective if self.against == "collective" else airspeed, dtype=float)
         cyclic = self.flap if self.cyclic_flap is None else self.cyclic_flap

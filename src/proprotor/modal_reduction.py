@@ -6,13 +6,15 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.support import NormalModes
 
 _MASSLESS = 1e-12  # of the largest 1/ω²: a motion that carries no mass has no mode
 _RIGID = 1e-9  # of the largest ω²: a motion that strains nothing
+_NONE = 1e-200  # N/m or N m/rad, whose inverse times a mass would overflow
 _DENSE = 1500  # coordinates up to which all modes are found at once
 _MOST_KEPT = 400  # coordinates of a support: a rotor's eigenvalues are found with all of them
 _TRANSLATION = np.diag([1.0] * 3 + [0.0] * 3)
@@ -21,15 +23,15 @@ _TRANSLATION = np.diag([1.0] * 3 + [0.0] * 3)
 class StructuralModes(NamedTuple):
     """Undamped modes: frequency (k,) in rad/s, rising, and shapes (n, k) with ΦᵀMΦ = 1."""
 
-    frequency: NDArray
-    shapes: NDArray
+    frequency: Array
+    shapes: Array
 
 
 class ModalSupport(NamedTuple):
     """A support, the shapes (n, k) of its coordinates in those of the structure, and the structure's modes."""
 
     support: NormalModes
-    shapes: NDArray
+    shapes: Array
     modes: StructuralModes
 
 
@@ -37,14 +39,14 @@ def on_modes(
     names: Sequence[str],
     mass: Any,
     stiffness: Any,
-    hub: NDArray,
+    hub: Array,
     *,
     damping: Any = None,
     count: int | None = None,
-    damping_ratio: ArrayLike | Callable[[NDArray], ArrayLike] = 0.0,
+    damping_ratio: ArrayLike | Callable[[Array], ArrayLike] = 0.0,
     rotor_mass: float = 0.0,
     includes_rotor: bool = False,
-    name_modes: Callable[[NDArray], Sequence[str]] | None = None,
+    name_modes: Callable[[Array], Sequence[str]] | None = None,
 ) -> ModalSupport:
     """A structure as a support, on all its coordinates or on its lowest modes.
 
@@ -116,13 +118,14 @@ def lowest_modes(mass: Any, stiffness: Any, count: int | None = None) -> Structu
     return _of_few(_dense(mass), _dense(stiffness), count)
 
 
-def modal_damping(mass: NDArray, modes: StructuralModes, damping_ratio: ArrayLike) -> NDArray:
+def modal_damping(mass: Array, modes: StructuralModes, damping_ratio: ArrayLike) -> Array:
     """Viscous damping (n, n) that gives each mode of a mass its ratio (k,): C = M Φ (2ζω) Φᵀ M."""
     forces = mass @ modes.shapes
-    return (forces * (2 * damping_ratio * modes.frequency)) @ forces.T
+    damping: Array = (forces * (2 * np.asarray(damping_ratio) * modes.frequency)) @ forces.T
+    return damping
 
 
-def per_mode(damping_ratio: ArrayLike, count: int) -> NDArray:
+def per_mode(damping_ratio: ArrayLike, count: int) -> Array:
     """One ratio for each of `count` modes; the last given value is repeated.
 
     Raises
@@ -136,13 +139,13 @@ def per_mode(damping_ratio: ArrayLike, count: int) -> NDArray:
     return given[np.minimum(np.arange(count), len(given) - 1)]
 
 
-def _of_few(mass: NDArray, stiffness: NDArray, count: int | None) -> StructuralModes:
+def _of_few(mass: Array, stiffness: Array, count: int | None) -> StructuralModes:
     from scipy.linalg import LinAlgError, eigh  # here, because scipy is slow to import
 
     if not mass.any():
         raise InputError("mass", None, "must not be zero")
     diagonal = np.diagonal(stiffness)
-    scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    scale = 1 / np.sqrt(np.where(diagonal > _NONE, diagonal, 1.0))
     mass, stiffness = (matrix * np.outer(scale, scale) for matrix in (mass, stiffness))
     try:
         # Turned over, M φ = (1/ω²) K φ: the lowest modes come out most accurate, and massless motions as zeros.
@@ -187,7 +190,7 @@ def _lowest_of_many(mass: Any, stiffness: Any, count: int) -> StructuralModes:
     return StructuralModes(np.sqrt(square), shapes / np.sqrt(generalized))
 
 
-def _with_mass_at_hub(mass: Any, hub: NDArray, rotor_mass: float) -> Any:
+def _with_mass_at_hub(mass: Any, hub: Array, rotor_mass: float) -> Any:
     if rotor_mass == 0:
         return mass
     if not hasattr(mass, "toarray"):
@@ -198,13 +201,13 @@ def _with_mass_at_hub(mass: Any, hub: NDArray, rotor_mass: float) -> Any:
     return csc_array(mass) + rotor_mass * (moving.T @ moving)
 
 
-def _projected(matrix: Any, shapes: NDArray) -> NDArray:
+def _projected(matrix: Any, shapes: Array) -> Array:
     return _symmetric(shapes.T @ (matrix @ shapes))
 
 
-def _symmetric(matrix: NDArray) -> NDArray:
+def _symmetric(matrix: Array) -> Array:
     return (matrix + matrix.T) / 2  # products leave rounding
 
 
-def _dense(matrix: Any) -> NDArray:
+def _dense(matrix: Any) -> Array:
     return matrix.toarray() if hasattr(matrix, "toarray") else np.asarray(matrix, dtype=float)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from proprotor_equations import FIXED_COORDINATES
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import Eigensystem, eigensystem, participation
@@ -16,12 +16,12 @@ def support_names(model: LinearModel) -> tuple[str, ...]:
     return tuple(name for name in model.dofs if name not in FIXED_COORDINATES)
 
 
-def support_share(model: LinearModel, system: Eigensystem) -> NDArray:
+def support_share(model: LinearModel, system: Eigensystem) -> Array:
     """Participation (..., support coordinates, states) of the support in each mode, 0 to 1."""
     return participation(model, system)[..., [model.dofs.index(name) for name in support_names(model)], :]
 
 
-def follow_support_modes(model: LinearModel, system: Eigensystem | None = None) -> NDArray:
+def follow_support_modes(model: LinearModel, system: Eigensystem | None = None) -> Array:
     """Eigenvalues (designs, airspeeds, modes) of the support's modes, NaN at failed points.
 
     In the lower half of the airspeeds a mode of the support is the one in which its coordinate takes most part: where a
@@ -46,7 +46,7 @@ def follow_support_modes(model: LinearModel, system: Eigensystem | None = None) 
         )
     system = eigensystem(model) if system is None else system
     shares = support_share(model, system)
-    good = np.isfinite(system.values).all(axis=-1)
+    good = np.asarray(np.isfinite(system.values).all(axis=-1))
     middle = good.shape[1] // 2
     followed = np.full((*good.shape, shares.shape[-2]), np.nan, dtype=complex)
     places = np.zeros((len(good), shares.shape[-2]), dtype=int)
@@ -62,17 +62,16 @@ def follow_support_modes(model: LinearModel, system: Eigensystem | None = None) 
     return followed
 
 
-def _largest_shares(values: NDArray, shares: NDArray) -> NDArray:
+def _largest_shares(values: Array, shares: Array) -> Array:
     """The oscillating modes in which the coordinates of the support take most part, one each."""
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
     upper = np.flatnonzero(values.imag > 0)
-    return upper[linear_sum_assignment(-shares[:, upper])[1]]
+    chosen: Array = upper[linear_sum_assignment(-shares[:, upper])[1]]
+    return chosen
 
 
-def _next_places(
-    system: Eigensystem, designs: NDArray, before: NDArray, point: int, places: NDArray
-) -> NDArray:
+def _next_places(system: Eigensystem, designs: Array, before: Array, point: int, places: Array) -> Array:
     """Where the modes at `places` of the points `before` have gone."""
     left = np.take_along_axis(system.left[designs, before], places[:, :, None], axis=1)
     right = np.take_along_axis(system.right[designs, before], places[:, None, :], axis=2)
@@ -82,13 +81,14 @@ def _next_places(
     apart = np.take_along_axis(values, places, axis=1)[:, :, None] - system.values[designs, point][:, None, :]
     scale = np.abs(values).max(axis=1)[:, None, None]
     cost = np.abs(apart) / scale - np.sqrt(forward * np.swapaxes(backward, 1, 2))
-    found = cost.argmin(axis=2)
+    found: Array = cost.argmin(axis=2)
     for row in np.flatnonzero([len(set(one)) < len(one) for one in found.tolist()]):
         found[row] = _one_to_one(cost[row])
     return found
 
 
-def _one_to_one(cost: NDArray) -> NDArray:
+def _one_to_one(cost: Array) -> Array:
     from scipy.optimize import linear_sum_assignment
 
-    return linear_sum_assignment(cost)[1]
+    places: Array = linear_sum_assignment(cost)[1]
+    return places

@@ -19,8 +19,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.model import ROTOR_SPEED
 
 _COLLECTIVE = {"flap": "coning"}
@@ -82,7 +82,7 @@ def name_list(dofs: tuple[str, ...]) -> list[str]:
     return [name for motion in motions(dofs) for name in motion.names]
 
 
-def whirl_shares(motion: Motion, held: list[int], left: NDArray, right: NDArray) -> tuple[NDArray, NDArray]:
+def whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:
     """Participation of what whirls against and with the rotor in each state, two arrays (..., states).
 
     Parameters
@@ -94,7 +94,7 @@ def whirl_shares(motion: Motion, held: list[int], left: NDArray, right: NDArray)
     left, right : array (..., states, states)
         Left vectors in rows, right ones in columns.
     """
-    with_rotor, against = 0.0, 0.0
+    with_rotor, against = np.zeros(()), np.zeros(())
     for cosine, sine in zip(*(_states(place, held, right.shape[-2]) for place in motion.places), strict=True):
         c, s = right[..., cosine, :], right[..., sine, :]
         lc, ls = left[..., :, cosine], left[..., :, sine]
@@ -109,7 +109,7 @@ def _states(place: int, held: list[int], states: int) -> list[int]:
     return [held.index(place), rate] if place in held else [rate]
 
 
-def whirl(dofs: tuple[str, ...], held: list[int], values: NDArray, left: NDArray, right: NDArray) -> NDArray:
+def whirl(dofs: tuple[str, ...], held: list[int], values: Array, left: Array, right: Array) -> Array:
     """Sense of whirl in the fixed frame (..., states): 1 with the rotor, -1 against it, by participation.
 
     NaN for real roots and where a model has no cyclic motion.
@@ -127,11 +127,11 @@ def whirl(dofs: tuple[str, ...], held: list[int], values: NDArray, left: NDArray
 def name_shares(
     dofs: tuple[str, ...],
     held: list[int],
-    values: NDArray,
-    left: NDArray,
-    right: NDArray,
+    values: Array,
+    left: Array,
+    right: Array,
     rotor_speed: float | None,
-) -> NDArray:
+) -> Array:
     """Share of each name in each state of one point (names, states); sums to 1 over the names."""
     columns = []
     faster = np.abs(values.imag) > (np.inf if rotor_speed is None else abs(rotor_speed))
@@ -150,11 +150,12 @@ def name_shares(
             columns += [against, with_rotor]
         else:
             columns += [against + np.where(faster, 0, with_rotor), np.where(faster, with_rotor, 0)]
-    shares = np.array(columns)
-    return shares / shares.sum(axis=0)
+    sums = np.array(columns)
+    shares: Array = sums / sums.sum(axis=0)
+    return shares
 
 
-def assign_names(dofs: tuple[str, ...], held: list[int], shares: NDArray, values: NDArray) -> list[str]:
+def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> list[str]:
     """The name of each state of one point; both states of a pair have the same one.
 
     Parameters
@@ -174,13 +175,16 @@ def assign_names(dofs: tuple[str, ...], held: list[int], shares: NDArray, values
         if not torn:
             names = name_list(dofs)
             return [names[name] for name in given]
-        # A pair has one name: the likelier of the two, and whoever has its other half finds another.
+        # A pair has one name, of those with room for both its states: the likelier of the two, and whoever has its
+        # other half finds another. Each round settles one pair more, so that there is an end.
+        room = np.bincount(slots) - np.bincount(list(fixed.values()), minlength=slots.max() + 1)
         surest = max(torn, key=lambda k: shares[[given[k], given[k + 1]], k].max())
-        name = max((given[surest], given[surest + 1]), key=lambda name: shares[name, surest])
+        whole = [name for name in (given[surest], given[surest + 1]) if room[name] >= 2]
+        name = max(whole or np.flatnonzero(room >= 2), key=lambda name: shares[name, surest])
         fixed |= {int(surest): int(name), int(surest) + 1: int(name)}
 
 
-def _slots(dofs: tuple[str, ...], held: list[int]) -> NDArray:
+def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
     """The name of each of as many places as there are states: two for each mode, one for a rate alone."""
     slots, count = [], 0
     for motion in motions(dofs):
@@ -191,10 +195,11 @@ def _slots(dofs: tuple[str, ...], held: list[int]) -> NDArray:
     return np.array(slots)
 
 
-def _assignment(shares: NDArray, slots: NDArray, fixed: dict[int, int]) -> NDArray:
+def _assignment(shares: Array, slots: Array, fixed: dict[int, int]) -> Array:
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
     gain = shares[slots].T.copy()  # (states, slots)
     for state, name in fixed.items():
         gain[state] = np.where(slots == name, 1e3, 0)
-    return slots[linear_sum_assignment(gain, maximize=True)[1]]
+    assigned: Array = slots[linear_sum_assignment(gain, maximize=True)[1]]
+    return assigned

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from proprotor_equations import (
     BLADE_COORDINATES,
     FIXED_COORDINATES,
@@ -20,6 +20,7 @@ from proprotor_equations import (
 )
 
 from proprotor.airfoil import Airfoil
+from proprotor.arrays import Array
 from proprotor.blade_airloads import (
     BladeSections,
     closed_form_moments,
@@ -72,14 +73,14 @@ class LinearModel:
         The rotor alone of a rotor on a support, from which the hub loads follow.
     """
 
-    M: NDArray
-    C: NDArray
-    K: NDArray
+    M: Array
+    C: Array
+    K: Array
     dofs: tuple[str, ...]
     trim: Trim
-    airspeed: NDArray
-    B: NDArray | None = None
-    hub: NDArray | None = None
+    airspeed: Array
+    B: Array | None = None
+    hub: Array | None = None
     rotor: LinearModel | None = None
 
     @property
@@ -110,7 +111,7 @@ class LinearModel:
 
 
 def rotor_quantities(
-    rotor: Rotor, operation: Operation, airspeed: NDArray, points: tuple[int, ...]
+    rotor: Rotor, operation: Operation, airspeed: Array, points: tuple[int, ...]
 ) -> dict[str, Any]:
     """Numbers, or arrays flattened over the batch, of rotor, operation and airspeed by the names of the derivation."""
     given = {entry.name: getattr(rotor, entry.name) for entry in fields(rotor)}
@@ -126,7 +127,7 @@ def rotor_quantities(
     return {name: np.broadcast_to(v, points).reshape(-1) if np.ndim(v) else v for name, v in given.items()}
 
 
-def batch_shape(rotor: Rotor, operation: Operation, airspeed: NDArray) -> tuple[int, ...]:
+def batch_shape(rotor: Rotor, operation: Operation, airspeed: Array) -> tuple[int, ...]:
     """Shape of all arrays among the inputs, broadcast together."""
     inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name != "airfoil"]
     leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
@@ -134,7 +135,7 @@ def batch_shape(rotor: Rotor, operation: Operation, airspeed: NDArray) -> tuple[
     if isinstance(rotor.airfoil, Airfoil):
         inputs += [getattr(rotor.airfoil, entry.name) for entry in fields(rotor.airfoil)]
     inputs += [getattr(operation, name) for name in ("rotor_speed", "density", "speed_of_sound")]
-    inputs += [] if operation.windmilling else list(operation.trim.values())
+    inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())
     return np.broadcast_shapes(np.shape(airspeed), *(np.shape(value) for value in inputs))
 
 
@@ -176,7 +177,9 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     matrices = _matrices(sections, choice, settled, extra)
     coordinates = (*FIXED_COORDINATES, *extra)
     dofs = _free_coordinates(choice, coordinates)
-    parts = {name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()}
+    parts: dict[str, Any] = {
+        name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
+    }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
     model = LinearModel(**parts, dofs=coordinates, trim=shaped, airspeed=np.broadcast_to(speed, shape))
     return model if dofs == coordinates else model.submodel(dofs)
@@ -184,7 +187,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
 
 def _flat(target: Target, shape: tuple[int, ...]) -> Target:
     """The target with arrays flattened over the batch."""
-    flat = {
+    flat: dict[str, Any] = {
         name: np.broadcast_to(value, shape).reshape(-1) if np.ndim(value) else value
         for name, value in (("collective", target.collective), ("load", target.load))
     }
@@ -220,10 +223,10 @@ def _free_coordinates(options: Options, coordinates: tuple[str, ...]) -> tuple[s
 
 def _matrices(
     sections: BladeSections, options: Options, settled: Settled, extra: tuple[str, ...]
-) -> dict[str, NDArray]:
+) -> dict[str, Array]:
     """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless last; NaN without trim."""
     points, n, rows = len(settled.trim.converged), len(FIXED_COORDINATES) + len(extra), settled.rows
-    found: dict[str, NDArray] = {}
+    found: dict[str, Array] = {}
     if len(rows):
         pool = settled.pool | _couplings(options, settled.pool)
         *blade, gusts = _blade_matrices(sections.take(rows), pool, settled.segments, options)
@@ -237,7 +240,7 @@ def _matrices(
     }
 
 
-def _at_all_points(matrix: NDArray | None, points: int, rows: NDArray, shape: tuple[int, int]) -> NDArray:
+def _at_all_points(matrix: Array | None, points: int, rows: Array, shape: tuple[int, int]) -> Array:
     """A matrix of the rows that have one at all points, NaN at the others."""
     if matrix is not None and matrix.shape[0] == points == len(rows):
         return matrix
@@ -249,7 +252,7 @@ def _at_all_points(matrix: NDArray | None, points: int, rows: NDArray, shape: tu
 
 def _blade_matrices(
     sections: BladeSections, pool: Mapping[str, Any], at_trim: Mapping[str, Any], options: Options
-) -> tuple[NDArray, ...]:
+) -> tuple[Array, ...]:
     """Mass, damping and stiffness (points, 12, 12) of one blade in rotating axes, and its gusts (points, 12, 3)."""
     mass, damping, stiffness = _structure(pool, options.equation_set)
     points = np.shape(pool["pitch"])
@@ -264,7 +267,7 @@ def _blade_matrices(
     return mass, damping, stiffness, gusts
 
 
-def _swashplate(pool: Mapping[str, Any], options: Options, blade: list[NDArray]) -> NDArray:
+def _swashplate(pool: Mapping[str, Any], options: Options, blade: list[Array]) -> Array:
     """Loads (points, 18, 3) on the rotor per unit of swashplate collective and cyclics, held in the fixed frame.
 
     With the pitch equations kept, the pitch coordinates are then the whole perturbation of blade pitch, and the
@@ -282,15 +285,16 @@ def _swashplate(pool: Mapping[str, Any], options: Options, blade: list[NDArray])
     else:
         (mass, damping, stiffness), sign = blade, -1.0
     columns = [FIXED_COORDINATES.index(name) for name in ("pitch_0", "pitch_1c", "pitch_1s")]
-    return sign * evaluate(multiblade.stiffness, pool, mass, damping, stiffness)[..., columns]
+    loads: Array = sign * evaluate(multiblade.stiffness, pool, mass, damping, stiffness)[..., columns]
+    return loads
 
 
 _KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}
 
 
 def _fixed_frame(
-    pool: Mapping[str, Any], options: Options, blade: list[NDArray], extra: tuple[str, ...]
-) -> dict[str, NDArray]:
+    pool: Mapping[str, Any], options: Options, blade: list[Array], extra: tuple[str, ...]
+) -> dict[str, Array]:
     """M, C, K of the rotor from those of one blade."""
     matrices = {}
     for count, (name, kind) in enumerate(_KINDS.items(), start=1):
@@ -304,8 +308,8 @@ def _fixed_frame(
 
 
 def _with_reactionless(
-    pool: Mapping[str, Any], blade: list[NDArray], extra: tuple[str, ...], name: str, matrix: NDArray
-) -> NDArray:
+    pool: Mapping[str, Any], blade: list[Array], extra: tuple[str, ...], name: str, matrix: Array
+) -> Array:
     """The matrix with the blocks of the reactionless coordinates, which couple with nothing else."""
     if not extra:
         return matrix
@@ -332,9 +336,8 @@ def _couplings(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
     """Pitch-flap and pitch-lag coupling of the airloads' pitch; a given value stands in place of the closed form."""
     if options.pitch != "coupling":
         return dict.fromkeys(_COUPLINGS, 0.0)
-    return evaluate(pitch.couplings, pool)._asdict() | {
-        name: pool[name] for name in _COUPLINGS if name in pool
-    }
+    closed_form: dict[str, Any] = evaluate(pitch.couplings, pool)._asdict()
+    return closed_form | {name: pool[name] for name in _COUPLINGS if name in pool}
 
 
 def _given_couplings(options: Options, shape: tuple[int, ...]) -> dict[str, Any]:
@@ -347,7 +350,7 @@ def _given_couplings(options: Options, shape: tuple[int, ...]) -> dict[str, Any]
     }
 
 
-def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray, NDArray, NDArray]:
+def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[Array, Array, Array]:
     """Inertia, springs and dampers of one blade."""
     pool = dict(pool) | evaluate(equations.inertia.trim_integrals, pool)._asdict()
     mass = evaluate(equations.inertia.mass, pool) + evaluate(equations.pitch.mass, pool)
@@ -360,7 +363,7 @@ def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[NDArray
 
 def _airloads(
     sections: BladeSections, pool: Mapping[str, Any], at_trim: Mapping[str, Any], options: Options
-) -> tuple[NDArray, NDArray, NDArray]:
+) -> tuple[Array, Array, Array]:
     """Airload damping and stiffness of one blade, and what gusts load it with."""
     equations = options.equation_set.airloads
     if equations is airloads and options.airloads == "full":
@@ -375,7 +378,7 @@ def _airloads(
     return tuple(evaluate(product, segments) for product in products)
 
 
-def _moments(sections: BladeSections, segments: Mapping[str, Any], options: Options) -> dict[str, NDArray]:
+def _moments(sections: BladeSections, segments: Mapping[str, Any], options: Options) -> dict[str, Array]:
     """Radial moments of the section loads: in closed form where there is one, else by quadrature."""
     lift_slope_only = options.airloads == "lift-slope"
     simple = options.equations == "published" and not (options.compressibility or options.section_damping)
@@ -390,7 +393,7 @@ def _moments(sections: BladeSections, segments: Mapping[str, Any], options: Opti
     )
 
 
-def rigid_hub_mass(rotor: Rotor) -> NDArray:
+def rigid_hub_mass(rotor: Rotor) -> Array:
     """Mass matrix (6, 6) of the undeflected rotor on its hub coordinates, everything else locked."""
     still = {name: 0.0 for name in UNKNOWNS}
     names = [e.name for e in fields(rotor) if e.name not in ("airfoil", "chord", "twist")]
@@ -400,4 +403,5 @@ def rigid_hub_mass(rotor: Rotor) -> NDArray:
     }
     pool |= still
     pool |= evaluate(inertia.trim_integrals, pool)._asdict()
-    return evaluate(multiblade.mass, pool, evaluate(inertia.mass, pool))[..., :6, :6]
+    mass: Array = evaluate(multiblade.mass, pool, evaluate(inertia.mass, pool))
+    return mass[..., :6, :6]

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, airloads, drive_train, multiblade, pitch
 
 from proprotor.airfoil import SectionCoefficients, SectionModel
+from proprotor.arrays import Array
 from proprotor.assembly import mount
 from proprotor.blade_airloads import (
     BladeSections,
@@ -54,9 +54,9 @@ _COEFFICIENTS = {
 class Part(NamedTuple):
     """M, C, K (..., n, n) of one origin, on the coordinates of the model."""
 
-    M: NDArray
-    C: NDArray
-    K: NDArray
+    M: Array
+    C: Array
+    K: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class _SomeCoefficients:
     compressible: bool
     contains_compressibility: bool = True
 
-    def coefficients(self, alpha: NDArray, mach: NDArray) -> SectionCoefficients:
+    def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
         """Those kept, and zero for the others."""
         found = self.airfoil.coefficients(alpha, mach)
         if self.compressible and not self.airfoil.contains_compressibility:
@@ -129,13 +129,14 @@ def _pool(case: Case, choice: Options, model: LinearModel, shape: tuple[int, ...
     pool = with_trim(quantities, choice, state)
     if choice.pitch != "coupling":
         return pool | dict.fromkeys(_COUPLINGS, 0.0)
-    return pool | evaluate(pitch.couplings, pool)._asdict() | given
+    closed_form: dict[str, Any] = evaluate(pitch.couplings, pool)._asdict()
+    return pool | closed_form | given
 
 
-def _structure(pool: Mapping[str, Any], choice: Options) -> dict[str, Part]:
+def _structure(pool: dict[str, Any], choice: Options) -> dict[str, Part]:
     """Inertia, springs and dampers of one blade (points, 12, 12)."""
     equations = choice.equation_set
-    pool = dict(pool) | evaluate(equations.inertia.trim_integrals, pool)._asdict()
+    pool = pool | evaluate(equations.inertia.trim_integrals, pool)._asdict()
     zero = np.zeros((12, 12))
     parts = {
         "inertia": Part(
@@ -155,7 +156,7 @@ def _structure(pool: Mapping[str, Any], choice: Options) -> dict[str, Part]:
     }
 
 
-def _spring_entries() -> dict[str, NDArray]:
+def _spring_entries() -> dict[str, Array]:
     """Which entries (12, 12) of the flap-lag springs are what.
 
     The springs turn with the pitch relative to the yoke, which is that of pitch, gimbal flap and gimbal roll: entries
@@ -176,9 +177,7 @@ def _spring_entries() -> dict[str, NDArray]:
     }
 
 
-def _airloads(
-    sections: BladeSections, pool: Mapping[str, Any], choice: Options
-) -> Iterator[tuple[str, Part]]:
+def _airloads(sections: BladeSections, pool: dict[str, Any], choice: Options) -> Iterator[tuple[str, Part]]:
     """Airloads of one blade (points, 12, 12) by coefficient, and by coupling of the pitch they see."""
     if choice.airloads == "none":
         return
@@ -203,7 +202,7 @@ def _airloads(
 
 def _moments(
     sections: BladeSections,
-    pool: Mapping[str, Any],
+    pool: dict[str, Any],
     choice: Options,
     kept: tuple[str, ...],
     section_damping: bool,
@@ -219,7 +218,7 @@ def _moments(
     return segments | load_moments(some, segments, compressibility=False, equations=equations)
 
 
-def _loads(pool: Mapping[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[NDArray, NDArray]:
+def _loads(pool: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
     """Airload damping and stiffness of one blade."""
     equations = choice.equation_set.airloads
     segments = dict(segments) | {name: np.asarray(pool[name])[..., None] for name in _COUPLINGS}
@@ -252,7 +251,7 @@ def _other_parts(pool: Mapping[str, Any], choice: Options) -> dict[str, Part]:
 def _mounted(part: Part, carrier: NormalModes, model: LinearModel, shape: tuple[int, ...]) -> Part:
     """A part of the rotor on the coordinates of the model."""
     n, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
-    matrices = {
+    matrices: dict[str, Any] = {
         name: np.broadcast_to(matrix, (points, n, n)).reshape(*shape, n, n)
         for name, matrix in zip("MCK", part, strict=True)
     }
@@ -267,7 +266,7 @@ def _support_parts(
     """What the support adds; its mass is that without the rotor's."""
     n, modes = len(model.dofs), len(support.names)
 
-    def whole(matrix: NDArray) -> NDArray:
+    def whole(matrix: Array) -> Array:
         filled = np.zeros((*shape, n, n))
         filled[..., :modes, :modes] = matrix
         return filled

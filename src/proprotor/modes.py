@@ -10,8 +10,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import ROTOR_SPEED, LinearModel
 from proprotor.tracking import Spectrum
@@ -33,13 +33,13 @@ class Eigensystem(NamedTuple):
     NaN at failed points.
     """
 
-    values: NDArray
-    right: NDArray
-    left: NDArray
-    displacement: NDArray
+    values: Array
+    right: Array
+    left: Array
+    displacement: Array
 
 
-def state_matrix(model: LinearModel) -> NDArray:
+def state_matrix(model: LinearModel) -> Array:
     """A of ẋ = A x with x the displacements without the azimuth, then all velocities; (..., 2n - 1, 2n - 1)."""
     n = len(model.dofs)
     _check_inertia(model)
@@ -71,8 +71,8 @@ def held_coordinates(model: LinearModel) -> list[int]:
     ]
 
 
-def _good(model: LinearModel) -> NDArray:
-    return np.isfinite(model.M).all(axis=(-2, -1))
+def _good(model: LinearModel) -> Array:
+    return np.asarray(np.isfinite(model.M).all(axis=(-2, -1)))
 
 
 def eigensystem(model: LinearModel) -> Eigensystem:
@@ -95,7 +95,7 @@ def decomposition(model: LinearModel) -> Spectrum:
     return Spectrum(values, right)
 
 
-def _solved(matrix: NDArray) -> Spectrum:
+def _solved(matrix: Array) -> Spectrum:
     values, right = np.linalg.eig(matrix)
     return Spectrum(values.astype(complex, copy=False), right.astype(complex, copy=False))
 
@@ -106,14 +106,14 @@ def _real(model: LinearModel) -> LinearModel:
     return replace(model, M=model.M.real, C=model.C.real, K=model.K.real)
 
 
-def some_points(model: LinearModel, points: NDArray) -> LinearModel:
+def some_points(model: LinearModel, points: Array) -> LinearModel:
     """M, C and K of a model at some of its points."""
     return replace(
         model, M=model.M[points], C=model.C[points], K=model.K[points], B=None, hub=None, rotor=None
     )
 
 
-def coordinate_motion(held: list[int], n: int, values: NDArray, right: NDArray) -> NDArray:
+def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:
     """Motion (..., n, modes) of the coordinates: that of a rate alone is the rate divided by the eigenvalue."""
     shapes = right[..., -n:, :].copy()
     shapes[..., held, :] = right[..., : len(held), :]
@@ -123,7 +123,7 @@ def coordinate_motion(held: list[int], n: int, values: NDArray, right: NDArray) 
     return shapes
 
 
-def participation(model: LinearModel, system: Eigensystem) -> NDArray:
+def participation(model: LinearModel, system: Eigensystem) -> Array:
     """Share of each coordinate in each mode (..., n, states), from left times right vector; sums to 1.
 
     Free of units and of how vectors are scaled, unlike the largest component of a mode that mixes lengths and angles.
@@ -131,13 +131,14 @@ def participation(model: LinearModel, system: Eigensystem) -> NDArray:
     return coordinate_shares(held_coordinates(model), len(model.dofs), system.left, system.right)
 
 
-def coordinate_shares(held: list[int], n: int, left: NDArray, right: NDArray) -> NDArray:
+def coordinate_shares(held: list[int], n: int, left: Array, right: Array) -> Array:
     """Shares (..., n, modes) as `participation`, of left vectors in rows and right ones in columns."""
     products = np.swapaxes(left, -1, -2) * right
     products = np.sqrt(products.real**2 + products.imag**2)
-    shares = products[..., -n:, :].copy()
-    shares[..., held, :] += products[..., : len(held), :]
-    return shares / shares.sum(axis=-2, keepdims=True)
+    sums = products[..., -n:, :].copy()
+    sums[..., held, :] += products[..., : len(held), :]
+    shares: Array = sums / sums.sum(axis=-2, keepdims=True)
+    return shares
 
 
 def modes(model: LinearModel) -> xarray.Dataset:
@@ -165,7 +166,7 @@ def modes(model: LinearModel) -> xarray.Dataset:
 
 
 def mode_dataset(
-    model: LinearModel, values: NDArray, shapes: NDArray, shares: NDArray, line: Line | None = None
+    model: LinearModel, values: Array, shapes: Array, shares: Array, line: Line | None = None
 ) -> xarray.Dataset:
     """The dataset of `modes` from eigenvalues (..., mode), motions and participations (..., n, mode)."""
     import xarray  # here, because it takes long to import

@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.modal_reduction import per_mode
 from proprotor.support import HUB_AXES, NormalModes
@@ -169,7 +170,7 @@ def _table(tables: Mapping[Any, Any], vectors: Any, path: Any) -> Any:
     raise InputError("file", str(path), "has no eigenvalue table (LAMA) for its eigenvectors")
 
 
-def _turned(motion: NDArray, hub: Mapping[str, str] | None) -> NDArray:
+def _turned(motion: Array, hub: Mapping[str, str] | None) -> Array:
     """Rows x … αz from rows T1 … R3."""
     hub = AIRCRAFT_AXES if hub is None else hub
     rows = []

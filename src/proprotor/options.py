@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +14,7 @@ from proprotor.equation_set import EQUATION_SETS, EquationSet
 from proprotor.errors import InputError, unknown_name
 from proprotor.frequencies import BladeFrequencies
 
-CHOICES: dict[str, tuple] = {
+CHOICES: dict[str, tuple[Any, ...]] = {
     "equations": tuple(EQUATION_SETS),
     "pitch": ("dynamic", "coupling", "rigid"),
     "structure": ("coupled", "diagonal", "tabulated"),
@@ -122,7 +124,7 @@ class Options:
         return self.pitch == "dynamic" and "pitch" not in self.locked
 
 
-def parse_options(options: dict) -> Options:
+def parse_options(options: Mapping[str, Any]) -> Options:
     """`Options` from keywords.
 
     Raises

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
+from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition
 from proprotor.tracking import POOR, Spectrum, Steps, chain, keep_upper, link
 
-Linearize = Callable[[NDArray], LinearModel]  # positions (k,) along a line to the models there
+Linearize = Callable[[Array], LinearModel]  # positions (k,) along a line to the models there
 
 _HALVINGS = 7  # of a step whose modes cannot be told apart: of 5 kt, to 0.04 kt
 
@@ -34,7 +35,7 @@ class Line:
         Where an approach ends on the line that it leads to; its last position by default.
     """
 
-    positions: NDArray
+    positions: Array
     linearize: Linearize | None = None
     name: str = "airspeed"
     units: str = "m/s"
@@ -43,6 +44,18 @@ class Line:
     def __post_init__(self) -> None:
         if self.end is None and np.size(self.positions):
             object.__setattr__(self, "end", float(np.asarray(self.positions)[-1]))
+
+    def models(self, positions: Array) -> LinearModel:
+        """Models at positions (k,) on or between those of the line.
+
+        Raises
+        ------
+        InputError
+            When the line came without what linearises it.
+        """
+        if self.linearize is None:
+            raise InputError("line", self.name, "must come with a function that linearises at its positions")
+        return self.linearize(positions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,16 +71,16 @@ class Path:
     steps : Steps
         From each point to the next.
     positions : array
-        Of the points of the spectrum; None where they were not told.
+        Of the points of the spectrum; NaN where they were not told.
     """
 
     spectrum: Spectrum
-    points: NDArray
+    points: Array
     steps: Steps
-    positions: NDArray | None = None
+    positions: Array
 
     @cached_property
-    def places(self) -> NDArray:
+    def places(self) -> Array:
         """Which of the states of a point each followed state is (k, states)."""
         states = self.spectrum.values.shape[1]
         if not len(self.points):
@@ -77,23 +90,23 @@ class Path:
         return np.take_along_axis(places, keep_upper(followed), 1)
 
     @cached_property
-    def values(self) -> NDArray:
+    def values(self) -> Array:
         """Followed eigenvalues (k, states)."""
         return np.take_along_axis(self.spectrum.values[self.points], self.places, 1)
 
     @cached_property
-    def quality(self) -> NDArray:
+    def quality(self) -> Array:
         """Trust in each step of each followed state (k - 1, states)."""
         return np.take_along_axis(self.steps.quality, self.places[:-1], 1)
 
-    def order(self, points: int) -> NDArray:
+    def order(self, points: int) -> Array:
         """Places (points, states) at the points of the line; at failed ones they mean nothing."""
         order = np.tile(np.arange(self.spectrum.values.shape[1]), (points, 1))
         own = self.points < points
         order[self.points[own]] = self.places[own]
         return order
 
-    def trust(self, points: int) -> NDArray:
+    def trust(self, points: int) -> Array:
         """Least quality (points, states) of the steps that led to each point of the line; 1 at the first."""
         trust = np.ones((points, self.spectrum.values.shape[1]))
         own = np.flatnonzero(self.points < points)
@@ -101,7 +114,7 @@ class Path:
             trust[self.points[own[1:]]] = np.minimum.reduceat(self.quality, own[:-1], axis=0)
         return trust
 
-    def with_points(self, after: NDArray, positions: NDArray, between: Spectrum) -> Path:
+    def with_points(self, after: Array, positions: Array, between: Spectrum) -> Path:
         """The path with one more point in each of the steps `after`, at `positions` within them."""
         first = len(self.spectrum.values)
         spectrum = self.spectrum.joined(between)
@@ -112,10 +125,11 @@ class Path:
         return Path(spectrum, points, Steps(successor, quality), np.concatenate([self.positions, positions]))
 
 
-def path_of(spectrum: Spectrum, positions: NDArray | None = None) -> Path:
+def path_of(spectrum: Spectrum, positions: Array | None = None) -> Path:
     """The path through points in their order, failed ones passed over."""
     good = np.flatnonzero(spectrum.works)
-    return Path(spectrum, good, link(spectrum, good[:-1], good[1:]), positions)
+    told = np.full(len(spectrum.values), np.nan) if positions is None else positions
+    return Path(spectrum, good, link(spectrum, good[:-1], good[1:]), told)
 
 
 def follow(model: LinearModel, line: Line | None = None) -> Path:
@@ -125,7 +139,7 @@ def follow(model: LinearModel, line: Line | None = None) -> Path:
     that stays poor keeps its quality as a warning.
     """
     if line is None or line.linearize is None:
-        return path_of(decomposition(model))
+        return path_of(decomposition(model), None if line is None else np.ravel(np.real(line.positions)))
     path = path_of(decomposition(model), np.asarray(line.positions, dtype=float))
     hopeless = np.zeros(max(len(path.points) - 1, 0), dtype=bool)
     for _ in range(_HALVINGS):

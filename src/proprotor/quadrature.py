@@ -7,7 +7,9 @@ import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from proprotor.arrays import Array
 
 POWERS = 3  # moments of r^0, r^1 and r^2
 # Points for a panel of a given share of the radius: at high airspeed section loads vary over the radius. At low
@@ -39,12 +41,12 @@ class RadialQuadrature:
         1 on segments outboard of the hinge, else 0.
     """
 
-    stations: NDArray
-    segment: NDArray
-    weights: NDArray
-    edges: NDArray
-    beyond_flap_hinge: NDArray
-    beyond_lag_hinge: NDArray
+    stations: Array
+    segment: Array
+    weights: Array
+    edges: Array
+    beyond_flap_hinge: Array
+    beyond_lag_hinge: Array
 
     @property
     def real(self) -> RadialQuadrature:
@@ -61,7 +63,7 @@ class RadialQuadrature:
         flat = {name: flatten_points(getattr(self, name), shape, own) for name, own in points.items()}
         return replace(self, **flat)
 
-    def take(self, rows: NDArray | slice) -> RadialQuadrature:
+    def take(self, rows: Array | slice) -> RadialQuadrature:
         """The quadrature at some of the points."""
         if self.segment.ndim == 1:
             return self
@@ -69,7 +71,7 @@ class RadialQuadrature:
             self, **{name: getattr(self, name)[rows] for name in ("stations", "segment", "weights", "edges")}
         )
 
-    def along_lines(self, at_axis: NDArray, per_radius: NDArray | None = None) -> NDArray:
+    def along_lines(self, at_axis: Array, per_radius: Array | None = None) -> Array:
         """Values (..., stations) of what is linear in r along each segment.
 
         Parameters
@@ -78,8 +80,8 @@ class RadialQuadrature:
             Value at r = 0, and its change with r; without the latter it is constant.
         """
         if self.segment.ndim > 1:
-            start, slope = (self._spread(values) for values in (at_axis, per_radius))
-            return start if slope is None else start + slope * self.stations
+            start = self._spread(at_axis)
+            return start if per_radius is None else start + self._spread(per_radius) * self.stations
         line = np.empty(
             (*at_axis.shape[:-1], len(self.stations)), dtype=np.result_type(at_axis, self.stations)
         )
@@ -98,14 +100,12 @@ class RadialQuadrature:
         ends = np.searchsorted(self.segment, np.arange(len(self.beyond_lag_hinge)), side="right")
         return [slice(start, end) for start, end in itertools.pairwise([0, *ends])]
 
-    def _spread(self, at_segments: NDArray | None) -> NDArray | None:
-        if at_segments is None:
-            return None
+    def _spread(self, at_segments: Array) -> Array:
         segments = np.broadcast_to(at_segments, (*at_segments.shape[:-1], self.weights.shape[-2]))
         places = np.broadcast_to(self.segment, (*segments.shape[:-1], self.segment.shape[-1]))
         return np.take_along_axis(segments, places, axis=-1)
 
-    def moments(self, section_load: NDArray) -> NDArray:
+    def moments(self, section_load: Array) -> Array:
         """Radial moments (..., segments, 3) of a section load (..., stations)."""
         *leading, stations, segments, powers = self.weights.shape
         table = self.weights.reshape(*leading, stations, segments * powers)
@@ -113,7 +113,7 @@ class RadialQuadrature:
         return moments.reshape(*moments.shape[:-1], segments, powers)
 
 
-def flatten_points(array: NDArray, shape: tuple[int, ...], own_axes: int) -> NDArray:
+def flatten_points(array: Array, shape: tuple[int, ...], own_axes: int) -> Array:
     """An array whose axes before its own ones are broadcast to `shape` and flattened; left alone without such axes."""
     array = np.asarray(array)
     if array.ndim == own_axes:
@@ -128,7 +128,7 @@ def gauss_panels(
     radius: ArrayLike,
     flap_hinge_offset: ArrayLike,
     lag_hinge_offset: ArrayLike,
-    knots: NDArray,
+    knots: Array,
 ) -> RadialQuadrature:
     """Panels from cutout to tip, split at the hinges and at tabulated stations.
 
@@ -186,13 +186,13 @@ def coarse_panels(
     return _by_segment(stations.reshape(flat), (half * gauss).reshape(flat), root, tip, flap, lag)
 
 
-def _within(edges: NDArray, root: NDArray, tip: NDArray) -> NDArray:
+def _within(edges: Array, root: Array, tip: Array) -> Array:
     """Edges moved onto root or tip where they lie beyond."""
     edges = np.where(np.real(edges) <= np.real(root), root, edges)
     return np.where(np.real(edges) >= np.real(tip), tip, edges)
 
 
-def _gauss_points(starts: NDArray, widths: NDArray, tip: NDArray) -> tuple[NDArray, NDArray]:
+def _gauss_points(starts: Array, widths: Array, tip: Array) -> tuple[Array, Array]:
     """Stations and weights of all panels; panels get points by their share of the radius and their place."""
     long, ends = np.real(widths), np.real(starts + widths)
     shares = (long / np.real(tip)[..., None]).reshape(-1, widths.shape[-1]).max(axis=0)
@@ -219,7 +219,7 @@ def _points_near_axis(nearness: float) -> int:
 
 
 def _by_segment(
-    stations: NDArray, weights: NDArray, root: NDArray, tip: NDArray, flap: NDArray, lag: NDArray
+    stations: Array, weights: Array, root: Array, tip: Array, flap: Array, lag: Array
 ) -> RadialQuadrature:
     beyond_flap, beyond_lag = (np.real(stations) > np.real(hinge)[..., None] for hinge in (flap, lag))
     kinds = ((False, False), (True, False), (True, True))

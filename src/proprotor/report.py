@@ -39,8 +39,8 @@ def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_mode
     warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
     for line in (heading(case), f"Model: {chosen}.", CONVENTION, *reservations(case), *warnings, ""):
         console.print(line)
-    for line in table.lines(console.width, all_modes):
-        console.print(line, soft_wrap=True)
+    for row in table.lines(console.width, all_modes):
+        console.print(row, soft_wrap=True)
     for line in table.doubts():
         console.print(f"? {line}", style="yellow")
     for line in table.verdict():

@@ -21,8 +21,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array, Numbers
 from proprotor.errors import InputError
 from proprotor.model import HUB, LinearModel
 from proprotor.speed import in_metres_per_second
@@ -45,11 +46,11 @@ class WhirlDerivatives(NamedTuple):
     The propeller is alike in all directions, so these give the force along Y and the moment about Z as well.
     """
 
-    z_theta: ArrayLike
-    z_psi: ArrayLike
-    z_r: ArrayLike
-    m_psi: ArrayLike
-    m_q: ArrayLike
+    z_theta: Numbers
+    z_psi: Numbers
+    z_r: Numbers
+    m_psi: Numbers
+    m_q: Numbers
 
 
 def rigid_propeller(
@@ -111,7 +112,7 @@ def rigid_propeller(
 
 
 def whirl_derivatives(
-    damping: NDArray, stiffness: NDArray, airspeed: ArrayLike, radius: ArrayLike, density: ArrayLike
+    damping: Array, stiffness: Array, airspeed: ArrayLike, radius: ArrayLike, density: ArrayLike
 ) -> WhirlDerivatives:
     """The whirl derivatives in the airloads of any rotor that is alike in all directions.
 
@@ -135,16 +136,16 @@ def whirl_derivatives(
 
 
 def _airloads(
-    speed: NDArray, radius: NDArray, density: NDArray, derivatives: WhirlDerivatives
-) -> tuple[NDArray, NDArray]:
+    speed: Array, radius: Array, density: Array, derivatives: WhirlDerivatives
+) -> tuple[Array, Array]:
     """Damping and stiffness (..., 6, 6): minus the loads per unit of rate and of displacement."""
     z_theta, z_psi, z_r, m_psi, m_q = derivatives
     arm = 2 * radius
     zero = np.zeros_like(speed)
     # Rows f_x, f_y, m_x, m_y over ½ρV²S; columns θ̄, ψ̄ and θ̇R/V, ψ̇R/V.
-    by_angle = [[-z_theta, -z_psi], [z_psi, -z_theta], [arm * m_psi, zero], [zero, arm * m_psi]]
-    by_rate = [[zero, -z_r], [z_r, zero], [zero, -arm * m_q], [arm * m_q, zero]]
-    by_angle, by_rate = (np.moveaxis(np.array(rows), (0, 1), (-2, -1)) for rows in (by_angle, by_rate))
+    angle_rows = [[-z_theta, -z_psi], [z_psi, -z_theta], [arm * m_psi, zero], [zero, arm * m_psi]]
+    rate_rows = [[zero, -z_r], [z_r, zero], [zero, -arm * m_q], [arm * m_q, zero]]
+    by_angle, by_rate = (np.moveaxis(np.array(rows), (0, 1), (-2, -1)) for rows in (angle_rows, rate_rows))
     flow = (density * np.pi * radius**2 / 2 * speed)[..., None, None]  # ½ρVS
     speed, radius = speed[..., None, None], radius[..., None, None]
     damping, stiffness = (np.zeros((*by_angle.shape[:-2], len(HUB), len(HUB))) for _ in range(2))
@@ -154,11 +155,11 @@ def _airloads(
     return damping, stiffness
 
 
-def _set(matrix: NDArray, columns: list[int], loads: NDArray) -> None:
+def _set(matrix: Array, columns: list[int], loads: Array) -> None:
     matrix[..., np.array(_LOADS)[:, None], np.array(columns)] = loads
 
 
-def _gyroscopic(momentum: NDArray) -> NDArray:
+def _gyroscopic(momentum: Array) -> Array:
     """α̇ × momentum K, what turning the spin axis takes."""
     matrix = np.zeros((*momentum.shape, len(HUB), len(HUB)))
     alpha_x, alpha_y = _ANGLES
@@ -166,7 +167,7 @@ def _gyroscopic(momentum: NDArray) -> NDArray:
     return matrix
 
 
-def _diagonal(*entries: NDArray) -> NDArray:
+def _diagonal(*entries: Array) -> Array:
     return np.stack(entries, axis=-1)[..., None] * np.eye(len(entries))
 
 
@@ -182,7 +183,7 @@ def _unloaded(shape: tuple[int, ...]) -> Trim:
     )
 
 
-def _finite(name: str, value: ArrayLike, not_negative: bool = False) -> NDArray:
+def _finite(name: str, value: ArrayLike, not_negative: bool = False) -> Array:
     array = np.asarray(value, dtype=float)
     if not np.all(np.isfinite(array)):
         raise InputError(name, value, "must be finite")

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from proprotor_equations import inertia
 
 from proprotor.airfoil import SectionModel
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
 from proprotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
@@ -43,7 +44,8 @@ _NOT_NEGATIVE = (
 )
 _FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
 
-Distribution = float | tuple[ArrayLike, ArrayLike] | Callable[[np.ndarray], np.ndarray]
+Table = tuple[ArrayLike, ArrayLike]
+Distribution = float | Table | Callable[[Array], Array]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -160,7 +162,7 @@ class Rotor:
         for name in ("chord", "twist"):
             if isinstance(getattr(self, name), tuple):
                 _check_distribution(name, getattr(self, name))
-        chord = self.station_chord if callable(self.chord) else self.chord
+        chord: Any = self.station_chord if callable(self.chord) else self.chord
         chord = chord[1] if isinstance(chord, tuple) else chord
         if np.any(np.real(chord) <= 0):
             raise InputError("chord", chord, "must be above zero")
@@ -194,7 +196,7 @@ class Rotor:
             )
             raise InputError("blade_inertia", self.blade_inertia, rule)
 
-    def _gram_matrix(self) -> np.ndarray:
+    def _gram_matrix(self) -> Array:
         """Integrals of m times two of the arms 1, r, ρβ, ρζ."""
         entries = (
             (self.blade_mass, self.blade_first_moment, self.flap_first_moment, self.lag_first_moment),
@@ -212,17 +214,17 @@ class Rotor:
         )
 
     @property
-    def flap_hub_inertia(self) -> float:
+    def flap_hub_inertia(self) -> Any:
         """I_βα = ∫ m r (r - e_β), kg m²; follows from the flap inertia, first moment and hinge offset."""
         return self._dependent.flap_hub_inertia
 
     @property
-    def lag_hub_inertia(self) -> float:
+    def lag_hub_inertia(self) -> Any:
         """I_ζα = ∫ m r (r - e_ζ), kg m²."""
         return self._dependent.lag_hub_inertia
 
     @property
-    def flap_lag_inertia(self) -> float:
+    def flap_lag_inertia(self) -> Any:
         """I_βζ = ∫ m (r - e_β)(r - e_ζ), kg m²."""
         return self._dependent.flap_lag_inertia
 
@@ -249,27 +251,29 @@ class Rotor:
         )
 
     @functools.cached_property
-    def station_chord(self) -> np.ndarray:
+    def station_chord(self) -> Array:
         """Chord at the stations of the quadrature, m."""
         return self.chord_at(self.quadrature.stations)
 
     @functools.cached_property
-    def station_twist(self) -> np.ndarray:
+    def station_twist(self) -> Array:
         """Twist at the stations of the quadrature, from the pitch at 0.75 R, rad."""
         return self.twist_at(self.quadrature.stations)
 
-    def chord_at(self, r: np.ndarray) -> np.ndarray:
+    def chord_at(self, r: Array) -> Array:
         """Chord at radii (..., stations) in m; a constant chord has one station."""
         if isinstance(self.chord, tuple) or callable(self.chord):
             return _interpolate(self.chord, r)
         return np.asarray(self.chord)[..., None]
 
-    def twist_at(self, r: np.ndarray) -> np.ndarray:
+    def twist_at(self, r: Array) -> Array:
         """Twist at radii (..., stations) in m, from the pitch at 0.75 R, rad."""
         reference = 0.75 * np.asarray(self.radius)[..., None]
         if isinstance(self.twist, tuple) or callable(self.twist):
-            return _interpolate(self.twist, r) - _interpolate(self.twist, reference)
-        return np.asarray(self.twist)[..., None] * (r - reference) / np.asarray(self.radius)[..., None]
+            twist: Array = _interpolate(self.twist, r) - _interpolate(self.twist, reference)
+        else:
+            twist = np.asarray(self.twist)[..., None] * (r - reference) / np.asarray(self.radius)[..., None]
+        return twist
 
     @classmethod
     def from_mass_distribution(cls, r: ArrayLike, mass_per_length: ArrayLike, **fields_: Any) -> Rotor:
@@ -301,7 +305,7 @@ def _shown(value: ArrayLike) -> str:
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
-def _check_distribution(name: str, distribution: tuple[ArrayLike, ArrayLike]) -> None:
+def _check_distribution(name: str, distribution: Table) -> None:
     r, values = (np.real(part) for part in distribution)
     if values.ndim != 1 or r.shape[-1:] != values.shape or values.size < 2:
         raise InputError(
@@ -313,7 +317,7 @@ def _check_distribution(name: str, distribution: tuple[ArrayLike, ArrayLike]) ->
         raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
 
 
-def _joined(knots: list[np.ndarray]) -> np.ndarray:
+def _joined(knots: list[Array]) -> Array:
     """Stations of several distributions along the last axis."""
     if not knots:
         return np.empty(0)
@@ -321,13 +325,14 @@ def _joined(knots: list[np.ndarray]) -> np.ndarray:
     return np.concatenate([np.broadcast_to(s, (*leading, s.shape[-1])) for s in knots], axis=-1)
 
 
-def _interpolate(distribution: Distribution, r: np.ndarray) -> np.ndarray:
+def _interpolate(distribution: Table | Callable[[Array], Array], r: Array) -> Array:
     """Values (..., stations) at radii r (..., stations), linear and constant beyond the ends, complex if r is."""
     if callable(distribution):
         return np.asarray(distribution(r))
     stations, values = np.asarray(distribution[0]), np.asarray(distribution[1])
     if stations.ndim == 1 and not any(map(np.iscomplexobj, (stations, values, r))):
-        return np.interp(r, stations, values)
+        found: Array = np.interp(r, stations, values)
+        return found
     last = stations.shape[-1] - 2
     panel = np.sum(np.real(r)[..., None] >= np.real(stations)[..., None, :], axis=-1) - 1
     panel = np.clip(panel, 0, last)
@@ -335,10 +340,11 @@ def _interpolate(distribution: Distribution, r: np.ndarray) -> np.ndarray:
     start, end = (np.take_along_axis(stations, panel + step, axis=-1) for step in (0, 1))
     share = (r - start) / (end - start)
     share = np.where(np.real(share) < 0, 0.0, np.where(np.real(share) > 1, 1.0, share))
-    return values[panel] + share * (values[panel + 1] - values[panel])
+    between: Array = values[panel] + share * (values[panel + 1] - values[panel])
+    return between
 
 
-def _outboard_moment(r: np.ndarray, mass: np.ndarray, axis: ArrayLike | None, power: int) -> Any:
+def _outboard_moment(r: Array, mass: Array, axis: ArrayLike | None, power: int) -> Any:
     """∫ m (r - axis)^power outboard of an axis (...), over all the blade about its centre for None."""
     nodes, weights = np.polynomial.legendre.leggauss(2)
     inboard, outboard = r[..., :-1], r[..., 1:]

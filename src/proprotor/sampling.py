@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sized
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
+from proprotor.datum import Datum
 from proprotor.errors import InputError, unknown_name
 
 AIRSPEED = "airspeed"
@@ -25,11 +26,14 @@ _RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([0-9.eE+-]*[0-9.])\s*(
 class Quantity(Protocol):
     """What a plan needs to know of an input: its value in the deck, and its SI unit."""
 
-    si: Any
-    unit: str
+    @property
+    def si(self) -> Any: ...
+
+    @property
+    def unit(self) -> str: ...
 
 
-_SPEED = type("_Speed", (), {"si": None, "unit": "m/s"})()  # airspeed is no number of the deck
+_SPEED = Datum("", None, "m/s")  # airspeed is no number of the deck
 
 
 class Range(NamedTuple):
@@ -38,9 +42,10 @@ class Range(NamedTuple):
     low: Any
     high: Any
 
-    def ppf(self, share: NDArray) -> NDArray:
+    def ppf(self, share: Array) -> Array:
         """The value below which a share lies."""
-        return self.low + (self.high - self.low) * share
+        value: Array = self.low + (self.high - self.low) * share
+        return value
 
 
 class Normal(NamedTuple):
@@ -49,11 +54,12 @@ class Normal(NamedTuple):
     mean: Any
     deviation: Any
 
-    def ppf(self, share: NDArray) -> NDArray:
+    def ppf(self, share: Array) -> Array:
         """The value below which a share lies."""
         from scipy.special import ndtri
 
-        return self.mean + self.deviation * ndtri(share)
+        value: Array = self.mean + self.deviation * ndtri(share)
+        return value
 
 
 class Relative(NamedTuple):
@@ -78,8 +84,8 @@ class Designs:
         How a sample was drawn: method, size, seed and what is needed to analyse it; empty for grids and lists.
     """
 
-    values: dict[str, NDArray]
-    axes: dict[str, NDArray]
+    values: dict[str, Array]
+    axes: dict[str, Array]
     units: dict[str, str]
     sample: dict[str, Any] = field(default_factory=dict)
 
@@ -92,7 +98,7 @@ class Designs:
         return tuple(len(axis) for axis in self.axes.values())
 
     @property
-    def coordinates(self) -> dict[str, tuple]:
+    def coordinates(self) -> dict[str, tuple[Any, ...]]:
         """Coordinates of an `xarray.Dataset` over the axes: its inputs, with units."""
         if DESIGN not in self.axes:
             return {name: (name, axis, {"units": self.units[name]}) for name, axis in self.axes.items()}
@@ -208,7 +214,7 @@ def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
 # Reading ------------------------------------------------------------------------------------------
 
 
-def _values(name: str, given: Any, known: Quantity) -> NDArray:
+def _values(name: str, given: Any, known: Quantity) -> Array:
     """Values of an input in SI, one dimension; a single value has none."""
     from proprotor import units  # here, because pint takes long to import
 
@@ -226,7 +232,7 @@ def _values(name: str, given: Any, known: Quantity) -> NDArray:
     return values
 
 
-def _written_range(text: str, unit: str, name: str) -> NDArray:
+def _written_range(text: str, unit: str, name: str) -> Array:
     """``"1:4:0.5 deg"``: start, stop and step, the stop included."""
     from proprotor import units
 
@@ -246,10 +252,14 @@ def _distribution(name: str, given: Any, known: Quantity) -> Any:
     if hasattr(given, "ppf") and not isinstance(given, Range | Normal):
         return given
     if isinstance(given, Relative):
-        if not np.isscalar(known.si) or isinstance(known.si, str):
+        is_number = np.isscalar(known.si) and not isinstance(known.si, str)
+        if not is_number:
             raise InputError(name, given, "must be given in absolute terms: the deck has no such number")
         return Range(*sorted(float(factor) * known.si for factor in given))
-    if isinstance(given, str) or not np.iterable(given) or len(given) != 2:
+    is_pair = (
+        not isinstance(given, str) and np.iterable(given) and isinstance(given, Sized) and len(given) == 2
+    )
+    if not is_pair:
         rule = "must be a pair of limits, a Range, Normal or Relative, or a distribution of scipy.stats"
         raise InputError(name, given, rule)
     first, second = (float(_values(name, value, known)) for value in given)
@@ -265,7 +275,7 @@ def _distribution(name: str, given: Any, known: Quantity) -> Any:
 # Laying out ---------------------------------------------------------------------------------------
 
 
-def _outer_product(read: dict[str, NDArray], units: dict[str, str]) -> Designs:
+def _outer_product(read: dict[str, Array], units: dict[str, str]) -> Designs:
     axes = {name: np.atleast_1d(values) for name, values in read.items()}
     _check_size(int(np.prod([len(axis) for axis in axes.values()], dtype=float)))
     grids = np.meshgrid(*axes.values(), indexing="ij")
@@ -274,11 +284,11 @@ def _outer_product(read: dict[str, NDArray], units: dict[str, str]) -> Designs:
     )
 
 
-def _axes_of(axes: dict[str, NDArray]) -> dict[str, NDArray]:
+def _axes_of(axes: dict[str, Array]) -> dict[str, Array]:
     return axes or {DESIGN: np.arange(1)}  # a study of nothing but airspeeds
 
 
-def _side_by_side(read: dict[str, NDArray], units: dict[str, str]) -> Designs:
+def _side_by_side(read: dict[str, Array], units: dict[str, str]) -> Designs:
     lengths = {name: values.size for name, values in read.items() if values.ndim}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name} has {length}" for name, length in lengths.items())
@@ -289,7 +299,7 @@ def _side_by_side(read: dict[str, NDArray], units: dict[str, str]) -> Designs:
 
 
 def _sampled(
-    method: str, inputs: Mapping[str, Any], size: int, seed: int, draw: Callable, **extra: Any
+    method: str, inputs: Mapping[str, Any], size: int, seed: int, draw: Callable[..., Array], **extra: Any
 ) -> Plan:
     if not inputs:
         raise InputError("inputs", None, "must have at least one input to sample")
@@ -311,23 +321,26 @@ def _sampled(
     return Plan(dict(inputs), lay_out, _distribution)
 
 
-def _draw_latin_hypercube(inputs: int, size: int, seed: int) -> NDArray:
+def _draw_latin_hypercube(inputs: int, size: int, seed: int) -> Array:
     from scipy.stats import qmc
 
-    return qmc.LatinHypercube(inputs, rng=seed).random(size)
+    shares: Array = qmc.LatinHypercube(inputs, rng=seed).random(size)
+    return shares
 
 
-def _draw_sobol(inputs: int, size: int, seed: int) -> NDArray:
+def _draw_sobol(inputs: int, size: int, seed: int) -> Array:
     from scipy.stats import qmc
 
-    return qmc.Sobol(inputs, rng=seed).random(size)
+    shares: Array = qmc.Sobol(inputs, rng=seed).random(size)
+    return shares
 
 
-def _draw_saltelli(inputs: int, size: int, seed: int, second_order: bool) -> NDArray:
+def _draw_saltelli(inputs: int, size: int, seed: int, second_order: bool) -> Array:
     from SALib.sample import sobol as salib_sobol
 
     unit = {"num_vars": inputs, "names": [str(place) for place in range(inputs)], "bounds": [[0, 1]] * inputs}
-    return salib_sobol.sample(unit, size, calc_second_order=second_order, seed=seed)
+    shares: Array = salib_sobol.sample(unit, size, calc_second_order=second_order, seed=seed)
+    return shares
 
 
 def _check_power_of_two(size: int) -> None:

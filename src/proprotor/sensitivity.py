@@ -9,11 +9,12 @@ damping that is -Re λ_p / Re λ_V.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.crossings import growth_rate
 from proprotor.eigenvalue_derivatives import STEP, defect, differences, eigenvalue_change, matrix_derivatives
 from proprotor.errors import InputError, unknown_name
@@ -35,11 +36,11 @@ NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
 
 
 def input_rates(
-    linearize: Callable[[Mapping[str, NDArray]], LinearModel],
+    linearize: Callable[[Mapping[str, Array]], LinearModel],
     values: Mapping[str, float],
     model: LinearModel,
     modes: Modes,
-) -> NDArray:
+) -> Array:
     """Derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
 
     Parameters
@@ -61,7 +62,7 @@ def input_rates(
     return eigenvalue_change(model, matrix_derivatives(linearize(moved)), modes)
 
 
-def damping_rate(values: NDArray, changes: NDArray) -> NDArray:
+def damping_rate(values: Array, changes: Array) -> Array:
     """Change of the damping ratio -Re λ/|λ| with a change of λ; NaN for a root at zero."""
     size = np.abs(values)
     with np.errstate(all="ignore"):
@@ -135,11 +136,14 @@ def _chosen(case: Case, wrt: Sequence[str] | None) -> dict[str, Datum]:
 
 def _rates(
     case: Case, inputs: Mapping[str, Datum], airspeed: float, modes: Modes, model: LinearModel, options: Any
-) -> tuple[NDArray, NDArray]:
+) -> tuple[Array, Array]:
     """Derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) had them by a complex step."""
 
-    def linearize(values: Mapping[str, NDArray]) -> LinearModel:
+    def linearize(values: Mapping[str, Array]) -> LinearModel:
         return case.vary(values).linearize(airspeed, **options)
+
+    def of_one(path: str, value: Array) -> LinearModel:
+        return linearize({path: value})
 
     values = {path: float(number.si) for path, number in inputs.items()}
     try:
@@ -154,7 +158,7 @@ def _rates(
         rates[exact] = input_rates(linearize, analytic, model, modes)
     for place in np.flatnonzero(~exact):
         path = list(values)[place]
-        changes = differences(lambda value, path=path: linearize({path: value}), np.array(values[path]))
+        changes = differences(partial(of_one, path), np.array(values[path]))
         rates[place] = eigenvalue_change(model, changes, modes)
     return rates, exact
 
@@ -255,7 +259,7 @@ def _of_modes(
 
 
 def _dataset(
-    inputs: Mapping[str, Datum], dims: tuple[str, ...], derivative: NDArray, units: str, exact: NDArray
+    inputs: Mapping[str, Datum], dims: tuple[str, ...], derivative: Array, units: str, exact: Array
 ) -> xarray.Dataset:
     import xarray  # here, because it takes long to import
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import HUB, LinearModel
 from proprotor.support import NormalModes
@@ -36,6 +37,11 @@ class MountedRotor(NamedTuple):
     rigid_mass: ArrayLike | None = None
 
 
+Placed = tuple[
+    MountedRotor, Array, slice
+]  # with the motion of its hub, and the places of its own coordinates
+
+
 def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> LinearModel:
     """The coupled model of a support and its rotors.
 
@@ -60,7 +66,7 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         raise InputError("rotors", None, "must be one or more")
     names = list(support.names)
     n = len(names)
-    placed = {}
+    placed: dict[str, Placed] = {}
     for name, rotor in rotors.items():
         hub = _hub_of(name, rotor, n)
         own = rotor.model.dofs[len(HUB) :]
@@ -73,10 +79,14 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     shape = np.broadcast_shapes(
         *(rotor.model.M.shape[:-2] for rotor in rotors.values()), support.mass.shape[:-2]
     )
-    matrices = {}
-    for kind, own in (("M", _mass_alone(support, placed)), ("C", support.damping), ("K", support.stiffness)):
+    matrices: dict[str, Any] = {}
+    for kind, of_support in (
+        ("M", _mass_alone(support, placed)),
+        ("C", support.damping),
+        ("K", support.stiffness),
+    ):
         whole = np.zeros((*shape, len(names), len(names)))
-        whole[..., :n, :n] = own
+        whole[..., :n, :n] = of_support
         for rotor, hub, places in placed.values():
             to_rotor = np.zeros((len(rotor.model.dofs), len(names)))
             to_rotor[: len(HUB), :n] = hub
@@ -88,7 +98,7 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     return replace(first.model, **matrices, B=None, dofs=tuple(names), hub=motion, rotor=None)
 
 
-def _hub_of(name: str, rotor: MountedRotor, n: int) -> NDArray:
+def _hub_of(name: str, rotor: MountedRotor, n: int) -> Array:
     """Hub motion in the axes of the rotor's own model."""
     if rotor.model.dofs[: len(HUB)] != HUB:
         raise InputError(
@@ -102,7 +112,7 @@ def _hub_of(name: str, rotor: MountedRotor, n: int) -> NDArray:
     return MIRROR @ hub if rotor.mirrored else hub
 
 
-def _mass_alone(support: NormalModes, placed: Mapping[str, tuple]) -> NDArray:
+def _mass_alone(support: NormalModes, placed: Mapping[str, Placed]) -> Array:
     mass = np.array(support.mass)
     if support.includes_rotor:
         for name, (rotor, hub, _) in placed.items():

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from proprotor.arrays import Array
 
 
-def in_metres_per_second(airspeed: Any) -> NDArray:
+def in_metres_per_second(airspeed: Any) -> Array:
     """Airspeed as an array in m/s.
 
     Parameters

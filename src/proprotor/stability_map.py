@@ -11,8 +11,9 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.crossings import growth
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
@@ -30,20 +31,22 @@ _HALVINGS = 60
 _CLOSE = 1e-10  # of an edge
 _NEUTRAL = 1e-9  # of the largest eigenvalue: growth that says nothing
 
-Plane = Callable[[NDArray, NDArray], LinearModel]  # x and y (k,) to the models there
+Plane = Callable[[Array, Array], LinearModel]  # x and y (k,) to the models there
+Point = tuple[int, int]  # row and column in the grid
+Edge = tuple[Point, Point]
 
 
 class Edges(NamedTuple):
     """Edges of the grid on which the boundary crosses: the places of both ends and the crossing, (k, 2) each."""
 
-    first: NDArray
-    last: NDArray
-    crossing: NDArray
+    first: Array
+    last: Array
+    crossing: Array
 
 
-def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[NDArray, NDArray]:
+def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
     """Largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points."""
-    good = np.isfinite(model.M).all(axis=(-2, -1))
+    good = np.asarray(np.isfinite(model.M).all(axis=(-2, -1)))
     best, value = np.full(good.shape, np.nan), np.full(good.shape, np.nan, dtype=complex)
     if good.any():
         values = np.linalg.eigvals(state_matrix(some_points(model, good))).astype(complex)
@@ -91,6 +94,8 @@ def stability_map(
     InputError
         For axes that are not two, values that do not rise, an unknown input, or an airspeed that is missing.
     """
+    from proprotor.design import design_inputs
+
     names, values = _axes(axes)
     plane = _plane(case, names, airspeed, options)
     x, y = values
@@ -102,12 +107,15 @@ def stability_map(
     shape = (len(y), len(x))
     largest, value, reason = (np.concatenate(part).reshape(shape) for part in zip(*parts, strict=True))
     edges, solves = _crossings(plane, x, y, largest, level)
-    return _dataset(names, values, largest, value, reason, _lines(edges, largest)).assign_attrs(
+    found = _dataset(names, values, largest, value, reason, _lines(edges, largest)).assign_attrs(
         level=level, eigen_solves=int(np.isfinite(largest).sum()) + solves
     )
+    for name in names:
+        found[name].attrs["units"] = "m/s" if name == AIRSPEED else design_inputs(case)[name].unit
+    return found
 
 
-def _axes(axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[NDArray, NDArray]]:
+def _axes(axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[Array, Array]]:
     if len(axes) != 2:
         raise InputError("axes", ", ".join(axes), "must be two inputs")
     names = tuple(axes)
@@ -118,7 +126,8 @@ def _axes(axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[NDArray
     for name, given in zip(names, values, strict=True):
         if given.ndim != 1 or len(given) < 2 or not np.all(np.diff(given) > 0):
             raise InputError(name, given.tolist(), "must be a list of values that rise")
-    return names, values
+    (x, y), (along_x, along_y) = names, values
+    return (x, y), (along_x, along_y)
 
 
 def _plane(case: Case, names: tuple[str, str], airspeed: Any, options: Mapping[str, Any]) -> Plane:
@@ -127,7 +136,7 @@ def _plane(case: Case, names: tuple[str, str], airspeed: Any, options: Mapping[s
     if AIRSPEED in names and airspeed is not None:
         raise InputError("airspeed", airspeed, "is one of the axes already")
 
-    def linearize(x: NDArray, y: NDArray) -> LinearModel:
+    def linearize(x: Array, y: Array) -> LinearModel:
         given = dict(zip(names, (x, y), strict=True))
         speed = given.pop(AIRSPEED, airspeed)
         return case.vary(given).linearize(speed, **options)
@@ -135,12 +144,12 @@ def _plane(case: Case, names: tuple[str, str], airspeed: Any, options: Mapping[s
     return linearize
 
 
-def _evaluated(plane: Plane, x: NDArray, y: NDArray, level: float) -> tuple[NDArray, NDArray, NDArray]:
+def _evaluated(plane: Plane, x: Array, y: Array, level: float) -> tuple[Array, Array, Array]:
     model = plane(x, y)
     return *largest_growth(model, level), model.trim.reason
 
 
-def _crossings(plane: Plane, x: NDArray, y: NDArray, largest: NDArray, level: float) -> tuple[Edges, int]:
+def _crossings(plane: Plane, x: Array, y: Array, largest: Array, level: float) -> tuple[Edges, int]:
     """The boundary on the edges of the grid, by false position with halving (Illinois) on all of them at once."""
     unstable = largest > 0
     good = np.isfinite(largest)
@@ -177,16 +186,17 @@ def _crossings(plane: Plane, x: NDArray, y: NDArray, largest: NDArray, level: fl
     return Edges(first, last, start + share[:, None] * (end - start)), solves
 
 
-def _between(low: NDArray, high: NDArray, values: NDArray) -> NDArray:
+def _between(low: Array, high: Array, values: Array) -> Array:
     """Where the line through both values is zero, kept off the ends."""
     width = high - low
     with np.errstate(all="ignore"):
         part = values[0] / (values[0] - values[1])
     part = np.where(np.isfinite(part), part, 0.5)
-    return low + width * np.clip(part, 1e-9, 1 - 1e-9)
+    between: Array = low + width * np.clip(part, 1e-9, 1 - 1e-9)
+    return between
 
 
-def _lines(edges: Edges, largest: NDArray) -> NDArray:
+def _lines(edges: Edges, largest: Array) -> Array:
     """Crossings (vertices, 2) in the order of the lines they form, parted by NaN."""
     place = {
         (tuple(first), tuple(last)): number
@@ -197,7 +207,7 @@ def _lines(edges: Edges, largest: NDArray) -> NDArray:
         for one, other in _in_cell(place, row, column, largest):
             neighbours[one].append(other)
             neighbours[other].append(one)
-    ordered: list[NDArray] = []
+    ordered: list[Array] = []
     left = set(neighbours)
     while left:
         ends = [number for number in left if len(neighbours[number]) == 1]
@@ -219,30 +229,29 @@ def _walk(start: int, neighbours: Mapping[int, list[int]], left: set[int]) -> li
     return line
 
 
-def _in_cell(place: Mapping[tuple, int], row: int, column: int, largest: NDArray) -> list[tuple[int, int]]:
+def _in_cell(place: Mapping[Edge, int], row: int, column: int, largest: Array) -> list[tuple[int, int]]:
     """Pairs of crossings that the boundary joins within one cell; two pairs at a saddle, by the mean of its corners."""
     a, b, c, d = (row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)
-    sides = {
-        name: place.get(edge) for name, edge in zip("sent", ((a, b), (b, c), (d, c), (a, d)), strict=True)
-    }
-    found = [number for number in sides.values() if number is not None]
+    sides = ((a, b), (b, c), (d, c), (a, d))
+    found = [place[edge] for edge in sides if edge in place]
     if len(found) == 2:
         return [(found[0], found[1])]
     if len(found) < 4:
         return []
+    first, second, third, fourth = found
     centre = np.mean([largest[corner] for corner in (a, b, c, d)]) > 0
     if centre == (largest[a] > 0):  # a and c are joined: the boundary cuts off b and d
-        return [(sides["s"], sides["e"]), (sides["n"], sides["t"])]
-    return [(sides["s"], sides["t"]), (sides["e"], sides["n"])]
+        return [(first, second), (third, fourth)]
+    return [(first, fourth), (second, third)]
 
 
 def _dataset(
     names: tuple[str, str],
-    values: tuple[NDArray, NDArray],
-    largest: NDArray,
-    value: NDArray,
-    reason: NDArray,
-    boundary: NDArray,
+    values: tuple[Array, Array],
+    largest: Array,
+    value: Array,
+    reason: Array,
+    boundary: Array,
 ) -> xarray.Dataset:
     import xarray  # here, because it takes long to import
 

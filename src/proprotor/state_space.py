@@ -12,14 +12,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import HUB, INPUTS, LinearModel
 from proprotor.modes import held_coordinates, state_matrix
 
 if TYPE_CHECKING:
     import control
+
+Rows = tuple[Array, Array, Array]  # of displacements, rates and accelerations, by the states
+Block = tuple[tuple[str, ...], Array, Array]  # names of outputs, their rows of C and of D
 
 LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 
@@ -38,10 +41,10 @@ class StateSpace:
         and the rotor's own coordinates; of an azimuth that no shaft holds, the rate.
     """
 
-    A: NDArray
-    B: NDArray
-    C: NDArray
-    D: NDArray
+    A: Array
+    B: Array
+    C: Array
+    D: Array
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -94,8 +97,8 @@ def state_space(model: LinearModel) -> StateSpace:
 
 
 def _outputs(
-    model: LinearModel, motion: tuple, acceleration_by_input: NDArray
-) -> tuple[tuple[str, ...], NDArray, NDArray]:
+    model: LinearModel, motion: Rows, acceleration_by_input: Array
+) -> tuple[tuple[str, ...], Array, Array]:
     """Names, rows of C and of D."""
     hub = np.eye(len(HUB), len(model.dofs)) if model.hub is None else model.hub
     own = [place for place, name in enumerate(model.dofs) if model.hub is None or not np.any(hub[..., place])]
@@ -104,7 +107,7 @@ def _outputs(
     loads, loads_by_input = _hub_loads(model, motion, acceleration_by_input)
     shape = acceleration.shape[:-2]
     none = np.zeros((len(HUB), len(INPUTS)))
-    blocks = [
+    blocks: list[Block] = [
         (HUB, hub @ displacement, none),
         (tuple(f"{name} rate" for name in HUB), hub @ rate, none),
         (tuple(f"{name} acceleration" for name in HUB), hub @ acceleration, hub @ acceleration_by_input),
@@ -112,16 +115,14 @@ def _outputs(
         *_own_motion(model, own, displacement, rate),
     ]
     names = tuple(name for part, _, _ in blocks for name in part)
-    stacked = [
-        np.concatenate(
-            [np.broadcast_to(block[kind], (*shape, *block[kind].shape[-2:])) for block in blocks], axis=-2
-        )
-        for kind in (1, 2)
-    ]
-    return names, *stacked
+    rows, feedthrough = (
+        np.concatenate([np.broadcast_to(part, (*shape, *part.shape[-2:])) for part in parts], axis=-2)
+        for parts in ([block[1] for block in blocks], [block[2] for block in blocks])
+    )
+    return names, rows, feedthrough
 
 
-def _own_motion(model: LinearModel, own: list[int], displacement: NDArray, rate: NDArray) -> list[tuple]:
+def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: Array) -> list[Block]:
     """Displacements of the rotor's own coordinates, and the rate of one that is no displacement."""
     held = held_coordinates(model)
     moved, turning = ([p for p in own if (p in held) is kept] for kept in (True, False))
@@ -135,7 +136,7 @@ def _own_motion(model: LinearModel, own: list[int], displacement: NDArray, rate:
     ]
 
 
-def _hub_loads(model: LinearModel, motion: tuple, acceleration_by_input: NDArray) -> tuple[NDArray, NDArray]:
+def _hub_loads(model: LinearModel, motion: Rows, acceleration_by_input: Array) -> tuple[Array, Array]:
     """Perturbation of the rotor's loads on the hub: minus the hub rows of the rotor alone, plus its inputs."""
     rotor = model if model.rotor is None else model.rotor
     if rotor.dofs[: len(HUB)] != HUB:
@@ -146,11 +147,13 @@ def _hub_loads(model: LinearModel, motion: tuple, acceleration_by_input: NDArray
     rows = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
     displacement, rate, acceleration = motion
     loads = -(rows["M"] @ acceleration + rows["C"] @ rate + rows["K"] @ displacement)
+    assert rotor.B is not None  # as its mounted model has inputs
     return loads, rotor.B[..., : len(HUB), :] - rows["M"] @ acceleration_by_input
 
 
-def _to_rotor(model: LinearModel) -> NDArray:
+def _to_rotor(model: LinearModel) -> Array:
     """Coordinates of the rotor alone in those of the mounted model."""
+    assert model.rotor is not None and model.hub is not None  # those of a mounted model
     own = model.rotor.dofs[len(HUB) :]
     rows = np.zeros((len(own), len(model.dofs)))
     for place, name in enumerate(own):

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
 
@@ -24,9 +25,9 @@ class NeutralDamping(NamedTuple):
         Motion of the model's coordinates, complex amplitudes of exp(iωt), of unit length.
     """
 
-    damping: NDArray
-    frequency: NDArray
-    shape: NDArray
+    damping: Array
+    frequency: Array
+    shape: Array
 
 
 def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
@@ -72,7 +73,7 @@ def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
     )
 
 
-def _frequencies(model: LinearModel, springs: NDArray) -> NDArray:
+def _frequencies(model: LinearModel, springs: Array) -> Array:
     """Frequencies (..., n²) at which a damping may be real, 0 in place of roots off the imaginary axis."""
     M, C, K = (getattr(model, name) for name in "MCK")
     mass, stiffness = (np.kron(matrix, springs) + np.kron(springs, matrix) for matrix in (M, K))

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 from warnings import warn
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from proprotor import study_workers
+from proprotor.arrays import Array
 from proprotor.checkpoint import Checkpoint
 from proprotor.errors import InputError, unknown_name
 from proprotor.fingerprint import fingerprint
@@ -123,12 +124,20 @@ class _Study:
 
     analysis: Analysis
     designs: Designs
-    airspeed: NDArray | None  # None where it is among the inputs
+    airspeed: Array | None  # None where it is among the inputs
     scalar_airspeed: bool
-    found: dict[str, NDArray] = field(default_factory=dict)
+    found: dict[str, Array] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, case, inputs, airspeed, quantities, tolerance, options) -> _Study:
+    def of(
+        cls,
+        case: Case,
+        inputs: Any,
+        airspeed: Any,
+        quantities: Any,
+        tolerance: Any,
+        options: Mapping[str, Any],
+    ) -> _Study:
         quantities = _known_quantities(quantities)
         parse_options(options)
         plan = as_plan(inputs)
@@ -197,7 +206,7 @@ class _Study:
             leading = self.shape if it.on == POINT else self.shape[:1]
             self.found[name] = empty(it, (*leading, *(sizes[dim] for dim in it.dims)))
 
-    def put(self, block: tuple[slice, slice], results: Mapping[str, NDArray]) -> int:
+    def put(self, block: tuple[slice, slice], results: Mapping[str, Array]) -> int:
         """Put the results of a batch into their place; how many points failed."""
         rows, columns = block
         for name, it in variables(self.analysis.quantities).items():
@@ -220,7 +229,7 @@ class _Study:
             dims = (*axes, *[AIRSPEED] * (over_speeds and it.on == POINT), *it.dims)
             attributes = {"long_name": it.meaning} | ({"units": it.units} if it.units else {})
             data[name] = (dims, array, attributes)
-        coordinates = dict(self.designs.coordinates)
+        coordinates: dict[str, Any] = dict(self.designs.coordinates)
         if self.airspeed is not None:
             speeds = self.airspeed if over_speeds else self.airspeed[0]
             coordinates[AIRSPEED] = ((AIRSPEED,) * over_speeds, speeds, {"units": "m/s"})
@@ -323,7 +332,7 @@ def _known_quantities(quantities: str | Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in QUANTITIES if name in chosen)
 
 
-def _check_range(speeds: NDArray | None, quantity: str) -> None:
+def _check_range(speeds: Array | None, quantity: str) -> None:
     if speeds is None or speeds.ndim != 1 or speeds.size < 2 or not np.all(np.diff(speeds) > 0):
         told = "among the inputs" if speeds is None else np.array2string(speeds, threshold=4)
         raise InputError(AIRSPEED, told, f'must be a range of increasing speeds for quantities="{quantity}"')
@@ -335,7 +344,7 @@ def _positive(name: str, value: ArrayLike) -> float:
     return float(value)
 
 
-def _coordinates(case: Case, speeds: NDArray, options: Mapping[str, Any]) -> tuple[tuple[str, ...], int]:
+def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple[tuple[str, ...], int]:
     """Coordinates and number of eigenvalues of the case's model."""
     few = speeds[np.unique(np.linspace(0, len(speeds) - 1, _MOST_TRIED).astype(int))]
     few = np.roll(few, -(len(few) // 2))  # the middle is the likeliest to have a trim

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from proprotor import flutter_scan
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.modes import (
     coordinate_motion,
@@ -113,7 +113,7 @@ def variables(quantities: tuple[str, ...]) -> dict[str, Variable]:
     return {name: it for quantity in quantities for name, it in VARIABLES[quantity].items()} | ALWAYS
 
 
-def empty(variable: Variable, shape: tuple[int, ...]) -> NDArray:
+def empty(variable: Variable, shape: tuple[int, ...]) -> Array:
     """An array of a variable with nothing found yet."""
     dtype = object if variable.dtype is str else variable.dtype
     return np.full(shape, "" if variable.dtype is str else np.nan, dtype=dtype)
@@ -126,8 +126,8 @@ class Batch:
     inputs: SI values (designs,) by deck path, airspeed among them where it varies with the design; airspeed (speeds,).
     """
 
-    inputs: Mapping[str, NDArray]
-    airspeed: NDArray | None
+    inputs: Mapping[str, Array]
+    airspeed: Array | None
 
     def some(self, rows: Any, columns: Any = slice(None)) -> Batch:
         """Some of the designs, at some of the airspeeds."""
@@ -141,12 +141,12 @@ class Batch:
         return len(next(iter(self.inputs.values()))) if self.inputs else 1, speeds
 
     @property
-    def speeds(self) -> NDArray:
+    def speeds(self) -> Array:
         """Airspeeds that broadcast to the shape of the batch."""
         return self.inputs[AIRSPEED][:, None] if self.airspeed is None else self.airspeed
 
     @property
-    def numbers(self) -> dict[str, NDArray]:
+    def numbers(self) -> dict[str, Array]:
         """Numbers of the deck that vary, (designs, 1)."""
         return {name: values[:, None] for name, values in self.inputs.items() if name != AIRSPEED}
 
@@ -177,7 +177,7 @@ class Analysis:
     states: int = 0
     tolerance: float = flutter_scan.TOLERANCE
 
-    def __call__(self, batch: Batch) -> dict[str, NDArray]:
+    def __call__(self, batch: Batch) -> dict[str, Array]:
         """All variables of a batch: (designs, speeds, …) those of points, (designs,) those of designs."""
         found = self._blank(batch.shape)
         every = np.arange(batch.shape[0]), np.arange(batch.shape[1])
@@ -191,7 +191,7 @@ class Analysis:
             self._find_flutter(found, batch)
         return {name: found[name] for name in variables(self.quantities)}
 
-    def _blank(self, shape: tuple[int, int]) -> dict[str, NDArray]:
+    def _blank(self, shape: tuple[int, int]) -> dict[str, Array]:
         sizes = {"state": self.states, "dof": len(self.dofs)}
         wanted = variables(self.quantities) | (_SCAN if "flutter" in self.quantities else {})
         return {
@@ -199,7 +199,7 @@ class Analysis:
             for name, it in wanted.items()
         }
 
-    def _refusals(self, batch: Batch) -> NDArray:
+    def _refusals(self, batch: Batch) -> Array:
         """Why each design cannot be, empty where it can: those refused together are halved until one stands alone."""
         reasons = np.full(batch.shape[0], "", dtype=object)
         parts = [np.arange(batch.shape[0])] if batch.numbers else []
@@ -222,7 +222,7 @@ class Analysis:
             error = plain
         return " ".join(str(error).split("\n"))
 
-    def _fill(self, found: dict[str, NDArray], batch: Batch, rows: NDArray, columns: NDArray) -> None:
+    def _fill(self, found: dict[str, Array], batch: Batch, rows: Array, columns: Array) -> None:
         """Analyse designs and airspeeds at once; where that fails, halves of them, until what is wrong stands alone."""
         if not len(rows) or not len(columns):
             return
@@ -246,7 +246,7 @@ class Analysis:
         self._put(found, rows, columns, points)
 
     @staticmethod
-    def _put(found: dict[str, NDArray], rows: NDArray, columns: NDArray, points: dict[str, NDArray]) -> None:
+    def _put(found: dict[str, Array], rows: Array, columns: Array, points: dict[str, Array]) -> None:
         for name in found.keys() & points.keys():
             found[name][np.ix_(rows, columns) if VARIABLE[name].on == POINT else rows] = points[name]
 
@@ -257,14 +257,14 @@ class Analysis:
             return True
         return False
 
-    def _model(self, batch: Batch, speeds: NDArray) -> LinearModel:
+    def _model(self, batch: Batch, speeds: Array) -> LinearModel:
         case = self.case.vary(batch.numbers) if batch.numbers else self.case
         shape = np.broadcast_shapes(np.shape(speeds), (batch.shape[0], 1))
         return case.linearize(np.broadcast_to(speeds, shape), **self.options)
 
-    def _points(self, batch: Batch) -> dict[str, NDArray]:
+    def _points(self, batch: Batch) -> dict[str, Array]:
         model = self._model(batch, batch.speeds)
-        found: dict[str, NDArray] = {name: getattr(model.trim, name) for name in ALWAYS}
+        found: dict[str, Array] = {name: getattr(model.trim, name) for name in ALWAYS}
         if "trim" in self.quantities:
             found |= {name: getattr(model.trim, name) for name in VARIABLES["trim"]}
         if "modes" in self.quantities:
@@ -279,13 +279,13 @@ class Analysis:
 
     # Flutter speed --------------------------------------------------------------------------------
 
-    def _find_flutter(self, found: dict[str, NDArray], batch: Batch) -> None:
-        scan = (found["growth_rate"], batch.airspeed, found["reason"], found["neutral_growth"])
+    def _find_flutter(self, found: dict[str, Array], batch: Batch) -> None:
+        scan = (found["growth_rate"], batch.speeds, found["reason"], found["neutral_growth"])
         bracket = flutter_scan.brackets(*scan)
         found["flutter_note"][:] = bracket.note
         failure = np.full(batch.shape[0], "", dtype=object)
 
-        def growth(rows: NDArray, speeds: NDArray) -> NDArray:
+        def growth(rows: Array, speeds: Array) -> Array:
             values, failure[rows] = self._one_speed_each(batch.some(rows), speeds, self._growth_of)
             return values.get("growth_rate", np.full(len(rows), np.nan))
 
@@ -300,8 +300,8 @@ class Analysis:
             found["flutter_note"][row] = failure[row] or "the search between two airspeeds did not converge"
 
     def _one_speed_each(
-        self, batch: Batch, speeds: NDArray, analyse: Callable[[LinearModel], dict[str, NDArray]]
-    ) -> tuple[dict[str, NDArray], NDArray]:
+        self, batch: Batch, speeds: Array, analyse: Callable[[LinearModel], dict[str, Array]]
+    ) -> tuple[dict[str, Array], Array]:
         """What an analysis finds for each design at an airspeed of its own (designs,), and why it failed."""
         try:
             model = self._model(batch, speeds[:, None])
@@ -311,18 +311,18 @@ class Analysis:
                 return {}, np.array([self._told(batch, error)], dtype=object)
         parts = np.array_split(np.arange(len(speeds)), 2)
         halves = [self._one_speed_each(batch.some(part), speeds[part], analyse) for part in parts]
-        values = {}
+        values: dict[str, Array] = {}
         for part, (half, _) in zip(parts, halves, strict=True):
             for name, array in half.items():
                 missing = "" if array.dtype == object else np.nan
                 values.setdefault(name, np.full(len(speeds), missing, dtype=array.dtype))[part] = array
         return values, np.concatenate([reason for _, reason in halves])
 
-    def _growth_of(self, model: LinearModel) -> dict[str, NDArray]:
+    def _growth_of(self, model: LinearModel) -> dict[str, Array]:
         return _least_stable(_eigenvalues(model, self.states))
 
     @staticmethod
-    def _mode_at_boundary(model: LinearModel) -> dict[str, NDArray]:
+    def _mode_at_boundary(model: LinearModel) -> dict[str, Array]:
         """Frequency and main coordinate of the mode with the largest real part."""
         system = eigensystem(model)
         place = np.nan_to_num(_growth(system.values), nan=-np.inf).argmax(axis=-1)[..., None]
@@ -332,7 +332,7 @@ class Analysis:
         return {"flutter_frequency": frequency, "flutter_coordinate": main}
 
 
-def _good_part(model: LinearModel) -> tuple[NDArray | None, LinearModel]:
+def _good_part(model: LinearModel) -> tuple[Array | None, LinearModel]:
     """Which points have a trim, None for all of them, and the model there."""
     good = np.asarray(model.trim.converged)
     if good.all():
@@ -341,7 +341,7 @@ def _good_part(model: LinearModel) -> tuple[NDArray | None, LinearModel]:
     return good, replace(model, **parts)
 
 
-def _at(good: NDArray | None, found: NDArray, shape: tuple[int, ...]) -> NDArray:
+def _at(good: Array | None, found: Array, shape: tuple[int, ...]) -> Array:
     """What was found at the good points, in the shape of the batch, NaN at the others."""
     if good is None:
         return found
@@ -350,7 +350,7 @@ def _at(good: NDArray | None, found: NDArray, shape: tuple[int, ...]) -> NDArray
     return whole
 
 
-def _eigenvalues(model: LinearModel, states: int) -> NDArray:
+def _eigenvalues(model: LinearModel, states: int) -> Array:
     """All eigenvalues (..., states), by |Im s| and the one above the real axis first; NaN at failed points."""
     good, part = _good_part(model)
     if good is not None and not good.any():
@@ -360,11 +360,11 @@ def _eigenvalues(model: LinearModel, states: int) -> NDArray:
     return _at(good, values, model.M.shape[:-2])
 
 
-def _by_frequency(values: NDArray) -> NDArray:
+def _by_frequency(values: Array) -> Array:
     return np.lexsort((values.real, values.imag < 0, np.abs(values.imag)), axis=-1)
 
 
-def _eigenvalues_and_vectors(model: LinearModel, states: int) -> dict[str, NDArray]:
+def _eigenvalues_and_vectors(model: LinearModel, states: int) -> dict[str, Array]:
     """The same with the motion of the coordinates (..., n, states), its largest component 1."""
     good, part = _good_part(model)
     n, shape = len(model.dofs), model.M.shape[:-2]
@@ -391,7 +391,7 @@ def _eigenvalues_and_vectors(model: LinearModel, states: int) -> dict[str, NDArr
     }
 
 
-def _followed(model: LinearModel, with_vectors: bool) -> dict[str, NDArray]:
+def _followed(model: LinearModel, with_vectors: bool) -> dict[str, Array]:
     """Eigenvalues by frequency and followed along the airspeeds, and the motion of the coordinates if asked for."""
     spectrum = decomposition(model)
     values, right = spectrum
@@ -413,20 +413,21 @@ def _followed(model: LinearModel, with_vectors: bool) -> dict[str, NDArray]:
     return found
 
 
-def _largest_one(shapes: NDArray) -> NDArray:
+def _largest_one(shapes: Array) -> Array:
     """Columns divided by their largest component."""
     size = np.nan_to_num(shapes.real**2 + shapes.imag**2)
     with np.errstate(all="ignore"):
-        return shapes / np.take_along_axis(shapes, size.argmax(axis=-2)[..., None, :], -2)
+        scaled: Array = shapes / np.take_along_axis(shapes, size.argmax(axis=-2)[..., None, :], -2)
+    return scaled
 
 
-def _growth(values: NDArray) -> NDArray:
+def _growth(values: Array) -> Array:
     """Real part of each eigenvalue; that of a root at zero does not count."""
     size = np.abs(values)
     return np.where(size <= _NEUTRAL * size.max(axis=-1, keepdims=True), -np.inf, values.real)
 
 
-def _least_stable(values: NDArray) -> dict[str, NDArray]:
+def _least_stable(values: Array) -> dict[str, Array]:
     """Growth of the batch's points, damping and frequency of the mode damped least, from eigenvalues (..., states)."""
     size = np.abs(values)
     largest = size.max(axis=-1)

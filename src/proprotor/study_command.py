@@ -7,7 +7,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import click
+import numpy as np
 
+from proprotor.commands.arguments import case_argument, loaded_case, settings_of
+from proprotor.commands.output import print_json
 from proprotor.errors import InputError
 
 if TYPE_CHECKING:
@@ -15,12 +18,13 @@ if TYPE_CHECKING:
 
     from proprotor.sampling import Plan
 
+Command = Callable[..., Any]
 SAMPLES = ("latin-hypercube", "sobol", "saltelli")
 _OF_DECK = " of deck"
 _REASONS = 5  # of failures, the most frequent first
 
 
-def study_command(model_options: Callable[[Callable], Callable], epilog: str) -> click.Command:
+def study_command(model_options: Callable[[Command], Command], epilog: str) -> click.Command:
     """The command, with a flag for each option of the model.
 
     Parameters
@@ -31,13 +35,11 @@ def study_command(model_options: Callable[[Callable], Callable], epilog: str) ->
         What stands at the end of the help.
     """
     return click.command("study", epilog=epilog, short_help="Many designs: grids, lists and samples.")(
-        click.argument("case")(
-            _options(model_options(_study)),
-        )
+        case_argument(_options(model_options(_study)))
     )
 
 
-def _options(command: Callable) -> Callable:
+def _options(command: Command) -> Command:
     declared = (
         click.option(
             "--vary",
@@ -61,6 +63,7 @@ def _options(command: Callable) -> Callable:
         click.option(
             "--checkpoint", metavar="FOLDER", help="Keep finished batches, and go on from those kept."
         ),
+        click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON instead of text."),
         click.option("--workers", type=click.IntRange(1), help="Processes; by default one for each core."),
     )
     for option in reversed(declared):
@@ -70,6 +73,7 @@ def _options(command: Callable) -> Callable:
 
 def _study(
     case: str,
+    settings: tuple[str, ...],
     varied: tuple[str, ...],
     speed: str,
     out: str | None,
@@ -78,6 +82,7 @@ def _study(
     seed: int,
     flutter: bool,
     checkpoint: str | None,
+    as_json: bool,
     workers: int | None,
     **options: Any,
 ) -> None:
@@ -92,7 +97,6 @@ def _study(
       proprotor study xv15 --vary "rotor.precone=1:4 deg" --vary "support.modes[chord].frequency=0.9:1.1 of deck"
         --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter --out study.nc --checkpoint batches
     """
-    from proprotor.case import load_case
     from proprotor.results_file import check_path, save_results
     from proprotor.study import study
     from proprotor.study_batch import DEFAULT_QUANTITIES
@@ -102,7 +106,7 @@ def _study(
         check_path(out, "--out")
     airspeeds = speeds(speed, "--speed")
     results = study(
-        load_case(case),
+        loaded_case(case, settings),
         _plan(varied, sample, size, seed),
         airspeeds if len(airspeeds) > 1 else airspeeds[0],
         (*DEFAULT_QUANTITIES, *["flutter"] * flutter),
@@ -113,7 +117,10 @@ def _study(
     if out:
         save_results(results, out)
         click.echo(f"Wrote {out}", err=True)
-    _print(results)
+    if as_json:
+        print_json(_summary(results) | {"set": settings_of(settings), "results": out})
+    else:
+        _print(results)
     if bool((results.reason != "").all()):
         raise click.exceptions.Exit(1)
 
@@ -133,7 +140,8 @@ def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> 
         inputs[path.strip()] = _limits(text, values) if sample else _values(values)
     if sample is None:
         return sampling.grid(inputs)
-    return getattr(sampling, sample.replace("-", "_"))(inputs, size, seed)
+    draw: Callable[..., Plan] = getattr(sampling, sample.replace("-", "_"))
+    return draw(inputs, size, seed)
 
 
 def _values(text: str) -> Any:
@@ -155,6 +163,35 @@ def _limits(whole: str, text: str) -> Any:
             raise InputError("--vary", whole, 'must have two factors, such as "0.9:1.1 of deck"') from None
     unit = high.strip().lstrip("0123456789.+-eE").strip()
     return f"{low.strip()} {unit}", high.strip()
+
+
+def _summary(results: xarray.Dataset) -> dict[str, Any]:
+    """The summary as plain data."""
+    reasons = Counter(str(text) for text in results.reason.values.ravel() if text)
+    summary: dict[str, Any] = {
+        "title": results.title,
+        "points": int(results.reason.size),
+        "failed": sum(reasons.values()),
+        "reasons": dict(reasons.most_common()),
+        "reservations": results.attrs["reservations"],
+    }
+    if "flutter_speed" in results:
+        found = np.asarray(results.flutter_speed.values, dtype=float).ravel()
+        notes = Counter(str(text) for text in results.flutter_note.values.ravel() if text)
+        speeds = np.sort(found[np.isfinite(found)])
+        return summary | {
+            "flutter speeds found": len(speeds),
+            "lowest flutter speed (m/s)": float(speeds[0]) if len(speeds) else None,
+            "median flutter speed (m/s)": float(np.median(speeds)) if len(speeds) else None,
+            "highest flutter speed (m/s)": float(speeds[-1]) if len(speeds) else None,
+            "notes": dict(notes.most_common()),
+        }
+    if summary["failed"] == summary["points"]:
+        return summary
+    return summary | {
+        "points unstable": int((results.growth_rate > 0).sum()),
+        "lowest damping (% of critical)": 100 * float(results.damping_ratio.min()),
+    }
 
 
 def _print(results: xarray.Dataset) -> None:

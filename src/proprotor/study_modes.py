@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.tracking import Spectrum, link
 
 
@@ -18,12 +18,12 @@ class Followed(NamedTuple):
     and at failed points. first (designs,) is the place of the first good airspeed, -1 where there is none.
     """
 
-    places: NDArray
-    quality: NDArray
-    first: NDArray
+    places: Array
+    quality: Array
+    first: Array
 
 
-def follow_designs(spectrum: Spectrum, start: NDArray) -> Followed:
+def follow_designs(spectrum: Spectrum, start: Array) -> Followed:
     """Follow states over failed points.
 
     Parameters

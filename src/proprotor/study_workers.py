@@ -14,7 +14,7 @@ import atexit
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from itertools import islice
 from queue import SimpleQueue
@@ -67,8 +67,10 @@ class Worker:
         environment = os.environ | dict.fromkeys(_ONE_THREAD, "1")
         environment["PYTHONPATH"] = os.pathsep.join(path or os.getcwd() for path in sys.path)
         command = [sys.executable, "-c", "from proprotor.study_worker import main; main()"]
-        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-        self.process = subprocess.Popen(command, env=environment, **pipes)
+        pipe = subprocess.PIPE
+        self.process = subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe)
+        assert self.process.stdin is not None and self.process.stdout is not None  # pipes
+        self.questions, self.answers = self.process.stdin, self.process.stdout
 
     def ask(self, message: Any) -> Any:
         """The answer to a message.
@@ -79,8 +81,8 @@ class Worker:
             When the process has died.
         """
         try:
-            send(self.process.stdin, message)
-            answer = receive(self.process.stdout)
+            send(self.questions, message)
+            answer = receive(self.answers)
         except BrokenPipeError:
             raise EOFError from None
         if isinstance(answer, Exception):
@@ -95,7 +97,7 @@ class Worker:
         """Have it end, at once."""
         self.process.kill()
         self.process.wait()
-        for pipe in (self.process.stdin, self.process.stdout):
+        for pipe in (self.questions, self.answers):
             with suppress(OSError):  # of what was not sent any more
                 pipe.close()
 
@@ -284,8 +286,9 @@ def on_cluster(analysis: Analysis, batches: Numbered, client: Client) -> Found:
 
 def threads_of(client: Client) -> int:
     """Batches that a cluster analyses at once."""
-    return max(1, sum(client.nthreads().values()))
+    threads: dict[str, int] = client.nthreads()
+    return max(1, sum(threads.values()))
 
 
-def _numbered(analysis: Callable, number: int, batch: Batch) -> tuple[int, dict[str, Any]]:
+def _numbered(analysis: Analysis, number: int, batch: Batch) -> tuple[int, dict[str, Any]]:
     return number, analysis(batch)

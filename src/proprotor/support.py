@@ -11,7 +11,9 @@ import numpy as np
 from proprotor.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from proprotor.arrays import Array
 
 HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
 
@@ -41,10 +43,10 @@ class NormalModes:
     """
 
     names: Sequence[str]
-    mass: ArrayLike
-    damping: ArrayLike
-    stiffness: ArrayLike
-    hub: ArrayLike
+    mass: Array  # these four are kept as arrays, whatever they were given as
+    damping: Array
+    stiffness: Array
+    hub: Array
     includes_rotor: bool
 
     symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
@@ -98,7 +100,7 @@ class NormalModes:
             mass=_diagonal(m),
             damping=_diagonal(2 * zeta * omega * m),
             stiffness=_diagonal(m * omega**2),
-            hub=hub,
+            hub=np.asarray(hub),
             includes_rotor=includes_rotor,
         )
 
@@ -150,7 +152,7 @@ def rigid_support() -> NormalModes:
     return NormalModes((), none, none, none, hub=np.zeros((len(HUB_AXES), 0)), includes_rotor=False)
 
 
-def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     array = np.array(value, dtype=complex if np.iscomplexobj(value) else float)
     if array.shape[-len(shape) :] != shape:
         raise InputError(field, f"array of shape {array.shape}", f"must have the shape {shape}")
@@ -160,7 +162,7 @@ def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.
     return array
 
 
-def _nowhere_negative(matrix: NDArray[np.float64]) -> bool:
+def _nowhere_negative(matrix: Array) -> bool:
     # Scaled to a unit diagonal, so that slug and slug·ft² in one matrix do not set the tolerance.
     diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
     if (diagonal < 0).any():
@@ -170,5 +172,5 @@ def _nowhere_negative(matrix: NDArray[np.float64]) -> bool:
     return bool((np.linalg.eigvalsh(scaled) > -1e-9).all())
 
 
-def _diagonal(values: NDArray) -> NDArray:
+def _diagonal(values: Array) -> Array:
     return values[..., None] * np.eye(values.shape[-1])

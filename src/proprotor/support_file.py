@@ -8,8 +8,9 @@ way has a minus sign before its name.
 from __future__ import annotations
 
 import os
+import sys
+import warnings
 import zipfile
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,12 +20,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from proprotor.errors import InputError, unknown_name
+from proprotor.matrix_market import MatrixMarketError, read_matrix
 from proprotor.modal_reduction import on_modes
 from proprotor.support import HUB_AXES, NormalModes
 
-_MOST_COORDINATES = 50_000  # in a file
-_MOST_DENSE = 5_000  # in a file without zeros left out
 _LARGEST = 500_000_000  # bytes of a file, unpacked
+_LARGEST_UNIT = 1e12  # m or kg
+_LARGEST_ENTRY = 1e100  # beyond it products overflow
 _SYMMETRY = 1e-6  # files have few digits
 _KEYS = ("mass", "stiffness", "damping", "dofs")
 
@@ -61,7 +63,7 @@ def read_npz(
     for name in ("mass", "stiffness", "dofs"):
         if name not in arrays:
             raise InputError("file", str(path), f"has no array {name}")
-    names = [str(name) for name in np.atleast_1d(arrays["dofs"])]
+    names = _texts(path, np.atleast_1d(arrays["dofs"]))
     return support_from_matrices(
         arrays["mass"], arrays["stiffness"], arrays.get("damping"), dofs=names, hub=hub, **options
     )
@@ -143,8 +145,9 @@ def support_from_matrices(
     matrices = {"mass": mass, "stiffness": stiffness} | ({} if damping is None else {"damping": damping})
     matrices = {name: _checked(name, matrix, len(names)) for name, matrix in matrices.items()}
     for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
-        if not np.isfinite(unit) or unit <= 0:
-            raise InputError(name, unit, "must be above zero")
+        if not 1 / _LARGEST_UNIT <= unit <= _LARGEST_UNIT:
+            rule = f"must be above zero, from {1 / _LARGEST_UNIT:g} to {_LARGEST_UNIT:g}"
+            raise InputError(name, unit, rule)
     # A translation counts lengths of the file's unit, a rotation radians: all entries then have one unit, of energy.
     motion = _hub_motion(names, hub)
     motion[:3] *= length_unit
@@ -158,6 +161,15 @@ def support_from_matrices(
         includes_rotor=includes_rotor,
         **matrices,
     ).support
+
+
+def _texts(path: Path, dofs: NDArray) -> list[str]:
+    """The names of an array, which may hold numbers that are no characters."""
+    if dofs.dtype.kind == "U":
+        numbers = np.frombuffer(dofs.tobytes(), dtype=np.dtype("u4").newbyteorder(dofs.dtype.byteorder))
+        if (numbers > sys.maxunicode).any():
+            raise InputError("file", str(path), "is damaged: dofs holds what is no text")
+    return [str(name) for name in dofs]
 
 
 def _names(dofs: Sequence[str]) -> tuple[str, ...]:
@@ -199,7 +211,10 @@ def _checked(name: str, matrix: Any, n: int) -> Any:
         raise InputError(name, size, f"must be {n} x {n}, one row and column for each of the dofs")
     if not np.isfinite(values).all():
         raise InputError(name, None, "must be finite: it has an entry that is infinite or not a number")
-    matrix = matrix.tocsc().astype(float) if sparse else values.astype(float)
+    with np.errstate(over="ignore"):  # of numbers wider than a float
+        matrix = matrix.tocsc().astype(float) if sparse else values.astype(float)
+    if not (np.abs(matrix.data if sparse else matrix) <= _LARGEST_ENTRY).all():
+        raise InputError(name, None, f"must not have an entry above {_LARGEST_ENTRY:g}")
     _check_symmetry(name, matrix)
     return (matrix + matrix.T) / 2
 
@@ -218,17 +233,9 @@ def _check_symmetry(name: str, matrix: Any) -> None:
 
 
 def _matrix_market(field: str, path: str | os.PathLike[str]) -> Any:
-    from scipy.io import mminfo, mmread  # here, because scipy is slow to import
-
     path = _existing(field, path)
     with _readable(field, path):
-        rows, columns, _, layout, kind, _ = mminfo(path)
-    if max(rows, columns) > (_MOST_DENSE if layout == "array" else _MOST_COORDINATES):
-        raise InputError(field, str(path), f"is too large: {rows} x {columns}")
-    if kind not in ("real", "integer"):
-        raise InputError(field, str(path), f"must hold real numbers, not {kind}")
-    with _readable(field, path):
-        return mmread(path, spmatrix=False)
+        return read_matrix(path)
 
 
 def _existing(field: str, path: str | os.PathLike[str]) -> Path:
@@ -247,19 +254,15 @@ def _existing(field: str, path: str | os.PathLike[str]) -> Path:
 def _readable(field: str, path: Path) -> Iterator[None]:
     """Whatever a damaged file does to its reader, told in one line."""
     try:
-        yield
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what an old file is warned of, it is read nevertheless
+            yield
     except InputError:
         raise
     except OSError as error:
         raise InputError(field, str(path), f"cannot be read ({error.strerror or error})") from None
-    except (
-        ValueError,
-        EOFError,
-        KeyError,
-        OverflowError,
-        MemoryError,
-        zipfile.BadZipFile,
-        zlib.error,
-    ) as error:
+    except MatrixMarketError as error:
+        raise InputError(field, str(path), str(error)) from None
+    except Exception as error:  # a third-party reader may raise anything; the file is at fault
         reason = "holds Python objects" if "pickle" in str(error) else "is damaged, or another kind of file"
         raise InputError(field, str(path), reason) from None

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.support import HUB_AXES, NormalModes, rigid_support, two_axis_pivot
 
@@ -151,7 +152,7 @@ def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any
     return made
 
 
-def _stacked(made: np.ndarray) -> tuple[NormalModes, Strips]:
+def _stacked(made: Array) -> tuple[NormalModes, Strips]:
     """One support and its strips, with the axes of the batch in front."""
     from proprotor.wing_aerodynamics import Strips
 
@@ -159,18 +160,15 @@ def _stacked(made: np.ndarray) -> tuple[NormalModes, Strips]:
     if not made.shape:
         return first, strips
 
-    def stack(pick: Callable[[Any], Any]) -> np.ndarray:
-        parts = np.stack([pick(one) for one in made.flat])
-        return parts.reshape(*made.shape, *parts.shape[1:])
+    def stack(parts: list[Array]) -> Array:
+        return np.stack(parts).reshape(*made.shape, *parts[0].shape)
 
-    matrices = {
-        name: stack(lambda one, name=name: getattr(one[0], name))
+    matrices: dict[str, Any] = {
+        name: stack([getattr(support, name) for support, _ in made.flat])
         for name in ("mass", "damping", "stiffness", "hub")
     }
-    return (
-        replace(first, **matrices),
-        Strips(*(stack(lambda one, k=k: one[1][k]) for k in range(len(strips)))),
-    )
+    together = zip(*(strips for _, strips in made.flat), strict=True)
+    return replace(first, **matrices), Strips(*(stack(list(parts)) for parts in together))
 
 
 def _must_be_real(given: Mapping[str, Any]) -> None:
@@ -193,6 +191,6 @@ def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
     }
 
 
-def _side_by_side(values: Iterable[Any]) -> np.ndarray:
+def _side_by_side(values: Iterable[Any]) -> Array:
     """Numbers of the modes along a last axis; leading axes are those of many designs."""
     return np.stack(np.broadcast_arrays(*values), axis=-1)

@@ -30,7 +30,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -58,40 +58,50 @@ from proprotor.deck_fields import (
     PositiveLength,
     PositiveStiffness,
     Section,
+    Sides,
     Size,
     Slope,
     Stiffness,
+    needed,
+    optional,
 )
+from proprotor.deck_file import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
 from proprotor.errors import InputError
 from proprotor.support import HUB_AXES
 
 
 class WingAerodynamicsSection(Section):
-    lift_slope: Slope
-    chord: PositiveLength
-    elastic_axis: Number
-    aerodynamic_centre: Number = None
-    downwash_point: Number = None
+    """Quasi-steady airloads of the wing."""
+
+    lift_slope: Slope = needed("Of a section across the elastic axis.")
+    chord: PositiveLength = needed("Streamwise.")
+    elastic_axis: Number = needed("In chords behind the leading edge.")
+    aerodynamic_centre: Number = optional("In chords behind the leading edge.")
+    downwash_point: Number = optional("In chords behind the leading edge.")
 
 
 class AssumedShapeSection(WingAerodynamicsSection):
-    span: PositiveLength
-    mast_length: Offset
-    sweep: Angle = None
+    """Quasi-steady airloads of a wing that is assumed to bend as a cantilever with a load at its tip."""
+
+    span: PositiveLength = needed("From the mount to the pylon.")
+    mast_length: Offset = needed("From the elastic axis at the tip forward to the hub.")
+    sweep: Angle = optional("Of the elastic axis, back positive.")
 
 
 class ModeSection(Section):
-    name: Name
-    coordinate: Literal["length", "angle"]
-    generalized_mass: GeneralizedMass
-    frequency: Frequency
-    damping_ratio: DampingRatio
-    x: HubDisplacement = None
-    y: HubDisplacement = None
-    z: HubDisplacement = None
-    alpha_x: HubRotation = None
-    alpha_y: HubRotation = None
-    alpha_z: HubRotation = None
+    """A normal mode: its generalised mass, and the hub's motion per unit of its coordinate, 0 where left out."""
+
+    name: Name = needed("Of the mode, everywhere.")
+    coordinate: Literal["length", "angle"] = needed("What one unit of the mode is.")
+    generalized_mass: GeneralizedMass = needed("Mass for a length, moment of inertia for an angle.")
+    frequency: Frequency = needed("Undamped, without airloads.")
+    damping_ratio: DampingRatio = needed("Structural, of critical.")
+    x: HubDisplacement = optional("Hub motion up per unit of the coordinate.")
+    y: HubDisplacement = optional("Hub motion outboard per unit of the coordinate.")
+    z: HubDisplacement = optional("Hub motion forward along the shaft per unit of the coordinate.")
+    alpha_x: HubRotation = optional("Hub rotation about x per unit of the coordinate.")
+    alpha_y: HubRotation = optional("Hub rotation about y, nose up, per unit of the coordinate.")
+    alpha_z: HubRotation = optional("Hub rotation about the shaft per unit of the coordinate.")
 
     @model_validator(mode="after")
     def _moves_the_hub(self) -> ModeSection:
@@ -101,10 +111,12 @@ class ModeSection(Section):
 
 
 class NormalModesSection(Section):
-    kind: Literal["normal-modes"]
-    includes_rotor: bool
-    modes: Annotated[list[ModeSection], Field(min_length=1)]
-    wing_aerodynamics: AssumedShapeSection | None = None
+    """A support of normal modes, given by number."""
+
+    kind: Literal["normal-modes"] = needed("Normal modes, a `[[support.modes]]` each.")
+    includes_rotor: bool = needed("Whether the generalised masses hold the rotor's rigid-body share.")
+    modes: Annotated[list[ModeSection], Field(min_length=1)] = needed("One table for each mode.")
+    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none where left out.")
 
     @model_validator(mode="after")
     def _names_differ(self) -> NormalModesSection:
@@ -116,39 +128,48 @@ class NormalModesSection(Section):
 
 
 class BeamWingSection(Section):
-    kind: Literal["beam-wing"]
-    span: PositiveLength
-    beam_stiffness: BendingStiffness
-    chord_stiffness: BendingStiffness
-    torsion_stiffness: BendingStiffness
-    axial_stiffness: AxialStiffness
-    mass_per_length: MassPerLength
-    torsional_inertia_per_length: InertiaPerLength
-    sweep: Angle = None
-    dihedral: Angle = None
-    elements: Size = None
-    nacelle_mass: MassOrNone
-    nacelle_pitch_inertia: InertiaOrNone
-    nacelle_yaw_inertia: InertiaOrNone
-    nacelle_roll_inertia: InertiaOrNone
-    nacelle_forward: Offset = None
-    nacelle_up: Offset = None
-    nacelle_outboard: Offset = None
-    mast_length: Offset
-    mast_height: Offset = None
-    mast_outboard: Offset = None
-    hub_mass: MassOrNone = None
-    rotor_mass: MassOrNone
-    downstop: bool = True
-    downstop_stiffness_on: PositiveStiffness = None
-    downstop_stiffness_off: PositiveStiffness = None
-    modes: Size = None
-    damping_ratio: DampingRatio = None
-    loss_factor: NotNegative = None
-    beam_damping_ratio: DampingRatio = None
-    chord_damping_ratio: DampingRatio = None
-    torsion_damping_ratio: DampingRatio = None
-    wing_aerodynamics: WingAerodynamicsSection | None = None
+    """A cantilever wing of beam elements with a rigid pylon."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = DAMPING_ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("damping_ratio", "loss_factor")
+
+    kind: Literal["beam-wing"] = needed("A wing of beam elements.")
+    span: PositiveLength = needed("From the mount to the pylon, outboard.")
+    beam_stiffness: BendingStiffness = needed("EI of bending up and down.")
+    chord_stiffness: BendingStiffness = needed("EI of bending fore and aft.")
+    torsion_stiffness: BendingStiffness = needed("GJ.")
+    axial_stiffness: AxialStiffness = needed("EA.")
+    mass_per_length: MassPerLength = needed("Along the elastic axis, the centre of mass on it.")
+    torsional_inertia_per_length: InertiaPerLength = needed("About the elastic axis.")
+    sweep: Angle = optional("Of the elastic axis, back positive.")
+    dihedral: Angle = optional("Of the elastic axis, up positive.")
+    elements: Size = optional("How many, of equal length.")
+    nacelle_mass: MassOrNone = needed("Without the rotor.")
+    nacelle_pitch_inertia: InertiaOrNone = needed("About the nacelle's centre of mass, nose up.")
+    nacelle_yaw_inertia: InertiaOrNone = needed("About the nacelle's centre of mass, about the upward axis.")
+    nacelle_roll_inertia: InertiaOrNone = needed("About the nacelle's centre of mass, about the shaft.")
+    nacelle_forward: Offset = optional("From the elastic axis at the tip to the nacelle's centre of mass.")
+    nacelle_up: Offset = optional("From the elastic axis at the tip to the nacelle's centre of mass.")
+    nacelle_outboard: Offset = optional("From the elastic axis at the tip to the nacelle's centre of mass.")
+    mast_length: Offset = needed("From the elastic axis at the tip forward to the hub.")
+    mast_height: Offset = optional("From the elastic axis at the tip up to the hub.")
+    mast_outboard: Offset = optional("From the elastic axis at the tip outboard to the hub.")
+    hub_mass: MassOrNone = optional("What belongs to the rotor and is not in its blades.")
+    rotor_mass: MassOrNone = needed("What the rotor model has at the hub; modes are those with it.")
+    downstop: bool = optional("Whether the pylon is on its downstop.", True)
+    downstop_stiffness_on: PositiveStiffness = optional(
+        "Pylon to wing in pitch, on the downstop; rigid where left out."
+    )
+    downstop_stiffness_off: PositiveStiffness = optional(
+        "Pylon to wing in pitch, off the downstop; rigid where left out."
+    )
+    modes: Size = optional("How many of the lowest modes to keep; all coordinates where left out.")
+    damping_ratio: DampingRatio = optional("Of every mode, of critical.")
+    loss_factor: NotNegative = optional("Structural g of every mode, taken as g/2 of critical.")
+    beam_damping_ratio: DampingRatio = optional("Of beam modes instead of that of every mode.")
+    chord_damping_ratio: DampingRatio = optional("Of chord modes instead of that of every mode.")
+    torsion_damping_ratio: DampingRatio = optional("Of torsion modes instead of that of every mode.")
+    wing_aerodynamics: WingAerodynamicsSection | None = optional("Airloads of the wing; none where left out.")
 
     @model_validator(mode="after")
     def _one_damping(self) -> BeamWingSection:
@@ -157,20 +178,30 @@ class BeamWingSection(Section):
 
 
 class MatricesSection(Section):
-    kind: Literal["matrices"]
-    file: File = None
-    mass: File = None
-    stiffness: File = None
-    damping: File = None
-    dofs: File = None
-    hub: dict[str, str] | None = None
-    includes_rotor: bool
-    rotor_mass: MassOrNone = None
-    modes: Size = None
-    damping_ratio: DampingRatio = None
-    length_unit: PositiveLength = None
-    mass_unit: Mass = None
-    wing_aerodynamics: AssumedShapeSection | None = None
+    """Mass, stiffness and damping matrices of any finite-element code."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = FILE_ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("file", "mass", "stiffness", "dofs")
+
+    kind: Literal["matrices"] = needed("Matrices from files.")
+    file: File = optional("An .npz file with mass, stiffness, dofs and perhaps damping.")
+    mass: File = optional("A Matrix Market file.")
+    stiffness: File = optional("A Matrix Market file.")
+    damping: File = optional("A Matrix Market file.")
+    dofs: File = optional("A text file, the name of a coordinate on each line.")
+    hub: dict[str, str] | None = optional(
+        'For each of x, y, z, alpha_x, alpha_y, alpha_z the coordinate of the hub, "-" before it where it points '
+        "the other way; hub_x and so on where left out."
+    )
+    includes_rotor: bool = needed("Whether the mass matrix holds the rotor's.")
+    rotor_mass: MassOrNone = optional("What the rotor model has at the hub; modes are those with it.")
+    modes: Size = optional("How many of the lowest modes to keep; all coordinates where left out.")
+    damping_ratio: DampingRatio = optional(
+        "Of every mode, of critical, where no damping matrix is given; 0 where left out."
+    )
+    length_unit: PositiveLength = optional("The files' unit of length; 1 m where left out.")
+    mass_unit: Mass = optional("The files' unit of mass; 1 kg where left out.")
+    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none where left out.")
 
     @model_validator(mode="after")
     def _one_file_or_several(self) -> MatricesSection:
@@ -185,33 +216,42 @@ class MatricesSection(Section):
 
 
 class NastranSection(Section):
-    kind: Literal["nastran"]
-    file: File
-    grid: Size
-    subcase: Size = None
-    hub: dict[str, str] | None = None
-    includes_rotor: bool
-    modes: Size = None
-    damping_ratio: DampingRatio = None
-    length_unit: PositiveLength = None
-    mass_unit: Mass = None
-    wing_aerodynamics: AssumedShapeSection | None = None
+    """Real modes and generalised masses of a Nastran run at a grid point."""
+
+    kind: Literal["nastran"] = needed("An .op2 file.")
+    file: File = needed("The .op2 file.")
+    grid: Size = needed("The grid point at the hub.")
+    subcase: Size = optional("Needed where the file has several.")
+    hub: dict[str, str] | None = optional(
+        'For each of x, y, z, alpha_x, alpha_y, alpha_z one of T1 to R3, "-" before it where it points the other '
+        "way; aircraft axes where left out."
+    )
+    includes_rotor: bool = needed("Whether the run had the rotor's mass at the hub.")
+    modes: Size = optional("How many of the lowest modes; all where left out.")
+    damping_ratio: DampingRatio = optional("Of every mode, of critical; 0 where left out.")
+    length_unit: PositiveLength = optional("The run's unit of length; 1 m where left out.")
+    mass_unit: Mass = optional("The run's unit of mass; 1 kg where left out.")
+    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none where left out.")
 
 
 class PivotSection(Section):
-    kind: Literal["pivot"]
-    includes_rotor: bool
-    distance: Offset
-    pitch_inertia: Inertia
-    yaw_inertia: Inertia
-    pitch_stiffness: Stiffness
-    yaw_stiffness: Stiffness
-    pitch_damping: Damping = None
-    yaw_damping: Damping = None
+    """A rigid shaft that pitches and yaws about a point behind the hub; dampings left out are 0."""
+
+    kind: Literal["pivot"] = needed("A shaft on a pivot.")
+    includes_rotor: bool = needed("Whether the inertias hold the rotor's.")
+    distance: Offset = needed("From the pivot forward to the hub.")
+    pitch_inertia: Inertia = needed("About the pivot.")
+    yaw_inertia: Inertia = needed("About the pivot.")
+    pitch_stiffness: Stiffness = needed("Of the pivot.")
+    yaw_stiffness: Stiffness = needed("Of the pivot.")
+    pitch_damping: Damping = optional("Of the pivot.")
+    yaw_damping: Damping = optional("Of the pivot.")
 
 
 class RigidSection(Section):
-    kind: Literal["rigid"]
+    """A hub that does not move."""
+
+    kind: Literal["rigid"] = needed("A hub that does not move.")
 
 
 SupportSection = Annotated[

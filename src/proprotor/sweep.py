@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.mode_names import SECOND, assign_names, name_list, name_shares, whirl
 from proprotor.model import LinearModel, batch_shape
@@ -31,7 +32,7 @@ _ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where modes get their name
 _STRIDE = 0.02  # of the tip speed, between the first points of the way there
 
 
-def track(system: Eigensystem | Spectrum) -> NDArray:
+def track(system: Eigensystem | Spectrum) -> Array:
     """Order (points, states) that keeps each state of the eigensystem in its place along the points.
 
     States may come in any order. Failed points are passed over.
@@ -124,7 +125,7 @@ def state_names(
     if not len(path.points):
         return Named(0, [], "", 0)
     if approach is not None:
-        leg = follow(approach.linearize(approach.positions), approach)
+        leg = follow(approach.models(approach.positions), approach)
         ends = [0, len(approach.positions) - 1]
         if len(leg.points) and [leg.points[0], leg.points[-1]] == ends:
             nearest = int(np.argmin(np.abs(path.positions[path.points] - approach.end)))
@@ -138,10 +139,12 @@ def state_names(
     return Named(0, names_at(model.dofs, held, path.spectrum, first, rotor_speed), told, 0)
 
 
-def _same_point(leg: Path, last: int, path: Path, point: int) -> NDArray:
+def _same_point(leg: Path, last: int, path: Path, point: int) -> Array:
     """Which states of a point of a path the followed states of another path are at the same point."""
     both = leg.spectrum.at([last]).joined(path.spectrum.at([point]))
-    return link(both, np.array([0]), np.array([1])).successor[0][leg.places[-1]]
+    successor = link(both, np.array([0]), np.array([1])).successor[0]
+    states: Array = successor[leg.places[-1]]
+    return states
 
 
 def names_at(
@@ -152,7 +155,7 @@ def names_at(
     return assign_names(dofs, held, shares, values)
 
 
-def _columns(dofs: tuple[str, ...], path: Path, named: Named) -> tuple[NDArray, list[str]]:
+def _columns(dofs: tuple[str, ...], path: Path, named: Named) -> tuple[Array, list[str]]:
     """Which followed states are modes, in the order of the coordinates, and what they are called.
 
     A state is a mode where it is in the upper half plane, or real; of each pair the one above is, and the other only if
@@ -202,7 +205,7 @@ def sweep_case(
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:  # points differ in more than their airspeed
         return sweep(case.linearize(airspeeds, **options), rotor_speed=rotor_speed_of(case))
-    model = line.linearize(line.positions)
+    model = line.models(line.positions)
     return sweep(
         model, line, rotor_speed=rotor_speed_of(case), approach=approach_to(case, line, model, options)
     )
@@ -229,7 +232,7 @@ def line_of_case(
 
 
 def _line_of_input(
-    case: Case, speed: NDArray, vary: Mapping[str, ArrayLike], options: Mapping[str, Any]
+    case: Case, speed: Array, vary: Mapping[str, ArrayLike], options: Mapping[str, Any]
 ) -> Line:
     from proprotor.design import design_inputs
 
@@ -240,7 +243,7 @@ def _line_of_input(
     if len(speed) != 1 or values.ndim != 1:
         raise InputError("vary", path, "needs a list of values, and one airspeed")
 
-    def linearize(positions: NDArray) -> LinearModel:
+    def linearize(positions: Array) -> LinearModel:
         return case.vary({path: positions}).linearize(speed[0], **options)
 
     case.vary({path: values})  # which tells what is wrong with the path
@@ -267,7 +270,7 @@ def approach_to(case: Case, line: Line, model: LinearModel, options: Mapping[str
     end = float(values[works[np.argmin(np.abs(values[works] - own))]])
     first, second = abs(speed - start) / tip, abs(end - own) / max(abs(own), abs(end), 1e-300)
 
-    def linearize(way: NDArray) -> LinearModel:
+    def linearize(way: Array) -> LinearModel:
         done = np.clip(way / first, 0, 1) if first > 0 else np.ones_like(way)
         beyond = np.clip((way - first) / second, 0, 1) if second > 0 else np.zeros_like(way)
         varied = case.vary({line.name: own + beyond * (end - own)})

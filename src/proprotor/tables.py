@@ -12,9 +12,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from proprotor import units
+from proprotor.arrays import Array
 from proprotor.sweep_summary import (
     UnstableRange,
     damped_frequency,
@@ -61,30 +61,32 @@ class SweepTable:
     unit: str = "kt"
 
     @cached_property
-    def airspeed(self) -> NDArray:
+    def airspeed(self) -> Array:
         """Airspeed (airspeed,) in the unit, free of the rounding of conversion."""
         factor = units.factor_to_si(self.unit, self.unit, "m/s")
         return np.array([float(f"{v:.10g}") for v in self.sweep.airspeed.values / factor])
 
     @cached_property
-    def frequency(self) -> NDArray:
+    def frequency(self) -> Array:
         """Frequency (airspeed, mode) per revolution."""
         return damped_frequency(self.sweep) / self.rotor_speed
 
     @cached_property
-    def damping(self) -> NDArray:
+    def damping(self) -> Array:
         """Damping (airspeed, mode) in percent of critical."""
         return damping_percent(self.sweep)
 
     @cached_property
-    def unstable(self) -> NDArray:
+    def unstable(self) -> Array:
         """Whether a mode is unstable (airspeed, mode)."""
-        return growth_rate(self.sweep) > 0
+        grows: Array = growth_rate(self.sweep) > 0
+        return grows
 
     @cached_property
-    def failed(self) -> NDArray:
+    def failed(self) -> Array:
         """Whether a point could not be analysed (airspeed,)."""
-        return self.sweep.reason.values != ""
+        failed: Array = self.sweep.reason.values != ""
+        return failed
 
     def lines(self, width: int = 80, all_modes: bool = False) -> Iterator[Text]:
         """Lines of one or more tables no wider than asked for, a row for each airspeed."""
@@ -105,7 +107,7 @@ class SweepTable:
         found = {text: self.airspeed[texts == text] for text in dict.fromkeys(texts.tolist()) if text}
         return [f"Doubtful {self._range(speeds)}: {text}." for text, speeds in found.items()]
 
-    def _range(self, speeds: NDArray) -> str:
+    def _range(self, speeds: Array) -> str:
         ends = f"{speeds[0]:g} {self.unit}", f"{speeds[-1]:g} {self.unit}"
         return f"at {ends[0]}" if len(speeds) == 1 else f"from {ends[0]} to {ends[1]}"
 

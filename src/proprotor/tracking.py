@@ -14,10 +14,11 @@ the largest entries of the rows. Elsewhere `scipy.optimize.linear_sum_assignment
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from proprotor.arrays import Array
 
 _BLOCK = 64  # steps whose matrices stay in the cache
 _COUPLED = 0.01  # likeness of different modes below which they pass each other as strangers
@@ -35,8 +36,8 @@ class Steps(NamedTuple):
         Trust in the step of each state, 0 to 1: see `link`.
     """
 
-    successor: NDArray
-    quality: NDArray
+    successor: Array
+    quality: Array
 
 
 class Modes(NamedTuple):
@@ -45,19 +46,19 @@ class Modes(NamedTuple):
     left @ right is 1 for a mode with itself and 0 with any other.
     """
 
-    values: NDArray
-    right: NDArray
-    left: NDArray
+    values: Array
+    right: Array
+    left: Array
 
 
 class Spectrum(NamedTuple):
     """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side."""
 
-    values: NDArray
-    right: NDArray
+    values: Array
+    right: Array
 
-    def at(self, points: NDArray | slice | int) -> Spectrum:
-        """Some of the points."""
+    def at(self, points: Any) -> Spectrum:
+        """Some of the points, by what an array is indexed with."""
         return Spectrum(self.values[points], self.right[points])
 
     def joined(self, other: Spectrum) -> Spectrum:
@@ -65,16 +66,16 @@ class Spectrum(NamedTuple):
         return Spectrum(*(np.concatenate(parts) for parts in zip(self, other, strict=True)))
 
     @property
-    def works(self) -> NDArray:
+    def works(self) -> Array:
         """Which points have not failed."""
-        return np.isfinite(self.values).all(axis=-1)
+        return np.asarray(np.isfinite(self.values).all(axis=-1))
 
     @property
     def all_modes(self) -> Modes:
         """Every state of every point."""
         return Modes(self.values, self.right, left_vectors(self.values, self.right))
 
-    def modes(self, places: NDArray) -> Modes:
+    def modes(self, places: Array) -> Modes:
         """Some states of each point: places (..., modes)."""
         values, right, left = self.all_modes
         return Modes(
@@ -84,7 +85,7 @@ class Spectrum(NamedTuple):
         )
 
 
-def left_vectors(values: NDArray, right: NDArray) -> NDArray:
+def left_vectors(values: Array, right: Array) -> Array:
     """Rows (..., states, states) with rows @ right = 1, for a real matrix whose pairs stand side by side.
 
     The columns a + ib and a - ib span what a and b span: their inverse is had from that of the real matrix with the
@@ -101,7 +102,7 @@ def left_vectors(values: NDArray, right: NDArray) -> NDArray:
     return left.reshape(right.shape)
 
 
-def _left_block(values: NDArray, right: NDArray) -> NDArray:
+def _left_block(values: Array, right: Array) -> Array:
     real = np.where((values.imag < 0)[:, None, :], -right.imag, right.real)
     rows = _inverse(real)
     left = rows.astype(complex)
@@ -112,14 +113,14 @@ def _left_block(values: NDArray, right: NDArray) -> NDArray:
     return left
 
 
-def _inverse(matrices: NDArray) -> NDArray:
+def _inverse(matrices: Array) -> Array:
     try:
         return np.linalg.inv(matrices)
     except np.linalg.LinAlgError:  # at one point, which is defective
         return np.linalg.pinv(matrices)
 
 
-def link(spectrum: Spectrum, before: NDArray, after: NDArray) -> Steps:
+def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
     """Successors of all states from points `before` (steps,) to points `after` (steps,).
 
     The quality of a step is the likeness of a state to its successor, less the largest of
@@ -154,11 +155,11 @@ class _Packed(NamedTuple):
     the vectors of the pairs, then imaginary parts, then the real vectors; rows, the inverse.
     """
 
-    above: NDArray
-    real: NDArray
-    values: NDArray
-    columns: NDArray
-    rows: NDArray
+    above: Array
+    real: Array
+    values: Array
+    columns: Array
+    rows: Array
 
     @classmethod
     def of(cls, spectrum: Spectrum, pairs: int) -> _Packed:
@@ -178,7 +179,7 @@ class _Packed(NamedTuple):
         return _Packed(*(part[points] for part in self))
 
 
-def _link_block(spectrum: Spectrum, before: NDArray, after: NDArray, pairs: int) -> tuple[NDArray, NDArray]:
+def _link_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> tuple[Array, Array]:
     """Steps between points with one number of pairs; -1 where the best candidates are not all different."""
     n = len(before)
     if np.array_equal(after, before + 1) and isinstance(_as_slice(before), slice):
@@ -211,7 +212,7 @@ def _link_block(spectrum: Spectrum, before: NDArray, after: NDArray, pairs: int)
     return successor, quality
 
 
-def _packed_likeness(first: _Packed, last: _Packed, pairs: int) -> NDArray:
+def _packed_likeness(first: _Packed, last: _Packed, pairs: int) -> Array:
     """S (n, pairs + rest, 2 pairs + rest) of states above and real ones with those above, conjugates and real ones."""
     forward = _squares(first.rows @ last.columns, pairs)
     back = _squares(last.rows @ first.columns, pairs)
@@ -226,7 +227,7 @@ def _packed_likeness(first: _Packed, last: _Packed, pairs: int) -> NDArray:
     return np.sqrt(forward, out=forward)
 
 
-def _squares(product: NDArray, pairs: int) -> NDArray:
+def _squares(product: Array, pairs: int) -> Array:
     """|l r|² (n, pairs + rest, 2 pairs + rest) from the products of packed rows and columns.
 
     With l = (p - iq)/2 and r = a + ib, or a - ib for the conjugate; rows and columns of real states stand alone.
@@ -244,7 +245,7 @@ def _squares(product: NDArray, pairs: int) -> NDArray:
     return found
 
 
-def _trust(likeness: NDArray, choice: NDArray, start: NDArray, end: NDArray) -> NDArray:
+def _trust(likeness: Array, choice: Array, start: Array, end: Array) -> Array:
     """Quality (n, m) of states, with what they are like (n, m, any), the successor of each and its eigenvalues."""
     n, m = choice.shape
     # mixing[i, k]: likeness of state i to the successor of state k
@@ -258,17 +259,18 @@ def _trust(likeness: NDArray, choice: NDArray, start: NDArray, end: NDArray) -> 
     mixing[...] = 0
     mixing[step, one, other] = index
     worst = np.maximum(mixing.max(axis=2, initial=0), mixing.max(axis=1, initial=0))
-    return np.clip(np.minimum(own, 1) - worst, 0, 1)
+    quality: Array = np.clip(np.minimum(own, 1) - worst, 0, 1)
+    return quality
 
 
-def _index(mixing: NDArray, apart: NDArray, later: NDArray) -> NDArray:
+def _index(mixing: Array, apart: Array, later: Array) -> Array:
     """S max(|Δ1|, |Δ2|) / |Δmin|."""
     nearest = np.fmax(_nearest_to_zero(apart, later), 1e-300)
     with np.errstate(over="ignore"):
         return mixing * np.maximum(np.abs(apart), np.abs(later)) / nearest
 
 
-def _link_alone(first: Spectrum, last: Spectrum) -> tuple[NDArray, NDArray]:
+def _link_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     """Successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
@@ -289,19 +291,19 @@ def _link_alone(first: Spectrum, last: Spectrum) -> tuple[NDArray, NDArray]:
     return successor, np.clip(np.minimum(own, 1) - np.maximum(index.max(axis=0), index.max(axis=1)), 0, 1)
 
 
-def _as_slice(points: NDArray) -> slice | NDArray:
+def _as_slice(points: Array) -> slice | Array:
     """Neighbouring points without a copy."""
     if len(points) and points[-1] - points[0] == len(points) - 1 and np.all(np.diff(points) == 1):
         return slice(int(points[0]), int(points[-1]) + 1)
     return points
 
 
-def conjugate(values: NDArray) -> NDArray:
+def conjugate(values: Array) -> Array:
     """Place of the conjugate of each state (..., states); that of a real one is its own."""
     return np.arange(values.shape[-1]) + (values.imag > 0) - (values.imag < 0)
 
 
-def side_by_side(values: NDArray) -> NDArray:
+def side_by_side(values: Array) -> Array:
     """Places (points, states) that put conjugates side by side, as LAPACK has them, of eigenvalues in any order."""
     order = np.empty(values.shape, dtype=int)
     for point, here in enumerate(values):
@@ -314,20 +316,22 @@ def side_by_side(values: NDArray) -> NDArray:
     return order
 
 
-def _size(numbers: NDArray) -> NDArray:
+def _size(numbers: Array) -> Array:
     """|z|, without the care that np.abs takes of the largest and smallest of numbers."""
-    return np.sqrt(numbers.real**2 + numbers.imag**2)
+    size: Array = np.sqrt(numbers.real**2 + numbers.imag**2)
+    return size
 
 
-def _nearest_to_zero(start: NDArray, end: NDArray) -> NDArray:
+def _nearest_to_zero(start: Array, end: Array) -> Array:
     """Distance from zero to the straight line between two complex numbers."""
     way = end - start
     length = np.abs(way) ** 2
     at = np.clip(-(start.conj() * way).real / np.where(length > 0, length, 1), 0, 1)
-    return np.abs(start + at * way)
+    distance: Array = np.abs(start + at * way)
+    return distance
 
 
-def chain(successor: NDArray, start: NDArray) -> NDArray:
+def chain(successor: Array, start: Array) -> Array:
     """Places (steps + 1, states) of states along consecutive steps (steps, states), from places (states,)."""
     order = np.empty((len(successor) + 1, successor.shape[-1]), dtype=int)
     order[0] = start
@@ -336,7 +340,7 @@ def chain(successor: NDArray, start: NDArray) -> NDArray:
     return order
 
 
-def keep_upper(values: NDArray) -> NDArray:
+def keep_upper(values: Array) -> Array:
     """Swaps (points, states) that keep a followed state in the upper half plane after two real roots have joined.
 
     Parameters

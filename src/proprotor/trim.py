@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from proprotor_equations import flap_lag_springs, inertia
 
+from proprotor.arrays import Array
 from proprotor.evaluation import evaluate
 from proprotor.operation import Operation
 from proprotor.options import Options
@@ -40,19 +40,19 @@ class Trim:
         Steps taken.
     """
 
-    collective: NDArray
-    coning: NDArray
-    lag: NDArray
-    elastic_pitch: NDArray
-    thrust: NDArray
-    torque: NDArray
-    converged: NDArray
-    reason: NDArray
-    warning: NDArray
-    iterations: NDArray
+    collective: Array
+    coning: Array
+    lag: Array
+    elastic_pitch: Array
+    thrust: Array
+    torque: Array
+    converged: Array
+    reason: Array
+    warning: Array
+    iterations: Array
 
     @property
-    def pitch(self) -> NDArray:
+    def pitch(self) -> Array:
         """Pitch of the blade at 0.75 R, rad."""
         return self.collective + self.elastic_pitch
 
@@ -77,7 +77,7 @@ class Target:
 
 def trim_target(rotor: Rotor, operation: Operation) -> Target:
     """Target of an operation; coefficients are C_T = T/(ρπR²(ΩR)²) and C_P = QΩ/(ρπR²(ΩR)³), power put in positive."""
-    if operation.windmilling:
+    if isinstance(operation.trim, str):
         return Target(windmilling=True)
     (name, value), *_ = operation.trim.items()
     if name == "collective":
@@ -89,7 +89,7 @@ def trim_target(rotor: Rotor, operation: Operation) -> Target:
     return Target(row=TORQUE, load=-force * rotor.radius / rotor.n_blades)
 
 
-def take(quantities: Mapping[str, Any], rows: NDArray) -> dict[str, Any]:
+def take(quantities: Mapping[str, Any], rows: Array) -> dict[str, Any]:
     """Quantities at some of the points; scalars hold for all."""
     return {name: value[rows] if np.ndim(value) else value for name, value in quantities.items()}
 
@@ -105,11 +105,14 @@ def with_trim(quantities: Mapping[str, Any], options: Options, state: Mapping[st
 
 def _springs(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
     """Effective flap and lag stiffness and its change with pitch, as the structure option has it."""
-    if options.structure == "tabulated":
+    if options.frequencies is not None:  # structure="tabulated"
         none = dict.fromkeys(flap_lag_springs.EffectiveStiffness._fields, 0.0)
         rotating = options.frequencies.rotating(pool["collective"], pool["airspeed"], pool["rotor_speed"])
-        return none | evaluate(flap_lag_springs.stiffness_of_frequencies, dict(pool) | rotating)._asdict()
-    springs = evaluate(flap_lag_springs.effective_stiffness, pool)._asdict()
+        given: dict[str, Any] = evaluate(
+            flap_lag_springs.stiffness_of_frequencies, dict(pool) | rotating
+        )._asdict()
+        return none | given
+    springs: dict[str, Any] = evaluate(flap_lag_springs.effective_stiffness, pool)._asdict()
     if options.structure == "diagonal":
         springs |= {name: 0.0 for name in springs if name.startswith("flap_lag_")}
     return springs

@@ -27,6 +27,9 @@ _ITERATIONS = 40
 _FARTHEST = np.radians(60)
 # rad, the last step: what the loads are off by. Convergence is quadratic, so the trim itself is exact to rounding.
 _CONVERGED = 1e-13
+# rad, a step that is no smaller than half of the one before: rounding has the last word, as where a spring is a hundred
+# million times as stiff as what holds the blade otherwise.
+_STALLED = 1e-9
 _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below their own error
 _CLOSE_STEPS = 6
 _ROUNDING = 1e-15  # rad, of the step that would follow
@@ -180,7 +183,7 @@ def _come_near(
 
 
 def _come_close(
-    balance: _Balance, state: State, start: State, rows: NDArray, slopes: NDArray, iterations: NDArray
+    balance: _Balance, state: State, start: State, rows: Array, slopes: Array, iterations: Array
 ) -> None:
     """Steps on the residual of all stations until by their rate the next would be lost in rounding.
 
@@ -212,6 +215,7 @@ def _newton_steps(
 ) -> tuple[State, Found | None]:
     """Newton with everything; the state before each point's last step, and if all made one step what came with it."""
     active, before = rows, {name: value.copy() for name, value in state.items()}
+    size_before = np.full(len(iterations), np.inf)
     last: Found | None = None
     for count in range(_ITERATIONS):
         if not len(active):
@@ -219,8 +223,10 @@ def _newton_steps(
         doubts: dict[str, Array] = {}
         _reset(before, state, active)
         step, _, work, pool, segments = balance.newton(state, active, doubts)
-        finite = np.isfinite(step).all(axis=1)
-        done = finite & (np.abs(step).max(axis=1) <= _CONVERGED)
+        finite, size = np.isfinite(step).all(axis=1), np.abs(step).max(axis=1)
+        stalled = (size <= _STALLED) & (size >= size_before[active] / 2)
+        done = finite & ((size <= _CONVERGED) | stalled)
+        size_before[active] = size
         if count == 0 and done.all():
             last = work, pool, segments, doubts
         _take_step(balance, state, active, step)

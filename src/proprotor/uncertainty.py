@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.flutter_scan import STABLE, UNSTABLE
 
@@ -130,7 +130,7 @@ def sobol_indices(
     block = len(names) * (2 if second_order else 1) + 2
     values, above, below = _one_a_design(results, of)
     values = values.reshape(-1, block)
-    whole = np.isfinite(values).all(axis=1)
+    whole = np.asarray(np.isfinite(values).all(axis=1))
     _check_left_out(of, whole, int(above.sum() + below.sum()))
     values = values[whole]
     if np.ptp(values) == 0:
@@ -159,7 +159,7 @@ def sobol_indices(
     return xarray.Dataset(table, coordinates, {"of": of, "confidence": confidence})
 
 
-def _one_a_design(results: xarray.Dataset, of: str) -> tuple[NDArray, NDArray, NDArray]:
+def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array]:
     """Values of the designs, and which of them lie above and below the airspeeds of the study."""
     if of not in results.data_vars:
         known = ", ".join(str(name) for name in results.data_vars)
@@ -181,13 +181,13 @@ def _range(results: xarray.Dataset) -> tuple[float, float]:
 
 
 def _saltelli_of(results: xarray.Dataset) -> dict[str, Any]:
-    sample = json.loads(results.attrs.get("sample", "{}"))
+    sample: dict[str, Any] = json.loads(results.attrs.get("sample", "{}"))
     if sample.get("method") != "saltelli":
         raise InputError("results", sample.get("method"), "must be a study of proprotor.sampling.saltelli")
     return sample
 
 
-def _check_left_out(of: str, whole: NDArray, beyond: int) -> None:
+def _check_left_out(of: str, whole: Array, beyond: int) -> None:
     left_out = len(whole) - whole.sum()
     if left_out > _MOST_LEFT_OUT * len(whole):
         hint = f"; {beyond} designs are stable or unstable throughout: widen the airspeeds" if beyond else ""
@@ -195,6 +195,6 @@ def _check_left_out(of: str, whole: NDArray, beyond: int) -> None:
         raise InputError(of, told, f"must be known in {1 - _MOST_LEFT_OUT:.0%} of them{hint}")
 
 
-def _both_ways(upper: NDArray) -> NDArray:
+def _both_ways(upper: Array) -> Array:
     """A symmetric table from the half that SALib fills; NaN on the diagonal."""
     return np.where(np.isnan(upper), upper.T, upper)

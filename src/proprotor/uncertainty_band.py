@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.mode_following import follow_support_modes, support_names, support_share
 from proprotor.modes import eigensystem
@@ -51,7 +52,7 @@ class InputRange:
     reason: str
     logarithmic: bool = False
 
-    def at(self, share: ArrayLike) -> NDArray:
+    def at(self, share: ArrayLike) -> Array:
         """The value in `unit` below which a share of the range lies, 0 to 1."""
         share = np.asarray(share)
         if self.logarithmic:
@@ -81,29 +82,27 @@ class Band:
         SI values of the sampled numbers by deck path.
     """
 
-    airspeed: NDArray
+    airspeed: Array
     modes: tuple[str, ...]
-    damping: NDArray
-    least_damping: NDArray
-    values: Mapping[str, NDArray]
+    damping: Array
+    least_damping: Array
+    values: Mapping[str, Array]
 
-    def percentiles(self, mode: str, percent: Sequence[float] = PERCENTILES) -> NDArray:
+    def percentiles(self, mode: str, percent: Sequence[float] = PERCENTILES) -> Array:
         """Damping ratio (percentiles, airspeeds) of a mode, each airspeed by itself."""
         return np.nanpercentile(self.damping[..., self.modes.index(mode)], percent, axis=0)
 
-    def boundaries(self, mode: str | None = None) -> NDArray:
+    def boundaries(self, mode: str | None = None) -> Array:
         """Boundary (designs,) in m/s of a mode, or of the first one that moves the support; infinite beyond the end."""
         damping = self.least_damping if mode is None else self.damping[..., self.modes.index(mode)]
         return boundary(self.airspeed, damping)
 
-    def boundary_percentiles(
-        self, mode: str | None = None, percent: Sequence[float] = PERCENTILES
-    ) -> NDArray:
+    def boundary_percentiles(self, mode: str | None = None, percent: Sequence[float] = PERCENTILES) -> Array:
         """Percentiles of `boundaries`, m/s."""
         return np.percentile(self.boundaries(mode), percent, method="inverted_cdf")
 
 
-def boundary(airspeed: NDArray, damping: NDArray) -> NDArray:
+def boundary(airspeed: Array, damping: Array) -> Array:
     """Lowest airspeed (...) at which damping (..., airspeeds) falls through zero, by linear interpolation.
 
     Infinite where it does not; the first airspeed where it is negative there already.
@@ -117,7 +116,7 @@ def boundary(airspeed: NDArray, damping: NDArray) -> NDArray:
     return np.where(damping[..., 0] < 0, airspeed[0], found)
 
 
-def least_damping(model: LinearModel, system: Eigensystem | None = None) -> NDArray:
+def least_damping(model: LinearModel, system: Eigensystem | None = None) -> Array:
     """Lowest damping ratio (...) of all modes in which the support takes part; NaN at failed points."""
     system = eigensystem(model) if system is None else system
     shares = support_share(model, system).sum(axis=-2)
@@ -128,7 +127,7 @@ def least_damping(model: LinearModel, system: Eigensystem | None = None) -> NDAr
     return np.where(np.isfinite(least), least, np.nan)
 
 
-def sample(case: Case, ranges: Sequence[InputRange], count: int, seed: int = 0) -> dict[str, NDArray]:
+def sample(case: Case, ranges: Sequence[InputRange], count: int, seed: int = 0) -> dict[str, Array]:
     """A Latin hypercube of `count` designs: SI values (count,) by deck path.
 
     Raises
@@ -142,7 +141,7 @@ def sample(case: Case, ranges: Sequence[InputRange], count: int, seed: int = 0) 
 
     known = design_inputs(case)
     shares = qmc.LatinHypercube(len(ranges), rng=seed).random(count)
-    factors: dict[str, NDArray] = {}
+    factors: dict[str, Array] = {}
     for one, share in zip(ranges, shares.T, strict=True):
         for path in one.paths:
             if path not in known:
@@ -151,7 +150,7 @@ def sample(case: Case, ranges: Sequence[InputRange], count: int, seed: int = 0) 
     return {path: _si(known[path].si, factor) for path, factor in factors.items()}
 
 
-def _relative(one: InputRange, share: NDArray, number: Any) -> NDArray:
+def _relative(one: InputRange, share: Array, number: Any) -> Array:
     """Values of a range as factors on the deck's number; themselves in SI where that number is zero."""
     from proprotor.units import factor_to_si
 
@@ -162,13 +161,13 @@ def _relative(one: InputRange, share: NDArray, number: Any) -> NDArray:
     return si / number.si if number.si else si
 
 
-def _si(deck: float, factor: NDArray) -> NDArray:
+def _si(deck: float, factor: Array) -> Array:
     return deck * factor if deck else factor
 
 
 def damping_band(
     case: Case,
-    airspeeds: NDArray,
+    airspeeds: Array,
     ranges: Sequence[InputRange],
     *,
     count: int = 300,

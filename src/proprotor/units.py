@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -51,6 +51,10 @@ pound = 0.45359237 * kilogram = lb = lbm
 newton = kilogram * meter / second ** 2 = N
 pound_force = 9.80665 * pound * meter / second ** 2 = lbf
 slug = pound_force * second ** 2 / foot
+
+# differences of temperature only: degrees of both kinds, and no zero
+kelvin = [temperature] = K = degC
+rankine = 5 / 9 * kelvin = degR = degF
 """
 
 # What each SI unit measures, and how a user would write one; for messages.
@@ -72,6 +76,7 @@ _MEANINGS = {
     "N": ("a force", '"1.5e8 lbf"'),
     "N*m**2": ("a bending or torsion stiffness", '"3.7e9 lbf*in**2"'),
     "N*m/rad": ("a moment per angle", '"2700 in*lbf/deg"'),
+    "K": ("a difference of temperature", '"15 K" or "15 degC"'),
     "N*m*s/rad": ("a moment per rate of angle", '"12 N*m*s/rad"'),
 }
 
@@ -89,11 +94,11 @@ _UNIT_TOKEN = re.compile(
 
 
 @cache
-def unit_registry() -> pint.UnitRegistry:
+def unit_registry() -> pint.UnitRegistry[Any]:
     """The registry of the units a deck may use (a `pint.UnitRegistry`, made on first use)."""
     import pint  # here, because it is slow to import
 
-    registry = pint.UnitRegistry(None)
+    registry: pint.UnitRegistry[Any] = pint.UnitRegistry(None)
     registry.load_definitions(_DEFINITIONS.strip().splitlines())
     return registry
 
@@ -135,7 +140,9 @@ def factor_to_si(text: object, written_unit: str, unit: str) -> float:
         raise InputError("", text, _dimension_rule(written_unit, unit)) from None
 
 
-def as_si(value: ArrayLike | str | pint.Quantity, unit: str, field: str = "value") -> NDArray[np.float64]:
+def as_si(
+    value: ArrayLike | str | pint.Quantity[Any], unit: str, field: str = "value"
+) -> NDArray[np.float64]:
     """An argument in SI: numbers and arrays are SI already, text and pint quantities are converted.
 
     Parameters
@@ -181,9 +188,8 @@ def speeds(text: str, field: str = "airspeed") -> NDArray[np.float64]:
         raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
     try:
         factor = factor_to_si(text, match[4], "m/s")
-        written = _steps(
-            text, *(None if number is None else float(number) for number in match.group(1, 2, 3))
-        )
+        stop, step = (None if number is None else float(number) for number in match.group(2, 3))
+        written = _steps(text, float(match[1]), stop, step)
     except InputError as error:
         raise error.within(field) from None
     return written * factor
@@ -200,7 +206,7 @@ def _steps(text: str, start: float, stop: float | None, step: float | None) -> N
     n = _finite(text, (stop - start) / step) * (1 + 1e-12) + 1
     if n > _MOST_SPEEDS:
         raise InputError("", text, f"must have at most {_MOST_SPEEDS} speeds")
-    return start + step * np.arange(int(n))
+    return start + step * np.arange(int(n), dtype=float)
 
 
 def _split(text: str | float) -> tuple[float, str]:

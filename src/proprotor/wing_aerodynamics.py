@@ -15,8 +15,9 @@ from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.beam_wing import BeamStructure
 from proprotor.errors import InputError
 from proprotor.support import HUB_AXES, NormalModes
@@ -32,9 +33,9 @@ class Strips(NamedTuple):
     rise is along I at the elastic axis; pitch is nose up, about J.
     """
 
-    width: NDArray
-    rise: NDArray
-    pitch: NDArray
+    width: Array
+    rise: Array
+    pitch: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +74,7 @@ class WingAerodynamics:
             if entry.name in ("lift_slope", "chord") and (value.real <= 0).any():
                 raise InputError(entry.name, getattr(self, entry.name), "must be above zero")
 
-    def matrices(self, strips: Strips) -> tuple[NDArray, NDArray]:
+    def matrices(self, strips: Strips) -> tuple[Array, Array]:
         """What the airloads add to C per ρV, and to K per ρV²; both (..., n, n)."""
         own = {entry.name: np.asarray(getattr(self, entry.name))[..., None, None] for entry in fields(self)}
         loaded = strips.rise + (own["elastic_axis"] - own["aerodynamic_centre"]) * own["chord"] * strips.pitch
@@ -184,13 +185,13 @@ def cantilever_strips(support: NormalModes, span: float, mast_length: float) -> 
     span, mast_length : float or array (...)
         m.
     """
-    span, mast = np.asarray(span), np.asarray(mast_length)
-    if not (np.isfinite(span).all() and (span.real > 0).all()):
-        raise InputError("span", span, "must be above zero")
+    length, mast = np.asarray(span), np.asarray(mast_length)
+    if not (np.isfinite(length).all() and (length.real > 0).all()):
+        raise InputError("span", length, "must be above zero")
     if not np.isfinite(mast).all():
         raise InputError("mast_length", mast, "must be finite")
     points, weights = np.polynomial.legendre.leggauss(_STRIPS)
     eta = ((1 + points) / 2)[:, None]
     pitch = support.hub[..., _PITCH, :][..., None, :]
     rise = support.hub[..., _UP, :][..., None, :] - mast[..., None, None] * pitch
-    return Strips(weights / 2 * span[..., None], (3 * eta**2 - eta**3) / 2 * rise, eta * pitch)
+    return Strips(weights / 2 * length[..., None], (3 * eta**2 - eta**3) / 2 * rise, eta * pitch)

@@ -7,8 +7,8 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.case import load_case
 from proprotor.figures.blade_state import BladeState, blade_state, on_rigid_hub
 from proprotor.figures.published import KNOT, PAPER_FREQUENCIES
@@ -54,16 +54,16 @@ class Analyses:
         self.model: Callable[[str, str], LinearModel] = lru_cache(self._linearized)
         self.band: Callable[..., Band | None] = lru_cache(self._sampled)
 
-    def airspeeds(self, deck: str) -> NDArray:
+    def airspeeds(self, deck: str) -> Array:
         """Airspeeds (points,) of a deck, m/s."""
         first, last = _AIRSPEEDS.get(deck, _WRATS)
         return np.arange(first, last + self.step / 2, self.step) * KNOT
 
-    def knots(self, deck: str) -> NDArray:
+    def knots(self, deck: str) -> Array:
         """The same in kt."""
         return np.round(self.airspeeds(deck) / KNOT, 9)
 
-    def damping(self, deck: str, mode: str, variant: str) -> NDArray:
+    def damping(self, deck: str, mode: str, variant: str) -> Array:
         """Damping (points,) of a mode of the wing in percent of critical; NaN at failed points."""
         values = self._followed(deck, variant)[:, self.case(deck).support.names.index(mode)]
         return -100 * values.real / np.abs(values)
@@ -83,10 +83,10 @@ class Analyses:
         return blade_state(self.case(deck), self.airspeeds(deck))
 
     @cached_property
-    def rotor_on_rigid_hub(self) -> Callable[..., dict[str, NDArray]]:
+    def rotor_on_rigid_hub(self) -> Callable[..., dict[str, Array]]:
         """Frequencies per rev of the XV-15's rotor modes by options."""
 
-        def frequencies(**options: Any) -> dict[str, NDArray]:
+        def frequencies(**options: Any) -> dict[str, Array]:
             return on_rigid_hub(self.case(XV15), self.airspeeds(XV15), pitch="coupling", **options)
 
         return frequencies
@@ -94,8 +94,9 @@ class Analyses:
     def _linearized(self, deck: str, variant: str) -> LinearModel:
         return self.case(deck).linearize(self.airspeeds(deck)[None], **self.options(deck, variant))
 
-    def _followed(self, deck: str, variant: str) -> NDArray:
-        return follow_support_modes(self.model(deck, variant))[0]
+    def _followed(self, deck: str, variant: str) -> Array:
+        followed: Array = follow_support_modes(self.model(deck, variant))[0]
+        return followed
 
     def _sampled(self, deck: str, variant: str = "couplings") -> Band | None:
         if not self.samples:
@@ -115,7 +116,7 @@ class Analyses:
         return {"pitch": "coupling"} | VARIANTS[variant](self, deck)
 
 
-def _kept_couplings(analyses: Analyses, deck: str) -> dict[str, NDArray]:
+def _kept_couplings(analyses: Analyses, deck: str) -> dict[str, Array]:
     state = analyses.blade_state(deck)
     return {
         "pitch_flap_coupling": state.pitch_flap_coupling,

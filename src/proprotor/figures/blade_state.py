@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from proprotor_equations import pitch
 
+from proprotor.arrays import Array
 from proprotor.evaluation import evaluate
 from proprotor.model import HUB, rotor_model, rotor_quantities
 from proprotor.options import Options
@@ -28,13 +29,13 @@ ROTOR_MODES = tuple(name for pair in _PAIRS for name in pair if name)
 class BladeState(NamedTuple):
     """What the couplings follow from, arrays over airspeed: angles in rad, frequency per rev."""
 
-    structural_pitch: NDArray
-    coning: NDArray
-    lag: NDArray
-    pitch_flap_coupling: NDArray
-    pitch_lag_coupling: NDArray
-    pitch_lag_coupling_without_lag: NDArray
-    lag_frequency: NDArray
+    structural_pitch: Array
+    coning: Array
+    lag: Array
+    pitch_flap_coupling: Array
+    pitch_lag_coupling: Array
+    pitch_lag_coupling_without_lag: Array
+    lag_frequency: Array
 
 
 def blade_state(case: Case, airspeed: ArrayLike) -> BladeState:
@@ -53,17 +54,19 @@ def blade_state(case: Case, airspeed: ArrayLike) -> BladeState:
     pool = with_trim(quantities, Options(pitch="coupling"), {name: getattr(trim, name) for name in UNKNOWNS})
     centrifugal = rotor.lag_hinge_offset * rotor.lag_first_moment
     squared = centrifugal + pool["lag_lag_stiffness"] / operation.rotor_speed**2
+    couplings = evaluate(pitch.couplings, pool)
     return BladeState(
         pool["structural_pitch"],
         trim.coning,
         trim.lag,
-        *evaluate(pitch.couplings, pool),
+        couplings.pitch_flap_coupling,
+        couplings.pitch_lag_coupling,
         evaluate(pitch.couplings, pool | {"lag": 0.0}).pitch_lag_coupling,
         np.sqrt(squared / rotor.lag_inertia),
     )
 
 
-def on_rigid_hub(case: Case, airspeed: NDArray, **options) -> dict[str, NDArray]:
+def on_rigid_hub(case: Case, airspeed: Array, **options: Any) -> dict[str, Array]:
     """Frequencies per rev (points,), in the fixed frame, of `ROTOR_MODES`; NaN at failed points.
 
     Coning is the mode with most of the collective flap over all airspeeds; of the two with most of the cyclic lag, or

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.figures.analyses import XV15, Analyses
 from proprotor.figures.content import BandCurves, Content, Curve
@@ -136,7 +136,7 @@ def _damping_figure(number: int, figure: _Damping, analyses: Analyses) -> Conten
 def _top(figure: _Damping, model: Curve) -> float:
     """The paper's upper end of the axis, or a higher one if the model's curve needs it."""
     shown = model.values[model.airspeed <= figure.x_limits[1]]
-    return max(figure.highest, 2 * np.ceil(np.nanmax(shown) / 2))
+    return max(figure.highest, 2 * float(np.ceil(np.nanmax(shown) / 2)))
 
 
 def _band(figure: _Damping, analyses: Analyses) -> BandCurves | None:
@@ -148,7 +148,7 @@ def _band(figure: _Damping, analyses: Analyses) -> BandCurves | None:
     return BandCurves(analyses.knots(figure.deck), low, median, high, label)
 
 
-def _boundary_told(knots: NDArray, damping: NDArray, end: float) -> str:
+def _boundary_told(knots: Array, damping: Array, end: float) -> str:
     shown = knots <= end
     speed = float(boundary(knots[shown], damping[None, shown])[0])
     if np.isinf(speed):
@@ -156,7 +156,7 @@ def _boundary_told(knots: NDArray, damping: NDArray, end: float) -> str:
     return f"unstable at {speed:.0f} kt" if speed <= knots[0] else f"boundary {speed:.0f} kt"
 
 
-def _reservations(analyses: Analyses, deck: str) -> dict:
+def _reservations(analyses: Analyses, deck: str) -> dict[str, Any]:
     case = analyses.case(deck)
     notes = [*reservations(case), analyses.doubts(deck)]
     if deck != XV15:  # the XV-15's warning is on its mass integrals, which do not move the boundary

@@ -7,7 +7,8 @@ import io
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from proprotor.arrays import Array
 
 AIRSPEED = "airspeed (kt)"
 
@@ -27,8 +28,8 @@ class Curve:
     """
 
     name: str
-    airspeed: NDArray
-    values: NDArray
+    airspeed: Array
+    values: Array
     label: str = ""
 
 
@@ -36,10 +37,10 @@ class Curve:
 class BandCurves:
     """Percentiles of a sample: low, median, high (points,), and what the sample is."""
 
-    airspeed: NDArray
-    low: NDArray
-    median: NDArray
-    high: NDArray
+    airspeed: Array
+    low: Array
+    median: Array
+    high: Array
     label: str
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Okabe and Ito's colours, less the yellow, with a dash pattern each.
-_STYLES = (
+_STYLES: tuple[dict[str, Any], ...] = (
     {"color": "#000000", "linestyle": "-", "linewidth": 2.2},
     {"color": "#D55E00", "linestyle": "--", "linewidth": 1.8},
     {"color": "#0072B2", "linestyle": "-.", "linewidth": 1.8},
@@ -82,7 +82,13 @@ def _dress(ax: Axes, content: Content) -> None:
     if content.y_limits[0] < 0:
         ax.axhline(0, color="black", linewidth=0.8)
     if content.assumed:
-        place = {"x": 1.0, "y": -0.42 / _AXES, "transform": ax.transAxes, "ha": "right", "va": "center"}
+        place: dict[str, Any] = {
+            "x": 1.0,
+            "y": -0.42 / _AXES,
+            "transform": ax.transAxes,
+            "ha": "right",
+            "va": "center",
+        }
         frame = {"facecolor": "white", "edgecolor": "0.6", "pad": 2.5}
         ax.text(s="rests on assumed inputs", **place, fontsize=9, fontstyle="italic", bbox=frame)
 

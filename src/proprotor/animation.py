@@ -1,0 +1,131 @@
+"""A mode of rotor and wing in motion, as a GIF."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from PIL.Image import Image
+
+    from proprotor.mode_motion import ModeMotion
+
+_KNOT = 1852 / 3600  # m/s
+_SIZE = (8.0, 4.4)  # inches
+_PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "side": (0.82, 0.09, 0.17, 0.76)}
+_TITLES = {"3d": "", "front": "from ahead", "side": "from outboard"}
+_COLOURS = 32  # of the GIF
+
+
+def animate_mode(
+    motion: ModeMotion,
+    path: str | os.PathLike[str],
+    *,
+    frames: int = 24,
+    frames_per_second: float = 12.0,
+    dpi: int = 80,
+) -> Path:
+    """Write one cycle of a mode as a GIF that repeats without end, in perspective, from ahead and from the side.
+
+    Parameters
+    ----------
+    motion : ModeMotion
+        Of `proprotor.mode_motion.mode_motion`.
+    path : str or path
+        A file that ends in .gif.
+    frames : int
+        Of one cycle, at least 4.
+    frames_per_second : float
+        How fast they are shown; the title tells the true frequency.
+    dpi : int
+        Dots per inch of a picture of 8 by 4.4 inches.
+
+    Returns
+    -------
+    pathlib.Path
+        The file. The amplitude is the same throughout: neither growth nor decay is shown.
+
+    Raises
+    ------
+    InputError
+        For another ending, or numbers that make no animation.
+    """
+    target = Path(path)
+    if target.suffix.lower() != ".gif":
+        raise InputError("path", str(path), "must end in .gif")
+    if frames < 4 or not frames_per_second > 0 or not dpi > 0:
+        told = f"{frames} frames, {frames_per_second} per second, {dpi} dpi"
+        raise InputError("frames", told, "must be at least 4, at a speed and a size above zero")
+    first, *others = _frames(motion, frames, dpi)
+    lasts = round(1000 / frames_per_second)
+    first.save(target, save_all=True, append_images=others, duration=lasts, loop=0, optimize=True)
+    return target
+
+
+def title_of(motion: ModeMotion) -> str:
+    """The mode with airspeed, frequency and damping."""
+    value = motion.eigenvalue
+    per_rev = f", {value.imag / motion.rotor_speed:.2f}/rev" if motion.rotor_speed else ""
+    damping = -100 * value.real / abs(value)
+    hertz = value.imag / (2 * np.pi)
+    return (
+        f"{motion.mode} at {motion.airspeed / _KNOT:.0f} kt: {hertz:.2f} Hz{per_rev}, "
+        f"damping {damping:.2f} % of critical"
+    )
+
+
+def _frames(motion: ModeMotion, count: int, dpi: int) -> list[Image]:
+    """Pictures of one cycle: what stands still is drawn once, and the moving lines over it."""
+    from PIL import Image
+
+    from proprotor.plots.mode_shape import draw_moving
+
+    canvas, axes = _still(motion, dpi)
+    background = canvas.copy_from_bbox(canvas.figure.bbox)
+    pictures: list[Image.Image] = []
+    palette: Image.Image | None = None
+    for phase in 2 * np.pi * np.arange(count) / count:
+        canvas.restore_region(background)
+        for view, ax in axes.items():
+            for line in draw_moving(ax, motion, view, float(phase)):
+                ax.draw_artist(line)
+                line.remove()
+        whole = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+        palette = palette or whole.quantize(
+            _COLOURS
+        )  # one for all, so that what stands still keeps its shade
+        pictures.append(whole.quantize(palette=palette, dither=Image.Dither.NONE))
+    return pictures
+
+
+def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
+    """The canvas of a figure with titles and the trim state (Matplotlib does not type its methods), and its axes."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from proprotor.plots.mode_shape import draw_still
+
+    figure = Figure(figsize=_SIZE, dpi=dpi)
+    canvas: Any = FigureCanvasAgg(figure)
+    axes: dict[str, Axes] = {}
+    for view, place in _PLACES.items():
+        settings: dict[str, Any] = {"projection": "3d"} if view == "3d" else {}
+        axes[view] = ax = figure.add_axes(place, **settings)
+        draw_still(ax, motion, view)
+        ax.set_axis_off()
+        ax.set_title(_TITLES[view], fontsize=8, color="0.3")
+    figure.text(0.02, 0.975, f"{motion.case}\n{title_of(motion)}", fontsize=9, va="top")
+    figure.text(0.02, 0.02, _small_print(motion), fontsize=6.5, color="0.35", va="bottom")
+    canvas.draw()
+    return canvas, axes
+
+
+def _small_print(motion: ModeMotion) -> str:
+    told = "Blades are shown at azimuths that stand still. Amplitude enlarged and held; grey: trim."
+    return told + (" The wing is a sketch in the proportions of the XV-15." if motion.sketched else "")

@@ -1,0 +1,1 @@
+"""The commands of `proprotor`, a module each, and what they share: `arguments` and `output`."""

@@ -1,0 +1,212 @@
+"""Arguments and options that commands share, so that each is the same everywhere."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections import defaultdict
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.shell_completion import CompletionItem
+from click.types import StringParamType
+
+from proprotor.errors import InputError
+from proprotor.options import CHOICES, LOCKABLE, Options
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+Command = Callable[..., Any]
+Option = Callable[[Command], Command]  # a decorator
+
+EXIT_CODES = """\b
+Exit codes:
+  0  done; unstable modes and single speeds that fail are results
+  1  no speed could be analysed, or an output could not be written
+  2  an input cannot be used: the message says which and why"""
+
+FIGURE_FORMATS = (".png", ".pdf", ".svg")
+NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
+_RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # those of a range; what follows is the unit
+_PERCENT_OF_LEVEL = 'Damping that counts as the boundary, of critical: "3 %" or 0.03.'
+
+
+class CaseName(StringParamType):
+    """A bundled case or a TOML file, which the shell completes."""
+
+    name = "case"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        from proprotor.deck_file import list_cases
+
+        found = [name for name in list_cases() if name.startswith(incomplete)]
+        return [CompletionItem(name) for name in found] or [CompletionItem(incomplete, type="file")]
+
+
+class Setting(StringParamType):
+    """FIELD=VALUE; the shell completes the field."""
+
+    name = "setting"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        from proprotor.describe import deck_fields
+
+        paths = dict.fromkeys(field.path for field in deck_fields())
+        return [CompletionItem(f"{path}=") for path in paths if path.startswith(incomplete)]
+
+
+def case_argument(command: Command) -> Command:
+    """CASE and `--set`, for `loaded_case`."""
+    declared = click.option(
+        "--set",
+        "settings",
+        multiple=True,
+        type=Setting(),
+        metavar="FIELD=VALUE",
+        help='A field of the deck to set first, such as rotor.precone="1.5 deg", operation.trim=windmill or '
+        '"support.modes[beam].frequency=3 Hz"; `proprotor describe` lists them. Repeatable.',
+    )
+    return click.argument("case", type=CaseName())(declared(command))
+
+
+def settings_of(texts: tuple[str, ...]) -> dict[str, str]:
+    """Fields and values of `--set`.
+
+    Raises
+    ------
+    InputError
+        For a text that is not FIELD=VALUE, or a field given twice.
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        path, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not path or not value:
+            raise InputError("--set", text, 'must be a field and its value, such as rotor.precone="1.5 deg"')
+        if path in found:
+            raise InputError("--set", text, "must not set a field twice")
+        found[path] = value
+    return found
+
+
+def loaded_case(name: str, settings: tuple[str, ...]) -> Case:
+    """The case of a deck with the fields of `--set`.
+
+    Raises
+    ------
+    InputError
+        For a deck or field that cannot be used.
+    """
+    from proprotor.case import load_case
+
+    return load_case(name, settings_of(settings))
+
+
+SCAN_HELP = 'Where boundaries are looked for: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed.'
+
+
+def scan_option(command: Command) -> Command:
+    """`--scan`, airspeeds between which boundaries are looked for."""
+    return click.option("--scan", metavar="RANGE", help=SCAN_HELP)(command)
+
+
+def level_option(command: Command) -> Command:
+    """`--level`, for `level_of`."""
+    return click.option("--level", default="0", show_default=True, metavar="DAMPING", help=_PERCENT_OF_LEVEL)(
+        command
+    )
+
+
+def level_of(text: str) -> float:
+    """A damping ratio from ``"3 %"`` or ``"0.03"``.
+
+    Raises
+    ------
+    InputError
+        For what is no damping ratio.
+    """
+    from proprotor.units import to_si
+
+    try:
+        level = to_si(text, "")
+    except InputError as error:
+        raise error.within("--level") from None
+    if not -1 < level < 1:
+        raise InputError("--level", text, 'must lie between -1 and 1; write three percent as "3 %"')
+    return level
+
+
+def one_speed(text: str, option: str = "--speed") -> float:
+    """A single airspeed, m/s.
+
+    Raises
+    ------
+    InputError
+        For text that is not one.
+    """
+    from proprotor.units import speeds
+
+    found = speeds(text, option)
+    if len(found) != 1:
+        raise InputError(option, text, 'must be one speed, such as "300 kt"')
+    return float(found[0])
+
+
+def unit_of(text: str) -> str:
+    """The unit of a value or range, as written; "" for none."""
+    return _RANGE.sub("", text, count=1).strip()
+
+
+def check_figure_format(plot: str | None) -> None:
+    """Refuse a figure of another kind, before anything is analysed.
+
+    Raises
+    ------
+    InputError
+        When its name does not end in .png, .pdf or .svg.
+    """
+    if plot and Path(plot).suffix.lower() not in FIGURE_FORMATS:
+        raise InputError("--plot", plot, f"must end in {', '.join(FIGURE_FORMATS)}")
+
+
+def model_options(command: Command) -> Command:
+    """A flag for each choice of the model, as `proprotor.options` has them."""
+    meanings = _meanings(Options)
+    locked: dict[str, Any] = {
+        "multiple": True,
+        "type": click.Choice(LOCKABLE),
+        "help": f"{meanings['locked']} Repeatable.",
+    }
+    command = click.option("--locked", **locked)(command)
+    for name in reversed(NUMBERS):
+        command = click.option(f"--{name.replace('_', '-')}", type=float, help=meanings[name])(command)
+    for name, choices in reversed(CHOICES.items()):
+        command = _model_option(name, choices, meanings[name])(command)
+    return command
+
+
+def in_order(options: dict[str, Any]) -> dict[str, Any]:
+    """The options of the model, in a fixed order."""
+    return {name: options[name] for name in (*CHOICES, *NUMBERS, "locked")}
+
+
+def _model_option(name: str, choices: tuple[Any, ...], meaning: str) -> Option:
+    flag = name.replace("_", "-")
+    declared: dict[str, Any] = {"default": choices[0], "show_default": True, "help": meaning}
+    if isinstance(choices[0], bool):
+        return click.option(f"--{flag}/--no-{flag}", name, **declared)
+    return click.option(f"--{flag}", name, type=click.Choice(choices), **declared)
+
+
+def _meanings(documented: type) -> dict[str, str]:
+    """What the docstring says on each parameter; nothing in a Python without docstrings."""
+    lines = inspect.getdoc(documented) or ""
+    found = re.findall(r"^([\w, ]+) : .*\n((?:    .*\n)+)", lines, re.MULTILINE)
+    meanings = {name: " ".join(text.split()) for names, text in found for name in names.split(", ")}
+    return defaultdict(str, meanings)

@@ -1,0 +1,128 @@
+"""The command `proprotor attribution`: what drives and what damps a mode."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from proprotor.commands import output
+from proprotor.commands.arguments import (
+    EXIT_CODES,
+    case_argument,
+    check_figure_format,
+    in_order,
+    loaded_case,
+    model_options,
+    one_speed,
+    settings_of,
+)
+from proprotor.waiting import waiting
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+
+_COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)")
+
+
+@click.command(epilog=EXIT_CODES, short_help="What drives and what damps a mode, by physical origin.")
+@case_argument
+@click.option("--speed", required=True, metavar="SPEED", help='Airspeed, such as "300 kt".')
+@click.option("--mode", help="Mode by name; by default the one that is damped least.")
+@output.output_options(csv="Write a row for each origin.", plot="Draw the damping of each origin")
+@model_options
+def attribution(
+    case: str,
+    settings: tuple[str, ...],
+    speed: str,
+    mode: str | None,
+    csv: str | None,
+    plot: str | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """What drives and what damps a mode, by the physical origin of the terms.
+
+    CASE is a bundled case or a TOML file. A number is the change of the eigenvalue if all terms of one origin grew by
+    100 %, at the rate at which it begins; trim and mode are held. Where growth is positive the origin drives the mode.
+    Over all origins the changes sum to zero.
+
+    \b
+    Examples:
+      proprotor attribution xv15 --speed "380 kt" --mode chord
+      proprotor attribution xv15 --speed "380 kt" --plot chord.png --csv chord.csv
+    """
+    check_figure_format(plot)
+    options, airspeed = in_order(options), one_speed(speed)
+    loaded = loaded_case(case, settings)
+    with waiting("Analysing"):
+        found = _one_mode(loaded.attribution(airspeed, mode, **options))
+    records = _records(found)
+    if csv:
+        output.write("--csv", csv, output.csv_of(records, _COLUMNS))
+    if plot:
+        output.write_plot(plot, loaded, lambda: _draw(found))
+    if as_json:
+        head = output.about(loaded, options, settings_of(settings))
+        output.print_json(head | _document(found, records, airspeed))
+    else:
+        _print(loaded, found, records, speed)
+
+
+def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
+    """Of several modes the one that is damped least."""
+    value = found.eigenvalue.values
+    return found.isel(mode=[int((-value.real / abs(value)).argmin())])
+
+
+def _records(found: xarray.Dataset) -> list[dict[str, Any]]:
+    value = complex(found.eigenvalue.values[0])
+    records = []
+    for origin, change in zip(found.origin.values.tolist(), found.contribution.values[:, 0], strict=True):
+        along = (value.conjugate() * change).real / abs(value) ** 2
+        damping = -(change.real - value.real * along) / abs(value)
+        numbers = (float(change.real), float(change.imag), 100 * float(damping))
+        records.append(dict(zip(_COLUMNS, (origin, *numbers), strict=True)))
+    return sorted(records, key=lambda record: -abs(record["growth (1/s)"]))
+
+
+def _document(found: xarray.Dataset, records: list[dict[str, Any]], airspeed: float) -> dict[str, Any]:
+    value = complex(found.eigenvalue.values[0])
+    return {
+        "airspeed (m/s)": airspeed,
+        "mode": str(found.mode.values[0]),
+        "Re s (rad/s)": value.real,
+        "Im s (rad/s)": value.imag,
+        "damping (% of critical)": -100 * value.real / abs(value),
+        "origins": records,
+    }
+
+
+def _draw(found: xarray.Dataset) -> Any:
+    from proprotor.plots import plot_attribution
+
+    return plot_attribution(found)
+
+
+def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], speed: str) -> None:
+    output.print_head(case)
+    value = complex(found.eigenvalue.values[0])
+    out = output.console()
+    damping = f"damping {-100 * value.real / abs(value):.3g} % of critical"
+    frequency = f"{abs(value.imag) / float(case.operation.rotor_speed):.3f} per rev"
+    out.print(f"{found.mode.values[0]} at {speed.strip()}: {frequency}, {damping}", style="bold")
+    columns = ("origin", "growth, 1/s", "frequency, rad/s", "damping, %", "")
+    output.print_table(columns, (_row(record) for record in records), text=("origin", ""))
+
+
+def _row(record: dict[str, Any]) -> tuple[str, ...]:
+    origin, growth, frequency, damping = (record[name] for name in _COLUMNS)
+    return (
+        origin,
+        f"{growth:+.4f}",
+        f"{frequency:+.4f}",
+        f"{damping:+.4f}",
+        "drives" if growth > 0 else "damps",
+    )

@@ -1,0 +1,95 @@
+"""The command `proprotor describe`: the fields of a deck."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+from click.shell_completion import CompletionItem
+from click.types import StringParamType
+
+from proprotor.commands import output
+from proprotor.commands.arguments import EXIT_CODES
+from proprotor.errors import InputError
+
+if TYPE_CHECKING:
+    from proprotor.describe import DeckField
+
+_MOST_IN_FULL = 3  # fields that are told in full; more of them are a table
+
+
+class _Field(StringParamType):
+    name = "field"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        from proprotor.describe import deck_fields
+
+        found = dict.fromkeys(field.path for field in deck_fields() if field.path.startswith(incomplete))
+        return [CompletionItem(path) for path in found]
+
+
+@click.command(epilog=EXIT_CODES, short_help="The fields of a deck: meaning, unit, range, default.")
+@click.argument("field", required=False, type=_Field(), metavar="[FIELD]")
+@click.option("--schema", is_flag=True, help="Print the JSON schema, by which editors check a deck.")
+@click.option("--markdown", is_flag=True, help="Print all fields as a page, docs/decks.md.")
+@output.output_options()
+def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> None:
+    """The fields of a deck: what each means, which unit and range it has, its default and its alternatives.
+
+    FIELD is a field, a section, a kind of support or the last name of a field; without it all are listed.
+
+    \b
+    Examples:
+      proprotor describe rotor.precone
+      proprotor describe rotor
+      proprotor describe beam-wing
+      proprotor describe --schema > deck.schema.json
+    """
+    from proprotor import describe as told
+    from proprotor.deck_schema import deck_schema
+
+    if sum((schema, markdown, as_json)) > 1:
+        raise InputError("--schema", None, "must not be given with --markdown or --json")
+    if field is not None and (schema or markdown):
+        raise InputError("FIELD", field, "goes with the table or --json; a schema or page is of all fields")
+    if schema:
+        output.print_json(deck_schema())
+        return
+    if markdown:
+        click.echo(told.markdown(), nl=False)
+        return
+    found = told.deck_fields() if field is None else told.find_fields(field)
+    if as_json:
+        output.print_json(told.field_records(found))
+    elif len(found) <= _MOST_IN_FULL:
+        _print_in_full(found)
+    else:
+        _print_table(found)
+
+
+def _print_in_full(found: tuple[DeckField, ...]) -> None:
+    from proprotor.describe import field_lines
+
+    out = output.console()
+    for field in found:
+        out.print(field.path, style="bold")
+        for label, text in field_lines(field):
+            out.print(f"  {label:<11}{text}", soft_wrap=True)
+
+
+def _print_table(found: tuple[DeckField, ...]) -> None:
+    out = output.console()
+    for kind in dict.fromkeys(field.kind for field in found):
+        if kind:
+            out.print(f'[support] of kind "{kind}"', style="bold")
+        rows = (_row(field) for field in found if field.kind == kind)
+        output.print_table(
+            ("field", "SI unit", "range", "meaning"), rows, text=("field", "SI unit", "meaning")
+        )
+    out.print("* must be given, or one of its alternatives. `proprotor describe FIELD` tells all of one.")
+
+
+def _row(field: DeckField) -> tuple[str, ...]:
+    return f"{field.path}{'*' if field.required else ''}", field.unit, field.range, field.meaning

@@ -1,0 +1,62 @@
+"""The command `proprotor new`: a commented deck to begin with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from proprotor.commands import output
+from proprotor.commands.arguments import EXIT_CODES, CaseName
+from proprotor.errors import InputError
+
+
+@click.command(epilog=EXIT_CODES, short_help="Write a commented deck that runs as it is.")
+@click.argument("file", metavar="FILE")
+@click.option(
+    "--from",
+    "base",
+    type=CaseName(),
+    default="xv15",
+    show_default=True,
+    metavar="CASE",
+    help="Whose numbers it has: a bundled case or a TOML file.",
+)
+@click.option("--variant", is_flag=True, help="Write a short deck that alters the other, instead of a copy.")
+@click.option("--force", is_flag=True, help="Replace a file that exists.")
+@output.output_options()
+def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None:
+    """Write a deck with every field there is, each with its meaning, its range and its default.
+
+    It has the numbers of another case and runs as it is; change what differs. Fields left out stand in it as comments
+    with an example.
+
+    \b
+    Examples:
+      proprotor new my.toml
+      proprotor new wing.toml --from xv15-wing
+      proprotor new stiffer.toml --variant
+    """
+    import os
+
+    from proprotor.deck import validate
+    from proprotor.deck_file import list_cases, read_tables
+    from proprotor.deck_template import deck_text
+
+    place = Path(file)
+    if place.suffix != ".toml":
+        raise InputError("FILE", file, "must end in .toml")
+    if place.exists() and not force:
+        raise InputError("FILE", file, "exists; --force replaces it")
+    tables = read_tables(base)
+    validate(tables)
+    if variant and base not in list_cases():
+        if place.resolve() == Path(base).resolve():
+            raise InputError("FILE", file, "must not be the deck that it alters")
+        base = os.path.relpath(base, place.parent).replace(os.sep, "/")
+    text = deck_text(tables, place, base, variant)
+    output.write("FILE", file, text.encode())
+    if as_json:
+        output.print_json({"written": file, "from": base, "variant": variant})
+    else:
+        click.echo(f"Try: proprotor sweep {file} --speed 50:400:5kt --plot damping.png")

@@ -1,0 +1,170 @@
+"""What commands print and write: JSON, tables, files and figures."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import textwrap
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import click
+
+from proprotor.commands.arguments import Command, Option
+from proprotor.errors import InputError
+from proprotor.output_file import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from rich.console import Console
+
+    from proprotor.case import Case
+
+KNOT = 1852 / 3600  # m/s
+_NARROWEST = 30  # characters of a wrapped column
+
+
+def output_options(*, csv: str = "", plot: str = "") -> Option:
+    """`--json`, and `--csv` and `--plot` with what they hold."""
+
+    def declare(command: Command) -> Command:
+        json_help = "Print everything as JSON instead of the table."
+        command = click.option("--json", "as_json", is_flag=True, help=json_help)(command)
+        if csv:
+            command = click.option("--csv", metavar="FILE", help=csv)(command)
+        if plot:
+            command = click.option("--plot", metavar="FILE", help=f"{plot}: a .png, .pdf or .svg file.")(
+                command
+            )
+        return command
+
+    return declare
+
+
+def print_json(document: Any) -> None:
+    """Print plain data as JSON; what is not finite as null."""
+    click.echo(json.dumps(_finite(document), indent=1, allow_nan=False))
+
+
+def _finite(data: Any) -> Any:
+    if isinstance(data, Mapping):
+        return {str(key): _finite(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_finite(value) for value in data]
+    return None if isinstance(data, float) and not math.isfinite(data) else data
+
+
+def about(case: Case, options: Mapping[str, Any], settings: Mapping[str, str]) -> dict[str, Any]:
+    """What stands at the head of every JSON document of a case."""
+    from proprotor.provenance import reservations
+
+    return {
+        "case": case.name,
+        "title": case.title,
+        "set": dict(settings),
+        "rotor speed (rad/s)": float(case.operation.rotor_speed),
+        "options": dict(options),
+        "reservations": reservations(case),
+        "warnings": list(case.warnings),
+    }
+
+
+def console() -> Console:
+    """Of the standard output; text is printed as it is."""
+    from rich.console import Console
+
+    return Console(markup=False, highlight=False, emoji=False)
+
+
+def print_head(case: Case) -> None:
+    """Print what was analysed and what it rests on."""
+    from proprotor.provenance import reservations
+    from proprotor.report import heading
+
+    out = console()
+    for line in (heading(case), *reservations(case), ""):
+        out.print(line)
+
+
+def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: Sequence[str] = ()) -> None:
+    """Print a table: numbers to the right, columns named in `text` to the left.
+
+    Nothing is cut off; only the last column, when it is text, is wrapped to the width of the terminal.
+    """
+    table = [tuple(columns), *map(tuple, rows)]
+    widths = [max(len(row[place]) for row in table) for place in range(len(columns))]
+    out = console()
+    indent = sum(widths[:-1]) + 2 * (len(widths) - 1)
+    room = max(_NARROWEST, out.width - indent) if columns[-1] in text else 10_000
+    for number, row in enumerate(table):
+        cells = [
+            cell.ljust(width) if name in text else cell.rjust(width)
+            for cell, width, name in zip(row[:-1], widths, columns, strict=False)
+        ]
+        last = row[-1] if columns[-1] in text else row[-1].rjust(widths[-1])
+        wrapped = textwrap.wrap(last, room, drop_whitespace=columns[-1] in text) or [""]
+        lines = ["  ".join([*cells, wrapped[0]]), *(" " * indent + line for line in wrapped[1:])]
+        for line in lines:
+            out.print(line.rstrip(), style="" if number else "dim", soft_wrap=True)
+    out.print()
+
+
+def csv_of(records: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> bytes:
+    """Records as CSV in UTF-8, with all digits; an empty cell for None."""
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, fieldnames=columns, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(_finite(list(records)))
+    return text.getvalue().encode()
+
+
+def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes) -> None:
+    """Write the file of an option, and say so on the error stream.
+
+    Raises
+    ------
+    InputError
+        When the path is no place for a file.
+    click.ClickException
+        When the file cannot be written.
+    """
+    try:
+        write_whole(path, content if callable(content) else lambda file: file.write(content))
+    except InputError as error:
+        raise InputError(option, path, error.rule) from None
+    except OSError as error:
+        reason = error.strerror or error
+        raise click.ClickException(f"{option} = {path}: cannot be written ({reason})") from None
+    click.echo(f"Wrote {path}", err=True)
+
+
+def write_plot(path: str, case: Case, draw: Callable[[], Axes]) -> None:
+    """Write the figure of `--plot`, with what it is and what it rests on below.
+
+    Raises
+    ------
+    InputError, click.ClickException
+        As `write`.
+    """
+    from proprotor.waiting import waiting
+
+    with waiting("Drawing"):
+        import matplotlib
+
+        matplotlib.use("Agg")  # no window, and no display needed
+        from matplotlib import pyplot
+
+        from proprotor.plots import rests_on
+        from proprotor.report import heading
+
+        axes = draw()
+        rests_on(axes, case, f"{heading(case)}.")
+        figure = axes.get_figure(root=True)
+        if figure is None:
+            raise RuntimeError("axes without a figure")
+        suffix = Path(path).suffix.removeprefix(".").lower()
+        write("--plot", path, lambda file: figure.savefig(file, format=suffix, dpi=160, bbox_inches="tight"))
+        pyplot.close(figure)

@@ -1,0 +1,202 @@
+"""The command `proprotor map`: where in the plane of two inputs a case is stable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+import numpy as np
+
+from proprotor.arrays import Array
+from proprotor.commands import output
+from proprotor.commands.arguments import (
+    EXIT_CODES,
+    case_argument,
+    check_figure_format,
+    in_order,
+    level_of,
+    level_option,
+    loaded_case,
+    model_options,
+    one_speed,
+    settings_of,
+    unit_of,
+)
+from proprotor.errors import InputError
+from proprotor.waiting import waiting
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+
+_AIRSPEED = "airspeed"
+_EXAMPLE = '"rotor.precone=0:5:0.25 deg"'
+_MARKS = {"stable": ".", "unstable": "#", "failed": "?"}
+
+
+class _Axis(NamedTuple):
+    path: str
+    values: Array  # SI
+    unit: str  # as written
+    factor: float  # SI units in one of them
+
+
+@click.command("map", epilog=EXIT_CODES, short_help="Where in the plane of two inputs a case is stable.")
+@case_argument
+@click.option(
+    "--x",
+    required=True,
+    metavar="INPUT=RANGE",
+    help=f'Across: an input by deck path and its values, {_EXAMPLE}, or "airspeed=100:400:10kt".',
+)
+@click.option("--y", required=True, metavar="INPUT=RANGE", help="Up, likewise.")
+@click.option("--speed", metavar="SPEED", help='Airspeed, such as "300 kt", where it is neither x nor y.')
+@level_option
+@output.output_options(
+    csv="Write a row for each point of the grid.", plot="Draw the boundary, the stable side shaded"
+)
+@model_options
+def stability_map(
+    case: str,
+    settings: tuple[str, ...],
+    x: str,
+    y: str,
+    speed: str | None,
+    level: str,
+    csv: str | None,
+    plot: str | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Where in the plane of two inputs a case is stable, and the boundary between.
+
+    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. A point is stable when every mode is.
+    Where neighbours of the grid differ, the boundary between them is found to rounding; islands
+    smaller than a cell of the grid are not seen.
+
+    \b
+    Examples:
+      proprotor map xv15 --x airspeed=200:400:10kt --y "rotor.precone=0:5:0.5 deg" --plot map.png
+      proprotor map xv15 --speed "350 kt" --x "support.modes[beam].frequency=2:5:0.1 Hz"
+        --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
+    """
+    check_figure_format(plot)
+    options, damping = in_order(options), level_of(level)
+    airspeed = None if speed is None else one_speed(speed)
+    loaded = loaded_case(case, settings)
+    axes = _axis("--x", x, loaded), _axis("--y", y, loaded)
+    if axes[0].path == axes[1].path:
+        raise InputError("--y", y, "must not be the input of --x")
+    if airspeed is None and _AIRSPEED not in (axis.path for axis in axes):
+        raise InputError("--speed", None, "must be given, or be --x or --y: airspeed=100:400:10kt")
+    with waiting("Analysing"):
+        values = {axis.path: axis.values for axis in axes}
+        found = loaded.stability_map(values, airspeed=airspeed, level=damping, **options)
+    if csv:
+        records = list(_records(found, axes))
+        output.write("--csv", csv, output.csv_of(records, list(records[0])))
+    if plot:
+        output.write_plot(plot, loaded, lambda: _draw(found, axes))
+    if as_json:
+        output.print_json(
+            output.about(loaded, options, settings_of(settings)) | _document(found, axes, airspeed)
+        )
+    else:
+        _print(loaded, found, axes)
+    if not np.isfinite(found.growth.values).any():
+        raise click.exceptions.Exit(1)
+
+
+def _axis(option: str, text: str, case: Case) -> _Axis:
+    from proprotor.design import design_inputs
+    from proprotor.sampling import grid
+    from proprotor.units import factor_to_si
+
+    path, equals, given = (part.strip() for part in text.partition("="))
+    if not equals or not given:
+        raise InputError(option, text, f"must be an input and its values, such as {_EXAMPLE}")
+    designs = grid({path: given}).resolve(design_inputs(case))
+    values = designs.values[path]
+    if len(values) < 2:
+        raise InputError(option, text, f"must be a range, start:stop:step, such as {_EXAMPLE}")
+    unit = unit_of(given)
+    return _Axis(path, values, unit, factor_to_si(given, unit, designs.units[path]))
+
+
+def _label(axis: _Axis) -> str:
+    return f"{axis.path} ({axis.unit})" if axis.unit else axis.path
+
+
+def _written(axis: _Axis) -> list[float]:
+    """The values in the unit they were given in, free of the rounding of conversion."""
+    return [float(f"{value:.10g}") for value in axis.values / axis.factor]
+
+
+def _records(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> Iterator[dict[str, Any]]:
+    x, y = axes
+    of = {
+        name: found[name].transpose(y.path, x.path).values.tolist()
+        for name in ("growth", "frequency", "reason")
+    }
+    for row, up in enumerate(_written(y)):
+        for column, across in enumerate(_written(x)):
+            yield {
+                _label(x): across,
+                _label(y): up,
+                "largest growth (1/s)": of["growth"][row][column],
+                "frequency (rad/s)": of["frequency"][row][column],
+                "failure": of["reason"][row][column],
+            }
+
+
+def _lines(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[list[list[float]]]:
+    """The boundary as lines of points (x, y) in the units of the axes."""
+    vertices = found.boundary.sel(axis=[axis.path for axis in axes]).values
+    vertices = vertices / np.array([axis.factor for axis in axes])
+    gaps = np.flatnonzero(np.isnan(vertices).any(axis=1))
+    parts = np.split(vertices, gaps)
+    return [line for part in parts if (line := part[np.isfinite(part).all(axis=1)].tolist())]
+
+
+def _document(found: xarray.Dataset, axes: tuple[_Axis, _Axis], airspeed: float | None) -> dict[str, Any]:
+    return {
+        "level (damping ratio)": float(found.attrs["level"]),
+        "airspeed (m/s)": airspeed,
+        "x": _label(axes[0]),
+        "y": _label(axes[1]),
+        "boundary": _lines(found, axes),
+        "points": list(_records(found, axes)),
+        "eigen-solves": int(found.attrs["eigen_solves"]),
+    }
+
+
+def _draw(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> Any:
+    from proprotor.plots import plot_stability_map
+
+    return plot_stability_map(found, units={axis.path: axis.unit for axis in axes if axis.unit})
+
+
+def _print(case: Case, found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> None:
+    output.print_head(case)
+    x, y = axes
+    growth = found.growth.transpose(y.path, x.path).values
+    state = np.where(np.isnan(growth), "failed", np.where(growth > 0, "unstable", "stable"))
+    out = output.console()
+    up, across = _written(y), _written(x)
+    width = max(len(f"{value:g}") for value in up)
+    out.print(_label(y))
+    for row in reversed(range(len(up))):
+        marks = "".join(_MARKS[str(entry)] for entry in state[row])
+        out.print(f"{up[row]:>{width}g} {marks}", soft_wrap=True)
+    out.print(f"{'':>{width}} {_label(x)} from {across[0]:g} to {across[-1]:g}", soft_wrap=True)
+    beyond = (
+        f"below {100 * float(found.attrs['level']):g} % of critical" if found.attrs["level"] else "unstable"
+    )
+    out.print(f"\n. stable   # {beyond}   ? could not be analysed\n")
+    counts = {name: int((state == name).sum()) for name in _MARKS}
+    out.print(", ".join(f"{count} points {name}" for name, count in counts.items()), style="bold")
+    for number, line in enumerate(_lines(found, axes), start=1):
+        ends = " to ".join(f"({point[0]:.4g}, {point[1]:.4g})" for point in (line[0], line[-1]))
+        out.print(f"boundary {number}: {len(line)} points from {ends}")

@@ -1,0 +1,151 @@
+"""Response of hub loads, hub motion and blades to gusts and to the swashplate, over frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.model import HUB, SWASHPLATE, LinearModel
+from proprotor.state_space import LOADS, StateSpace
+from proprotor.units import as_si
+
+if TYPE_CHECKING:
+    import xarray
+
+_BLOCK = 4096  # matrices solved at once
+
+
+def frequency_response(
+    model: LinearModel,
+    frequency: Any,
+    *,
+    inputs: Sequence[str] | None = None,
+    outputs: Sequence[str] | None = None,
+) -> xarray.Dataset:
+    """Steady response to an input of one frequency: output = response × input, both e^{iωt}.
+
+    The same as `StateSpace.to_control` gives to python-control, for whole batches and with names and units. Where the
+    model is unstable no steady state is ever reached; `stable` tells.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Leading axes of a batch are kept.
+    frequency : array (frequencies,) in rad/s, text such as "3 Hz", or pint quantity
+        Of the excitation; not negative.
+    inputs, outputs : sequence of str, optional
+        Names as `StateSpace` has them; all by default.
+
+    Returns
+    -------
+    xarray.Dataset
+        response (..., frequency, output, input), complex, in the output's unit per unit of the input; magnitude and
+        phase (rad) of it; stable (...), whether every mode is damped. Coordinates: frequency, output_unit, input_unit,
+        airspeed. NaN where a point failed, or where a frequency is that of an undamped mode.
+
+    Raises
+    ------
+    InputError
+        For an unknown name, a frequency that is negative or not finite, or a model without inputs.
+    """
+    import xarray  # here, because it takes long to import
+
+    omega = _frequencies(frequency)
+    space = model.to_state_space()
+    columns, rows = _places(inputs, space.inputs, "inputs"), _places(outputs, space.outputs, "outputs")
+    response = _response(space, omega, rows, columns)
+    leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
+    leading = ("airspeed",) if len(leading) == 1 else leading
+    dims = (*leading, "frequency", "output", "input")
+    chosen = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
+    unit = {"units": "output_unit / input_unit"}
+    return xarray.Dataset(
+        {
+            "response": (dims, response, unit),
+            "magnitude": (dims, np.abs(response), unit),
+            "phase": (dims, np.angle(response), {"units": "rad"}),
+            "stable": (leading, _stable(space.A)),
+        },
+        coords={
+            "frequency": ("frequency", omega, {"units": "rad/s"}),
+            "output": chosen[0],
+            "input": chosen[1],
+            "output_unit": ("output", [_unit_of(name) for name in chosen[0]]),
+            "input_unit": ("input", ["rad" if name in SWASHPLATE else "m/s" for name in chosen[1]]),
+            "airspeed": (leading, model.airspeed, {"units": "m/s"}),
+        },
+    )
+
+
+def _frequencies(frequency: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
+    omega = as_si(frequency, "rad/s", "frequency").reshape(-1)
+    wrong = ~(np.isfinite(omega) & (omega >= 0))
+    if wrong.any():
+        raise InputError("frequency", omega[wrong][0], "must be finite and not negative")
+    return omega
+
+
+def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> list[int]:
+    names = known if wanted is None else (wanted,) if isinstance(wanted, str) else tuple(wanted)
+    for name in names:
+        if name not in known:
+            raise InputError(what, name, unknown_name(name, known, what.removesuffix("s")))
+    return [known.index(name) for name in names]
+
+
+def _response(
+    space: StateSpace, omega: np.ndarray[Any, Any], rows: list[int], columns: list[int]
+) -> np.ndarray[Any, Any]:
+    """C (iω - A)⁻¹ B + D (..., frequencies, rows, columns)."""
+    leading, states = space.A.shape[:-2], space.A.shape[-1]
+    count = int(np.prod(leading, dtype=int))
+    a, b, c, d = (
+        np.reshape(np.broadcast_to(m, (*leading, *m.shape[-2:])), (count, *m.shape[-2:]))
+        for m in (
+            space.A,
+            space.B[..., columns],
+            space.C[..., rows, :],
+            space.D[..., rows, :][..., columns],
+        )
+    )
+    found = np.empty((count, len(omega), len(rows), len(columns)), dtype=complex)
+    step = max(1, _BLOCK // max(count, 1))
+    for start in range(0, len(omega), step):
+        at = slice(start, start + step)
+        turning = 1j * omega[at, None, None] * np.eye(states)
+        found[:, at] = c[:, None] @ _solved(turning - a[:, None], b[:, None]) + d[:, None]
+    return found.reshape(*leading, *found.shape[1:])
+
+
+def _solved(matrices: np.ndarray[Any, Any], loads: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Solutions (points, frequencies, states, columns); NaN where there is none."""
+    loads = np.broadcast_to(loads, (*matrices.shape[:-1], loads.shape[-1]))
+    try:
+        return np.linalg.solve(matrices, loads)
+    except np.linalg.LinAlgError:  # one of them, at least, is singular
+        solutions = np.full(loads.shape, np.nan, dtype=complex)
+        for place in np.ndindex(matrices.shape[:-2]):
+            try:
+                solutions[place] = np.linalg.solve(matrices[place], loads[place])
+            except np.linalg.LinAlgError:
+                continue
+        return solutions
+
+
+def _stable(system: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    works = np.isfinite(system).all(axis=(-2, -1))
+    stable = np.zeros(works.shape, dtype=bool)
+    stable[works] = (np.linalg.eigvals(system[works]).real < 0).all(axis=-1)
+    return stable
+
+
+def _unit_of(output: str) -> str:
+    """SI unit of an output by its name."""
+    name, _, kind = output.partition(" ")
+    if name in LOADS:
+        return "N" if name.startswith("force") else "N*m"
+    per = {"": "", "rate": "/s", "acceleration": "/s**2"}[kind]
+    return ("m" if name in HUB[:3] else "rad") + per

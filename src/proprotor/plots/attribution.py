@@ -1,0 +1,92 @@
+"""What drives a mode and what damps it, by physical origin."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.plots.canvas import axes_or_new, grid, note, signed
+from proprotor.plots.style import DAMPS, DRIVES, LABEL_SIZE
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+
+def plot_attribution(
+    found: xarray.Dataset,
+    mode: str | None = None,
+    ax: Axes | None = None,
+    *,
+    count: int = 15,
+) -> Axes:
+    """Draw what each origin adds to the damping of a mode, in percent of critical, to first order.
+
+    A bar is the change of the damping ratio if all terms of that origin grew by 100 %, at the rate at which it begins.
+    Over all origins the changes sum to zero.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Of `Case.attribution`.
+    mode : str, optional
+        By name; not needed when there is one only.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    count : int
+        Bars at most, the longest; the rest is one bar, their sum.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The one given, or the new one.
+
+    Raises
+    ------
+    InputError
+        For an unknown mode, or none of several.
+    """
+    from proprotor.sensitivity import damping_rate
+
+    names = found.mode.values.tolist()
+    if mode is None and len(names) == 1:
+        mode = names[0]
+    if mode not in names:
+        raise InputError("mode", mode, unknown_name(str(mode), names, "mode"))
+    chosen = found.sel(mode=mode)
+    value = np.asarray(chosen.eigenvalue.values)
+    changes = 100 * damping_rate(value, chosen.contribution.values)
+    bars = sorted(
+        zip(chosen.origin.values.tolist(), changes.tolist(), strict=True), key=lambda bar: -abs(bar[1])
+    )
+    if len(bars) > count:
+        bars = [*bars[:count], (f"all {len(bars) - count} others", float(sum(x for _, x in bars[count:])))]
+    bars = sorted(bars, key=lambda bar: bar[1])
+    ax = axes_or_new(ax, size=(8, 1.4 + 0.27 * len(bars)))
+    _draw(ax, bars)
+    ax.set_xlabel(f"Change of damping of {mode} per 100 % of the terms (% of critical)")
+    ratio = 100 * float(-value.real / np.abs(value))
+    note(ax, f"{mode}: damping {ratio:.2f} % of critical; the bars sum to zero, to first order")
+    return ax
+
+
+def _draw(ax: Axes, bars: list[tuple[str, float]]) -> None:
+    places, values = np.arange(len(bars)), np.array([value for _, value in bars])
+    for drives, colour, hatch, told in ((True, DRIVES, "////", "drives it"), (False, DAMPS, "", "damps it")):
+        chosen = (values < 0) == drives
+        style: dict[str, Any] = {"color": colour, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
+        ax.barh(places[chosen], values[chosen], height=0.7, label=told, **style)
+    for place, value in zip(places.tolist(), values.tolist(), strict=True):
+        told_at: dict[str, Any] = {"textcoords": "offset points", "xytext": (3 if value >= 0 else -3, 0)}
+        side = "left" if value >= 0 else "right"
+        ax.annotate(signed(value), (value, place), fontsize=7, va="center", ha=side, **told_at)
+    ax.axvline(0, color="black", linewidth=0.8)
+    reach = 1.2 * max(np.abs(values).max(initial=0), 1e-12)
+    ax.set_xlim(-reach, reach)
+    ax.set_yticks(places, [name for name, _ in bars], fontsize=LABEL_SIZE)
+    ax.set_ylim(-0.6, len(bars) - 0.4)
+    grid(ax)
+    ax.grid(visible=False, axis="y")
+    ax.legend(fontsize=7, loc="lower right", framealpha=0.95)

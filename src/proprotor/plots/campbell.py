@@ -1,0 +1,113 @@
+"""Frequencies in the fixed frame against the rotor speed, with the harmonics of the rotor: Campbell's diagram."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.arrays import Array
+from proprotor.errors import InputError
+from proprotor.plots.canvas import axes_or_new, grid
+from proprotor.plots.end_labels import label_ends, name_those_outside
+from proprotor.plots.frequency_and_damping import mark_failed
+from proprotor.plots.line_of_sweep import positions
+from proprotor.plots.style import LABEL_SIZE, mode_styles
+from proprotor.sweep_summary import damped_frequency
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+ROTOR_SPEED = "operation.rotor_speed"
+_HARMONICS = 5
+
+
+def plot_campbell(
+    sweep: xarray.Dataset,
+    ax: Axes | None = None,
+    *,
+    harmonics: Sequence[int] | None = None,
+    n_blades: int | None = None,
+    rotor_speed: float | None = None,
+    unit: str = "rpm",
+    limits: tuple[float, float] | None = None,
+) -> Axes:
+    """Draw the frequency |Im s| of each mode in the fixed frame over the rotor speed, and the rays n/rev.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        Of `Case.sweep` at one airspeed with ``vary={"operation.rotor_speed": ...}``: windmilling in air, or in vacuum
+        with ``airloads="none"``.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default. Labels stand to its right.
+    harmonics : sequence of int, optional
+        The n of the rays; 1 to 5, or to one beyond the number of blades, by default.
+    n_blades : int, optional
+        The rays of multiples of it, at which blades shake the fixed frame, are then drawn in black.
+    rotor_speed : float, optional
+        rad/s, at which the rotor is operated: a vertical line.
+    unit : str
+        Of the rotor speed.
+    limits : (float, float), optional
+        Of the frequency axis, Hz; up to the highest ray by default. Modes that leave it are named above the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The one given, or the new one.
+
+    Raises
+    ------
+    InputError
+        When the sweep is not over the rotor speed, or the unit is not one of it.
+    """
+    if sweep.eigenvalue.dims[0] != ROTOR_SPEED:
+        raise InputError("sweep", str(sweep.eigenvalue.dims[0]), f"must be over {ROTOR_SPEED}")
+    line = positions(sweep, unit)
+    ax = axes_or_new(ax, size=(8, 6), labels_beside=True)
+    rays = list(harmonics or range(1, max(_HARMONICS, (n_blades or 0) + 1) + 1))
+    omega = sweep[ROTOR_SPEED].values
+    lines = _draw_modes(ax, sweep, line.values)
+    ax.set_xlim(0, float(line.values.max()))
+    ax.set_ylim(*(limits or (0, max(rays) * float(omega.max()) / (2 * np.pi))))
+    _draw_rays(ax, rays, line.factor / (2 * np.pi), n_blades)
+    mark_failed(ax, line.values[sweep.reason.values != ""], line.label)
+    if rotor_speed is not None:
+        at = rotor_speed / line.factor
+        ax.axvline(at, color="0.35", linewidth=1.0, linestyle="-.", zorder=1)
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+        style: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": "0.25", "rotation": 90, "bbox": box}
+        style |= {"ha": "right", "va": "top", "zorder": 4, "textcoords": "offset points", "xytext": (-3, 0)}
+        ax.annotate(f"{at:.0f} {unit}", (at, 0.98), xycoords=ax.get_xaxis_transform(), **style)
+    ax.set_ylabel("Frequency |Im s| in the fixed frame (Hz)")
+    grid(ax)
+    label_ends(ax, lines)
+    name_those_outside(ax, lines, "at some rotor speeds or all")
+    return ax
+
+
+def _draw_modes(ax: Axes, sweep: xarray.Dataset, speeds: Array) -> list[Line2D]:
+    hertz = damped_frequency(sweep) / (2 * np.pi)
+    spacing = max(1, len(speeds) // 7)
+    lines: list[Line2D] = []
+    for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
+        more: dict[str, Any] = {"markevery": (3 * place % spacing, spacing), "markersize": 5, "label": mode}
+        lines += ax.plot(speeds, hertz[:, place], **more, **style._asdict())
+    return lines
+
+
+def _draw_rays(ax: Axes, harmonics: Sequence[int], hertz: float, n_blades: int | None) -> None:
+    """n times the rotor speed; `hertz` is one unit of the rotor speed. Each has its n inside, near its end."""
+    right, top = ax.get_xlim()[1], ax.get_ylim()[1]
+    for n in harmonics:
+        strong = n_blades is not None and n % n_blades == 0
+        end = min(right, top / (n * hertz))
+        style: dict[str, Any] = {"color": "0.1" if strong else "0.55", "zorder": 1}
+        ax.plot([0, end], [0, n * hertz * end], linewidth=1.1 if strong else 0.7, dashes=(2, 2), **style)
+        near = 0.955 * end
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+        ax.text(near, n * hertz * near, f"{n}/rev", fontsize=7, ha="center", va="center", bbox=box, **style)

@@ -1,0 +1,133 @@
+"""A mode of rotor and wing at one phase of its cycle, from ahead, from the side, from above or in perspective."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from proprotor.arrays import Array
+from proprotor.errors import InputError, unknown_name
+from proprotor.plots.style import LABEL_SIZE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from proprotor.mode_motion import ModeMotion
+
+
+class _View(NamedTuple):
+    across: tuple[int, float]  # which of x, y, z, and its sign
+    up: tuple[int, float]
+    told: tuple[str, str]
+
+
+# x is up, y outboard, z along the shaft; seen from ahead outboard is to the left on a right wing.
+_VIEWS = {
+    "front": _View((1, -1.0), (0, 1.0), ("−y, inboard (radii)", "x, up (radii)")),
+    "side": _View((2, 1.0), (0, 1.0), ("z, along the shaft (radii)", "x, up (radii)")),
+    "top": _View((1, 1.0), (2, 1.0), ("y, outboard (radii)", "z, along the shaft (radii)")),
+}
+VIEWS = (*_VIEWS, "3d")
+_LINES = {
+    "wing": ("#009E73", 1.6),
+    "mast": ("#000000", 2.6),
+    "blade": ("#0072B2", 1.4),
+    "tip path": ("#D55E00", 1.6),
+}
+_MARGIN = 0.25  # radii
+
+
+def plot_mode_shape(
+    motion: ModeMotion, ax: Axes | None = None, *, view: str = "front", phase: float = 0.0
+) -> Axes:
+    """Draw rotor and wing at one phase of a mode, over their trim state in grey.
+
+    Parameters
+    ----------
+    motion : ModeMotion
+        Of `proprotor.mode_motion.mode_motion`.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default. For the view "3d" one with that projection.
+    view : "front", "side", "top" or "3d"
+        From ahead of the rotor, from outboard, from above, or in perspective.
+    phase : float
+        Of the cycle, rad.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The one given, or the new one. Lengths are in radii of the rotor, from the hub at trim.
+
+    Raises
+    ------
+    InputError
+        For an unknown view, or axes that do not have its projection.
+    """
+    if view not in VIEWS:
+        raise InputError("view", view, unknown_name(view, VIEWS, "view"))
+    ax = _axes(ax, view)
+    draw_still(ax, motion, view)
+    draw_moving(ax, motion, view, phase)
+    return ax
+
+
+def _axes(ax: Axes | None, view: str) -> Axes:
+    solid = view == "3d"
+    if ax is None:
+        import matplotlib.pyplot as plt  # here, because matplotlib takes long to import
+
+        settings = {"projection": "3d"} if solid else {}
+        return plt.figure(figsize=(6, 5.5), layout="constrained").add_subplot(**settings)
+    if solid != (ax.name == "3d"):
+        raise InputError("ax", ax.name, f'must have {"" if solid else "no "}projection "3d" for this view')
+    return ax
+
+
+def draw_moving(ax: Axes, motion: ModeMotion, view: str, phase: float) -> list[Any]:
+    """Draw the moving lines, and return them so that they can be taken away again."""
+    lines = []
+    for name, points in motion.at(phase).items():
+        colour, width = _LINES[name.rstrip("0123456789 ")]
+        solid: dict[str, Any] = {"solid_capstyle": "round", "zorder": 3}
+        lines += ax.plot(*_seen(points / motion.radius, view), color=colour, linewidth=width, **solid)
+    return lines
+
+
+def draw_still(ax: Axes, motion: ModeMotion, view: str) -> None:
+    """The trim state in grey, limits and labels."""
+    still = {part.name: part.points / motion.radius for part in motion.parts}
+    for points in still.values():
+        ax.plot(*_seen(points, view), color="0.75", linewidth=0.8, zorder=1)
+    every = np.concatenate(list(still.values()))
+    low, high = every.min(axis=0) - _MARGIN, every.max(axis=0) + _MARGIN
+    if view == "3d":
+        _set_solid(ax, low, high)
+        return
+    chosen = _VIEWS[view]
+    for (axis, sign), limit in ((chosen.across, ax.set_xlim), (chosen.up, ax.set_ylim)):
+        limit(*sorted((sign * low[axis], sign * high[axis])))
+    ax.set_aspect("equal")
+    ax.set_xlabel(chosen.told[0], fontsize=LABEL_SIZE)
+    ax.set_ylabel(chosen.told[1], fontsize=LABEL_SIZE)
+    ax.tick_params(labelsize=LABEL_SIZE - 1)
+    ax.grid(color="0.92", linewidth=0.5)
+    ax.set_axisbelow(True)
+
+
+def _set_solid(ax: Any, low: Array, high: Array) -> None:
+    """Limits and a view from ahead, above and outboard, without the box."""
+    limits = [(low[2], high[2]), (-high[1], -low[1]), (low[0], high[0])]
+    for (start, stop), limit in zip(limits, (ax.set_xlim, ax.set_ylim, ax.set_zlim), strict=True):
+        limit(start, stop)
+    ax.set_box_aspect([stop - start for start, stop in limits], zoom=1.55)
+    ax.view_init(elev=22, azim=-40)
+    ax.set_axis_off()
+
+
+def _seen(points: Array, view: str) -> tuple[Array, ...]:
+    """Coordinates on the page, or z, -y and x for a right-handed perspective with x up."""
+    if view == "3d":
+        return points[:, 2], -points[:, 1], points[:, 0]
+    chosen = _VIEWS[view]
+    return tuple(sign * points[:, axis] for axis, sign in (chosen.across, chosen.up))

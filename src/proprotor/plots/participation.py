@@ -1,0 +1,101 @@
+"""Which coordinates take part in a mode."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.arrays import Array
+from proprotor.errors import InputError, unknown_name
+from proprotor.plots.canvas import axes_or_new, grid
+from proprotor.plots.line_of_sweep import positions, written
+from proprotor.plots.style import COLOURS, LABEL_SIZE
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+_LEAST = 0.01  # share of a coordinate that has bars of its own
+_HATCHES = ("", "////", "....", "xxxx", "\\\\\\\\")
+
+
+def plot_participation(
+    sweep: xarray.Dataset,
+    mode: str,
+    ax: Axes | None = None,
+    *,
+    at: ArrayLike | None = None,
+    unit: str | None = None,
+) -> Axes:
+    """Draw the share of each coordinate in a mode, at one or several points of a sweep.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        Of `Case.sweep`, along airspeeds or one input.
+    mode : str
+        By name.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    at : float or sequence of float, optional
+        Airspeeds, or values of the input, in `unit`, at most five: the nearest points of the sweep that work are taken,
+        and told. The first and the last such point by default.
+    unit : str, optional
+        Of `at`; "kt" by default for airspeeds.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The one given, or the new one.
+
+    Raises
+    ------
+    InputError
+        For an unknown mode or unit, too many points, or when no point works.
+    """
+    names = sweep.mode.values.tolist()
+    if mode not in names:
+        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
+    line = positions(sweep, unit)
+    chosen = sweep.participation.sel(mode=mode).values
+    points = _nearest(line.values, np.isfinite(chosen).all(axis=-1), at)
+    dofs, shares = _told(sweep.dof.values.tolist(), chosen[points])
+    ax = axes_or_new(ax, size=(7, 1.3 + (0.1 + 0.13 * len(points)) * len(dofs)))
+    height = 0.84 / len(points)
+    for place, point in enumerate(points):
+        style: dict[str, Any] = {"color": COLOURS[1 + place], "hatch": _HATCHES[place], "edgecolor": "white"}
+        where = np.arange(len(dofs)) + height * (place - (len(points) - 1) / 2)
+        told = f"{line.values[point]:.4g} {written(line.unit)}".strip()
+        ax.barh(where, 100 * shares[place], height=height, linewidth=0, label=told, **style)
+    ax.set_yticks(np.arange(len(dofs)), dofs, fontsize=LABEL_SIZE)
+    ax.set_ylim(len(dofs) - 0.4, -0.6)
+    ax.set_xlabel(f"Participation in the mode “{mode}” (%)")
+    ax.set_xlim(0, None)
+    grid(ax)
+    ax.grid(visible=False, axis="y")
+    title = "Airspeed" if line.name == "airspeed" else line.label.partition(" (")[0]
+    ax.legend(title=title, fontsize=LABEL_SIZE, title_fontsize=LABEL_SIZE, loc="lower right")
+    return ax
+
+
+def _told(dofs: list[str], shares: Array) -> tuple[list[str], Array]:
+    """Names and shares (points, names) of the coordinates that count at a point, and of all others together."""
+    counts: Array = np.asarray((shares >= _LEAST).any(axis=0))
+    names = [name.replace("_", " ") for name, own in zip(dofs, counts.tolist(), strict=True) if own]
+    if counts.all():
+        return names, shares
+    rest = shares[:, ~counts].sum(axis=1, keepdims=True)
+    return [*names, f"{int((~counts).sum())} others"], np.concatenate([shares[:, counts], rest], axis=1)
+
+
+def _nearest(values: Array, works: Array, at: ArrayLike | None) -> list[int]:
+    good = np.flatnonzero(works)
+    if not len(good):
+        raise InputError("sweep", None, "has no point at which this mode exists")
+    wanted = values[good[[0, -1]]] if at is None else np.atleast_1d(np.asarray(at, dtype=float))
+    points = list(dict.fromkeys(int(good[np.abs(values[good] - value).argmin()]) for value in wanted))
+    if len(points) > len(_HATCHES):
+        raise InputError("at", len(points), f"must be at most {len(_HATCHES)} points")
+    return points

@@ -1,0 +1,177 @@
+"""Roots of a sweep in the plane of growth and frequency, with the airspeed or an input as parameter."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.arrays import Array
+from proprotor.plots.canvas import axes_or_new, grid, note, points_per_pixel
+from proprotor.plots.end_labels import label_ends, name_those_outside
+from proprotor.plots.line_of_sweep import Positions, positions, written
+from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles
+from proprotor.sweep_summary import growth_rate
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+_RATIOS = (0.01, 0.02, 0.05, 0.10, 0.20, 0.50)
+_SMALLEST, _LARGEST = 3.5, 8.0  # points, of the markers
+_APART = 14.0  # points: numbers nearer than that would lie on each other
+_MARKS = 8  # at most
+
+
+def plot_root_locus(
+    sweep: xarray.Dataset,
+    ax: Axes | None = None,
+    *,
+    rotor_speed: float | None = None,
+    unit: str | None = None,
+    marks: float | None = None,
+    growth_limits: tuple[float, float] | None = None,
+    frequency_limits: tuple[float, float] | None = None,
+) -> Axes:
+    """Draw how the roots s move, the upper half of their plane: Re s across, |Im s| up.
+
+    Markers stand at round values of what varies and grow with it. Rays are lines of equal damping ratio.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        Of `Case.sweep`, along airspeeds or one input.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default. Labels stand to its right.
+    rotor_speed : float, optional
+        rad/s. Both axes are then per revolution, and in rad/s without it.
+    unit : str, optional
+        Unit of the airspeed, "kt" by default, or of the input.
+    marks : float, optional
+        Distance of the markers in that unit.
+    growth_limits, frequency_limits : (float, float), optional
+        Of both axes; by default what holds the modes of the support and those that become unstable.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The one given, or the new one.
+
+    Raises
+    ------
+    InputError
+        When the unit is not one of speed, or of the input.
+    """
+    line = positions(sweep, unit)
+    ax = axes_or_new(ax, size=(8, 7), labels_beside=True)
+    per = 1.0 if rotor_speed is None else float(rotor_speed)
+    real, imaginary = growth_rate(sweep) / per, np.abs(sweep.eigenvalue.values.imag) / per
+    imaginary = np.where(np.isnan(real), np.nan, imaginary)
+    _set_limits(ax, sweep, real, imaginary, growth_limits, frequency_limits)
+    at = _round_values(line, marks)
+    lines = _draw(ax, sweep, real, imaginary, line, at)
+    _draw_rays(ax)
+    ax.axvspan(0, max(ax.get_xlim()[1], 0), color=UNSTABLE, linewidth=0, zorder=0.5)
+    ax.axvline(0, color="black", linewidth=0.8)
+    ax.text(0.99, 0.01, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3", ha="right")
+    told = "per rev" if rotor_speed is not None else "rad/s"
+    ax.set_xlabel(f"Growth Re s ({told})")
+    ax.set_ylabel(f"Frequency |Im s| ({told})")
+    grid(ax)
+    if len(at) > 1:
+        note(
+            ax, f"Markers every {at[1] - at[0]:g}, growing from {at[0]:g} to {at[-1]:g} {written(line.unit)}"
+        )
+    label_ends(ax, lines, tie=False)
+    name_those_outside(ax, lines, "somewhere or throughout")
+    return ax
+
+
+def _set_limits(
+    ax: Axes,
+    sweep: xarray.Dataset,
+    real: Array,
+    imaginary: Array,
+    growth: tuple[float, float] | None,
+    frequency: tuple[float, float] | None,
+) -> None:
+    """Limits that hold the broad modes, or all modes where there are none."""
+    broad = broad_modes(sweep)
+    chosen = [place for place, mode in enumerate(sweep.mode.values.tolist()) if mode in broad]
+    columns = chosen or list(range(len(sweep.mode)))
+    low, high = _range(real[:, columns])
+    ax.set_xlim(*(growth or (low - 0.08 * (high - low), max(high, 0) + 0.08 * (high - low))))
+    ax.set_ylim(*(frequency or (0, 1.1 * _range(imaginary[:, columns])[1])))
+
+
+def _range(values: Array) -> tuple[float, float]:
+    finite = values[np.isfinite(values)]
+    low, high = (min(finite.min(), 0.0), max(finite.max(), 0.0)) if finite.size else (0.0, 0.0)
+    return (float(low), float(high)) if high > low else (-1.0, 1.0)
+
+
+def _round_values(line: Positions, step: float | None) -> Array:
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = float(line.values.min()), float(line.values.max())
+    if step is None:
+        values = np.asarray(MaxNLocator(_MARKS, steps=[1, 2, 5, 10]).tick_values(low, high))
+    else:
+        values = step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1)
+    slack = 1e-9 * (high - low)
+    return values[(values >= low - slack) & (values <= high + slack)]
+
+
+def _draw(
+    ax: Axes, sweep: xarray.Dataset, real: Array, imaginary: Array, line: Positions, at: Array
+) -> list[Line2D]:
+    lines: list[Line2D] = []
+    sizes = np.linspace(_LARGEST, _SMALLEST, len(at))[::-1] ** 2  # one alone is large
+    broad = broad_modes(sweep)
+    for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
+        plain = style._replace(marker="")._asdict()
+        lines += ax.plot(real[:, place], imaginary[:, place], label=mode, markersize=4, **plain)
+        x, y = (_at(line.values, part[:, place], at) for part in (real, imaginary))
+        more: dict[str, Any] = {"color": style.color, "zorder": 3, "linewidths": 0.6, "edgecolors": "white"}
+        ax.scatter(x, y, s=sizes, **more)
+        if mode in broad:
+            _tell_ends(ax, x, y, at)
+    return lines
+
+
+def _at(positions: Array, values: Array, at: Array) -> Array:
+    """Values at round positions, linear between the points of the sweep; NaN beside failed ones."""
+    order = np.argsort(positions)
+    return np.interp(at, positions[order], values[order])
+
+
+def _tell_ends(ax: Axes, x: Array, y: Array, at: Array) -> None:
+    """The first and the last round value beside their markers."""
+    seen = np.flatnonzero(np.isfinite(x))
+    if not len(seen):
+        return
+    first, last = int(seen[0]), int(seen[-1])
+    ends = ax.transData.transform(np.column_stack([x[[first, last]], y[[first, last]]]))
+    far = np.hypot(*(ends[1] - ends[0])) * points_per_pixel(ax) > _APART
+    for place in (first, last) if far else (last,):
+        style: dict[str, Any] = {"fontsize": 6.5, "color": "0.25", "textcoords": "offset points", "zorder": 4}
+        where = (float(x[place]), float(y[place]))
+        ax.annotate(f"{at[place]:g}", where, xytext=(5, 4), annotation_clip=True, **style)
+
+
+def _draw_rays(ax: Axes) -> None:
+    """Lines of equal damping ratio, each with its number where it leaves the axes."""
+    left, top = ax.get_xlim()[0], ax.get_ylim()[1]
+    if left >= 0:
+        return
+    for ratio in _RATIOS:
+        slope = -ratio / np.sqrt(1 - ratio**2)  # Re s over |Im s|
+        length = min(top, left / slope)
+        ax.plot([0, slope * length], [0, length], color="0.6", linewidth=0.6, dashes=(6, 3), zorder=1)
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
+        style: dict[str, Any] = {"fontsize": 6.5, "color": "0.45", "textcoords": "offset points", "bbox": box}
+        place: dict[str, Any] = {"xytext": (0, -3), "va": "top", "ha": "center"}
+        if length < top:
+            place = {"xytext": (3, 0), "va": "center"}
+        ax.annotate(f"{100 * ratio:g} %", (slope * length, length), **place, **style)

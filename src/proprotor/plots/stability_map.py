@@ -1,0 +1,203 @@
+"""Where in the plane of two inputs a case is stable."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.arrays import Array
+from proprotor.plots.canvas import axes_or_new, grid, note
+from proprotor.plots.line_of_sweep import Positions, axis_of
+from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+    from proprotor.boundary_lines import BoundaryLine
+
+_DASHES = ("-", "--", "-.", ":")
+_ROOM = 0.06  # of the axes: a region less wide than this is not named
+
+
+def plot_stability_map(
+    found: xarray.Dataset,
+    ax: Axes | None = None,
+    *,
+    lines: Sequence[BoundaryLine] = (),
+    units: Mapping[str, str] | None = None,
+) -> Axes:
+    """Draw the boundary in the plane of two inputs, with the stable side shaded.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Of `Case.stability_map`.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    lines : sequence of BoundaryLine, optional
+        Of `proprotor.boundary_lines.boundary_lines`: the boundary by the mode that is neutral, and named after it.
+    units : mapping of str to str, optional
+        Units of the axes by input; the usual ones by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The one given, or the new one.
+
+    Raises
+    ------
+    InputError
+        When a unit is not one of its input.
+    """
+    names = [str(name) for name in found.axis.values]
+    x, y = (_axis(found, name, (units or {}).get(name)) for name in names)
+    ax = axes_or_new(ax, size=(7.5, 5.5))
+    growth = found.growth.transpose(*names[::-1]).values
+    vertices = found.boundary.values / np.array([x.factor, y.factor])
+    _shade(ax, x.values, y.values, growth, vertices)
+    if not lines:
+        ax.plot(*vertices.T, color="black", linewidth=1.8)
+    failed = np.argwhere(np.isnan(growth))
+    ax.plot(x.values[failed[:, 1]], y.values[failed[:, 0]], "x", color="0.4", markersize=4)
+    ax.set_xlim(x.values[0], x.values[-1])
+    ax.set_ylim(y.values[0], y.values[-1])
+    ax.set_xlabel(x.label)
+    ax.set_ylabel(y.label)
+    _draw_named(ax, lines, x, y)
+    _name_regions(ax, x.values, y.values, growth)
+    level = float(found.attrs.get("level", 0.0))
+    told = f"“stable”: every mode has more than {100 * level:g} % of critical damping" if level else ""
+    crosses = "x: could not be analysed" if len(failed) else ""
+    if told or crosses:
+        note(ax, "; ".join(filter(None, (told, crosses))))
+    grid(ax)
+    return ax
+
+
+def _axis(found: xarray.Dataset, name: str, unit: str | None) -> Positions:
+    si = "m/s" if name == "airspeed" else str(found[name].attrs.get("units", ""))
+    return axis_of(name, found[name].values, si, unit)
+
+
+def _shade(ax: Axes, x: Array, y: Array, growth: Array, vertices: Array) -> None:
+    """Fill the stable part of every cell, up to the boundary as it was found and not as a plane would have it."""
+    from matplotlib.collections import PolyCollection
+
+    crossings = _by_edge(x, y, vertices)
+    polygons = [
+        polygon
+        for row, column in np.ndindex(len(y) - 1, len(x) - 1)
+        for polygon in _stable_part(x, y, growth, crossings, row, column)
+    ]
+    style: dict[str, Any] = {"facecolors": STABLE, "edgecolors": STABLE, "linewidths": 0.3, "zorder": 0.5}
+    ax.add_collection(PolyCollection(polygons, **style))
+
+
+_Edge = tuple[int, int, int]  # row, column, and 0 for an edge along x or 1 for one along y
+
+
+def _by_edge(x: Array, y: Array, vertices: Array) -> dict[_Edge, tuple[float, float]]:
+    """Crossings by the edge of the grid they lie on."""
+    found: dict[_Edge, tuple[float, float]] = {}
+    for here in vertices[np.isfinite(vertices).all(axis=1)]:
+        off = [np.abs(axis - value) / np.ptp(axis) for axis, value in zip((x, y), here, strict=True)]
+        along_x = off[1].min() <= off[0].min()  # on a line of equal y
+        column, row = (
+            int(np.clip(np.searchsorted(axis, value, side="right") - 1, 0, len(axis) - 2))
+            for axis, value in zip((x, y), here, strict=True)
+        )
+        place = (int(off[1].argmin()), column, 0) if along_x else (row, int(off[0].argmin()), 1)
+        found[place] = (float(here[0]), float(here[1]))
+    return found
+
+
+def _stable_part(
+    x: Array, y: Array, growth: Array, crossings: Mapping[_Edge, tuple[float, float]], row: int, column: int
+) -> list[list[tuple[float, float]]]:
+    """The stable polygons of one cell; none where a corner failed."""
+    corners = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
+    values = [growth[corner] for corner in corners]
+    if not np.isfinite(values).all():
+        return []
+    edges = [(row, column, 0), (row, column + 1, 1), (row + 1, column, 0), (row, column, 1)]
+    outline: list[tuple[float, float]] = []
+    own: list[list[tuple[float, float]]] = []  # of each stable corner, should they not be joined
+    for place, (corner, value) in enumerate(zip(corners, values, strict=True)):
+        after, before = crossings.get(edges[place]), crossings.get(edges[place - 1])
+        if value <= 0:
+            outline.append((float(x[corner[1]]), float(y[corner[0]])))
+            own.append([p for p in (before, outline[-1], after) if p is not None])
+        if after is not None:
+            outline.append(after)
+    apart = len(own) == 2 and len(outline) == 6 and np.mean(values) > 0
+    return own if apart else [outline] if len(outline) > 2 and own else []
+
+
+def _draw_named(ax: Axes, lines: Sequence[BoundaryLine], x: Positions, y: Positions) -> None:
+    """The lines of each mode in one style, with its name beside the longest."""
+    modes = list(dict.fromkeys(line.mode for line in lines))
+    for place, mode in enumerate(modes):
+        own = [line for line in lines if line.mode == mode]
+        style: dict[str, Any] = {
+            "color": COLOURS[place % len(COLOURS)],
+            "linestyle": _DASHES[place % len(_DASHES)],
+            "linewidth": 2.0,
+        }
+        for number, line in enumerate(own):
+            label = mode if number == 0 else f"_{mode}"
+            ax.plot(line.x / x.factor, line.y / y.factor, label=label, **style, zorder=3)
+        longest = max(own, key=lambda line: _length(line, x, y))
+        at, offset = _beside(ax, longest, x, y)
+        box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.2}
+        text: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": style["color"], "bbox": box, "zorder": 4}
+        text |= {"ha": "center" if abs(offset[0]) < 6 else "left" if offset[0] > 0 else "right"}
+        text |= {"va": "center" if abs(offset[1]) < 6 else "bottom" if offset[1] > 0 else "top"}
+        ax.annotate(mode, at, xytext=offset, textcoords="offset points", annotation_clip=True, **text)
+
+
+def _steps(line: BoundaryLine, x: Positions, y: Positions) -> Array:
+    """Lengths between vertices, in fractions of the axes."""
+    across = np.diff(line.x / x.factor) / np.ptp(x.values)
+    return np.asarray(np.hypot(across, np.diff(line.y / y.factor) / np.ptp(y.values)))
+
+
+def _length(line: BoundaryLine, x: Positions, y: Positions) -> float:
+    return float(_steps(line, x, y).sum())
+
+
+def _beside(
+    ax: Axes, line: BoundaryLine, x: Positions, y: Positions
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """The middle of a line, and an offset across it, in points, towards the middle of the axes."""
+    along = np.concatenate([[0.0], np.cumsum(_steps(line, x, y))])
+    shares = np.clip(along[-1] * np.array([0.45, 0.5, 0.55]), 0, along[-1])
+    points = np.column_stack(
+        [np.interp(shares, along, part) for part in (line.x / x.factor, line.y / y.factor)]
+    )
+    before, middle, after = ax.transAxes.inverted().transform(ax.transData.transform(points))
+    across = (after - before)[::-1] * (-1, 1) * ax.bbox.size[::-1]  # normal on the page
+    size = np.hypot(*across)
+    across = across / size if size > 0 else np.array([1.0, 0.0])
+    inwards = np.sign(across @ (0.5 - middle)) or 1.0
+    offset = 9.0 * inwards * across
+    return (float(points[1, 0]), float(points[1, 1])), (float(offset[0]), float(offset[1]))
+
+
+def _name_regions(ax: Axes, x: Array, y: Array, growth: Array) -> None:
+    """The words stable and unstable where each has most room."""
+    from scipy.ndimage import distance_transform_edt
+
+    fine = np.linspace(0, 1, 60)
+    columns, rows = (
+        np.abs((axis - axis[0]) / np.ptp(axis) - fine[:, None]).argmin(axis=1) for axis in (x, y)
+    )
+    signs = growth[np.ix_(rows, columns)]
+    for told, region in (("stable", signs <= 0), ("unstable", signs > 0)):
+        room = distance_transform_edt(np.pad(region, 1))[1:-1, 1:-1] / len(fine)
+        if room.max() >= _ROOM:
+            row, column = np.unravel_index(room.argmax(), room.shape)
+            style: dict[str, Any] = {"ha": "center", "va": "center", "color": "0.3", "style": "italic"}
+            ax.text(float(fine[column]), float(fine[row]), told, transform=ax.transAxes, fontsize=10, **style)
