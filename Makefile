@@ -33,6 +33,15 @@ validation: .venv/installed  ## Write docs/validation.md and its figures
 audit: .venv/installed  ## Judge every equation of the paper against the derivation; writes docs/audit.md
 	$(BIN)/python -m derive.audit
 
+gallery: .venv/installed  ## Draw the pictures of docs/plots.md
+	$(BIN)/python -m benchmarks.gallery
+
+decks: .venv/installed  ## Write docs/decks.md, every field of a deck
+	$(BIN)/proprotor describe --markdown > docs/decks.md
+
+types: .venv/installed  ## Check the types
+	$(BIN)/python -m mypy
+
 mutate: .venv/installed  ## Change every term of the equations, one at a time, and tell which change no test sees
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.mutation --processes 2 --report docs/mutation.md
 
@@ -45,7 +54,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation mutate golden clean help
+.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation gallery decks types mutate golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

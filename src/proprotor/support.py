@@ -94,6 +94,8 @@ class NormalModes:
         n = (len(names),)
         m = _finite("generalized_mass", generalized_mass, n)
         omega = _finite("frequency", frequency, n)
+        if np.any(np.real(omega) < 0):
+            raise InputError("frequency", np.min(np.real(omega)), "must not be negative")
         zeta = _finite("damping_ratio", damping_ratio, n)
         return cls(
             names=names,
