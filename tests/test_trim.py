@@ -151,7 +151,7 @@ def assert_slopes(found, expected, model, per):
 @given(flights())
 def test_trim_changes_with_airspeed_as_the_rotor_answers_axial_motion(flight):
     """ż is a little more airspeed."""
-    operation, step = powered(flight), 1e-4 * flight.airspeed
+    operation, step = powered(flight), 3e-5 * flight.airspeed
     model = trimmed(flight.rotor, operation, flight.airspeed)
     found = slopes(flight.rotor, operation, flight.airspeed + STEPS * step, step)
     assert_slopes(found, expected_slopes(model, model.C[:, model.dofs.index("z")]), model, flight.airspeed)
@@ -162,7 +162,7 @@ def test_trim_changes_with_airspeed_as_the_rotor_answers_axial_motion(flight):
 def test_trim_changes_with_rotor_speed_as_the_rotor_answers_a_turning_shaft(flight):
     """ψ̇s is a little more rotor speed, except for the propeller moment, which has the steady one on purpose."""
     rotor, operation = replace(flight.rotor, propeller_moment=False), powered(flight)
-    model, step = trimmed(rotor, operation, flight.airspeed), 1e-4 * flight.rotor_speed
+    model, step = trimmed(rotor, operation, flight.airspeed), 3e-5 * flight.rotor_speed
     faster = replace(operation, rotor_speed=flight.rotor_speed + STEPS * step)
     found = slopes(rotor, faster, flight.airspeed, step)
     column = model.C[:, model.dofs.index("azimuth")]
@@ -173,7 +173,7 @@ def test_trim_changes_with_rotor_speed_as_the_rotor_answers_a_turning_shaft(flig
 @given(flights())
 def test_trim_changes_with_collective_as_the_rotor_answers_pitch(flight):
     """Collective is pitch that does not load the control system."""
-    model, step = trimmed(flight.rotor, powered(flight), flight.airspeed), 1e-4
+    model, step = trimmed(flight.rotor, powered(flight), flight.airspeed), 3e-5
     found = slopes(flight.rotor, powered(flight, 0.6 + STEPS * step), flight.airspeed, step)
     pitch = model.dofs.index("pitch_0")
     column = model.K[:, pitch].copy()
