@@ -12,7 +12,11 @@ def main() -> int:
         "--check", action="store_true", help="change nothing; exit 1 if a generated file differs"
     )
     if not parser.parse_args().check:
-        emit.update()
+        try:
+            emit.update()
+        except OSError as error:
+            print(f"the equations cannot be written ({error.strerror or error})", file=sys.stderr)
+            return 1
         return 0
     found = emit.differences()
     for difference in found:

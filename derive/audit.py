@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import csv
 import functools
+import io
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -28,6 +29,7 @@ from derive.invariants import Finding
 from derive.printed.notation import latex_names
 from derive.published import DROPPED_TERMS
 from derive.table_audit import TableVerdict, audit_table
+from proprotor.output_file import write_whole
 
 ROOT = Path(__file__).resolve().parent.parent
 RECORD = ROOT / "tests" / "golden" / "audit.csv"
@@ -101,10 +103,11 @@ def computed() -> list[Row]:
 
 
 def record(rows: list[Row]) -> None:
+    """Write the record, whole or not at all."""
     RECORD.parent.mkdir(parents=True, exist_ok=True)
-    with RECORD.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerows([HEADER, *rows])
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerows([HEADER, *rows])
+    write_whole(RECORD, lambda file: file.write(text.getvalue().encode()))
 
 
 def changes(was: list[Row], now: list[Row]) -> list[str]:
@@ -333,7 +336,8 @@ def main(arguments: list[str] | None = None) -> int:
     if options.accept:
         record(now)
     if not options.quick:
-        REPORT.write_text(markdown(), encoding="utf-8")
+        report = markdown().encode()
+        write_whole(REPORT, lambda file: file.write(report))
         print(f"written: {REPORT.relative_to(ROOT)}")
     found = changes(recorded() if RECORD.exists() else [], now)
     print("\n".join(found) if found else f"{len(now)} verdicts, all as recorded")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import difflib
 import hashlib
+import os
 import subprocess
 import sys
 import time
@@ -293,13 +294,27 @@ def generated_paths(folder: Path) -> set[str]:
 
 
 def update(folder: Path = GENERATED, progress=print) -> None:
-    """Rewrite the generated package; files that nothing generates any more are removed."""
+    """Rewrite the generated package; files that nothing generates any more are removed.
+
+    Everything is derived before the first file is written, and a file is whole or as it was: a run that is stopped
+    leaves files of both derivations at worst, which a check tells.
+    """
     files = derive_files(progress)
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text, encoding="utf-8")
+        _write_whole(folder / name, text)
     for orphan in generated_paths(folder) - set(files):
         (folder / orphan).unlink()
+
+
+def _write_whole(path: Path, text: str) -> None:
+    """As `proprotor.output_file.write_whole`, which cannot be imported while the equations are not there."""
+    unfinished = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        unfinished.write_text(text, encoding="utf-8")
+        os.replace(unfinished, path)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def differences(folder: Path = GENERATED, progress=print) -> list[str]:

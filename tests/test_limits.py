@@ -16,7 +16,7 @@ from proprotor.modes import state_matrix
 from tests.c81_files import made_up_tables
 from tests.rotors import flights, random_support, seeds
 
-any_rotor = settings(max_examples=20, derandomize=True, deadline=None, phases=[Phase.generate])
+any_rotor = settings(max_examples=12, derandomize=True, deadline=None, phases=[Phase.generate])
 AIRSPEED = 100.0
 CASE = pp.load_case("xv15")
 ROTOR, OPERATION = CASE.rotor, CASE.operation
@@ -112,15 +112,18 @@ def with_spring(case, name, per_rev_squared):
 @pytest.mark.parametrize("name", STIFF)
 def test_a_very_stiff_spring_locks_its_hinge(name):
     """Ten times as stiff, a tenth from the locked hinge."""
-    locked = CASE.linearize(AIRSPEED, locked=[name])
+    locked = HUB_SPRINGS.linearize(AIRSPEED, locked=[name])
     expected = np.linalg.eigvals(state_matrix(locked)) / OPERATION.rotor_speed
-    away = [distance(slow_roots(with_spring(name, factor), len(expected)), expected) for factor in (1e5, 1e6)]
+    away = [
+        distance(slow_roots(with_spring(HUB_SPRINGS, name, factor), len(expected)), expected)
+        for factor in (1e5, 1e6)
+    ]
     assert away[0] < 1e-3
     assert away[1] / away[0] == pytest.approx(0.1, rel=0.05)
 
 
 @pytest.mark.parametrize("name", STIFF)
-@pytest.mark.parametrize("stiffness", [1e7, 1e9, 1e12, 1e20, 1e100])
+@pytest.mark.parametrize("stiffness", [1e7, 1e9, 1e12, 1e20, 1e60])
 def test_a_spring_may_be_as_stiff_as_can_be(name, stiffness):
     """Where springs turn with the pitch nothing may be left of the loads in the digits: such a point has its reason."""
     model = with_spring(HUB_SPRINGS, name, stiffness)
@@ -284,10 +287,10 @@ INPUTS += [("xv15-mass-distribution", f"rotor.{hinge}_hinge_offset") for hinge i
 
 @pytest.mark.parametrize(("deck", "path"), INPUTS)
 def test_every_input_of_a_deck_changes_the_matrices_without_a_jump(deck, path):
-    """33 steps over a twentieth of the input: none is much larger than the others."""
+    """17 steps over a twentieth of the input: none is much larger than the others."""
     case = pp.load_case(deck)
     number = pp.design_inputs(case)[path].si
-    share = np.linspace(-0.5, 0.497, 34)
+    share = np.linspace(-0.5, 0.497, 18)
     one_sided = (
         path.endswith("lag_hinge_offset") or (path.endswith("fraction") and number == 0) or number == 0
     )

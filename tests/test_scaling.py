@@ -37,7 +37,7 @@ from tests.rotors import DAMPERS, HUB, between, flights, random_support, seeds
 
 TOLERANCE = 1e-10
 ENTRIES = 1e-12
-any_rotor = settings(max_examples=25, derandomize=True, deadline=None, phases=[Phase.generate])
+any_rotor = settings(max_examples=15, derandomize=True, deadline=None, phases=[Phase.generate])
 
 LENGTHS = ("radius", "root_cutout", "flap_hinge_offset", "lag_hinge_offset")
 INERTIAS = ("blade_inertia", "flap_inertia", "lag_inertia", "pitch_inertia")

@@ -303,7 +303,10 @@ def test_decks_of_a_beam_wing_that_cannot_be(tmp_path):
             'beam_stiffness = "3.7e9 lbf"',
             'support.beam_stiffness = 3.7e9 lbf: must be a bending or torsion stiffness, such as "3.7e9',
         ),
-        ('loss_factor = "2 %"', "support.loss_factor: must not be given with damping_ratio"),
+        (
+            'damping_ratio = "1 %"\nloss_factor = "2 %"',
+            "support.loss_factor: must not be given with damping_ratio",
+        ),
         (
             'downstop_stiffness_off = "0 N*m/rad"',
             "support.downstop_stiffness_off = 0 N*m/rad: must be positive",

@@ -223,12 +223,13 @@ def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
 @cache
 def _defaults(section: type[Section]) -> dict[str, Any]:
     """What the class that a section describes takes where a field is left out."""
-    from proprotor import airfoil, beam_wing, deck, rotor, support_sections, wing_aerodynamics
+    from proprotor import airfoil, deck, rotor, support_sections, wing_aerodynamics
+    from proprotor.beam_wing import Pylon, Wing
 
     described: dict[type[Section], tuple[type, ...]] = {
         deck.RotorSection: (rotor.Rotor,),
         deck.AirfoilSection: (airfoil.Airfoil,),
-        support_sections.BeamWingSection: (beam_wing.Wing, beam_wing.Pylon),
+        support_sections.BeamWingSection: (Wing, Pylon),
         support_sections.WingAerodynamicsSection: (wing_aerodynamics.WingAerodynamics,),
         support_sections.AssumedShapeSection: (wing_aerodynamics.WingAerodynamics,),
     }

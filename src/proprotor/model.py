@@ -48,7 +48,7 @@ SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
 _COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
-_SOFTEST_SPRING = 1e-12  # of the other spring: a free hinge, without a division by zero in series
+_SOFTEST_SPRING = 1e-100  # of the other spring: a free hinge, without a division by zero in series
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -39,7 +40,10 @@ def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
     place = Path(path).resolve()
     unfinished = place.with_name(f".{place.name}.{os.getpid()}.tmp")
     try:
-        _in_parts(results).to_netcdf(unfinished, engine="netcdf4", format="NETCDF4")
+        try:
+            _in_parts(results).to_netcdf(unfinished, engine="netcdf4", format="NETCDF4")
+        except RuntimeError as error:  # how the library tells a full disk
+            raise OSError(errno.EIO, f"{error}: is the disk full?") from None
         os.replace(unfinished, place)
     finally:
         unfinished.unlink(missing_ok=True)

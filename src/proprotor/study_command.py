@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -105,17 +106,19 @@ def _study(
     if out:
         check_path(out, "--out")
     airspeeds = speeds(speed, "--speed")
-    results = study(
-        loaded_case(case, settings),
-        _plan(varied, sample, size, seed),
-        airspeeds if len(airspeeds) > 1 else airspeeds[0],
-        (*DEFAULT_QUANTITIES, *["flutter"] * flutter),
-        workers=workers,
-        checkpoint=checkpoint,
-        **{name: value for name, value in options.items() if value is not None},
-    )
+    with _told("--checkpoint", checkpoint):
+        results = study(
+            loaded_case(case, settings),
+            _plan(varied, sample, size, seed),
+            airspeeds if len(airspeeds) > 1 else airspeeds[0],
+            (*DEFAULT_QUANTITIES, *["flutter"] * flutter),
+            workers=workers,
+            checkpoint=checkpoint,
+            **{name: value for name, value in options.items() if value is not None},
+        )
     if out:
-        save_results(results, out)
+        with _told("--out", out):
+            save_results(results, out)
         click.echo(f"Wrote {out}", err=True)
     if as_json:
         print_json(_summary(results) | {"set": settings_of(settings), "results": out})
@@ -123,6 +126,18 @@ def _study(
         _print(results)
     if bool((results.reason != "").all()):
         raise click.exceptions.Exit(1)
+
+
+@contextmanager
+def _told(option: str, path: str | None) -> Iterator[None]:
+    """An output that cannot be written, in one message."""
+    try:
+        yield
+    except OSError as error:
+        if path is None:
+            raise
+        reason = error.strerror or error
+        raise click.ClickException(f"{option} = {path}: cannot be written ({reason})") from None
 
 
 def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> Plan:

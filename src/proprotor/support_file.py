@@ -17,8 +17,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.matrix_market import MatrixMarketError, read_matrix
 from proprotor.modal_reduction import on_modes
@@ -163,7 +164,7 @@ def support_from_matrices(
     ).support
 
 
-def _texts(path: Path, dofs: NDArray) -> list[str]:
+def _texts(path: Path, dofs: Array) -> list[str]:
     """The names of an array, which may hold numbers that are no characters."""
     if dofs.dtype.kind == "U":
         numbers = np.frombuffer(dofs.tobytes(), dtype=np.dtype("u4").newbyteorder(dofs.dtype.byteorder))
@@ -180,7 +181,7 @@ def _names(dofs: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def _hub_motion(names: Sequence[str], hub: Mapping[str, str] | None) -> NDArray:
+def _hub_motion(names: Sequence[str], hub: Mapping[str, str] | None) -> Array:
     """Φ (6, n): which coordinate, with which sign, is the motion of the hub along each axis."""
     hub = {axis: f"hub_{axis}" for axis in HUB_AXES} if hub is None else hub
     for axis in hub:
