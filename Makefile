@@ -45,6 +45,13 @@ types: .venv/installed  ## Check the types
 mutate: .venv/installed  ## Change every term of the equations, one at a time, and tell which change no test sees
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.mutation --processes 2 --report docs/mutation.md
 
+fuzz: .venv/installed  ## Read 100,000 damaged decks, support files and airfoil tables
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.fuzz --inputs 100000 --processes 2
+
+peers: .venv/installed  ## Compare with Kane's method, lambdify and JAX; writes benchmarks/peers.md
+	$(BIN)/python -m pip install --group peers
+	$(BIN)/python -m benchmarks.peers.run
+
 golden: .venv/installed  ## Accept the modes of every combination of switches as they are, and tell what moved
 	$(BIN)/python -m tests.accept_golden
 
@@ -54,7 +61,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation gallery decks types mutate golden clean help
+.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation gallery decks types mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

@@ -1,7 +1,23 @@
 """Settings of all tests."""
 
+import sys
+
+import pytest
+from hypothesis import settings
 from hypothesis.internal.conjecture import providers
 
 # Hypothesis mixes constants of whatever local modules are imported into its examples. Then the examples of a test would
 # depend on the tests that ran before it in the same process, and on lines that have nothing to do with it.
 providers.is_local_module_file = lambda path: False
+
+# A first example that has to import a library is slow, and no fault.
+settings.register_profile("proprotor", deadline=None)
+settings.load_profile("proprotor")
+
+
+@pytest.fixture(autouse=True)
+def no_figures_left_open():
+    """A figure that one test leaves open is not there for the next."""
+    yield
+    if pyplot := sys.modules.get("matplotlib.pyplot"):
+        pyplot.close("all")

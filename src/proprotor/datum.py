@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from proprotor.errors import InputError, unknown_name
-from proprotor.units import factor_to_si, meaning, to_si
+from proprotor.units import LARGEST, factor_to_si, meaning, to_si
 
 STATUSES = ("published", "derived", "recalled", "calibrated", "assumed")
 PER_REV = "1/rev"
@@ -126,8 +125,8 @@ def read_distribution(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
         raise error.within("unit") from None
     si = tuple(float(value) * factor for value in values)
     for value, converted in zip(values, si, strict=True):
-        if not math.isfinite(converted):
-            raise InputError("value", value, "must be finite")
+        if not abs(converted) <= LARGEST:
+            raise InputError("value", value, f"must be finite, and not beyond {LARGEST:g} in SI units")
         if not bound.holds(converted):
             raise InputError("value", value, bound.rule)
     written = f"{len(values)} values in {written_unit}"

@@ -84,6 +84,7 @@ _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER_AND_UNIT = re.compile(rf"\s*({_NUMBER}|[+-]?(?:nan|inf)\b)\s*(.*?)\s*", re.IGNORECASE)
 _RANGE_AND_UNIT = re.compile(rf"\s*({_NUMBER})(?:\s*:\s*({_NUMBER})\s*:\s*({_NUMBER}))?\s*(.*?)\s*")
 _LONGEST = 80  # characters in a quantity
+LARGEST = 1e30  # of any quantity in SI: what is made of several must be finite too
 _MOST_SPEEDS = 100_000
 
 # A unit is a product of names, each with at most a one-digit power: nothing else ever reaches a parser, so
@@ -259,4 +260,6 @@ def meaning(unit: str) -> str:
 def _finite(text: object, number: float) -> float:
     if not math.isfinite(number):
         raise InputError("", text, "must be finite")
+    if abs(number) > LARGEST:
+        raise InputError("", text, f"must not be beyond {LARGEST:g} in SI units")
     return number

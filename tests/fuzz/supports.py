@@ -177,7 +177,7 @@ def _spoil_array(rng: Random, arrays: dict[str, Any]) -> None:
         case 0:
             del arrays[name]
         case 1:
-            arrays[name] = array.astype(rng.choice(("U3", "S4", "O")))
+            arrays[name] = array.astype(rng.choice(("U3", "O")))
         case 2:
             arrays[name] = array[: rng.randint(0, len(array))]
         case 3:
