@@ -17,12 +17,9 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.eigenvalue_derivatives import eigenvalue_change
-from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
 from proprotor.model_parts import Part, model_parts
-from proprotor.modes import decomposition
-from proprotor.speed import in_metres_per_second
-from proprotor.sweep import sweep_case
+from proprotor.named_modes import named_modes
 from proprotor.tracking import Modes
 
 if TYPE_CHECKING:
@@ -59,24 +56,10 @@ def attribution(case: Case, airspeed: Any, mode: str | None = None, **options: A
     InputError
         For an airspeed that is not one, or that cannot be analysed, and an unknown mode.
     """
-    speed = in_metres_per_second(airspeed).reshape(-1)
-    if len(speed) != 1:
-        raise InputError("airspeed", airspeed, "must be one speed")
-    named = sweep_case(case, speed, **options).isel(airspeed=0)
-    if named.reason.item():
-        raise InputError("airspeed", airspeed, named.reason.item())
-    names = [str(name) for name in named.mode.values[np.isfinite(named.eigenvalue.values.real)]]
-    if mode is not None and mode not in names:
-        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
-    names = names if mode is None else [mode]
-    model = case.linearize(speed[0], **options)
-    spectrum = decomposition(model)
-    wanted = named.eigenvalue.sel(mode=names).values
-    places = np.abs(spectrum.values[None, :] - wanted[:, None]).argmin(axis=1)
-    parts = model_parts(case, model, **options)
-    return _dataset(
-        names, list(parts), spectrum.values[places], contributions(model, parts, spectrum.modes(places))
-    )
+    found = named_modes(case, airspeed, mode, options)
+    parts = model_parts(case, found.model, **options)
+    changes = contributions(found.model, parts, found.modes)
+    return _dataset(found.names, list(parts), found.modes.values, changes)
 
 
 def _dataset(modes: list[str], origins: list[str], values: Array, found: Array) -> xarray.Dataset:

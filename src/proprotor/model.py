@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,7 +48,7 @@ HUB = FIXED_COORDINATES[:6]
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
-_COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
+COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
 _SOFTEST_SPRING = 1e-100  # of the other spring: a free hinge, without a division by zero in series
 
 
@@ -127,6 +128,20 @@ def rotor_quantities(
     return {name: np.broadcast_to(v, points).reshape(-1) if np.ndim(v) else v for name, v in given.items()}
 
 
+def model_quantities(
+    rotor: Rotor, operation: Operation, options: Options, airspeed: Array, points: tuple[int, ...]
+) -> dict[str, Any]:
+    """`rotor_quantities`, and the numbers that the options give: couplings and the damping of sections."""
+    given = {name: getattr(options, name) for name in COUPLINGS}
+    given = {
+        name: np.broadcast_to(value, points).reshape(-1) if np.ndim(value) else value
+        for name, value in given.items()
+        if value is not None
+    }
+    damping = {"section_damping": float(options.section_damping)}
+    return rotor_quantities(rotor, operation, airspeed, points) | given | damping
+
+
 def batch_shape(rotor: Rotor, operation: Operation, airspeed: Array) -> tuple[int, ...]:
     """Shape of all arrays among the inputs, broadcast together."""
     inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name != "airfoil"]
@@ -164,8 +179,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed)
     shape = batch_shape(rotor, operation, speed)
-    quantities = rotor_quantities(rotor, operation, speed, shape) | _given_couplings(choice, shape)
-    quantities["section_damping"] = float(choice.section_damping)
+    quantities = model_quantities(rotor, operation, choice, speed, shape)
     points = int(np.prod(shape, dtype=int))
     sections, coarse = (BladeSections.of(rotor, shape, coarse) for coarse in (False, True))
     target = _flat(trim_target(rotor, operation), shape)
@@ -228,7 +242,7 @@ def _matrices(
     points, n, rows = len(settled.trim.converged), len(FIXED_COORDINATES) + len(extra), settled.rows
     found: dict[str, Array] = {}
     if len(rows):
-        pool = settled.pool | _couplings(options, settled.pool)
+        pool = settled.pool | couplings(options, settled.pool)
         *blade, gusts = _blade_matrices(sections.take(rows), pool, settled.segments, options)
         inputs = [_swashplate(pool, options, blade), evaluate(multiblade.gust_loads, pool, gusts)]
         found = _fixed_frame(pool, options, blade, extra)
@@ -332,22 +346,12 @@ def _with_reactionless(
     return whole
 
 
-def _couplings(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
+def couplings(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
     """Pitch-flap and pitch-lag coupling of the airloads' pitch; a given value stands in place of the closed form."""
     if options.pitch != "coupling":
-        return dict.fromkeys(_COUPLINGS, 0.0)
+        return dict.fromkeys(COUPLINGS, 0.0)
     closed_form: dict[str, Any] = evaluate(pitch.couplings, pool)._asdict()
-    return closed_form | {name: pool[name] for name in _COUPLINGS if name in pool}
-
-
-def _given_couplings(options: Options, shape: tuple[int, ...]) -> dict[str, Any]:
-    """Couplings that the options give, arrays flattened over the batch."""
-    given = {name: getattr(options, name) for name in _COUPLINGS}
-    return {
-        name: np.broadcast_to(value, shape).reshape(-1) if np.ndim(value) else value
-        for name, value in given.items()
-        if value is not None
-    }
+    return closed_form | {name: pool[name] for name in COUPLINGS if name in pool}
 
 
 def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[Array, Array, Array]:
@@ -367,30 +371,48 @@ def _airloads(
     """Airload damping and stiffness of one blade, and what gusts load it with."""
     equations = options.equation_set.airloads
     if equations is airloads and options.airloads == "full":
-        segments = dict(at_trim) | {name: np.asarray(pool[name])[..., None] for name in _COUPLINGS}
+        segments = dict(at_trim) | {name: np.asarray(pool[name])[..., None] for name in COUPLINGS}
     else:
         segments = segment_quantities(sections, pool, equations)
         segments |= _moments(sections, segments, options)
+    return airload_matrices(segments, equations)
+
+
+def airload_matrices(segments: Mapping[str, Any], equations: ModuleType) -> tuple[Array, Array, Array]:
+    """Airload damping, stiffness (points, 12, 12) and gust loads (points, 12, 3) of one blade from its segments.
+
+    Parameters
+    ----------
+    segments : mapping
+        Quantities of each segment, with the couplings of its pitch and the radial moments of its loads.
+    equations : module
+        Generated airloads, of the consistent or a reduced set.
+    """
     motions = ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion")
-    segments |= {name: evaluate(getattr(equations, name), segments) for name in motions}
-    segments["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
+    pool = dict(segments) | {name: evaluate(getattr(equations, name), segments) for name in motions}
+    pool["load_derivatives"] = evaluate(airloads.load_derivatives, pool)
     products = (airloads.damping, airloads.stiffness, airloads.gust_loads)
-    return tuple(evaluate(product, segments) for product in products)
+    damping, stiffness, gusts = (evaluate(product, pool) for product in products)
+    return damping, stiffness, gusts
 
 
 def _moments(sections: BladeSections, segments: Mapping[str, Any], options: Options) -> dict[str, Array]:
     """Radial moments of the section loads: in closed form where there is one, else by quadrature."""
-    lift_slope_only = options.airloads == "lift-slope"
-    simple = options.equations == "published" and not (options.compressibility or options.section_damping)
-    if lift_slope_only and simple and has_closed_form(sections):
+    if in_closed_form(sections, options):
         return closed_form_moments(sections, segments)
     return load_moments(
         sections,
         segments,
         compressibility=options.compressibility,
-        lift_slope_only=lift_slope_only,
+        lift_slope_only=options.airloads == "lift-slope",
         equations=options.equation_set.airloads,
     )
+
+
+def in_closed_form(sections: BladeSections, options: Options) -> bool:
+    """Whether the radial moments of the perturbation airloads need no quadrature."""
+    simple = options.equations == "published" and not (options.compressibility or options.section_damping)
+    return options.airloads == "lift-slope" and simple and has_closed_form(sections)
 
 
 def rigid_hub_mass(rotor: Rotor) -> Array:

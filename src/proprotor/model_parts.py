@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, airloads, drive_train, multiblade, pitch
+from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_train, multiblade, pitch
 
 from proprotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.arrays import Array
@@ -20,13 +20,21 @@ from proprotor.blade_airloads import (
     BladeSections,
     closed_form_moments,
     compressible,
-    has_closed_form,
     load_moments,
     segment_quantities,
 )
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
-from proprotor.model import LinearModel, batch_shape, rigid_hub_mass, rotor_quantities
+from proprotor.model import (
+    COUPLINGS,
+    LinearModel,
+    airload_matrices,
+    batch_shape,
+    couplings,
+    in_closed_form,
+    model_quantities,
+    rigid_hub_mass,
+)
 from proprotor.options import Options, parse_options
 from proprotor.support import NormalModes
 from proprotor.trim import UNKNOWNS, with_trim
@@ -34,7 +42,7 @@ from proprotor.trim import UNKNOWNS, with_trim
 if TYPE_CHECKING:
     from proprotor.case import Case
 
-_COUPLINGS = {
+_COUPLINGS_TOLD = {
     "pitch_flap_coupling": "pitch-flap coupling K_Pβ",
     "pitch_lag_coupling": "pitch-lag coupling K_Pζ",
 }
@@ -118,19 +126,10 @@ def model_parts(case: Case, model: LinearModel, **options: Any) -> dict[str, Par
 
 def _pool(case: Case, choice: Options, model: LinearModel, shape: tuple[int, ...]) -> dict[str, Any]:
     """All quantities at the trim of the model, arrays flattened over the batch."""
-    given = {
-        name: np.broadcast_to(getattr(choice, name), shape).reshape(-1)
-        for name in _COUPLINGS
-        if getattr(choice, name) is not None
-    }
-    quantities = rotor_quantities(case.rotor, case.operation, model.airspeed, shape) | given
-    quantities["section_damping"] = float(choice.section_damping)
+    quantities = model_quantities(case.rotor, case.operation, choice, model.airspeed, shape)
     state = {name: np.broadcast_to(getattr(model.trim, name), shape).reshape(-1) for name in UNKNOWNS}
     pool = with_trim(quantities, choice, state)
-    if choice.pitch != "coupling":
-        return pool | dict.fromkeys(_COUPLINGS, 0.0)
-    closed_form: dict[str, Any] = evaluate(pitch.couplings, pool)._asdict()
-    return pool | closed_form | given
+    return pool | couplings(choice, pool)
 
 
 def _structure(pool: dict[str, Any], choice: Options) -> dict[str, Part]:
@@ -181,7 +180,7 @@ def _airloads(sections: BladeSections, pool: dict[str, Any], choice: Options) ->
     """Airloads of one blade (points, 12, 12) by coefficient, and by coupling of the pitch they see."""
     if choice.airloads == "none":
         return
-    zero, none = np.zeros((12, 12)), dict.fromkeys(_COUPLINGS, 0.0)
+    zero, none = np.zeros((12, 12)), dict.fromkeys(COUPLINGS, 0.0)
     kinds = {"lift slope": _COEFFICIENTS["lift slope"]} if choice.airloads == "lift-slope" else _COEFFICIENTS
     for told, kept in kinds.items():
         loads = _moments(sections, pool, choice, kept, section_damping=False)
@@ -194,7 +193,7 @@ def _airloads(sections: BladeSections, pool: dict[str, Any], choice: Options) ->
         yield "section pitch damping", Part(zero, *(a - b for a, b in zip(with_it, without, strict=True)))
         whole = damped
     alone = _loads(pool | none, choice, whole)
-    for name, told in _COUPLINGS.items():
+    for name, told in _COUPLINGS_TOLD.items():
         if np.any(pool[name]):
             coupled = _loads(pool | none | {name: pool[name]}, choice, whole)
             yield told, Part(zero, *(a - b for a, b in zip(coupled, alone, strict=True)))
@@ -210,9 +209,7 @@ def _moments(
     """Radial moments of the section loads by some of the coefficients, and what segments are."""
     equations = choice.equation_set.airloads
     segments = segment_quantities(sections, pool | {"section_damping": float(section_damping)}, equations)
-    lift_slope_only = choice.airloads == "lift-slope"
-    simple = choice.equations == "published" and not (choice.compressibility or choice.section_damping)
-    if lift_slope_only and simple and has_closed_form(sections):
+    if in_closed_form(sections, choice):
         return segments | closed_form_moments(sections, segments)
     some = replace(sections, airfoil=_SomeCoefficients(sections.airfoil, kept, choice.compressibility))
     return segments | load_moments(some, segments, compressibility=False, equations=equations)
@@ -220,12 +217,9 @@ def _moments(
 
 def _loads(pool: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
     """Airload damping and stiffness of one blade."""
-    equations = choice.equation_set.airloads
-    segments = dict(segments) | {name: np.asarray(pool[name])[..., None] for name in _COUPLINGS}
-    motions = ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness")
-    segments |= {name: evaluate(getattr(equations, name), segments) for name in motions}
-    segments["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
-    return evaluate(airloads.damping, segments), evaluate(airloads.stiffness, segments)
+    coupled = dict(segments) | {name: np.asarray(pool[name])[..., None] for name in COUPLINGS}
+    damping, stiffness, _ = airload_matrices(coupled, choice.equation_set.airloads)
+    return damping, stiffness
 
 
 def _in_fixed_frame(part: Part, pool: Mapping[str, Any]) -> Part:

@@ -21,8 +21,7 @@ from proprotor.errors import InputError, unknown_name
 from proprotor.flutter import Boundary, flutter_point
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition
-from proprotor.speed import in_metres_per_second
-from proprotor.sweep import sweep_case
+from proprotor.named_modes import named_modes
 from proprotor.tracking import Modes
 
 if TYPE_CHECKING:
@@ -228,24 +227,8 @@ def _of_modes(
     mode: str | None,
     options: Mapping[str, Any],
 ) -> xarray.Dataset:
-    speed = in_metres_per_second(airspeed).reshape(-1)
-    if len(speed) != 1:
-        raise InputError("airspeed", airspeed, "must be one speed")
-    named = sweep_case(case, speed, **options).isel(airspeed=0)
-    if named.reason.item():
-        raise InputError("airspeed", airspeed, named.reason.item())
-    named = named.isel(mode=np.flatnonzero(np.isfinite(named.eigenvalue.values.real)))
-    names = named.mode.values.tolist()
-    if mode is not None and mode not in names:
-        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
-    model = case.linearize(speed[0], **options)
-    spectrum = decomposition(model)
-    distance = np.abs(spectrum.values[None, :] - named.eigenvalue.values[:, None])
-    places = distance.argmin(axis=1)
-    if mode is not None:
-        places, names = places[[names.index(mode)]], [mode]
-    modes = spectrum.modes(places)
-    rates, exact = _rates(case, inputs, speed[0], modes, model, options)
+    names, modes, model, speed, eigen_solves = named_modes(case, airspeed, mode, options)
+    rates, exact = _rates(case, inputs, speed, modes, model, options)
     value, units = modes.values, "rad/s"
     if of == "damping":
         value, units = -modes.values.real / np.abs(modes.values), "1"
@@ -254,7 +237,7 @@ def _of_modes(
     data[of] = ("mode", value, {"units": units})
     data["defect"] = ("mode", defect(modes))
     data["nearly_defective"] = ("mode", data.defect.values > NEARLY_DEFECTIVE)
-    data.attrs = {"of": of, "airspeed": float(speed[0]), "eigen_solves": named.attrs["eigen_solves"] + 1}
+    data.attrs = {"of": of, "airspeed": speed, "eigen_solves": eigen_solves}
     return data
 
 
