@@ -5,16 +5,18 @@ python -m tests.accept_golden
 
 import sys
 
-from tests.golden import decks, switches
+import proprotor as pp
+from tests.golden.combinations import computed, record
 from tests.golden.modes import Modes, Record, accepted, changes
 
 
 def main() -> None:
-    for source in (switches, decks):
+    for deck in pp.list_cases():
+        kept = record(deck)
         try:
-            accept(source.RECORD, source.computed())
+            accept(kept, computed(deck))
         except OSError as error:
-            sys.exit(f"{source.RECORD.file} cannot be written ({error.strerror or error}); it is as it was")
+            sys.exit(f"{kept.file} cannot be written ({error.strerror or error}); it is as it was")
 
 
 def accept(record: Record, now: Modes) -> None:

@@ -1,4 +1,4 @@
-"""Modes of every deck and of every combination of switches are the accepted ones, until others are accepted."""
+"""Modes of every deck, for every combination of switches, are the accepted ones until others are accepted."""
 
 import itertools
 
@@ -7,39 +7,43 @@ import pytest
 import proprotor as pp
 from proprotor.options import CHOICES
 from tests import accept_golden
-from tests.golden import decks, switches
+from tests.golden.combinations import ADVANCE, SWITCHES, choices, computed, record
 from tests.golden.modes import COMMAND, Change, Mode, Record, accepted, changes, movement
 
-SOURCES = {"switches": switches, "decks": decks}
 
-
-@pytest.mark.parametrize("name", SOURCES)
-def test_modes_are_the_accepted_ones(name):
-    record, now = SOURCES[name].RECORD, SOURCES[name].computed()
-    if found := changes(record.kept(), now):
+@pytest.mark.parametrize("deck", pp.list_cases())
+def test_modes_are_the_accepted_ones(deck):
+    now = computed(deck)
+    if found := changes(record(deck).kept(), now):
         told = f"`{COMMAND}` accepts this and leaves it to be seen in review."
-        pytest.fail(f"{record.told(found, len(now))}\n{told}", pytrace=False)
+        pytest.fail(f"{deck}: {record(deck).told(found, len(now))}\n{told}", pytrace=False)
 
 
-def test_every_combination_is_there():
-    choices = [map(str, CHOICES[name]) for name in switches.SWITCHES]
-    assert list(switches.RECORD.kept()) == list(itertools.product(*choices, map(str, switches.KNOTS)))
-    points = itertools.product(pp.list_cases(), decks.CHOICES, map(str, decks.ADVANCE))
-    assert list(decks.RECORD.kept()) == list(points)
+@pytest.mark.parametrize("deck", pp.list_cases())
+def test_every_combination_is_there(deck):
+    points = [(*choice, str(advance)) for choice, _ in choices() for advance in ADVANCE]
+    assert list(record(deck).kept()) == points
+    combined = {point[: len(SWITCHES)] for point in points}
+    assert combined == set(itertools.product(*(map(str, CHOICES[name]) for name in SWITCHES)))
+
+
+def test_no_deck_is_left_that_is_gone():
+    kept = {file.stem for file in record("any").file.parent.glob("*.csv")} - {"audit"}
+    assert kept == set(pp.list_cases())
 
 
 @pytest.mark.parametrize("moved", [{"frequency": 0.5 * (1 + 3e-8)}, {"damping_ratio": 0.01 + 3e-8}])
 def test_a_small_change_is_found_told_and_alone_accepted(moved):
     mode, other = Mode("chord", 0.5, 0.01), Mode("beam", 0.3, 0.02)
-    defaults = tuple(str(CHOICES[name][0]) for name in switches.SWITCHES)
-    points = [(*defaults, "200"), (*defaults, "300")]
+    defaults = (*(str(CHOICES[name][0]) for name in SWITCHES), "")
+    points = [(*defaults, "0.5"), (*defaults, "0.7")]
     was = {point: [other, mode] for point in points}
     rounded = other._replace(damping_ratio=0.02 + 1e-12)
     now = {points[0]: [rounded, mode], points[1]: [rounded, mode._replace(**moved)]}
     (change,) = changes(was, now)
     assert change == (points[1], mode, mode._replace(**moved))
-    told = switches.RECORD.told([change], 2)
-    assert "chord" in told and "300 1" in told
+    told = record("xv15").told([change], 2)
+    assert "chord" in told and "0.7 1" in told
     assert accepted(was, now) == {points[0]: was[points[0]], points[1]: now[points[1]]}
 
 

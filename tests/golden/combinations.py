@@ -1,0 +1,54 @@
+"""The modes of every bundled deck at three airspeeds, for every combination of switches and with each hinge locked."""
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import proprotor as pp
+from proprotor.figures.published import PAPER_FREQUENCIES
+from proprotor.options import CHOICES, LOCKABLE
+from tests.golden.modes import Modes, Record, modes_at
+
+ADVANCE = (0.25, 0.5, 0.7)  # airspeed by tip speed: the same for models of any size
+SWITCHES = ("equations", "pitch", "structure", "airloads", "compressibility", "rotor_speed")
+# With every other switch at its default: what would double the combinations, or multiply them by sixteen.
+ALONE: dict[str, dict[str, Any]] = {
+    "section damping": {"section_damping": True},
+    **{f"{name} locked": {"locked": [name]} for name in LOCKABLE},
+}
+
+
+def record(deck: str) -> Record:
+    """The accepted modes of a deck."""
+    file = Path(__file__).with_name(f"{deck}.csv")
+    return Record(file, (*(name.replace("_", " ") for name in SWITCHES), "also", "advance"))
+
+
+def choices() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+    """Each combination as the record names it, and the options that make it."""
+    default = {name: CHOICES[name][0] for name in SWITCHES}
+    for choice in itertools.product(*(CHOICES[name] for name in SWITCHES)):
+        options = dict(zip(SWITCHES, choice, strict=True))
+        if options["structure"] == "tabulated":
+            options["frequencies"] = PAPER_FREQUENCIES  # the XV-15's; of the other rotors none are published
+        yield (*map(str, choice), ""), options
+    for name, options in ALONE.items():
+        yield (*map(str, default.values()), name), options
+
+
+def computed(deck: str) -> Modes:
+    """Modes of a deck as the model is, all airspeeds of a choice in one call."""
+    case = pp.load_case(deck)
+    rotor_speed = case.operation.rotor_speed
+    airspeeds = np.array(ADVANCE) * rotor_speed * case.rotor.radius
+    found = {}
+    for choice, options in choices():
+        model = case.linearize(airspeeds, **options)
+        assert model.trim.converged.all(), (deck, choice, model.trim.reason)
+        modes = model.modes()
+        for place, advance in enumerate(ADVANCE):
+            found[*choice, str(advance)] = modes_at(modes, place, rotor_speed)
+    return found
