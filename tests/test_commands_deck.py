@@ -457,7 +457,7 @@ def test_a_name_that_is_no_case_completes_as_a_file():
 
 
 def test_a_number_of_a_deck_says_its_unit():
-    from proprotor.commands.deck_units import deck_unit
+    from proprotor.deck_units import deck_unit
 
     assert deck_unit(Datum("2.5 deg", 0.04, "rad"), 50.0) == ("deg", pytest.approx(DEG))
     assert deck_unit(Datum("0.42/rev", 21.0, "rad/s"), 50.0) == ("/rev", 50.0)

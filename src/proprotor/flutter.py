@@ -260,6 +260,11 @@ def boundaries(
     return find_crossings(line, level=level, rotor_speed=rotor_speed_of(case), approach=near)
 
 
+def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:
+    """Airspeeds (points,) in m/s, 0.2 to 1.2 of the tip speed, where a flutter point is looked for."""
+    return np.linspace(*_RANGE[:2], points) * tip_speed(case)
+
+
 def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **options: Any) -> FlutterPoint:
     """The lowest airspeed at which a mode becomes unstable, with all boundaries of the range.
 
@@ -278,8 +283,7 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
     InputError
         As `boundaries`.
     """
-    if airspeeds is None:
-        airspeeds = np.linspace(*_RANGE[:2], _RANGE[2]) * tip_speed(case)
+    airspeeds = scan_speeds(case) if airspeeds is None else airspeeds
     found = boundaries(case, airspeeds, level=level, **options)
     onsets = [boundary for boundary in found.boundaries if boundary.onset]
     first = onsets[0] if onsets else None

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from proprotor.boundary_summary import COLUMNS, boundary_record, mechanism_told, modes_beyond, verdict
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
@@ -23,23 +23,12 @@ from proprotor.commands.arguments import (
     unit_of,
 )
 from proprotor.errors import InputError
+from proprotor.units import KNOT
 from proprotor.waiting import waiting
 
 if TYPE_CHECKING:
     from proprotor.case import Case
-    from proprotor.flutter import Boundary, FlutterPoint
-
-COLUMNS = (
-    "airspeed (kt)",
-    "airspeed (m/s)",
-    "frequency (Hz)",
-    "frequency (per rev)",
-    "mode",
-    "kind",
-    "onset",
-    "mechanism",
-    "growth per airspeed (1/m)",
-)
+    from proprotor.flutter import FlutterPoint
 
 
 @click.command(epilog=EXIT_CODES, short_help="Flutter and divergence boundaries, and the margin.")
@@ -84,9 +73,9 @@ def flutter(
     loaded = loaded_case(case, settings)
     with waiting("Looking for boundaries"):
         found = loaded.flutter_point(airspeeds, level=damping, **options)
-    records = [_record(boundary, loaded) for boundary in found.boundaries]
+    records = [boundary_record(boundary, loaded) for boundary in found.boundaries]
     if csv:
-        rows = [record | {"mechanism": _told(record["mechanism"])} for record in records]
+        rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
         output.write("--csv", csv, output.csv_of(rows, COLUMNS))
     if as_json:
         head = output.about(loaded, options, settings_of(settings))
@@ -97,26 +86,11 @@ def flutter(
         raise click.exceptions.Exit(1)
 
 
-def _record(boundary: Boundary, case: Case) -> dict[str, Any]:
-    values = (
-        boundary.position / output.KNOT,
-        boundary.position,
-        boundary.frequency / (2 * math.pi),
-        boundary.frequency / float(case.operation.rotor_speed),
-        boundary.mode,
-        boundary.kind,
-        boundary.onset,
-        dict(boundary.mechanism),
-        boundary.rate,
-    )
-    return dict(zip(COLUMNS, values, strict=True))
-
-
 def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | None) -> dict[str, Any]:
     document = {
         "level (damping ratio)": found.level,
         "searched (m/s)": list(found.searched),
-        "flutter speed (kt)": found.speed / output.KNOT,
+        "flutter speed (kt)": found.speed / KNOT,
         "flutter speed (m/s)": found.speed,
         "mode": found.mode or None,
         "kind": found.kind or None,
@@ -126,17 +100,12 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
     }
     if at is None:
         return document
-    margin = {"airspeed (m/s)": at, "margin": found.margin(at), "modes beyond the level": _beyond(found, at)}
+    margin = {
+        "airspeed (m/s)": at,
+        "margin": found.margin(at),
+        "modes beyond the level": modes_beyond(found, at),
+    }
     return document | {"at": margin}
-
-
-def _beyond(found: FlutterPoint, airspeed: float) -> int | None:
-    """How many modes are beyond the level at an airspeed; None outside the range that was searched."""
-    low, high = found.searched
-    if not low <= airspeed <= high:
-        return None
-    passed = [boundary.onset for boundary in found.boundaries if boundary.position < airspeed]
-    return len(found.unstable_at_start) + 2 * sum(passed) - len(passed)
 
 
 def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None:
@@ -149,9 +118,9 @@ def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None
     factor = factor_to_si(unit, unit, "m/s")
     if found.boundaries:
         columns = (unit, "Hz", "/rev", "mode", "kind", "", "mechanism")
-        rows = (_row(_record(boundary, case), factor) for boundary in found.boundaries)
+        rows = (_row(boundary_record(boundary, case), factor) for boundary in found.boundaries)
         output.print_table(columns, rows, text=columns[3:])
-    for line in _verdict(found, at, unit, factor):
+    for line in verdict(found, at, unit, factor):
         output.console().print(line, style="bold")
 
 
@@ -163,29 +132,5 @@ def _row(record: dict[str, Any], factor: float) -> tuple[str, ...]:
         record["mode"],
         record["kind"],
         "begins" if record["onset"] else "ends",
-        _told(record["mechanism"]),
+        mechanism_told(record["mechanism"]),
     )
-
-
-def _told(mechanism: dict[str, float]) -> str:
-    return ", ".join(f"{name} {100 * share:.0f} %" for name, share in mechanism.items())
-
-
-def _verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
-    low, high = (speed / factor for speed in found.searched)
-    beyond = f"below {100 * found.level:g} % of critical" if found.level else "unstable"
-    if found.unstable_at_start:
-        yield f"Already {beyond} at {low:.4g} {unit}: {', '.join(found.unstable_at_start)}."
-    if math.isnan(found.speed):
-        yield f"No mode becomes {beyond} between {low:.4g} and {high:.4g} {unit}."
-    else:
-        yield f"Flutter speed {found.speed / factor:.2f} {unit} ({found.mode}, {found.kind})."
-    if at is None:
-        return
-    count = _beyond(found, at)
-    if count is None:
-        yield f"{at / factor:.4g} {unit} lies outside the range searched, {low:.4g} to {high:.4g} {unit}."
-    elif count:
-        yield f"At {at / factor:.4g} {unit} {count} mode{'s are' if count > 1 else ' is'} {beyond}."
-    if not math.isnan(found.speed):
-        yield f"Margin at {at / factor:.4g} {unit}: {100 * found.margin(at):+.1f} % of that airspeed."

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
-KNOT = 1852 / 3600  # m/s
 _NARROWEST = 30  # characters of a wrapped column
 
 
@@ -82,7 +81,7 @@ def console() -> Console:
 def print_head(case: Case) -> None:
     """Print what was analysed and what it rests on."""
     from proprotor.provenance import reservations
-    from proprotor.report import heading
+    from proprotor.terminal import heading
 
     out = console()
     for line in (heading(case), *reservations(case), ""):
@@ -158,7 +157,7 @@ def write_plot(path: str, case: Case, draw: Callable[[], Axes]) -> None:
         from matplotlib import pyplot
 
         from proprotor.plots import rests_on
-        from proprotor.report import heading
+        from proprotor.terminal import heading
 
         axes = draw()
         rests_on(axes, case, f"{heading(case)}.")

@@ -22,6 +22,8 @@ from proprotor.commands.arguments import (
     settings_of,
 )
 from proprotor.errors import InputError
+from proprotor.sensitivity_summary import READ_IN, sensitivity_records
+from proprotor.units import KNOT
 from proprotor.waiting import waiting
 
 if TYPE_CHECKING:
@@ -29,16 +31,13 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
-# Of each quantity: the unit people read, and how many SI units it is.
-_READ_IN = {"flutter_speed": ("kt", output.KNOT), "damping": ("% of critical", 0.01)}
-
 
 @click.command(epilog=EXIT_CODES, short_help="What moves the flutter speed or a damping, input by input.")
 @case_argument
 @click.option(
     "--of",
     "of",
-    type=click.Choice(tuple(_READ_IN)),
+    type=click.Choice(tuple(READ_IN)),
     default="flutter_speed",
     show_default=True,
     help="What is derived.",
@@ -90,7 +89,7 @@ def sensitivity(
     with waiting("Deriving"):
         found = loaded.sensitivity(of, wrt or None, mode=mode, **where, **options)
     found = _one_mode(found)
-    records = _records(loaded, found, of)
+    records = sensitivity_records(loaded, found, of)
     if csv:
         output.write("--csv", csv, output.csv_of(records, list(records[0])))
     if plot:
@@ -129,33 +128,8 @@ def _mode(found: xarray.Dataset) -> str:
     return str(found.attrs["mode"] if "mode" in found.attrs else found.mode.item())
 
 
-def _records(case: Case, found: xarray.Dataset, of: str) -> list[dict[str, Any]]:
-    from proprotor.commands.deck_units import deck_unit
-
-    read_in, factor = _READ_IN[of]
-    numbers, omega = case.given, float(case.operation.rotor_speed)
-    records = []
-    for place, path in enumerate(found.input.values.tolist()):
-        unit, size = deck_unit(numbers[path], omega)
-        relative = float(found.relative.values[place]) / factor
-        records.append(
-            {
-                "input": path,
-                "value": numbers[path].written,
-                "unit": unit,
-                f"derivative ({read_in} per unit)": float(found.derivative.values[place]) * size / factor,
-                f"for +1 % ({read_in})": relative / 100 if found.value.values[place] else None,
-                "SI unit": numbers[path].unit,
-                "derivative (SI)": float(found.derivative.values[place]),
-                "exact": bool(found.exact.values[place]),
-                "status": numbers[path].status,
-            }
-        )
-    return sorted(records, key=lambda record: -abs(record[f"for +1 % ({read_in})"] or 0.0))
-
-
 def _document(found: xarray.Dataset, records: list[dict[str, Any]], of: str) -> dict[str, Any]:
-    read_in, factor = _READ_IN[of]
+    read_in, factor = READ_IN[of]
     airspeed = found.attrs["value"] if of == "flutter_speed" else found.attrs["airspeed"]
     return {
         "of": of,
@@ -180,9 +154,9 @@ def _draw(found: xarray.Dataset, top: int) -> Any:
 def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], of: str, top: int) -> None:
     output.print_head(case)
     out = output.console()
-    read_in, factor = _READ_IN[of]
+    read_in, factor = READ_IN[of]
     what = "Flutter speed" if of == "flutter_speed" else "Damping"
-    at = "" if of == "flutter_speed" else f" at {found.attrs['airspeed'] / output.KNOT:.4g} kt"
+    at = "" if of == "flutter_speed" else f" at {found.attrs['airspeed'] / KNOT:.4g} kt"
     out.print(f"{what} {_value(found, of) / factor:.4g} {read_in}{at} ({_mode(found)})", style="bold")
     shown = records[: top or None]
     columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %")

@@ -76,7 +76,7 @@ def sweep(
     if as_json:
         output.print_json(output.about(loaded, options, settings_of(settings)) | _document(table))
     else:
-        from proprotor.report import print_sweep
+        from proprotor.terminal import print_sweep
 
         print_sweep(loaded, table, options, all_modes)
     if table.failed.all():
@@ -113,7 +113,7 @@ def _draw(case: Case, table: SweepTable, file: IO[bytes], suffix: str) -> None:
 
     from proprotor.plots import plot_sweep
     from proprotor.provenance import reservations
-    from proprotor.report import heading
+    from proprotor.terminal import heading
 
     footer = " ".join((*reservations(case), *table.doubts()))
     figure = plot_sweep(

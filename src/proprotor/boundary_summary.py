@@ -1,0 +1,76 @@
+"""What boundaries say at a glance, in the units people read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from proprotor.units import KNOT
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+    from proprotor.flutter import Boundary, FlutterPoint
+
+COLUMNS = (
+    "airspeed (kt)",
+    "airspeed (m/s)",
+    "frequency (Hz)",
+    "frequency (per rev)",
+    "mode",
+    "kind",
+    "onset",
+    "mechanism",
+    "growth per airspeed (1/m)",
+)
+
+
+def boundary_record(boundary: Boundary, case: Case) -> dict[str, Any]:
+    """A boundary in the units people read, by `COLUMNS`."""
+    values = (
+        boundary.position / KNOT,
+        boundary.position,
+        boundary.frequency / (2 * math.pi),
+        boundary.frequency / float(case.operation.rotor_speed),
+        boundary.mode,
+        boundary.kind,
+        boundary.onset,
+        dict(boundary.mechanism),
+        boundary.rate,
+    )
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def modes_beyond(found: FlutterPoint, airspeed: float) -> int | None:
+    """How many modes are beyond the level at an airspeed; None outside the range that was searched."""
+    low, high = found.searched
+    if not low <= airspeed <= high:
+        return None
+    passed = [boundary.onset for boundary in found.boundaries if boundary.position < airspeed]
+    return len(found.unstable_at_start) + 2 * sum(passed) - len(passed)
+
+
+def mechanism_told(mechanism: dict[str, float]) -> str:
+    """Which modes take part in a boundary, and how much."""
+    return ", ".join(f"{name} {100 * share:.0f} %" for name, share in mechanism.items())
+
+
+def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
+    """Sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
+    low, high = (speed / factor for speed in found.searched)
+    beyond = f"below {100 * found.level:g} % of critical" if found.level else "unstable"
+    if found.unstable_at_start:
+        yield f"Already {beyond} at {low:.4g} {unit}: {', '.join(found.unstable_at_start)}."
+    if math.isnan(found.speed):
+        yield f"No mode becomes {beyond} between {low:.4g} and {high:.4g} {unit}."
+    else:
+        yield f"Flutter speed {found.speed / factor:.2f} {unit} ({found.mode}, {found.kind})."
+    if at is None:
+        return
+    count = modes_beyond(found, at)
+    if count is None:
+        yield f"{at / factor:.4g} {unit} lies outside the range searched, {low:.4g} to {high:.4g} {unit}."
+    elif count:
+        yield f"At {at / factor:.4g} {unit} {count} mode{'s are' if count > 1 else ' is'} {beyond}."
+    if not math.isnan(found.speed):
+        yield f"Margin at {at / factor:.4g} {unit}: {100 * found.margin(at):+.1f} % of that airspeed."
