@@ -14,6 +14,7 @@ from proprotor.commands.cases import cases
 from proprotor.commands.describe import describe
 from proprotor.commands.flutter import flutter
 from proprotor.commands.new import new
+from proprotor.commands.report import report
 from proprotor.commands.sensitivity import sensitivity
 from proprotor.commands.stability_map import stability_map
 from proprotor.commands.sweep import sweep
@@ -57,6 +58,7 @@ def main() -> None:
       proprotor cases                               the bundled cases
       proprotor sweep xv15 --speed 50:400:5kt       frequency and damping of each mode
       proprotor flutter xv15                        flutter speed and all other boundaries
+      proprotor report xv15                         all of it on one page, HTML or PDF
       proprotor new my.toml                         a commented deck of your own
       proprotor describe rotor.precone              what a field of it is
       proprotor sweep --help                        all there is to choose
@@ -79,6 +81,7 @@ for _command in (
     stability_map,
     sensitivity,
     attribution,
+    report,
     study_command(_model_options, _EXIT_CODES),
     figures,
     audit,

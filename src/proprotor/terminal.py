@@ -34,7 +34,9 @@ def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_mode
     """
     console = _console()
     chosen = ", ".join(
-        f"{name.replace('_', ' ')} {_told(value)}" for name, value in options.items() if value is not None
+        f"{name.replace('_', ' ')} {option_told(value)}"
+        for name, value in options.items()
+        if value is not None
     )
     warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
     for line in (heading(case), f"Model: {chosen}.", CONVENTION, *reservations(case), *warnings, ""):
@@ -67,7 +69,8 @@ def _shortened(text: str, case: Case, width: int) -> str:
     return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")
 
 
-def _told(value: Any) -> str:
+def option_told(value: Any) -> str:
+    """The choice of an option in words."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, tuple):

@@ -1,0 +1,156 @@
+"""The command `proprotor report`: all that can be told of a case, on one page."""
+
+from __future__ import annotations
+
+import os
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from proprotor.boundary_summary import boundary_record
+from proprotor.commands import output
+from proprotor.commands.arguments import (
+    EXIT_CODES,
+    case_argument,
+    in_order,
+    loaded_case,
+    model_options,
+    settings_of,
+    unit_of,
+)
+from proprotor.errors import InputError
+from proprotor.waiting import waiting
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+    from proprotor.report_page import Document, Findings
+
+_SUFFIXES = (".html", ".pdf")
+
+
+@click.command(epilog=EXIT_CODES, short_help="All that can be told of a case, as one page in HTML or PDF.")
+@case_argument
+@click.option(
+    "--speed",
+    metavar="RANGE",
+    help='Airspeeds analysed, such as "50:400:5kt"; by default 0.2 to 1.2 of the tip speed, in knots.',
+)
+@click.option(
+    "--out",
+    metavar="FILE",
+    help="Where it is written: a .html or .pdf file; by default the name of the case and -report.html.",
+)
+@click.option("--pdf", is_flag=True, help="Write a PDF beside the HTML (pip install 'proprotor[report]').")
+@output.output_options()
+@model_options
+def report(
+    case: str,
+    settings: tuple[str, ...],
+    speed: str | None,
+    out: str | None,
+    pdf: bool,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """A report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
+
+    CASE is a bundled case or a TOML file. The file needs nothing else: send it, print it, keep it. What the numbers
+    rest on stands on its first page. The same deck and options give the same file, but for the date, which
+    SOURCE_DATE_EPOCH (seconds since 1970) sets.
+
+    \b
+    Examples:
+      proprotor report xv15
+      proprotor report my.toml --out my.pdf
+      proprotor report my.toml --speed 100:400:5kt --set rotor.precone="1.5 deg" --pdf
+    """
+    from proprotor.report_page import analyse, report_document
+    from proprotor.units import speeds
+
+    date, options, given = _date(), in_order(options), settings_of(settings)
+    airspeeds = None if speed is None else speeds(speed, "--speed")
+    loaded = loaded_case(case, settings)
+    places = _places(out or f"{loaded.name}-report.html", pdf)
+    with waiting("Analysing"):
+        found = analyse(loaded, airspeeds, options)
+    with waiting("Drawing"):
+        document = report_document(
+            loaded,
+            found,
+            options=options,
+            settings=given,
+            deck_hash=_deck_hash(case, given, loaded),
+            date=date,
+            unit=unit_of(speed or "kt"),
+        )
+        contents = {place: _content(document, place) for place in places}
+    for place, content in contents.items():
+        output.write("--out", place, content)
+    if as_json:
+        head = output.about(loaded, options, given)
+        output.print_json(head | _told(loaded, found, document, places))
+    else:
+        output.print_head(loaded)
+        for sentence in document.verdict:
+            output.console().print(sentence, style="bold")
+    if not found.mode:
+        raise click.exceptions.Exit(1)
+
+
+def _places(out: str, pdf: bool) -> list[str]:
+    """The files to write, refused before anything is analysed where they cannot be."""
+    from proprotor.report_page.typeset import check_typesetter
+
+    place = Path(out)
+    if place.suffix.lower() not in _SUFFIXES:
+        raise InputError("--out", out, f"must end in {' or '.join(_SUFFIXES)}")
+    places = [out]
+    if pdf and place.suffix.lower() != ".pdf":
+        places.append(str(place.with_suffix(".pdf")))
+    if any(Path(name).suffix.lower() == ".pdf" for name in places):
+        check_typesetter()
+    return places
+
+
+def _content(document: Document, place: str) -> bytes:
+    from proprotor.report_page import html_of, pdf_of
+
+    return pdf_of(document) if Path(place).suffix.lower() == ".pdf" else html_of(document).encode()
+
+
+def _date() -> str:
+    """Today, or the day of SOURCE_DATE_EPOCH, which reproducible builds set."""
+    given = os.environ.get("SOURCE_DATE_EPOCH")
+    if given is None:
+        return datetime.now(UTC).date().isoformat()
+    try:
+        return datetime.fromtimestamp(int(given), UTC).date().isoformat()
+    except (ValueError, OverflowError, OSError):
+        raise InputError("SOURCE_DATE_EPOCH", given, "must be seconds since 1970") from None
+
+
+def _deck_hash(name: str, settings: dict[str, str], case: Case) -> str:
+    """SHA-256 of a deck with its base, what was set, and the content of the files that it names."""
+    from proprotor.deck_file import read_tables
+    from proprotor.deck_settings import with_settings
+    from proprotor.fingerprint import fingerprint
+
+    numbers = {
+        path: Path(number.si).read_bytes() if isinstance(number.si, str) else number.si
+        for path, number in case.given.items()
+    }
+    return fingerprint((with_settings(read_tables(name), settings), numbers))
+
+
+def _told(case: Case, found: Findings, document: Document, places: list[str]) -> dict[str, Any]:
+    return {
+        "written": places,
+        "date": document.date,
+        "searched (m/s)": list(found.flutter.searched),
+        "flutter speed (m/s)": found.flutter.speed,
+        "mode": found.flutter.mode or None,
+        "boundaries": [boundary_record(boundary, case) for boundary in found.flutter.boundaries],
+        "failed airspeeds (m/s)": found.sweep.airspeed.values[found.sweep.reason.values != ""].tolist(),
+    }

@@ -1,0 +1,85 @@
+"""What a report is made of, whatever it is laid out in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+
+@dataclass(frozen=True)
+class Text:
+    """Paragraphs; as a warning they are set apart."""
+
+    kind: ClassVar[str] = "text"
+    paragraphs: tuple[str, ...]
+    warning: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table whose first column names the rows.
+
+    Attributes
+    ----------
+    caption : str
+    columns : tuple of str
+    rows : tuple of tuple of str
+        A cell for each column.
+    numbers : frozenset of str
+        Columns set to the right.
+    """
+
+    kind: ClassVar[str] = "table"
+    caption: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numbers: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A plot, with what it shows in words for those who do not see it, and its share of the width of a sheet."""
+
+    kind: ClassVar[str] = "picture"
+    name: str
+    caption: str
+    alt: str
+    svg: bytes
+    share: float = 1.0
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and what stands below it."""
+
+    title: str
+    blocks: tuple[Text | Table | Picture, ...]
+
+    @property
+    def anchor(self) -> str:
+        """What a link to the section points to."""
+        return "-".join("".join(c if c.isalnum() else " " for c in self.title.lower()).split())
+
+
+@dataclass(frozen=True)
+class Document:
+    """A whole report.
+
+    Attributes
+    ----------
+    title, subtitle : str
+    date : str
+        ISO 8601.
+    verdict : tuple of str
+        What was found, in sentences.
+    caution : tuple of str
+        What it rests on.
+    sections : tuple of Section
+    """
+
+    title: str
+    subtitle: str
+    date: str
+    verdict: tuple[str, ...]
+    caution: tuple[str, ...]
+    sections: tuple[Section, ...]
