@@ -21,9 +21,10 @@ import proprotor as pp
 from proprotor.figures import Analyses
 from proprotor.figures.analyses import XV15
 from proprotor.figures.blade_state import blade_state, on_rigid_hub
-from proprotor.figures.published import CONING_FREQUENCY, KNOT, PAPER_FREQUENCIES, XV15_FLUTTER
+from proprotor.figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES, XV15_FLUTTER
 from proprotor.model import HUB, LinearModel, rotor_model
 from proprotor.modes import eigensystem, participation
+from proprotor.speed import KNOT
 from proprotor.uncertainty_band import boundary, least_damping
 
 REPRODUCED, PARTLY, NOT = "reproduced", "partly", "not reproduced"

@@ -19,8 +19,8 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from proprotor.speed import KNOT
 
-KNOT = 1852 / 3600
 SPEEDS = np.arange(100, 401, 50) * KNOT
 
 

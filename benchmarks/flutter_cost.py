@@ -21,8 +21,8 @@ from proprotor.flutter import find_crossings, flutter_point
 from proprotor.modes import decomposition
 from proprotor.path import Line
 from proprotor.sensitivity import at_boundary
+from proprotor.speed import KNOT
 
-KNOT = 1852 / 3600
 SCANS = (2, 5, 10, 20, 40)  # kt
 REPEATS = 15
 

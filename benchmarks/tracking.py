@@ -23,9 +23,9 @@ from rich.table import Table
 import proprotor as pp
 from proprotor.modes import decomposition, state_matrix
 from proprotor.path import Line, Path, follow, path_of
+from proprotor.speed import KNOT
 from proprotor.tracking import chain, left_vectors, link
 
-KNOT = 1852 / 3600
 COARSE, FINE, LESS_FINE, FINEST = 5.0, 0.1, 0.5, 0.002  # kt
 DESIGNS, POINTS, BATCH = 200, 10_000, 1000
 SAME = 1e-6  # of an eigenvalue

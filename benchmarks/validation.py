@@ -17,10 +17,11 @@ from benchmarks.claims import VERDICTS, WING, Claim, all_claims, mode_boundaries
 from proprotor.figures import NUMBERS, Analyses, csv_of, make_figure
 from proprotor.figures.analyses import XV15
 from proprotor.figures.drawing import draw_intervals, save
-from proprotor.figures.published import KNOT, XV15_FLUTTER, XV15_MARK
+from proprotor.figures.published import XV15_FLUTTER, XV15_MARK
 from proprotor.input_ranges import V22, WRATS
 from proprotor.input_ranges import XV15 as XV15_RANGES
 from proprotor.output_file import write_whole
+from proprotor.speed import KNOT
 from proprotor.uncertainty_band import Band, InputRange
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 import proprotor as pp
 from proprotor.mode_following import follow_support_modes
 from proprotor.modes import eigensystem
+from proprotor.speed import KNOT
 
-KNOT = 1852 / 3600
 SPEEDS = np.arange(100, 521, 5) * KNOT
 WING = ("beam", "chord", "torsion")
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
     from proprotor.mode_motion import ModeMotion
 
-_KNOT = 1852 / 3600  # m/s
 _SIZE = (8.0, 4.4)  # inches
 _PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "side": (0.82, 0.09, 0.17, 0.76)}
 _TITLES = {"3d": "", "front": "from ahead", "side": "from outboard"}
@@ -75,7 +75,7 @@ def title_of(motion: ModeMotion) -> str:
     damping = -100 * value.real / abs(value)
     hertz = value.imag / (2 * np.pi)
     return (
-        f"{motion.mode} at {motion.airspeed / _KNOT:.0f} kt: {hertz:.2f} Hz{per_rev}, "
+        f"{motion.mode} at {motion.airspeed / KNOT:.0f} kt: {hertz:.2f} Hz{per_rev}, "
         f"damping {damping:.2f} % of critical"
     )
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from proprotor.units import KNOT
+from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
     from proprotor.case import Case

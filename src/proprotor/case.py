@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["Case", "list_cases", "load_case"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Case:
     """A rotor, how it is operated, and what carries it.
 
@@ -68,8 +68,13 @@ class Case:
     calibration: str = ""
     warnings: tuple[str, ...] = ()
     sources: Mapping[str, Datum] = field(default_factory=dict)
-    deck: Deck | None = field(default=None, repr=False)
-    given: Mapping[str, Datum] = field(default_factory=dict, repr=False)
+    deck: Deck | None = None
+    given: Mapping[str, Datum] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        from proprotor.summary import of_case
+
+        return of_case(self)
 
     def linearize(self, airspeed: Any, **options: Any) -> LinearModel:
         """Equations of motion of the rotor on its support.
@@ -97,7 +102,12 @@ class Case:
         return sweep_case(self, airspeeds, vary, **options)
 
     def boundaries(
-        self, airspeeds: Any, vary: Mapping[str, Any] | None = None, *, level: float = 0.0, **options: Any
+        self,
+        airspeeds: Any = None,
+        vary: Mapping[str, Any] | None = None,
+        *,
+        level: float = 0.0,
+        **options: Any,
     ) -> Crossings:
         """All crossings of a damping level along airspeeds, or one input: see `proprotor.flutter.boundaries`."""
         from proprotor.flutter import boundaries

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor import summary
 from proprotor.arrays import Array
 from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
 from proprotor.eigenvalue_derivatives import defect
@@ -28,10 +29,10 @@ if TYPE_CHECKING:
 
 _REAL = 1e-9  # of the largest eigenvalue: a root with less imaginary part is real
 _TOLD = 0.05  # of a mode: the least participation that its mechanism names
-_RANGE = (0.2, 1.2, 51)  # of the tip speed: where a flutter point is looked for, and at how many points
+_RANGE = (0.2, 1.2, 51)  # of the tip speed: where boundaries are looked for, and at how many points
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Boundary:
     """One crossing of a damping level.
 
@@ -71,13 +72,16 @@ class Boundary:
     defect: float
     eigen_solves: int
 
+    def __repr__(self) -> str:
+        return summary.of_boundary(self)
+
     @property
     def frequency(self) -> float:
         """|Im λ|, rad/s."""
         return abs(self.eigenvalue.imag)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FlutterPoint:
     """The lowest onset of instability, and all boundaries of the range that was searched.
 
@@ -112,6 +116,9 @@ class FlutterPoint:
     scan_solves: int
     level: float = 0.0
 
+    def __repr__(self) -> str:
+        return summary.of_flutter_point(self)
+
     def margin(self, airspeed: float) -> float:
         """How far the flutter speed lies above an airspeed (m/s), as a part of it; NaN where nothing flutters."""
         return self.speed / airspeed - 1
@@ -125,6 +132,9 @@ class Crossings(NamedTuple):
     searched: tuple[float, float]
     scan_solves: int
     eigen_solves: int
+
+    def __repr__(self) -> str:
+        return summary.of_crossings(self)
 
 
 def find_crossings(
@@ -227,7 +237,7 @@ def _distinct(boundaries: list[Boundary]) -> list[Boundary]:
 
 def boundaries(
     case: Case,
-    airspeeds: Any,
+    airspeeds: Any = None,
     vary: Mapping[str, ArrayLike] | None = None,
     *,
     level: float = 0.0,
@@ -238,8 +248,8 @@ def boundaries(
     Parameters
     ----------
     case : Case
-    airspeeds : array (points,) in m/s, text such as "50:400:5kt", or pint quantity
-        The scan; one airspeed with `vary`.
+    airspeeds : array (points,) in m/s, text such as "50:400:5kt", or pint quantity, optional
+        The scan, 0.2 to 1.2 of the tip speed by default; one airspeed with `vary`.
     vary : mapping of str to array (points,), optional
         One input by its path in the deck, and the values of the scan in SI: a critical control stiffness, support
         frequency or rotor speed.
@@ -253,6 +263,10 @@ def boundaries(
     InputError
         As `proprotor.sweep.sweep_case`.
     """
+    if airspeeds is None:
+        if vary is not None:
+            raise InputError("airspeeds", None, "must be one airspeed where an input varies")
+        airspeeds = scan_speeds(case)
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
@@ -261,7 +275,7 @@ def boundaries(
 
 
 def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:
-    """Airspeeds (points,) in m/s, 0.2 to 1.2 of the tip speed, where a flutter point is looked for."""
+    """Airspeeds (points,) in m/s, 0.2 to 1.2 of the tip speed, where boundaries are looked for."""
     return np.linspace(*_RANGE[:2], points) * tip_speed(case)
 
 
@@ -283,7 +297,6 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
     InputError
         As `boundaries`.
     """
-    airspeeds = scan_speeds(case) if airspeeds is None else airspeeds
     found = boundaries(case, airspeeds, level=level, **options)
     onsets = [boundary for boundary in found.boundaries if boundary.onset]
     first = onsets[0] if onsets else None

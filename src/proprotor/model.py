@@ -52,7 +52,7 @@ COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
 _SOFTEST_SPRING = 1e-100  # of the other spring: a free hinge, without a division by zero in series
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LinearModel:
     """M q̈ + C q̇ + K q = B u about trim, batched over leading axes.
 
@@ -83,6 +83,11 @@ class LinearModel:
     B: Array | None = None
     hub: Array | None = None
     rotor: LinearModel | None = None
+
+    def __repr__(self) -> str:
+        from proprotor.summary import of_model
+
+        return of_model(self)
 
     @property
     def shaft_holds_azimuth(self) -> bool:

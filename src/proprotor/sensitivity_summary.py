@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from proprotor.deck_units import deck_unit
-from proprotor.units import KNOT
+from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
     import xarray

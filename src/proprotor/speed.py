@@ -8,6 +8,8 @@ import numpy as np
 
 from proprotor.arrays import Array
 
+KNOT = 1852 / 3600  # m/s
+
 
 def in_metres_per_second(airspeed: Any) -> Array:
     """Airspeed as an array in m/s.

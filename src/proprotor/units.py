@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     import pint
     from numpy.typing import ArrayLike, NDArray
 
-KNOT = 1852 / 3600  # m/s
 
 _DEFINITIONS = """
 kilo- = 1e3 = k-

@@ -23,7 +23,7 @@ from proprotor.commands.arguments import (
     unit_of,
 )
 from proprotor.errors import InputError
-from proprotor.units import KNOT
+from proprotor.speed import KNOT
 from proprotor.waiting import waiting
 
 if TYPE_CHECKING:

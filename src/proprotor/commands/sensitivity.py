@@ -23,7 +23,7 @@ from proprotor.commands.arguments import (
 )
 from proprotor.errors import InputError
 from proprotor.sensitivity_summary import READ_IN, sensitivity_records
-from proprotor.units import KNOT
+from proprotor.speed import KNOT
 from proprotor.waiting import waiting
 
 if TYPE_CHECKING:

@@ -11,10 +11,11 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.case import load_case
 from proprotor.figures.blade_state import BladeState, blade_state, on_rigid_hub
-from proprotor.figures.published import KNOT, PAPER_FREQUENCIES
+from proprotor.figures.published import PAPER_FREQUENCIES
 from proprotor.frequencies import BladeFrequencies
 from proprotor.input_ranges import RANGES
 from proprotor.mode_following import follow_support_modes
+from proprotor.speed import KNOT
 from proprotor.uncertainty_band import Band, boundary, damping_band, least_damping
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ import numpy as np
 
 from proprotor.figures.content import Mark
 from proprotor.frequencies import BladeFrequencies
-
-KNOT = 1852 / 3600  # m/s
+from proprotor.speed import KNOT
 
 XV15_FLUTTER = {
     "Nixon": 285.0,

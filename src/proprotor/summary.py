@@ -1,0 +1,91 @@
+"""What a case, a model and a boundary say of themselves at a prompt: a few lines, for people."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from proprotor.provenance import reservations
+from proprotor.speed import KNOT
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+    from proprotor.flutter import Boundary, Crossings, FlutterPoint
+    from proprotor.model import LinearModel
+
+_RPM = math.pi / 30  # rad/s
+
+
+def of_case(case: Case) -> str:
+    """The rotor, what carries it, and what its numbers rest on."""
+    rotor, speed = case.rotor, np.asarray(case.operation.rotor_speed) / _RPM
+    lines = [
+        f"Case {case.name}" + (f": {case.title}" if case.title else ""),
+        f"  rotor: {rotor.n_blades} blades, radius {_range(np.asarray(rotor.radius))} m, {_range(speed)} rpm",
+        f"  support: {', '.join(case.support.names) or 'a rigid hub'}",
+    ]
+    return "\n".join(lines + [f"  {sentence}" for sentence in reservations(case)])
+
+
+def of_model(model: LinearModel) -> str:
+    """Coordinates, shape of the batch and what failed in it."""
+    converged = np.asarray(model.trim.converged)
+    shape = f"batch of shape {converged.shape}" if converged.ndim else "one point"
+    lines = [
+        f"LinearModel: {len(model.dofs)} coordinates, {shape}, {_range(model.airspeed)} m/s",
+        f"  {', '.join(model.dofs)}",
+    ]
+    reasons = Counter(str(reason) for reason in np.ravel(model.trim.reason) if reason)
+    lines += [f"  {count} of {converged.size} failed: {reason}" for reason, count in reasons.most_common(5)]
+    return "\n".join(lines)
+
+
+def of_boundary(boundary: Boundary) -> str:
+    """Where which mode crosses the level, and how."""
+    verb = "begins" if boundary.onset else "ends"
+    hertz = f", {boundary.frequency / math.tau:.4g} Hz" if boundary.kind == "flutter" else ""
+    return f"Boundary at {boundary.position:.6g}: {boundary.kind} of {boundary.mode} {verb}{hertz}"
+
+
+def of_crossings(found: Crossings) -> str:
+    """All boundaries of a line, which need not be airspeeds: SI."""
+    lines = [f"{len(found.boundaries)} boundaries from {_ends(found.searched)}"]
+    lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
+    return "\n".join(lines + list(_at_start(found)))
+
+
+def of_flutter_point(found: FlutterPoint) -> str:
+    """The flutter speed, and the other boundaries of the range."""
+    low, high = (f"{speed / KNOT:.4g}" for speed in found.searched)
+    if math.isnan(found.speed):
+        first = f"FlutterPoint: nothing becomes unstable between {low} and {high} kt"
+    else:
+        where = f"{found.speed / KNOT:.2f} kt ({found.speed:.6g} m/s)"
+        first = f"FlutterPoint: {where}, {found.kind} of {found.mode}, {found.frequency / math.tau:.4g} Hz"
+    if found.level:
+        first += f"; damping of {100 * found.level:g} % counts as the boundary"
+    others = [boundary for boundary in found.boundaries if boundary.position != found.speed]
+    lines = [f"  {boundary.position / KNOT:.2f} kt: {_event(boundary)}" for boundary in others]
+    return "\n".join([first, *lines, *_at_start(found)])
+
+
+def _event(boundary: Boundary) -> str:
+    return f"{boundary.kind} of {boundary.mode} {'begins' if boundary.onset else 'ends'}"
+
+
+def _at_start(found: Crossings | FlutterPoint) -> Iterator[str]:
+    if found.unstable_at_start:
+        yield f"  from the start beyond the level: {', '.join(found.unstable_at_start)}"
+
+
+def _range(values: np.ndarray) -> str:
+    low, high = float(np.min(values.real)), float(np.max(values.real))
+    return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"
+
+
+def _ends(searched: tuple[float, float]) -> str:
+    return f"{searched[0]:.6g} to {searched[1]:.6g}"

@@ -1,0 +1,54 @@
+"""What objects say of themselves at a prompt: short, and the numbers they hold."""
+
+import math
+
+import numpy as np
+import pytest
+
+import proprotor as pp
+
+CASE = pp.load_case("xv15")
+
+
+def test_a_case_says_what_it_is_and_rests_on():
+    told = repr(CASE)
+    assert "xv15" in told and "3 blades" in told and "458 rpm" in told and "beam, chord, torsion" in told
+    assert "assumed" in told and len(told.splitlines()) < 9
+
+
+def test_many_designs_are_told_by_their_range():
+    told = repr(CASE.vary({"operation.rotor_speed": np.array([40.0, 50.0])}))
+    assert "381.972 to 477.465 rpm" in told
+
+
+def test_a_model_says_its_coordinates_and_what_failed():
+    told = repr(CASE.linearize(np.array([0.0, 100.0, 400.0])))
+    assert "15 coordinates" in told and "shape (3,)" in told and "gimbal_1s" in told
+    assert told.count("1 of 3 failed") == 2 and "Mach" in told
+    assert "one point" in repr(CASE.linearize(100.0))
+
+
+def test_a_flutter_point_says_the_speed_in_knots_and_all_boundaries():
+    found = CASE.flutter_point("100:440:20kt")
+    told = repr(found)
+    knots = found.speed * 3600 / 1852
+    assert f"{knots:.2f} kt" in told and "flutter of chord" in told
+    assert f"{found.frequency / (2 * math.pi):.4g} Hz" in told
+    assert len(told.splitlines()) >= len(found.boundaries)
+    assert "from the start beyond the level: progressive pitch" in told
+    nothing = repr(CASE.flutter_point("200:240:20kt"))
+    assert nothing.startswith("FlutterPoint: nothing becomes unstable between 200 and 240 kt")
+    assert "3 % counts" in repr(CASE.flutter_point("300:440:20kt", level=0.03))
+
+
+def test_boundaries_are_looked_for_in_the_same_range_as_flutter():
+    found = CASE.boundaries()
+    assert found.boundaries == CASE.flutter_point().boundaries
+    told = repr(found)
+    assert told.startswith(f"{len(found.boundaries)} boundaries from ")
+    assert all(repr(boundary) in told for boundary in found.boundaries)
+
+
+def test_one_input_that_varies_needs_an_airspeed():
+    with pytest.raises(pp.InputError, match="airspeeds: must be one airspeed"):
+        CASE.boundaries(vary={"rotor.precone": np.linspace(0.01, 0.06, 5)})
