@@ -1,14 +1,12 @@
 """Quasi-steady airloads of one blade by virtual work, linearised about trim (Eqs. 14-16, and what they leave out).
 
-At a section the air comes with u_T along i', u_P against n and u_R against d. The section forces f = (f_x, f_n,
-f_d) and
-the moment m depend on them and on the pitch; row i of the virtual work is the integral of f . w_i + m t_i, with w_i the
-row's virtual displacement in section axes and t_i its rotation about d.
+At a section the air comes with u_T along i', u_P against n and u_R against d. The section forces f = (f_x, f_n, f_d)
+and the moment m depend on them and on the pitch; row i of the virtual work is the integral of f . w_i + m t_i, with w_i
+the row's virtual displacement in section axes and t_i its rotation about d.
 
-A blade is straight on each segment between its hinges, so w_i = w0 + w1 r and u = u0 + u1 r there. With the
-motions (w0, w1, t) and (u0, u1, pitch, rotation about d) a segment's airloads are seven generalised loads that
-depend on
-eight motions through radial moments of the section's derivatives only:
+A blade is straight on each segment between its hinges, so w_i = w0 + w1 r and u = u0 + u1 r there. With the motions
+(w0, w1, t) and (u0, u1, pitch, rotation about d) a segment's airloads are seven generalised loads that depend on eight
+motions through radial moments of the section's derivatives only:
 
     C = - sum W^T L U_rate        K = - sum W^T L U_displacement - G        (sum over the segments)
 
@@ -18,8 +16,10 @@ G holds the steady loads times the change of w and t.
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from derive import kinematics as kin
 from derive import symbols as s
@@ -92,7 +92,7 @@ def elastic_coupling() -> sp.Expr:
     return -s.pitch_flap_coupling * kin.q["flap"] - s.pitch_lag_coupling * kin.q["lag"]
 
 
-def _on_segment(expression):
+def _on_segment(expression: sp.Expr) -> sp.Expr:
     """The arms as they are on a segment that lies on one side of each hinge; trim angles count only beyond theirs."""
     flap, lag = kin.beyond_flap_hinge, kin.beyond_lag_hinge
     outboard = flap * (s.radial_station - s.flap_hinge_offset)
@@ -104,9 +104,10 @@ def _on_segment(expression):
     return expression.subs(arms).subs({s.coning: flap * s.coning, s.lag: lag * s.lag})
 
 
-Taylor = dict[
-    tuple[str, ...], list
-]  # derivatives at trim by the coordinates they are taken along; () is the value
+Vector = list[PolyElement]
+# Value, first and second derivatives at trim by the coordinates they are taken along; () is the value.
+Along = tuple[str, ...]
+Taylor = dict[Along, Vector]
 
 
 class SegmentKinematics:
@@ -129,17 +130,19 @@ class SegmentKinematics:
         self.axes = dict(zip(SECTION_AXES, (_turned(turn, axis) for axis in axes), strict=True))
         self.about_hub = _turned(turn, self._taylor(self._named(self._line())))
         hub = self._taylor(kin.HUB)
-        self.position = {key: _add(self.about_hub.get(key), hub.get(key)) for key in {*self.about_hub, *hub}}
+        self.position = {
+            key: _add(self.about_hub.get(key, []), hub.get(key, [])) for key in {*self.about_hub, *hub}
+        }
         _, to_yoke = kin.pitch_angles(dropped)
         self.pitch_to_yoke = self._taylor_of_one(to_yoke)
         self.pitch_in_air = self._taylor_of_one(to_yoke + elastic_coupling())
         self.zero = self.ring.ring.zero
 
-    def _taylor(self, vector) -> Taylor:
+    def _taylor(self, vector: sp.Matrix) -> Taylor:
         """Value, first and second derivatives at trim of a vector that is polynomial in the perturbations."""
         perturbations = list(kin.q.values())
         names = {symbol: name for name, symbol in zip(kin.COORDINATES, perturbations, strict=True)}
-        parts: dict[tuple, list] = {}
+        parts: Taylor = {}
         for place, component in enumerate(vector):
             for powers, coefficient in sp.Poly(component, *perturbations).terms():
                 if sum(powers) > 2:
@@ -151,7 +154,7 @@ class SegmentKinematics:
                 parts[key[::-1]] = values
         return parts
 
-    def _taylor_of_one(self, scalar: sp.Expr) -> dict:
+    def _taylor_of_one(self, scalar: sp.Expr) -> dict[Along, PolyElement]:
         return {key: value[0] for key, value in self._taylor(sp.Matrix([scalar])).items()}
 
     @staticmethod
@@ -175,28 +178,28 @@ class SegmentKinematics:
         return kin.deflected_line().subs(line | {kin.lag_arm: lag * (r - s.lag_hinge_offset)})
 
     @staticmethod
-    def _named(expression):
+    def _named(expression: sp.Matrix) -> sp.Matrix:
         """Sines and cosines by name; a trim angle counts only beyond its hinge."""
         flap, lag = kin.beyond_flap_hinge, kin.beyond_lag_hinge
         on_segment = expression.expand().subs({s.coning: flap * s.coning, s.lag: lag * s.lag})
         on_segment = on_segment.subs({flap**2: flap, lag**2: lag})
         return name_trigonometry(on_segment, SEGMENT_ANGLES)
 
-    def _derivative(self, taylor: Taylor, *along: str) -> list:
+    def _derivative(self, taylor: Taylor, *along: str) -> Vector:
         return taylor.get(along, [self.zero] * 3)
 
-    def virtual_displacement(self, row: str, *along: str) -> list:
+    def virtual_displacement(self, row: str, *along: str) -> Vector:
         """As `kinematics.virtual_displacements`: hub rotation turns about fixed axes through the hub point."""
         if row in kin.HUB_ROTATION:
             return _cross(self._fixed_axis(row), self._derivative(self.about_hub, *along))
         return self._derivative(self.position, row, *along)
 
-    def virtual_rotation(self, row: str, *along: str) -> list:
+    def virtual_rotation(self, row: str, *along: str) -> Vector:
         """Rotation of the section as a vector, and its derivative; rotation by pitch not included."""
         if row in kin.HUB_ROTATION:
             return [self.zero] * 3 if along else self._fixed_axis(row)
         # E,i E^T is skew; its derivative is E,ij E^T + E,i E,j^T.
-        parts = [((row, *along), ())] + ([((row,), along)] if along else [])
+        parts: list[tuple[Along, Along]] = [((row, *along), ())] + ([((row,), along)] if along else [])
         total = [[self.zero] * 3 for _ in range(3)]
         for turned, still in parts:
             for axis in self.axes.values():
@@ -204,43 +207,43 @@ class SegmentKinematics:
                 total = [[total[i][j] + left[i] * right[j] for j in range(3)] for i in range(3)]
         return [total[2][1], total[0][2], total[1][0]]
 
-    def _fixed_axis(self, row: str) -> list:
+    def _fixed_axis(self, row: str) -> Vector:
         return self.ring.vector((kin.I_AXIS, kin.J_AXIS, kin.K_AXIS)[kin.HUB_ROTATION.index(row)])
 
-    def air_velocity(self, *along: str) -> list:
+    def air_velocity(self, *along: str) -> Vector:
         """Inertial velocity of a point at rest in the rotating axes, and its derivative."""
         spun = _spin(self._derivative(self.position, *along), self.ring(s.rotor_speed))
         return (
             spun if along else [a + self.ring(b) for a, b in zip(spun, s.airspeed * kin.K_AXIS, strict=True)]
         )
 
-    def velocity(self, axis: str, *along: str):
+    def velocity(self, axis: str, *along: str) -> PolyElement:
         """Velocity of the air along a section axis; along a coordinate the point moves and the axis turns."""
         total = _dot(self._derivative(self.axes[axis]), self.air_velocity(*along))
         if along:
             total += _dot(self._derivative(self.axes[axis], *along), self.air_velocity())
         return SENSE[axis] * total
 
-    def rate_velocity(self, axis: str, name: str):
+    def rate_velocity(self, axis: str, name: str) -> PolyElement:
         """Velocity of the air along a section axis per rate of a coordinate."""
         return SENSE[axis] * _dot(self._derivative(self.axes[axis]), self._derivative(self.position, name))
 
-    def spin(self, *along: str):
+    def spin(self, *along: str) -> PolyElement:
         """Rotation of the section about d at rest in the rotating axes, and its derivative."""
         return self.ring(s.rotor_speed) * self._derivative(self.axes["d"], *along)[2]
 
-    def pitch_change(self, *along: str):
+    def pitch_change(self, *along: str) -> PolyElement:
         """Change of the section's pitch in the airloads, where a coupling may stand for the pitch equation."""
         return self.pitch_in_air.get(along, self.zero)
 
-    def work_displacement(self, axis: str, row: str, *along: str):
+    def work_displacement(self, axis: str, row: str, *along: str) -> PolyElement:
         """Virtual displacement of a row along a section axis, and its derivative."""
         total = _dot(self._derivative(self.axes[axis]), self.virtual_displacement(row, *along))
         if along:
             total += _dot(self._derivative(self.axes[axis], *along), self.virtual_displacement(row))
         return total
 
-    def work_rotation(self, row: str, *along: str):
+    def work_rotation(self, row: str, *along: str) -> PolyElement:
         """Rotation of the section about d: with hub, yoke and hinges, and by pitch; and its derivative."""
         total = _dot(self._derivative(self.axes["d"]), self.virtual_rotation(row, *along))
         if along:
@@ -253,7 +256,7 @@ def segment_kinematics(dropped: frozenset[str] = CONSISTENT) -> SegmentKinematic
     return SegmentKinematics(dropped)
 
 
-def _power(kinematics: SegmentKinematics, polynomial, power: int) -> sp.Expr:
+def _power(kinematics: SegmentKinematics, polynomial: PolyElement, power: int) -> sp.Expr:
     """Coefficient of r^power, reduced."""
     ring = kinematics.ring
     place = ring.generators.index(s.radial_station)
@@ -292,7 +295,9 @@ def virtual_motion(row: str, load: str, dropped: frozenset[str] = CONSISTENT) ->
     return _power(kinematics, kinematics.work_displacement(axis, row), int(power))
 
 
-def _motion(kinematics: SegmentKinematics, velocity, motion: str, *along: str) -> sp.Expr:
+def _motion(
+    kinematics: SegmentKinematics, velocity: Callable[..., PolyElement], motion: str, *along: str
+) -> sp.Expr:
     name, power = motion.split("_")
     return _power(kinematics, velocity(SECTION_AXES[VELOCITIES.index(name)], *along), int(power))
 
@@ -357,12 +362,9 @@ def geometric_stiffness(row: str, name: str, dropped: frozenset[str] = CONSISTEN
 
 def load_derivative(load: str, motion: str) -> sp.Expr:
     """L: moments of the section's derivatives; a load at power a meets a velocity at power b in the moment a + b."""
-    if load == "rotation":
-        name, load_power = "m", 0
-    else:
-        axis, load_power = load.split("_")
-        name = f"f{axis}"
-    argument, motion_power = (motion, 0) if motion in ("theta", "spin") else motion.split("_")
+    axis, load_power = ("", "0") if load == "rotation" else load.split("_")
+    name = f"f{axis}" if axis else "m"
+    argument, motion_power = (motion, "0") if motion in ("theta", "spin") else motion.split("_")
     return MOMENTS[f"{name}_{argument}", int(load_power) + int(motion_power)]
 
 
@@ -412,7 +414,7 @@ def _line_and_arm() -> list[tuple[sp.Symbol, sp.Expr]]:
         + [flap, lag, r, s.flap_hinge_offset, s.lag_hinge_offset]
     )
 
-    def linear(expression):
+    def linear(expression: sp.Expr) -> list[sp.Expr]:
         polynomial = ring.reduced(ring(name_trigonometry(_on_segment(expression), SEGMENT_ANGLES)))
         return [sp.factor_terms(polynomial.as_expr().expand().coeff(r, power)) for power in (0, 1)]
 
@@ -428,7 +430,7 @@ def _turned(turn: list[Taylor], vector: Taylor) -> Taylor:
     product: Taylor = {}
     keys = {key for taylor in (*turn, vector) for key in taylor}
     for key in keys | {a + b for a in keys for b in keys if len(a) + len(b) <= 2}:
-        ways = {(): [((), ())]}.get(key) or [(key, ()), ((), key)]
+        ways: list[tuple[Along, Along]] = [(key, ()), ((), key)] if key else [((), ())]
         if len(key) == 2:
             ways += [(key[:1], key[1:]), (key[1:], key[:1])]
         product[key] = [
@@ -437,18 +439,18 @@ def _turned(turn: list[Taylor], vector: Taylor) -> Taylor:
     return product
 
 
-def _add(a, b):
+def _add(a: Vector, b: Vector) -> Vector:
     return [x + y for x, y in zip(a, b, strict=True)] if a and b else a or b
 
 
-def _dot(a, b):
+def _dot(a: Vector, b: Vector) -> PolyElement:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def _cross(a, b):
+def _cross(a: Vector, b: Vector) -> Vector:
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
-def _spin(vector, rate):
+def _spin(vector: Vector, rate: PolyElement) -> Vector:
     """rate k x vector."""
     return [-rate * vector[1], rate * vector[0], 0 * vector[2]]

@@ -11,9 +11,10 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import jinja2
 import sympy as sp
@@ -29,6 +30,8 @@ ROOT = Path(__file__).resolve().parent.parent
 TEMPLATES = ROOT / "templates"
 GENERATED = ROOT / "generated" / "proprotor_equations"
 
+Progress = Callable[[str], None]  # takes a line for each step
+
 MODULE_TITLES = {
     "inertia": "Inertia of one blade in rotating axes",
     "flap_lag_springs": "Flap-lag springs of one blade, which turn with its pitch",
@@ -42,37 +45,38 @@ MODULE_TITLES = {
 }
 
 
-class ArrayPrinter(NumPyPrinter):
+class ArrayPrinter(NumPyPrinter):  # type: ignore[misc]  # SymPy has no types
     """NumPy code with ``np.`` in front; entries of blade matrices broadcast over leading axes."""
 
     _module = "np"
     _kf = {name: f"np.{path.rpartition('.')[2]}" for name, path in NumPyPrinter._kf.items()}  # noqa: RUF012
     _kc = {name: f"np.{path.rpartition('.')[2]}" for name, path in NumPyPrinter._kc.items()}  # noqa: RUF012
 
-    def _print_Pow(self, expr, rational=False):
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         """NumPy squares quickly, but takes a general power for any other exponent."""
         base, exponent = expr.as_base_exp()
         if exponent == 3 and base.is_Symbol:
             return f"{self._print(base)}**2*{self._print(base)}"
         if exponent == -3 and base.is_Symbol:
             return f"1/({self._print(base)}**2*{self._print(base)})"
-        return super()._print_Pow(expr, rational=rational)
+        printed: str = super()._print_Pow(expr, rational=rational)
+        return printed
 
-    def _print_Indexed(self, expr):
+    def _print_Indexed(self, expr: sp.Indexed) -> str:
         row, column = expr.indices
         return f"{expr.base.label}[..., {row}, {column}]"
 
-    def _print_Transpose(self, expr):
+    def _print_Transpose(self, expr: sp.Transpose) -> str:
         return f"np.swapaxes({self._print(expr.arg)}, -1, -2)"
 
-    def _print_MatMul(self, expr):
+    def _print_MatMul(self, expr: sp.MatMul) -> str:
         sign, factors = expr.as_coeff_matrices()
         product = " @ ".join(self._print(factor) for factor in factors)
         return f"-({product})" if sign == -1 else product
 
 
 def print_code(expression: sp.Expr) -> str:
-    printed = ArrayPrinter({"fully_qualified_modules": True}).doprint(expression)
+    printed: str = ArrayPrinter({"fully_qualified_modules": True}).doprint(expression)
     if "Not supported" in printed:
         raise ValueError(f"cannot print {expression}")
     return printed
@@ -121,7 +125,7 @@ def operations(function: Function) -> int:
     return int(sum(sp.count_ops(expression) for expression in expressions))
 
 
-def describe(function: Function) -> dict:
+def describe(function: Function) -> dict[str, Any]:
     """Everything the template needs, printed."""
     return {
         "name": function.name,
@@ -143,7 +147,7 @@ def describe(function: Function) -> dict:
     }
 
 
-def index_groups(functions: list[Function]) -> list[dict]:
+def index_groups(functions: list[Function]) -> list[dict[str, str | int]]:
     """Row and column names of a module's matrices as index constants, one group per list of names."""
     groups: dict[tuple[str, ...], None] = {}
     for function in functions:
@@ -169,8 +173,14 @@ _SOURCES = (
     "flap_lag_springs",
     "pitch",
     "section",
+    "airloads",
+    "lift_slope",
+    "trim",
+    "multiblade",
+    "drive_train",
+    "equations",
+    "emit",
 )
-_SOURCES += ("airloads", "lift_slope", "trim", "multiblade", "drive_train", "equations", "emit")
 
 
 def derivation_hash() -> str:
@@ -275,7 +285,7 @@ def reduced_modules(dropped: frozenset[str]) -> dict[str, ModuleType]:
     return modules
 
 
-def derive_files(progress=print) -> dict[str, str]:
+def derive_files(progress: Progress = print) -> dict[str, str]:
     """All generated files, with a progress line per step."""
     files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 2
     start = time.perf_counter()
@@ -293,7 +303,7 @@ def generated_paths(folder: Path) -> set[str]:
     return {path.relative_to(folder).as_posix() for path in files}
 
 
-def update(folder: Path = GENERATED, progress=print) -> None:
+def update(folder: Path = GENERATED, progress: Progress = print) -> None:
     """Rewrite the generated package; files that nothing generates any more are removed.
 
     Everything is derived before the first file is written, and a file is whole or as it was: a run that is stopped
@@ -317,7 +327,7 @@ def _write_whole(path: Path, text: str) -> None:
         unfinished.unlink(missing_ok=True)
 
 
-def differences(folder: Path = GENERATED, progress=print) -> list[str]:
+def differences(folder: Path = GENERATED, progress: Progress = print) -> list[str]:
     """What a check finds: a diff for each stale or hand-edited file, a line for each missing or orphan one."""
     files = derive_files(progress)
     found = [f"missing: {name}" for name in sorted(set(files) - generated_paths(folder))]

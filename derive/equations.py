@@ -7,7 +7,8 @@ the notebooks read the same records.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator
+import functools
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -32,6 +33,12 @@ FORCE: Dimension = (1, 1, -2)
 MOMENT: Dimension = (1, 2, -2)
 LENGTH: Dimension = (0, 1, 0)
 PER_SECOND: Dimension = (0, 0, -1)
+
+Steps = Iterable[tuple[sp.Symbol, sp.Expr]]
+Names = Collection[str]
+# Of the entry of a row and a column, by their names.
+ValueOf = Callable[[str, str], sp.Expr]
+DimensionOf = Callable[[str, str], Dimension]
 
 # Where the paper has the equation of each row (AIAA-2002-1604).
 ROW_EQUATION = {
@@ -178,8 +185,17 @@ def _per_time(order: int) -> Dimension:
     return (0, 0, order)
 
 
+def _force_per(order: int) -> DimensionOf:
+    """Of a matrix that takes a derivative of the coordinates, of some order in time, to forces."""
+
+    def dimension(row: str, column: str) -> Dimension:
+        return _plus(row_dimension(row), _per_time(order), minus=coordinate_dimension(column))
+
+    return dimension
+
+
 def _entries(
-    rows, columns, value: Callable, dimension: Callable, equation: dict | str
+    rows: Names, columns: Names, value: ValueOf, dimension: DimensionOf, equation: Mapping[str, str] | str
 ) -> dict[tuple[str, str], Entry]:
     entries = {}
     for row in rows:
@@ -191,25 +207,26 @@ def _entries(
     return entries
 
 
-def blade_matrix(
-    module, name, summary, value, order: int, rows=kin.COORDINATES, columns=kin.COORDINATES, steps=()
-):
+def blade_matrix(module: str, name: str, summary: str, value: ValueOf, order: int) -> Function:
     """A matrix of one blade in rotating axes; `order` counts the time derivatives of the column's coordinate."""
-
-    def dimension(row, column):
-        return _plus(row_dimension(row), _per_time(order), minus=coordinate_dimension(column))
-
-    entries = _entries(rows, columns, value, dimension, ROW_EQUATION)
+    coordinates = kin.COORDINATES
+    entries = _entries(coordinates, coordinates, value, _force_per(order), ROW_EQUATION)
     origin = "AIAA-2002-1604: " + "; ".join(dict.fromkeys(ROW_EQUATION[row] for row, _ in entries))
-    return Function(
-        module, name, summary, origin, list(steps), rows=tuple(rows), columns=tuple(columns), entries=entries
-    )
+    return Function(module, name, summary, origin, rows=coordinates, columns=coordinates, entries=entries)
 
 
-def values(module, name, summary, origin, steps, returned=None):
-    """A function that returns named values."""
+def values(
+    module: str,
+    name: str,
+    summary: str,
+    origin: str,
+    steps: Steps,
+    returned: tuple[sp.Symbol, ...] | None = None,
+) -> Function:
+    """A function that returns named values: all of its steps, if not some."""
+    steps = list(steps)
     returned = tuple(symbol for symbol, _ in steps) if returned is None else returned
-    return Function(module, name, summary, origin, list(steps), values=returned)
+    return Function(module, name, summary, origin, steps, values=returned)
 
 
 def inertia_shared() -> Iterator[Function]:
@@ -346,7 +363,15 @@ _SEGMENT_MOTION_DIMENSION = {
 }
 
 
-def _segment_matrix(name, summary, rows, columns, value, dimension, origin):
+def _segment_matrix(
+    name: str,
+    summary: str,
+    rows: Names,
+    columns: Names,
+    value: ValueOf,
+    dimension: DimensionOf,
+    origin: str,
+) -> Function:
     return Function(
         "airloads",
         name,
@@ -358,7 +383,7 @@ def _segment_matrix(name, summary, rows, columns, value, dimension, origin):
     )
 
 
-def _virtual_motion(name: str, rows, dropped: frozenset[str]) -> Function:
+def _virtual_motion(name: str, rows: Names, dropped: frozenset[str]) -> Function:
     return _segment_matrix(
         name,
         "W: displacement at r = 0 and per unit radius along i', n, d, and rotation about d, of a segment for each row.",
@@ -370,7 +395,7 @@ def _virtual_motion(name: str, rows, dropped: frozenset[str]) -> Function:
     )
 
 
-def _motion_matrix(name: str, summary: str, columns, value, order: int) -> Function:
+def _motion_matrix(name: str, summary: str, columns: Names, value: ValueOf, order: int) -> Function:
     return _segment_matrix(
         name,
         summary,
@@ -384,7 +409,7 @@ def _motion_matrix(name: str, summary: str, columns, value, order: int) -> Funct
     )
 
 
-def _unknowns(value: Callable) -> Callable:
+def _unknowns(value: ValueOf) -> ValueOf:
     """The same for trim unknowns; couplings act on perturbations from trim alone."""
     no_coupling = {s.pitch_flap_coupling: 0, s.pitch_lag_coupling: 0}
     return lambda motion, unknown: value(motion, trim.blade_coordinate(unknown)).subs(no_coupling)
@@ -437,7 +462,7 @@ def airload_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function
         kin.COORDINATES,
         kin.COORDINATES,
         lambda row, name: airloads.geometric_stiffness(row, name, dropped),
-        lambda row, column: _plus(row_dimension(row), minus=coordinate_dimension(column)),
+        _force_per(0),
         "steady loads on the moving blade, beyond Eqs. 14-16",
     )
 
@@ -547,7 +572,7 @@ def trim_shared() -> Iterator[Function]:
 def multiblade_shared() -> Iterator[Function]:
     places = {name: place for place, name in enumerate(multiblade.FIXED_COORDINATES)}
 
-    def placed(value):
+    def placed(value: Callable[[int, int], sp.Expr]) -> ValueOf:
         return lambda row, column: value(places[row], places[column])
 
     for name, value, order, summary in (
@@ -559,9 +584,7 @@ def multiblade_shared() -> Iterator[Function]:
             multiblade.FIXED_COORDINATES,
             multiblade.FIXED_COORDINATES,
             placed(value),
-            lambda row, column, order=order: _plus(
-                row_dimension(row), _per_time(order), minus=coordinate_dimension(column)
-            ),
+            _force_per(order),
             FIXED_EQUATION,
         )
         yield Function(
@@ -630,8 +653,8 @@ def reactionless_functions() -> Iterator[Function]:
                 entries=_entries(
                     names,
                     names,
-                    lambda row, column, kind=kind: multiblade.reactionless(kind, row, column),
-                    lambda row, column, order=order: _plus(MOMENT, _per_time(order)),
+                    functools.partial(multiblade.reactionless, kind),
+                    _force_per(order),
                     "blade angles beyond Eq. 17",
                 ),
                 blade_matrices=("mass", "damping", "stiffness")[: 3 - order],
@@ -650,8 +673,8 @@ def drive_train_shared() -> Iterator[Function]:
             entries=_entries(
                 multiblade.FIXED_COORDINATES,
                 multiblade.FIXED_COORDINATES,
-                lambda row, column, kind=kind: drive_train.matrix(kind, row, column),
-                lambda row, column, order=order: _plus(MOMENT, _per_time(order)),
+                functools.partial(drive_train.matrix, kind),
+                _force_per(order),
                 FIXED_EQUATION,
             ),
         )

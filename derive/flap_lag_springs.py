@@ -199,12 +199,12 @@ def stiffness_of_frequencies() -> list[tuple[sp.Symbol, sp.Expr]]:
     flat = dict.fromkeys((s.precone, s.coning, s.lag), 0)
     integrals = {symbol: sp.sympify(value).subs(flat) for symbol, value in trim_integrals().items()}
 
-    def at_zero_cone(expression):
+    def at_zero_cone(expression: sp.Expr) -> sp.Expr:
         for _ in range(4):
             expression = expression.subs(integrals)
         return sp.factor_terms(sp.expand(expression))
 
-    def needed(coordinate, frequency):
+    def needed(coordinate: str, frequency: sp.Symbol) -> sp.Expr:
         total = frequency**2 * blade.mass(coordinate, coordinate) - blade.centrifugal(coordinate, coordinate)
         return at_zero_cone(total)
 

@@ -12,8 +12,10 @@ Every vector is linear in the arms of the deflected blade, so the mass enters th
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from derive import kinematics as kin
 from derive import symbols as s
@@ -29,6 +31,8 @@ from derive.polynomials import (
     temporaries,
 )
 from derive.published import CONSISTENT
+
+Integrals = Mapping[tuple[sp.Symbol, ...], sp.Expr]  # over the blade, of the mass times a product of arms
 
 ARMS = (kin.radial_arm, kin.axial_arm, kin.flap_arm, kin.lag_arm)
 
@@ -110,7 +114,7 @@ MASS_INTEGRALS = {
 }
 
 
-def integrate_mass(integrand, integrals) -> sp.Expr:
+def integrate_mass(integrand: sp.Expr, integrals: Integrals) -> sp.Expr:
     """Integral over the blade of m times a polynomial of at most second degree in the arms of `integrals`."""
     arms = sorted({arm for product in integrals for arm in product}, key=lambda arm: arm.name)
     by_powers = {tuple(product.count(arm) for arm in arms): value for product, value in integrals.items()}
@@ -153,7 +157,9 @@ def first_order(expression: sp.Expr) -> sp.Expr:
     return sum(scaled.coeff(small, order) for order in (0, 1))
 
 
-def _redefine(integrals, known, arms) -> dict[sp.Symbol, sp.Expr]:
+def _redefine(
+    integrals: Integrals, known: Integrals, arms: Mapping[sp.Symbol, sp.Expr]
+) -> dict[sp.Symbol, sp.Expr]:
     """Integrals of products of arms, in the known integrals of the arms they are made of."""
     definitions = {}
     for product, symbol in integrals.items():
@@ -209,17 +215,17 @@ class BladeInertia:
             (i, j): self._at_trim(sp.diff(w, kin.q[j])) for i, w in rows.items() for j in kin.COORDINATES
         }
 
-    def _at_trim(self, vector):
+    def _at_trim(self, vector: sp.Matrix) -> list[PolyElement]:
         named = name_trigonometry(kin.at_trim(vector), WHOLE_BLADE_ANGLES)
         return self.ring.vector(named.subs(kin.chordwise_arm, kin.lag_arm * sin_lag))
 
-    def _integral(self, product) -> sp.Expr:
+    def _integral(self, product: PolyElement) -> sp.Expr:
         integral = integrate_mass(self.ring.shortest(product), TRIM_INTEGRALS)
         if "trim_lag" in self.dropped:
             integral = integral.subs({sin_lag: 0, cos_lag: 1})
         return first_order(integral) if "finite_trim_angles" in self.dropped else integral
 
-    def _kept(self, matrix: str, column: str, acceleration: list) -> list:
+    def _kept(self, matrix: str, column: str, acceleration: list[PolyElement]) -> list[PolyElement]:
         """The acceleration without the components of dropped terms."""
         gone = {
             component
@@ -260,10 +266,10 @@ def blade_inertia(dropped: frozenset[str] = CONSISTENT) -> BladeInertia:
     return BladeInertia(dropped)
 
 
-def _dot(a, b):
+def _dot(a: list[PolyElement], b: list[PolyElement]) -> PolyElement:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def _spin(vector):
+def _spin(vector: list[PolyElement]) -> list[PolyElement]:
     """k x vector."""
     return [-vector[1], vector[0], 0 * vector[2]]

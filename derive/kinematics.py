@@ -12,6 +12,8 @@ and second derivatives at trim; written in the arms of the deflected blade these
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import sympy as sp
 
 from derive import symbols as s
@@ -161,12 +163,12 @@ def pitch_angles(dropped: frozenset[str] = frozenset()) -> tuple[sp.Expr, sp.Exp
     return to_shaft, to_shaft - gimbal_roll
 
 
-def at_trim(expression):
+def at_trim(expression: sp.Basic) -> sp.Basic:
     """The value with every perturbation at zero."""
     return expression.xreplace(dict.fromkeys(q.values(), sp.Integer(0)))
 
 
-def gradient(vector, names=COORDINATES) -> dict[str, sp.Matrix]:
+def gradient(vector: sp.Basic, names: Iterable[str] = COORDINATES) -> dict[str, sp.Matrix]:
     """Derivative of a scalar or vector along each coordinate, not yet taken at trim."""
     return {name: sp.diff(vector, q[name]) for name in names}
 

@@ -64,7 +64,7 @@ def dissipation() -> sp.Expr:
     return (blade + s.gimbal_damping / s.n_blades * tilt_rate.dot(tilt_rate)) / 2
 
 
-def at_rest(expression):
+def at_rest(expression: sp.Expr) -> sp.Expr:
     return kin.at_trim(expression).subs(dict.fromkeys(RATES.values(), 0))
 
 

@@ -6,7 +6,11 @@ the emitted text independent of the order in which terms were found.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
 import sympy as sp
+from sympy.external.gmpy import MPQ
+from sympy.polys.rings import PolyElement, PolyRing
 
 from derive import symbols as s
 from derive.kinematics import beyond_flap_hinge, beyond_lag_hinge
@@ -17,6 +21,10 @@ cos_cone = s.quantity("cos_cone", r"\cos(\beta_P+\bar\beta_0)", "", "cosine of t
 sin_cone = s.quantity("sin_cone", r"\sin(\beta_P+\bar\beta_0)", "", "sine of the trim cone")
 cos_lag = s.quantity("cos_lag", r"\cos\bar\zeta_0", "", "cosine of the trim lag")
 sin_lag = s.quantity("sin_lag", r"\sin\bar\zeta_0", "", "sine of the trim lag")
+
+Monomial = tuple[int, ...]  # the power of each generator
+Terms = Iterable[tuple[Monomial, MPQ]]
+Angles = Mapping[sp.Expr, tuple[sp.Symbol, sp.Symbol]]  # cosine and sine of each
 
 SINE_AND_COSINE = ((sin_precone, cos_precone), (sin_cone, cos_cone), (sin_lag, cos_lag))
 
@@ -33,15 +41,15 @@ SEGMENT_ANGLES = {
 }
 
 
-def name_trigonometry(expression, angles):
+def name_trigonometry(expression: sp.Basic, angles: Angles) -> sp.Basic:
     """Replace the sine and cosine of each known angle by their symbols."""
-    replacements = {}
+    replacements: dict[sp.Expr, sp.Symbol] = {}
     for angle, (cosine, sine) in angles.items():
         replacements |= {sp.cos(angle): cosine, sp.sin(angle): sine}
     return expression.xreplace(replacements)
 
 
-def temporaries(angles) -> list[tuple[sp.Symbol, sp.Expr]]:
+def temporaries(angles: Angles) -> list[tuple[sp.Symbol, sp.Expr]]:
     """The named sines and cosines as assignments."""
     pairs = []
     for angle, (cosine, sine) in angles.items():
@@ -52,17 +60,17 @@ def temporaries(angles) -> list[tuple[sp.Symbol, sp.Expr]]:
 class PolynomialRing:
     """Polynomials over the rationals in a fixed, sorted set of symbols."""
 
-    def __init__(self, generators):
+    def __init__(self, generators: Iterable[sp.Symbol]):
         self.generators = sorted(generators, key=lambda symbol: symbol.name)
-        self.ring = sp.polys.rings.PolyRing(self.generators, sp.QQ, sp.polys.orderings.lex)
+        self.ring = PolyRing(self.generators, sp.QQ, sp.polys.orderings.lex)
 
-    def __call__(self, expression):
+    def __call__(self, expression: sp.Expr | int) -> PolyElement:
         return self.ring.from_expr(sp.sympify(expression).expand())
 
-    def vector(self, components) -> list:
+    def vector(self, components: Iterable[sp.Expr]) -> list[PolyElement]:
         return [self(component) for component in components]
 
-    def reduced(self, polynomial, eliminate: str = "sine"):
+    def reduced(self, polynomial: PolyElement, eliminate: str = "sine") -> PolyElement:
         """Use sin² + cos² = 1 to eliminate squares, and that hinge steps are 0 or 1 and the lag hinge lies outboard."""
         index = {symbol: place for place, symbol in enumerate(self.generators)}
         steps = [index[h] for h in (beyond_flap_hinge, beyond_lag_hinge) if h in index]
@@ -76,25 +84,25 @@ class PolynomialRing:
                 polynomial = self._without_square(polynomial, index[squared], index[kept])
         return polynomial
 
-    def _collect(self, terms):
-        result = {}
+    def _collect(self, terms: Terms) -> PolyElement:
+        result: dict[Monomial, MPQ] = {}
         for monomial, coefficient in terms:
             result[monomial] = result.get(monomial, 0) + coefficient
         return self.ring.from_dict({monomial: c for monomial, c in result.items() if c})
 
-    def _idempotent(self, polynomial, place):
+    def _idempotent(self, polynomial: PolyElement, place: int) -> PolyElement:
         return self._collect(
             (_with_power(monomial, place, min(monomial[place], 1)), c) for monomial, c in polynomial.terms()
         )
 
-    def _absorbed(self, polynomial, flap_place, lag_place):
+    def _absorbed(self, polynomial: PolyElement, flap_place: int, lag_place: int) -> PolyElement:
         """Outboard of the lag hinge is outboard of the flap hinge: h_beta h_zeta = h_zeta."""
         return self._collect(
             (_with_power(monomial, flap_place, 0) if monomial[lag_place] else monomial, c)
             for monomial, c in polynomial.terms()
         )
 
-    def _without_square(self, polynomial, squared, kept):
+    def _without_square(self, polynomial: PolyElement, squared: int, kept: int) -> PolyElement:
         while any(monomial[squared] > 1 for monomial in polynomial.monoms()):
             terms = []
             for monomial, c in polynomial.terms():
@@ -106,11 +114,11 @@ class PolynomialRing:
             polynomial = self._collect(terms)
         return polynomial
 
-    def shortest(self, polynomial) -> sp.Expr:
+    def shortest(self, polynomial: PolyElement) -> sp.Expr:
         """The reduced form with the fewer terms, as an expression."""
         candidates = [self.reduced(polynomial, eliminate) for eliminate in ("sine", "cosine")]
         return min(candidates, key=len).as_expr()
 
 
-def _with_power(monomial: tuple, place: int, power: int) -> tuple:
+def _with_power(monomial: Monomial, place: int, power: int) -> Monomial:
     return (*monomial[:place], power, *monomial[place + 1 :])

@@ -28,7 +28,8 @@ def dimension_of_unit(unit: str) -> Dimension:
                 name
             ]
             exponents = [total + factor * one for total, one in zip(exponents, contribution, strict=True)]
-    return tuple(exponents)
+    kg, m, s = exponents
+    return kg, m, s
 
 
 @dataclass(frozen=True)
