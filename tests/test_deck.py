@@ -384,7 +384,7 @@ def test_a_file_that_is_no_deck(tmp_path, content, rule):
     [
         ("xv51", r"unknown deck 'xv51'; did you mean xv15\?"),
         ("nowhere/deck.toml", "no such file"),
-        (os.sep, "no such file"),
+        (os.sep, "must be a file, not a folder"),
         ("/dev/zero", "no such file"),
         ("a" * 9999, "cannot be read"),
         ("\0", "unknown deck"),

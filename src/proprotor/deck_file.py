@@ -94,6 +94,8 @@ def _find(name: str, folder: Path) -> Traversable:
     try:
         if path.is_file():
             return path.resolve()  # one name for one file, so that a circle of bases is seen
+        if name and path.is_dir():
+            raise InputError("deck", name, "must be a file, not a folder")
     except OSError as error:  # a name too long, a folder one may not enter
         raise InputError("deck", name, f"cannot be read ({error.strerror})") from None
     if name.endswith(".toml") or os.sep in name:

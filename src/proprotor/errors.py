@@ -44,7 +44,11 @@ class InputError(ValueError):
 def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
     """The rule an unknown name breaks, with the nearest known name, or else all of them."""
     by_lower_case = {k.lower(): k for k in known}
-    nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1)
+    nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1) or [
+        k
+        for k in by_lower_case
+        if name and k.startswith(f"{name.lower()}_")  # "thrust" for thrust_coefficient
+    ]
     hint = f"did you mean {by_lower_case[nearest[0]]}?" if nearest else f"known: {', '.join(known)}"
     return f"unknown {what} {_on_one_line(name)!r}; {hint}"
 

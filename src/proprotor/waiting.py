@@ -11,14 +11,16 @@ _PATIENCE = 1.0  # seconds
 
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
-    """Say what takes so long, once it does: a spinner on a terminal, otherwise a line."""
+    """Say what takes so long, once it does, with a spinner; nothing where nobody looks at a terminal."""
     from rich.console import Console  # here, because rich takes long to import
     from rich.text import Text
 
     console = Console(stderr=True)
+    if not console.is_terminal:
+        yield
+        return
     spinner = console.status(Text(what), spinner="line")
-    say = spinner.start if console.is_terminal else lambda: console.print(Text(f"{what} ..."))
-    timer = Timer(_PATIENCE, say)
+    timer = Timer(_PATIENCE, spinner.start)
     timer.daemon = True
     timer.start()
     try:
