@@ -17,7 +17,9 @@ from proprotor.assembly import mount
 from proprotor.atmosphere import standard_air
 from proprotor.datum import PER_REV, Datum
 from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
+from proprotor.drive_train import DriveTrain
 from proprotor.errors import InputError
+from proprotor.frequencies import BladeFrequencies
 from proprotor.model import LinearModel, rigid_hub_mass, rotor_model
 from proprotor.operation import Operation
 from proprotor.rotor import Rotor
@@ -53,6 +55,10 @@ class Case:
         Every number of the deck by its field (``rotor.radius``, ``support.modes[beam].frequency``): the
         value as written, its SI value and unit, status and source. What follows from the deck's
         numbers, such as a stiffness from a frequency, stands here as well.
+    frequencies : BladeFrequencies, optional
+        Of the blades; with them the model has structure="tabulated" unless an option says otherwise.
+    drive_train : DriveTrain, optional
+        On the rotor's azimuth, unless an option says otherwise.
     deck : Deck, optional
         The deck the case was made from, which says how its numbers hang together.
     given : mapping of str to Datum
@@ -68,6 +74,8 @@ class Case:
     calibration: str = ""
     warnings: tuple[str, ...] = ()
     sources: Mapping[str, Datum] = field(default_factory=dict)
+    frequencies: BladeFrequencies | None = None
+    drive_train: DriveTrain | None = None
     deck: Deck | None = None
     given: Mapping[str, Datum] = field(default_factory=dict)
 
@@ -85,9 +93,30 @@ class Case:
         **options
             See `proprotor.options.Options`.
         """
-        rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **options)
+        rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
         return mount(rotor_alone, support, rigid_hub_mass(self.rotor))
+
+    def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Options of the model with what the case has in place of those that are not given.
+
+        Parameters
+        ----------
+        options : mapping
+            See `proprotor.options.Options`.
+
+        Returns
+        -------
+        dict
+            With ``structure="tabulated"`` and ``frequencies`` where the case has blade frequencies, and
+            ``drive_train`` where it has one; it turns nothing where the rotor speed is constant.
+        """
+        found = dict(options)
+        if self.frequencies is not None and found.get("structure", "tabulated") == "tabulated":
+            found = {"structure": "tabulated", "frequencies": self.frequencies} | found
+        if self.drive_train is not None and found.get("rotor_speed") != "constant":
+            found = {"drive_train": self.drive_train} | found
+        return found
 
     def vary(self, values: Mapping[str, Any]) -> Case:
         """The case with other numbers in its deck, and all that follows from them: see `proprotor.design.vary`."""
@@ -188,6 +217,10 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
     with _told_as_written("rotor", numbers):
         given = {"airfoil": airfoil, "propeller_moment": deck.rotor.propeller_moment}
         rotor, derived = _rotor(_values(numbers, "rotor") | given, operation.density)
+    with _told_as_written("rotor.frequencies", numbers):
+        frequencies = _frequencies(deck, _values(numbers, "rotor.frequencies"))
+    with _told_as_written("drive_train", numbers):
+        train = None if deck.drive_train is None else DriveTrain(**_values(numbers, "drive_train"))
     with _told_as_written("support", numbers):
         support = support_of(deck.support, numbers)
     return Case(
@@ -200,6 +233,8 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
         operation=operation,
         support=support,
         sources=dict(numbers) | air | derived,
+        frequencies=frequencies,
+        drive_train=train,
         deck=deck,
         given=numbers,
     )
@@ -254,6 +289,11 @@ def _with_air(given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Datum]]:
 
 def _airfoil(given: dict[str, Any]) -> SectionModel:
     return AirfoilTable.from_c81(given["table"]) if "table" in given else Airfoil(**given)
+
+
+def _frequencies(deck: Deck, given: dict[str, Any]) -> BladeFrequencies | None:
+    section = deck.rotor.frequencies
+    return None if section is None else BladeFrequencies(against=section.against, **given)
 
 
 def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datum]]:

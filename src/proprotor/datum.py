@@ -117,26 +117,61 @@ def read_distribution(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
     if len(values) != len(stations):
         rule = f"must have one value for each of the {len(stations)} r_over_R"
         raise InputError("value", f"{len(values)} values", rule)
-    if not isinstance(written_unit, str):
-        raise InputError("unit", written_unit, f"must be the unit of {meaning(unit)}")
-    try:
-        factor = factor_to_si(written_unit, written_unit, unit)
-    except InputError as error:
-        raise error.within("unit") from None
-    si = tuple(float(value) * factor for value in values)
-    for value, converted in zip(values, si, strict=True):
-        if not abs(converted) <= LARGEST:
-            raise InputError("value", value, f"must be finite, and not beyond {LARGEST:g} in SI units")
-        if not bound.holds(converted):
-            raise InputError("value", value, bound.rule)
+    si = _converted(values, _factor_of_list(written_unit, unit), bound)
     written = f"{len(values)} values in {written_unit}"
     return _datum(table, written, si, unit, tuple(float(station) for station in stations))
+
+
+def read_curve(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
+    """One number, or a table ``{ value, unit, status, source }`` with a list of them; what has no dimension no unit."""
+    if not isinstance(raw, dict) or not isinstance(raw.get("value"), list):
+        return read_quantity(raw, unit, bound)
+    return read_list(raw, unit, bound)
+
+
+def read_list(raw: Any, unit: str, bound: Bound = ANY, *, rising: bool = False) -> Datum:
+    """A table ``{ value, unit, status, source }`` with a list of numbers, perhaps of rising ones."""
+    if not isinstance(raw, dict):
+        raise InputError("", raw, f"must be a table with a list{' and its unit' if unit else ''}")
+    table = _as_table(raw, ("value", "unit") if unit else ("value",))
+    values = table["value"]
+    _check_numbers("value", values)
+    if len(values) < 2:
+        raise InputError("value", values, "must have two values or more")
+    factor = _factor_of_list(table["unit"], unit) if unit else 1.0
+    si = _converted(values, factor, bound)
+    for first, second in pairwise(si) if rising else ():
+        if second <= first:
+            raise InputError(
+                "value", f"{first / factor:g}, {second / factor:g}", "must rise from value to value"
+            )
+    written = f"{len(values)} values in {table['unit']}" if unit else f"{len(values)} values"
+    return _datum(table, written, si, unit)
 
 
 def read_profile(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
     """One number for the whole blade, or a distribution along it."""
     is_distribution = isinstance(raw, dict) and ("r_over_R" in raw or isinstance(raw.get("value"), list))
     return read_distribution(raw, unit, bound) if is_distribution else read_quantity(raw, unit, bound)
+
+
+def _factor_of_list(written_unit: Any, unit: str) -> float:
+    if not isinstance(written_unit, str):
+        raise InputError("unit", written_unit, f"must be the unit of {meaning(unit)}")
+    try:
+        return factor_to_si(written_unit, written_unit, unit)
+    except InputError as error:
+        raise error.within("unit") from None
+
+
+def _converted(values: list[float], factor: float, bound: Bound) -> tuple[float, ...]:
+    si = tuple(float(value) * factor for value in values)
+    for value, converted in zip(values, si, strict=True):
+        if not abs(converted) <= LARGEST:
+            raise InputError("value", value, f"must be finite, and not beyond {LARGEST:g} in SI units")
+        if not bound.holds(converted):
+            raise InputError("value", value, bound.rule)
+    return si
 
 
 def read_column(raw: Any, unit: str, bound: Bound, radius: float) -> Datum:

@@ -24,10 +24,16 @@ file, ``{ file = "stations.csv", column = "twist" }`` (`proprotor.stations_file`
 ``[rotor.airfoil]``
     The arguments of `proprotor.Airfoil`, or instead of them: table, a C81 file, its name starting from the
     deck's folder.
+``[rotor.frequencies]``
+    Left out, or the arguments of `proprotor.BladeFrequencies`: against, "collective" or "airspeed"; at, a table
+    ``{ value = [0, 20, 40], unit = "deg" }``; flap, lag and perhaps cyclic_flap, rotating, per revolution, one
+    number or a table ``{ value = [1.9, 1.8, 1.7] }`` with one for each of at. The model then has structure="tabulated".
 ``[operation]``
     rotor_speed, trim = "windmill" or { collective = "30 deg" }, { thrust_coefficient = 0.008 },
     { power_coefficient = 0.01 }; density and speed_of_sound, or instead of them: altitude, a pressure altitude in
     the standard atmosphere, and temperature_offset (`proprotor.atmosphere`).
+``[drive_train]``
+    Left out, or the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness.
 ``[support]``
     kind and the fields of that kind: `proprotor.support_sections` lists them.
 
@@ -37,15 +43,17 @@ speed. `proprotor.units` lists the units.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema, model_validator
 
 from proprotor.datum import read_quantity
 from proprotor.deck_fields import (
+    Abscissa,
     Angle,
     Chord,
     Count,
+    CurvePerRev,
     Damping,
     Density,
     File,
@@ -115,6 +123,29 @@ class AirfoilSection(Section):
         return self
 
 
+class FrequenciesSection(Section):
+    """Rotating blade frequencies from a table, in place of springs; `--structure coupled` leaves them out."""
+
+    against: Literal["collective", "airspeed"] = optional("What they depend on.", "collective")
+    at: Abscissa = optional("Where lists have their values, rising: collective or airspeed.")
+    flap: CurvePerRev = needed("Flap frequency per revolution, without lag and at zero cone.")
+    lag: CurvePerRev = needed("Lag frequency per revolution, without flap and at zero cone.")
+    cyclic_flap: CurvePerRev = optional("Of cyclic flapping where it is another than flap.")
+
+    @model_validator(mode="after")
+    def _one_value_for_each_place(self) -> FrequenciesSection:
+        places = None if self.at is None else len(self.at.si)
+        for name in ("flap", "lag", "cyclic_flap"):
+            curve = getattr(self, name)
+            if curve is None or not isinstance(curve.si, tuple):
+                continue
+            if places is None:
+                raise InputError("at", None, f"is missing; {name} has {curve.written}")
+            if len(curve.si) != places:
+                raise InputError(name, curve.written, f"must have one value for each of the {places} of at")
+        return self
+
+
 class RotorSection(Section):
     """The rotor: the arguments of `proprotor.Rotor`, and what some of them may follow from."""
 
@@ -159,6 +190,7 @@ class RotorSection(Section):
         "One value: change from centre to tip, linear. Or along r; pitch counts from 0.75 R."
     )
     airfoil: AirfoilSection = needed("Sections of the blade.")
+    frequencies: FrequenciesSection | None = optional("Of the blades; from the springs where left out.")
 
     @model_validator(mode="after")
     def _one_side_of_each_pair(self) -> RotorSection:
@@ -246,12 +278,23 @@ class OperationSection(Section):
         return self
 
 
+class DriveTrainSection(Section):
+    """Engine and shaft on the rotor's azimuth, referred to the rotor's speed."""
+
+    drive_inertia: InertiaOrNone = optional("What turns with the rotor besides the blades.")
+    drive_damping: Damping = optional("Torque per change of rotor speed.")
+    shaft_stiffness: Stiffness = optional(
+        "Torque per azimuth, to an end of constant speed; 0 leaves the rotor free to find its speed."
+    )
+
+
 class Deck(Section):
     """A case of the whirl-flutter analysis proprotor."""
 
     case: CaseSection = needed("What the case is, in words.")
     rotor: RotorSection = needed("The rotor.")
     operation: OperationSection = needed("How the rotor is run.")
+    drive_train: DriveTrainSection | None = optional("Engine and shaft; none where left out.")
     support: SupportSection = needed("What carries the rotor.")
 
 
@@ -260,8 +303,10 @@ _SECTIONS: dict[tuple[str, ...], type[Section]] = {
     ("case",): CaseSection,
     ("rotor",): RotorSection,
     ("rotor", "airfoil"): AirfoilSection,
+    ("rotor", "frequencies"): FrequenciesSection,
     ("operation",): OperationSection,
     ("operation", "trim"): TrimSection,
+    ("drive_train",): DriveTrainSection,
     **{("support", *place): section for place, section in SUPPORT_TABLES.items()},
 }
 

@@ -23,9 +23,11 @@ from proprotor.datum import (
     Datum,
     read_column,
     read_count,
+    read_curve,
     read_distribution,
     read_file,
     read_frequency,
+    read_list,
     read_profile,
     read_quantity,
 )
@@ -51,6 +53,8 @@ _READERS: dict[str, Callable[..., Datum]] = {
     "along the blade": read_profile,
     "distribution": read_distribution,
     "along the wing": read_spanwise,
+    "curve": read_curve,
+    "rising list": read_list,
     "file": lambda raw, unit, bound: read_file(raw),
 }
 
@@ -63,7 +67,7 @@ class Reading:
     ----------
     form : str
         "number", "count", "frequency", "along the blade", "distribution" (along the blade, never one number),
-        "along the wing" or "file".
+        "along the wing", "curve" (one number or a list of them), "rising list" or "file".
     unit : str
         SI unit.
     bound : Bound
@@ -121,6 +125,30 @@ class ByCoordinate(Reading):
         return core_schema.with_info_plain_validator_function(read)
 
 
+@dataclass(frozen=True)
+class ByAbscissa(Reading):
+    """Where a curve has its values, whose unit follows what it is against, a field that is read before.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit against the collective.
+    of_speed : str
+        SI unit against the airspeed.
+    """
+
+    of_speed: str = ""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        def read(raw: Any, info: ValidationInfo) -> Datum | None:
+            if "against" not in info.data:  # itself wrong, and reported
+                return None
+            unit = self.unit if info.data["against"] == "collective" else self.of_speed
+            return read_list(raw, unit, self.bound, rising=True)
+
+        return core_schema.with_info_plain_validator_function(read)
+
+
 class AlongTheBlade(Reading):
     """Values at blade stations, which may stand in a file, there perhaps by r: hence the radius is read before."""
 
@@ -163,6 +191,8 @@ Chord = Annotated[Datum | None, AlongTheBlade("along the blade", "m", POSITIVE)]
 Twist = Annotated[Datum | None, AlongTheBlade("along the blade", "rad")]
 MassDistribution = Annotated[Datum | None, AlongTheBlade("distribution", "kg/m", NOT_NEGATIVE)]
 TemperatureDifference = Annotated[Datum | None, Reading("number", "K")]
+CurvePerRev = Annotated[Datum | None, Reading("curve", "", POSITIVE)]
+Abscissa = Annotated[Datum | None, ByAbscissa("rising list", "rad", of_speed="m/s")]
 File = Annotated[Datum | None, Reading("file")]
 
 GeneralizedMass = Annotated[Datum | None, ByCoordinate("number", "kg", POSITIVE, of_angle="kg*m**2")]

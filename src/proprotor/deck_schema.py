@@ -24,6 +24,7 @@ _LIMITS: dict[Bound, Schema] = {
     FRACTION: {"minimum": 0, "maximum": 1},
     BELOW_CRITICAL: {"minimum": 0, "exclusiveMaximum": 1},
 }
+_NUMBERS: Schema = {"type": "array", "items": {"type": "number"}, "minItems": 2}
 _STATIONS = {"distribution": "r_over_R", "along the blade": "r_over_R", "along the wing": "y_over_span"}
 
 
@@ -83,9 +84,13 @@ def value_schema(reading: Reading) -> Schema:
     """What a field that a `Reading` reads may be: a value, or a table with its provenance."""
     if reading.form == "distribution":
         return {"anyOf": [_distribution(reading), _COLUMN]}
+    if reading.form == "rising list":
+        return _table({"value": _NUMBERS, "unit": {"type": "string"}})
     value = _value(reading)
     table = _table({"value": value})
     choices = [*value["anyOf"], table] if "anyOf" in value else [value, table]
+    if reading.form == "curve":
+        choices.append(_table({"value": _NUMBERS}))
     if reading.form in _STATIONS:
         choices.append(_distribution(reading))
     if reading.form == "along the blade":
@@ -111,9 +116,8 @@ def _told(reading: Reading) -> str:
 
 
 def _distribution(reading: Reading) -> Schema:
-    numbers = {"type": "array", "items": {"type": "number"}, "minItems": 2}
     stations = {"type": "array", "items": {"type": "number", "minimum": 0, "maximum": 1}, "minItems": 2}
-    return _table({_STATIONS[reading.form]: stations, "value": numbers, "unit": {"type": "string"}})
+    return _table({_STATIONS[reading.form]: stations, "value": _NUMBERS, "unit": {"type": "string"}})
 
 
 def _table(properties: Schema) -> Schema:

@@ -24,7 +24,16 @@ _HEAD = """\
 #   proprotor flutter {file}
 #   proprotor sweep {file} --speed 50:400:5kt --plot damping.png
 """
-_SECTIONS = ("case", "rotor", "rotor.airfoil", "operation", "support", "support.wing_aerodynamics")
+_SECTIONS = (
+    "case",
+    "rotor",
+    "rotor.airfoil",
+    "rotor.frequencies",
+    "operation",
+    "drive_train",
+    "support",
+    "support.wing_aerodynamics",
+)
 _EXAMPLE = re.compile(r'such as ("[^"]*"|\S+?)(?:,| or|$)')
 _COLUMNS = 13  # of a list of numbers
 
@@ -80,6 +89,8 @@ _EXAMPLES = {
     "bool": "true",
     "count": "4",
     "file": '"name-of-file"',
+    "rising list": '{ value = [0, 20, 40], unit = "deg" }',
+    "curve": "{ value = [1.9, 1.8, 1.7] }",
     "table": '{ x = "hub_x" }',
 }
 

@@ -29,6 +29,7 @@ _RANGES: dict[Bound, str] = {
 _ALONG = {
     "along the blade": "one value, { r_over_R = [...], value = [...], unit = ... }, or { file = ..., column = ... }",
     "distribution": "{ r_over_R = [...], value = [...], unit = ... } or { file = ..., column = ... }",
+    "curve": "one value, or { value = [...] }",
     "along the wing": "one value, or { y_over_span = [...], value = [...], unit = ... }",
 }
 _PLAIN = {bool: "true or false", str: "text"}
@@ -161,6 +162,8 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
     if reading.form == "file":
         return "the name of a file"
     by_angle = getattr(reading, "of_angle", None)
+    if reading.form == "rising list":
+        return "{ value = [...], unit = ... }"
     told = meaning(reading.unit)
     if by_angle is not None:
         told = f"of a length {told}; of an angle {meaning(by_angle)}"
@@ -202,6 +205,8 @@ def _is_text_list(annotation: Any) -> bool:
 
 
 def _unit(reading: Reading) -> str:
+    if of_speed := getattr(reading, "of_speed", ""):
+        return f"{reading.unit} or {of_speed}"
     by_angle = getattr(reading, "of_angle", None)
     return reading.unit if by_angle is None else f"{reading.unit or '1'} or {by_angle or '1'}"
 
@@ -223,12 +228,13 @@ def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
 @cache
 def _defaults(section: type[Section]) -> dict[str, Any]:
     """What the class that a section describes takes where a field is left out."""
-    from proprotor import airfoil, deck, rotor, support_sections, wing_aerodynamics
+    from proprotor import airfoil, deck, drive_train, rotor, support_sections, wing_aerodynamics
     from proprotor.beam_wing import Pylon, Wing
 
     described: dict[type[Section], tuple[type, ...]] = {
         deck.RotorSection: (rotor.Rotor,),
         deck.AirfoilSection: (airfoil.Airfoil,),
+        deck.DriveTrainSection: (drive_train.DriveTrain,),
         support_sections.BeamWingSection: (Wing, Pylon),
         support_sections.WingAerodynamicsSection: (wing_aerodynamics.WingAerodynamics,),
         support_sections.AssumedShapeSection: (wing_aerodynamics.WingAerodynamics,),

@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from proprotor.datum import Datum
     from proprotor.deck import Deck
 
-_FIXED = (str, int)  # files, and whole numbers, which do not vary as others do
+_FIXED = (str, int, tuple)  # files, whole numbers and lists, which do not vary as others do
 
 
 def design_inputs(case: Case) -> dict[str, Datum]:
     """The numbers of a case's deck that may vary, by path, with value, SI unit, status and source.
 
     A path is the place in the deck: ``rotor.precone``, ``rotor.airfoil.lift_slope``, ``operation.rotor_speed``,
-    ``support.modes[beam].frequency``. Distributions along the blade, files and what follows from other numbers are
-    left out.
+    ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. Distributions along the blade, blade
+    frequencies, files and what follows from other numbers are left out.
 
     Raises
     ------
@@ -35,7 +35,9 @@ def design_inputs(case: Case) -> dict[str, Datum]:
     return {
         path: number
         for path, number in case.given.items()
-        if number.r_over_R is None and not isinstance(number.si, _FIXED)
+        if number.r_over_R is None
+        and not isinstance(number.si, _FIXED)
+        and not path.startswith("rotor.frequencies.")
     }
 
 
@@ -49,8 +51,9 @@ def vary(case: Case, values: Mapping[str, Any]) -> Case:
     Parameters
     ----------
     case : Case
-    values : mapping of str to float or array
-        SI values by path, see `design_inputs`. Arrays broadcast with each other and with the airspeeds of
+    values : mapping of str to float, array, text, pint quantity or xarray.DataArray
+        By path, see `design_inputs`: numbers in SI; text such as "1.5 deg", quantities, and data arrays with an
+        attribute ``units`` are converted. Arrays broadcast with each other and with the airspeeds of
         `Case.linearize`. Complex numbers are taken, for derivatives by a complex step.
 
     Returns
@@ -67,7 +70,7 @@ def vary(case: Case, values: Mapping[str, Any]) -> Case:
     for path, value in values.items():
         if path not in known:
             raise InputError(path, None, unknown_name(path, known, "input"))
-        number = _number(path, value)
+        number = _number(path, value, known[path].unit)
         written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
         numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
     return assemble(_deck_of(case), numbers)
@@ -79,7 +82,11 @@ def _deck_of(case: Case) -> Deck:
     return case.deck
 
 
-def _number(path: str, value: Any) -> np.ndarray:
+def _number(path: str, value: Any, unit: str) -> np.ndarray:
+    if isinstance(value, str) or hasattr(value, "to") or "units" in getattr(value, "attrs", {}):
+        from proprotor.units import as_si  # here, because pint takes long to import
+
+        value = as_si(value, unit, path)
     number = np.asarray(value)
     if number.dtype.kind not in "fciu":
         raise InputError(path, value, "must be a number or an array of numbers")

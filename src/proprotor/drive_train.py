@@ -22,6 +22,8 @@ class DriveTrain:
     shaft_stiffness : float
         Torque per azimuth, N m/rad; 0 leaves the rotor free to find its speed.
 
+    Any of them may be an array that broadcasts with the airspeeds, for many designs at once.
+
     Raises
     ------
     InputError
@@ -35,5 +37,7 @@ class DriveTrain:
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
-            if not np.all(np.isfinite(value)) or np.any(np.asarray(value) < 0):
+            if not np.all(np.isfinite(value)):
+                raise InputError(entry.name, value, "must be finite")
+            if np.any(np.real(value) < 0):
                 raise InputError(entry.name, value, "must not be negative")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,7 @@ from proprotor.errors import InputError
 
 Curve = float | ArrayLike | Callable[[Array], Array]
 ABSCISSAE = ("collective", "airspeed")
+_STEP = 1e-6  # of the abscissa, for the slope of a function
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,6 +65,31 @@ class BladeFrequencies:
             raise InputError(name, curve, "must be above zero")
 
     def _evaluate(self, curve: Curve, abscissa: Array) -> Array:
+        """A curve at an abscissa; an imaginary part of it is followed to first order, which a complex step needs."""
+        if not np.iscomplexobj(abscissa):
+            return self._value(curve, abscissa)
+        at = np.asarray(abscissa.real)
+        followed: Array = self._value(curve, at) + 1j * self._slope(curve, at) * abscissa.imag
+        return followed
+
+    def _slope(self, curve: Curve, abscissa: Array) -> Array:
+        """Derivative of a curve: that of the interpolation, or of a function by central differences."""
+        if callable(curve):
+            step = _STEP * np.maximum(np.abs(abscissa), 1.0)
+            change: Array = self._value(curve, abscissa + step) - self._value(curve, abscissa - step)
+            return change / (2 * step)
+        if np.ndim(curve) == 0:
+            return np.zeros(np.shape(abscissa))
+        at = np.asarray(self.at, dtype=float)
+        slope: Array = self._interpolation(curve).derivative()(np.clip(abscissa, at[0], at[-1]))
+        return np.asarray(np.where((abscissa < at[0]) | (abscissa > at[-1]), 0.0, slope))
+
+    def _interpolation(self, curve: Curve) -> Any:
+        from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
+
+        return PchipInterpolator(np.asarray(self.at, dtype=float), np.asarray(curve, dtype=float))
+
+    def _value(self, curve: Curve, abscissa: Array) -> Array:
         if callable(curve):
             values = np.asarray(curve(abscissa), dtype=float)
             if np.any(np.isfinite(abscissa) & ~(values > 0)):
@@ -73,15 +100,13 @@ class BladeFrequencies:
         given = np.asarray(curve, dtype=float)
         if given.ndim == 0:
             return np.full(np.shape(abscissa), float(given))
-        from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
-
         at = np.asarray(self.at, dtype=float)
-        found: Array = PchipInterpolator(at, given)(np.clip(abscissa, at[0], at[-1]))
+        found: Array = self._interpolation(curve)(np.clip(abscissa, at[0], at[-1]))
         return found
 
     def rotating(self, collective: Array, airspeed: Array, rotor_speed: Array) -> dict[str, Array]:
         """Rotating frequencies in rad/s by the names of the derivation, shapes of the arguments broadcast."""
-        abscissa = np.asarray(collective if self.against == "collective" else airspeed, dtype=float)
+        abscissa = np.asarray(collective if self.against == "collective" else airspeed)
         cyclic = self.flap if self.cyclic_flap is None else self.cyclic_flap
         curves = {"flap": self.flap, "lag": self.lag, "cyclic": cyclic}
         per_rev = {name: self._evaluate(curve, abscissa) for name, curve in curves.items()}

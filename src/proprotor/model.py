@@ -29,6 +29,7 @@ from proprotor.blade_airloads import (
     load_moments,
     segment_quantities,
 )
+from proprotor.drive_train import DriveTrain
 from proprotor.equation_set import EquationSet
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
@@ -138,6 +139,7 @@ def model_quantities(
 ) -> dict[str, Any]:
     """`rotor_quantities`, and the numbers that the options give: couplings and the damping of sections."""
     given = {name: getattr(options, name) for name in COUPLINGS}
+    given |= {} if options.drive_train is None else vars(options.drive_train)
     given = {
         name: np.broadcast_to(value, points).reshape(-1) if np.ndim(value) else value
         for name, value in given.items()
@@ -147,7 +149,9 @@ def model_quantities(
     return rotor_quantities(rotor, operation, airspeed, points) | given | damping
 
 
-def batch_shape(rotor: Rotor, operation: Operation, airspeed: Array) -> tuple[int, ...]:
+def batch_shape(
+    rotor: Rotor, operation: Operation, airspeed: Array, drive_train: DriveTrain | None = None
+) -> tuple[int, ...]:
     """Shape of all arrays among the inputs, broadcast together."""
     inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name != "airfoil"]
     leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
@@ -156,6 +160,7 @@ def batch_shape(rotor: Rotor, operation: Operation, airspeed: Array) -> tuple[in
         inputs += [getattr(rotor.airfoil, entry.name) for entry in fields(rotor.airfoil)]
     inputs += [getattr(operation, name) for name in ("rotor_speed", "density", "speed_of_sound")]
     inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())
+    inputs += [] if drive_train is None else list(vars(drive_train).values())
     return np.broadcast_shapes(np.shape(airspeed), *(np.shape(value) for value in inputs))
 
 
@@ -183,7 +188,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     choice = parse_options(options)
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed)
-    shape = batch_shape(rotor, operation, speed)
+    shape = batch_shape(rotor, operation, speed, choice.drive_train)
     quantities = model_quantities(rotor, operation, choice, speed, shape)
     points = int(np.prod(shape, dtype=int))
     sections, coarse = (BladeSections.of(rotor, shape, coarse) for coarse in (False, True))
@@ -319,7 +324,7 @@ def _fixed_frame(
     for count, (name, kind) in enumerate(_KINDS.items(), start=1):
         matrix = evaluate(getattr(multiblade, kind), pool, *blade[:count])
         if options.drive_train is not None:
-            matrix = matrix + evaluate(getattr(drive_train, kind), vars(options.drive_train))
+            matrix = matrix + evaluate(getattr(drive_train, kind), pool)
         matrices[name] = matrix
     if "cyclic_flap_stiffness_excess" in pool:
         matrices["K"] = matrices["K"] + evaluate(multiblade.cyclic_restraint, pool)

@@ -107,11 +107,11 @@ def model_parts(case: Case, model: LinearModel, **options: Any) -> dict[str, Par
     InputError
         With reactionless=True.
     """
-    choice = parse_options(options)
+    choice = parse_options(case.model_options(options))
     if choice.reactionless:
         raise InputError("reactionless", True, "is not taken apart: leave it out")
     rotor = case.rotor
-    shape = batch_shape(rotor, case.operation, model.airspeed)
+    shape = batch_shape(rotor, case.operation, model.airspeed, choice.drive_train)
     pool = _pool(case, choice, model, shape)
     blade = _structure(pool, choice) | dict(_airloads(BladeSections.of(rotor, shape), pool, choice))
     own = {name: _in_fixed_frame(part, pool) for name, part in blade.items()}
@@ -236,7 +236,7 @@ def _other_parts(pool: Mapping[str, Any], choice: Options) -> dict[str, Part]:
     zero, parts = np.zeros((len(FIXED_COORDINATES),) * 2), {}
     if choice.drive_train is not None:
         kinds = (drive_train.mass, drive_train.damping, drive_train.stiffness)
-        parts["drive train"] = Part(*(evaluate(kind, vars(choice.drive_train)) for kind in kinds))
+        parts["drive train"] = Part(*(evaluate(kind, pool) for kind in kinds))
     if "cyclic_flap_stiffness_excess" in pool:
         parts["cyclic flap restraint"] = Part(zero, zero, evaluate(multiblade.cyclic_restraint, pool))
     return parts

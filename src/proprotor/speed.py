@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.errors import InputError
 
 KNOT = 1852 / 3600  # m/s
 
@@ -16,19 +17,30 @@ def in_metres_per_second(airspeed: Any) -> Array:
 
     Parameters
     ----------
-    airspeed : float, array (...), text or pint quantity
-        A bare number is in m/s and may be complex, for derivatives by a complex step; text such as "250 kt" or
-        "50:400:5kt" and quantities are converted.
+    airspeed : float, array (...), text, pint quantity or xarray.DataArray
+        A bare number is in m/s and may be complex, for derivatives by a complex step; text such as "250 kt" (one
+        speed) or "50:400:5kt" (a list), quantities and data arrays with an attribute ``units`` are converted.
+
+    Returns
+    -------
+    array (...)
+        m/s; without axes for a single speed.
 
     Raises
     ------
     InputError
         When it is not a speed.
     """
-    if isinstance(airspeed, str) or hasattr(airspeed, "to"):
+    if isinstance(airspeed, str):
         from proprotor import units  # here, because pint takes long to import
 
-        return (
-            units.speeds(airspeed) if isinstance(airspeed, str) else units.as_si(airspeed, "m/s", "airspeed")
-        )
-    return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)
+        found = units.speeds(airspeed)
+        return found if ":" in airspeed else found.reshape(())
+    if hasattr(airspeed, "to") or "units" in getattr(airspeed, "attrs", {}):
+        from proprotor import units
+
+        return units.as_si(airspeed, "m/s", "airspeed")
+    try:
+        return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)
+    except (TypeError, ValueError):
+        raise InputError("airspeed", airspeed, 'must be in m/s, or text such as "300 kt"') from None

@@ -139,7 +139,7 @@ class _Study:
         options: Mapping[str, Any],
     ) -> _Study:
         quantities = _known_quantities(quantities)
-        parse_options(options)
+        parse_options(case.model_options(options))
         plan = as_plan(inputs)
         from proprotor.design import design_inputs
 

@@ -222,6 +222,7 @@ def line_of_case(
         For airspeeds that do not form a line, more than one input, or an unknown one.
     """
     speeds = in_metres_per_second(airspeeds)
+    speeds = speeds if speeds.ndim else speeds.reshape(1)  # one speed is the shortest list
     if vary is not None:
         return _line_of_input(case, speeds.reshape(-1), vary, options)
     if _is_batch(case, options):
@@ -301,6 +302,7 @@ def rotor_speed_of(case: Case) -> float | None:
 
 
 def _is_batch(case: Case, options: Mapping[str, Any]) -> bool:
-    return batch_shape(case.rotor, case.operation, np.zeros(())) != () or any(
+    train = case.model_options(options).get("drive_train")
+    return batch_shape(case.rotor, case.operation, np.zeros(()), train) != () or any(
         np.ndim(value) > 0 for name, value in options.items() if name.endswith("_coupling")
     )

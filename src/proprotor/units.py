@@ -145,12 +145,12 @@ def factor_to_si(text: object, written_unit: str, unit: str) -> float:
 def as_si(
     value: ArrayLike | str | pint.Quantity[Any], unit: str, field: str = "value"
 ) -> NDArray[np.float64]:
-    """An argument in SI: numbers and arrays are SI already, text and pint quantities are converted.
+    """An argument in SI: numbers and arrays are SI already; text, quantities and labelled arrays are converted.
 
     Parameters
     ----------
-    value : array_like, str or pint.Quantity
-        A quantity may come from any pint registry.
+    value : array_like, str, pint.Quantity or xarray.DataArray
+        A quantity may come from any pint registry. An attribute ``units`` of a data array is its unit.
     unit : str
         SI unit of the result.
     field : str
@@ -166,10 +166,20 @@ def as_si(
             return np.asarray(to_si(value, unit))
         except InputError as error:
             raise error.within(field) from None
+    if written := getattr(value, "attrs", {}).get("units"):
+        try:
+            return np.asarray(value, dtype=float) * _factor_of_attribute(str(written), unit)
+        except InputError as error:
+            raise error.within(field) from None
     try:
         return np.asarray(value.to(unit).magnitude if hasattr(value, "to") else value, dtype=float)
     except (TypeError, ValueError):  # pint's DimensionalityError is a TypeError
         raise InputError(field, value, f"must be {meaning(unit)}") from None
+
+
+def _factor_of_attribute(written: str, unit: str) -> float:
+    """SI units in one of the attribute ``units`` of a data array, in which "1" is no unit."""
+    return factor_to_si(written, "" if written == "1" else written, unit)
 
 
 def speeds(text: str, field: str = "airspeed") -> NDArray[np.float64]:

@@ -192,13 +192,16 @@ def model_options(command: Command) -> Command:
 
 
 def in_order(options: dict[str, Any]) -> dict[str, Any]:
-    """The options of the model, in a fixed order."""
-    return {name: options[name] for name in (*CHOICES, *NUMBERS, "locked")}
+    """The options of the model, in a fixed order; a structure that is not given is the deck's."""
+    found = {name: options[name] for name in (*CHOICES, *NUMBERS, "locked")}
+    return {name: value for name, value in found.items() if name != "structure" or value is not None}
 
 
 def _model_option(name: str, choices: tuple[Any, ...], meaning: str) -> Option:
     flag = name.replace("_", "-")
     declared: dict[str, Any] = {"default": choices[0], "show_default": True, "help": meaning}
+    if name == "structure":
+        declared |= {"default": None, "show_default": "coupled; tabulated where the deck has frequencies"}
     if isinstance(choices[0], bool):
         return click.option(f"--{flag}/--no-{flag}", name, **declared)
     return click.option(f"--{flag}", name, type=click.Choice(choices), **declared)

@@ -15,6 +15,7 @@ import click
 
 from proprotor.commands.arguments import Command, Option
 from proprotor.errors import InputError
+from proprotor.options import CHOICES
 from proprotor.output_file import write_whole
 
 if TYPE_CHECKING:
@@ -65,10 +66,16 @@ def about(case: Case, options: Mapping[str, Any], settings: Mapping[str, str]) -
         "title": case.title,
         "set": dict(settings),
         "rotor speed (rad/s)": float(case.operation.rotor_speed),
-        "options": dict(options),
+        "options": told_options(case, options),
         "reservations": reservations(case),
         "warnings": list(case.warnings),
     }
+
+
+def told_options(case: Case, options: Mapping[str, Any]) -> dict[str, Any]:
+    """The options as they hold for a case, in their order."""
+    structure = case.model_options(options).get("structure", CHOICES["structure"][0])
+    return {name: structure if name == "structure" else options.get(name) for name in (*CHOICES, *options)}
 
 
 def console() -> Console:

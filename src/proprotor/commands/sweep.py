@@ -78,7 +78,7 @@ def sweep(
     else:
         from proprotor.terminal import print_sweep
 
-        print_sweep(loaded, table, options, all_modes)
+        print_sweep(loaded, table, output.told_options(loaded, options), all_modes)
     if table.failed.all():
         raise click.exceptions.Exit(1)
 
