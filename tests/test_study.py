@@ -19,14 +19,13 @@ from scipy.optimize import brentq
 
 import proprotor as pp
 from proprotor import flutter_scan, sampling, study_workers
-from proprotor.command_line import _EXIT_CODES, _InputErrorsTold, _model_options
+from proprotor.command_line import main
 from proprotor.errors import InputError
 from proprotor.fingerprint import fingerprint
 from proprotor.modes import state_matrix
 from proprotor.results_file import load_results, save_results
 from proprotor.study import study
 from proprotor.study_batch import QUANTITIES, Analysis, Batch, variables
-from proprotor.study_command import study_command
 from proprotor.units import unit_registry
 
 DEG, KT = np.pi / 180, 1852 / 3600
@@ -565,8 +564,7 @@ def test_a_file_that_cannot_be_is_told(tmp_path):
 
 @pytest.fixture
 def run():
-    group = _InputErrorsTold(commands=[study_command(_model_options, _EXIT_CODES)])
-    return lambda *arguments: CliRunner().invoke(group, ["study", *arguments])
+    return lambda *arguments: CliRunner().invoke(main, ["study", *arguments])
 
 
 def test_the_command_writes_what_the_function_finds(run, tmp_path):

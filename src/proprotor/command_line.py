@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+import contextlib
+import errno
+import os
+import sys
+from typing import IO, Any
 
 import click
 
 from proprotor.commands.arguments import EXIT_CODES as _EXIT_CODES
-from proprotor.commands.arguments import model_options as _model_options
 from proprotor.commands.attribution import attribution
 from proprotor.commands.audit import audit
 from proprotor.commands.cases import cases
 from proprotor.commands.describe import describe
+from proprotor.commands.figures import figures
 from proprotor.commands.flutter import flutter
 from proprotor.commands.new import new
 from proprotor.commands.report import report
 from proprotor.commands.sensitivity import sensitivity
 from proprotor.commands.stability_map import stability_map
+from proprotor.commands.study import study
 from proprotor.commands.sweep import sweep
 from proprotor.errors import InputError
-from proprotor.figures_command import figures
-from proprotor.study_command import study_command
 
 # pint, pydantic, xarray, rich and matplotlib are slow to import: each is imported where it is needed.
 
@@ -31,6 +34,16 @@ class _UnusableInput(click.ClickException):
     exit_code = 2
 
 
+class _Interrupted(click.ClickException):
+    exit_code = 130  # 128 and the number of the signal, as shells have it
+
+    def __init__(self) -> None:
+        super().__init__("interrupted; no file was left half-written")
+
+    def show(self, file: IO[Any] | None = None) -> None:
+        click.echo(f"\n{self.format_message()}", err=True, file=file)
+
+
 class _InputErrorsTold(click.Group):
     """A group of commands that tells errors in one message, without a traceback."""
 
@@ -39,6 +52,22 @@ class _InputErrorsTold(click.Group):
             return super().invoke(ctx)
         except InputError as error:
             raise _UnusableInput(str(error)) from None
+        except KeyboardInterrupt:
+            raise _Interrupted from None
+        except OSError as error:
+            if error.errno == errno.EPIPE:  # a reader such as `head` has left: click ends quietly
+                raise
+            _let_go_of_standard_output()
+            where = error.filename or "standard output"
+            raise click.ClickException(f"{where}: {error.strerror or error}") from None
+
+
+def _let_go_of_standard_output() -> None:
+    """Send what is still to be written nowhere, or Python would try once more at its end, and complain."""
+    with contextlib.suppress(OSError, AttributeError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 class _InOrder(_InputErrorsTold):
@@ -82,7 +111,7 @@ for _command in (
     sensitivity,
     attribution,
     report,
-    study_command(_model_options, _EXIT_CODES),
+    study,
     figures,
     audit,
 ):

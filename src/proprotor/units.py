@@ -196,7 +196,7 @@ def speeds(text: str, field: str = "airspeed") -> NDArray[np.float64]:
         When the text is no speed or range of speeds, with the reason.
     """
     match = _RANGE_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
-    if match is None:
+    if match is None or ":" in match[4]:
         raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
     try:
         factor = factor_to_si(text, match[4], "m/s")

@@ -5,8 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections import defaultdict
-from collections.abc import Callable
-from pathlib import Path
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -26,9 +25,9 @@ EXIT_CODES = """\b
 Exit codes:
   0  done; unstable modes and single speeds that fail are results
   1  no speed could be analysed, or an output could not be written
-  2  an input cannot be used: the message says which and why"""
+  2  an input cannot be used: the message says which and why
+  130  interrupted (Ctrl-C)"""
 
-FIGURE_FORMATS = (".png", ".pdf", ".svg")
 NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
 _RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # those of a range; what follows is the unit
 _PERCENT_OF_LEVEL = 'Damping that counts as the boundary, of critical: "3 %" or 0.03.'
@@ -48,23 +47,77 @@ class CaseName(StringParamType):
         return [CompletionItem(name) for name in found] or [CompletionItem(incomplete, type="file")]
 
 
-class Setting(StringParamType):
-    """FIELD=VALUE; the shell completes the field."""
+class Field(StringParamType):
+    """A field of a deck, which the shell completes."""
 
-    name = "setting"
+    name = "field"
+    ending = ""
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
+        return [
+            CompletionItem(f"{path}{self.ending}") for path in self.paths(ctx) if path.startswith(incomplete)
+        ]
+
+    def paths(self, ctx: click.Context) -> Iterable[str]:
+        """Every field there is."""
         from proprotor.describe import deck_fields
 
-        paths = dict.fromkeys(field.path for field in deck_fields())
-        return [CompletionItem(f"{path}=") for path in paths if path.startswith(incomplete)]
+        return dict.fromkeys(field.path for field in deck_fields())
+
+
+class Setting(Field):
+    """FIELD=VALUE; the shell completes the field."""
+
+    name, ending = "setting", "="
+
+    def paths(self, ctx: click.Context) -> Iterable[str]:
+        """Every field there is, entries of lists by the names that the case gives them."""
+        plain = (path for path in super().paths(ctx) if "[NAME]" not in path)
+        return dict.fromkeys((*plain, *(path for path in _numbers_of_case(ctx) if "[" in path)))
+
+
+class Input(Field):
+    """A number of the case that may vary, or the airspeed."""
+
+    name = "input"
+
+    def paths(self, ctx: click.Context) -> Iterable[str]:
+        """Of the case, once it is given."""
+        return _numbers_of_case(ctx) or super().paths(ctx)
+
+
+class InputValues(Input):
+    """INPUT=VALUES; the shell completes the input."""
+
+    name, ending = "values", "="
+
+    def paths(self, ctx: click.Context) -> Iterable[str]:
+        """Of the case, and the airspeed."""
+        return ("airspeed", *super().paths(ctx))
+
+
+def _numbers_of_case(ctx: click.Context) -> tuple[str, ...]:
+    """Inputs of the case on the command line; none before one is given, or while it cannot be read."""
+    from proprotor.design import design_inputs
+
+    # click leaves the words it could not place in args, as after an option that still misses its value
+    name = ctx.params.get("case") or ctx.params.get("name") or next(iter(ctx.args), None)
+    try:
+        return tuple(design_inputs(loaded_case(name, ()))) if name else ()
+    except InputError:
+        return ()
 
 
 def case_argument(command: Command) -> Command:
     """CASE and `--set`, for `loaded_case`."""
-    declared = click.option(
+    return click.argument("case", type=CaseName())(set_option(command))
+
+
+def set_option(command: Command) -> Command:
+    """`--set`, for `settings_of`."""
+    return click.option(
         "--set",
         "settings",
         multiple=True,
@@ -72,8 +125,7 @@ def case_argument(command: Command) -> Command:
         metavar="FIELD=VALUE",
         help='A field of the deck to set first, such as rotor.precone="1.5 deg", operation.trim=windmill or '
         '"support.modes[beam].frequency=3 Hz"; `proprotor describe` lists them. Repeatable.',
-    )
-    return click.argument("case", type=CaseName())(declared(command))
+    )(command)
 
 
 def settings_of(texts: tuple[str, ...]) -> dict[str, str]:
@@ -161,18 +213,6 @@ def one_speed(text: str, option: str = "--speed") -> float:
 def unit_of(text: str) -> str:
     """The unit of a value or range, as written; "" for none."""
     return _RANGE.sub("", text, count=1).strip()
-
-
-def check_figure_format(plot: str | None) -> None:
-    """Refuse a figure of another kind, before anything is analysed.
-
-    Raises
-    ------
-    InputError
-        When its name does not end in .png, .pdf or .svg.
-    """
-    if plot and Path(plot).suffix.lower() not in FIGURE_FORMATS:
-        raise InputError("--plot", plot, f"must end in {', '.join(FIGURE_FORMATS)}")
 
 
 def model_options(command: Command) -> Command:

@@ -10,7 +10,6 @@ from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
     case_argument,
-    check_figure_format,
     in_order,
     loaded_case,
     model_options,
@@ -54,7 +53,7 @@ def attribution(
       proprotor attribution xv15 --speed "380 kt" --mode chord
       proprotor attribution xv15 --speed "380 kt" --plot chord.png --csv chord.csv
     """
-    check_figure_format(plot)
+    output.check_outputs(csv, plot)
     options, airspeed = in_order(options), one_speed(speed)
     loaded = loaded_case(case, settings)
     with waiting("Analysing"):

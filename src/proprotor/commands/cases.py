@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, CaseName, Setting, loaded_case, settings_of
+from proprotor.commands.arguments import EXIT_CODES, CaseName, loaded_case, set_option, settings_of
 from proprotor.deck_file import list_cases, read_tables
 from proprotor.errors import InputError
 
@@ -18,14 +18,7 @@ if TYPE_CHECKING:
 
 @click.command(epilog=EXIT_CODES, short_help="List the bundled cases, or tell what one rests on.")
 @click.argument("name", required=False, type=CaseName(), metavar="[CASE]")
-@click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    type=Setting(),
-    metavar="FIELD=VALUE",
-    help="A field of the deck to set first. Repeatable.",
-)
+@set_option
 @output.output_options()
 def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
     """List the bundled cases, or tell what one case, bundled or a TOML file, is and rests on.

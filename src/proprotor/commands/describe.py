@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
-from click.shell_completion import CompletionItem
-from click.types import StringParamType
 
 from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES
+from proprotor.commands.arguments import EXIT_CODES, Field
 from proprotor.errors import InputError
 
 if TYPE_CHECKING:
@@ -18,20 +16,8 @@ if TYPE_CHECKING:
 _MOST_IN_FULL = 3  # fields that are told in full; more of them are a table
 
 
-class _Field(StringParamType):
-    name = "field"
-
-    def shell_complete(
-        self, ctx: click.Context, param: click.Parameter, incomplete: str
-    ) -> list[CompletionItem]:
-        from proprotor.describe import deck_fields
-
-        found = dict.fromkeys(field.path for field in deck_fields() if field.path.startswith(incomplete))
-        return [CompletionItem(path) for path in found]
-
-
 @click.command(epilog=EXIT_CODES, short_help="The fields of a deck: meaning, unit, range, default.")
-@click.argument("field", required=False, type=_Field(), metavar="[FIELD]")
+@click.argument("field", required=False, type=Field(), metavar="[FIELD]")
 @click.option("--schema", is_flag=True, help="Print the JSON schema, by which editors check a deck.")
 @click.option("--markdown", is_flag=True, help="Print all fields as a page, docs/decks.md.")
 @output.output_options()

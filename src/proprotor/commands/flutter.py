@@ -65,6 +65,7 @@ def flutter(
     """
     from proprotor.units import speeds
 
+    output.check_outputs(csv)
     options, damping = in_order(options), level_of(level)
     airspeeds = None if scan is None else speeds(scan, "--scan")
     at = None if speed is None else one_speed(speed)

@@ -48,6 +48,7 @@ def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None
         raise InputError("FILE", file, "must end in .toml")
     if place.exists() and not force:
         raise InputError("FILE", file, "exists; --force replaces it")
+    output.check_writable("FILE", file)
     tables = read_tables(base)
     validate(tables)
     if variant and base not in list_cases():

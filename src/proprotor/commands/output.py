@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import csv
+import errno
 import io
 import json
 import math
+import os
 import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
+FIGURE_FORMATS = (".png", ".pdf", ".svg")
 _NARROWEST = 30  # characters of a wrapped column
 
 
@@ -127,6 +131,54 @@ def csv_of(records: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> byte
     return text.getvalue().encode()
 
 
+@contextmanager
+def told(option: str, path: str | None) -> Iterator[None]:
+    """An output that cannot be written, in one message; another error where no path is given."""
+    try:
+        yield
+    except OSError as error:
+        if path is None:
+            raise
+        reason = error.strerror or error
+        raise click.ClickException(f"{option} = {path}: cannot be written ({reason})") from None
+
+
+def check_writable(option: str, path: str | None) -> None:
+    """Refuse a file that cannot be written, before a long analysis instead of after it.
+
+    Raises
+    ------
+    InputError
+        When the path is no place for a file.
+    click.ClickException
+        When its folder is not there or may not be written to.
+    """
+    if path is None:
+        return
+    with told(option, path):
+        place = Path(path).resolve()
+        if place.exists() and not place.is_file():
+            raise InputError(option, path, "must be a file")
+        if not place.parent.is_dir():
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+        if not os.access(place.parent, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+
+def check_outputs(csv: str | None = None, plot: str | None = None) -> None:
+    """Refuse `--csv` and `--plot` that cannot be written, or a figure of another kind, before anything is analysed.
+
+    Raises
+    ------
+    InputError, click.ClickException
+        As `check_writable`; for a figure whose name does not end in .png, .pdf or .svg.
+    """
+    if plot and Path(plot).suffix.lower() not in FIGURE_FORMATS:
+        raise InputError("--plot", plot, f"must end in {', '.join(FIGURE_FORMATS)}")
+    check_writable("--csv", csv)
+    check_writable("--plot", plot)
+
+
 def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes) -> None:
     """Write the file of an option, and say so on the error stream.
 
@@ -138,12 +190,10 @@ def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes
         When the file cannot be written.
     """
     try:
-        write_whole(path, content if callable(content) else lambda file: file.write(content))
+        with told(option, path):
+            write_whole(path, content if callable(content) else lambda file: file.write(content))
     except InputError as error:
         raise InputError(option, path, error.rule) from None
-    except OSError as error:
-        reason = error.strerror or error
-        raise click.ClickException(f"{option} = {path}: cannot be written ({reason})") from None
     click.echo(f"Wrote {path}", err=True)
 
 

@@ -73,6 +73,8 @@ def report(
     airspeeds = None if speed is None else speeds(speed, "--speed")
     loaded = loaded_case(case, settings)
     places = _places(out or f"{loaded.name}-report.html", pdf)
+    for place in places:
+        output.check_writable("--out", place)
     with waiting("Analysing"):
         found = analyse(loaded, airspeeds, options)
     with waiting("Drawing"):

@@ -10,8 +10,8 @@ import numpy as np
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
+    Input,
     case_argument,
-    check_figure_format,
     in_order,
     level_of,
     level_option,
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 @click.option(
     "--wrt",
     multiple=True,
+    type=Input(),
     metavar="INPUT",
     help="With respect to what, by deck path, such as rotor.precone; all inputs by default. Repeatable.",
 )
@@ -82,7 +83,7 @@ def sensitivity(
       proprotor sensitivity xv15 --of damping --speed "300 kt" --mode chord
       proprotor sensitivity xv15 --wrt rotor.precone --wrt rotor.control_stiffness --json
     """
-    check_figure_format(plot)
+    output.check_outputs(csv, plot)
     options, damping = in_order(options), level_of(level)
     where = _where(of, speed, scan, damping)
     loaded = loaded_case(case, settings)

@@ -12,8 +12,8 @@ from proprotor.arrays import Array
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
+    InputValues,
     case_argument,
-    check_figure_format,
     in_order,
     level_of,
     level_option,
@@ -48,10 +48,11 @@ class _Axis(NamedTuple):
 @click.option(
     "--x",
     required=True,
+    type=InputValues(),
     metavar="INPUT=RANGE",
     help=f'Across: an input by deck path and its values, {_EXAMPLE}, or "airspeed=100:400:10kt".',
 )
-@click.option("--y", required=True, metavar="INPUT=RANGE", help="Up, likewise.")
+@click.option("--y", required=True, type=InputValues(), metavar="INPUT=RANGE", help="Up, likewise.")
 @click.option("--speed", metavar="SPEED", help='Airspeed, such as "300 kt", where it is neither x nor y.')
 @level_option
 @output.output_options(
@@ -82,7 +83,7 @@ def stability_map(
       proprotor map xv15 --speed "350 kt" --x "support.modes[beam].frequency=2:5:0.1 Hz"
         --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
     """
-    check_figure_format(plot)
+    output.check_outputs(csv, plot)
     options, damping = in_order(options), level_of(level)
     airspeed = None if speed is None else one_speed(speed)
     loaded = loaded_case(case, settings)

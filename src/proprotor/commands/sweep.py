@@ -11,7 +11,6 @@ from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
     case_argument,
-    check_figure_format,
     in_order,
     loaded_case,
     model_options,
@@ -33,10 +32,8 @@ if TYPE_CHECKING:
     metavar="RANGE",
     help='Airspeeds with their unit: "50:400:5kt" is 50 to 400 kt by 5 kt; also "300 kt", "25:200:2.5 m/s".',
 )
-@click.option("--plot", metavar="FILE", help="Draw frequency and damping: a .png, .pdf or .svg file.")
-@click.option("--csv", metavar="FILE", help="Write all modes, one row for each airspeed and mode.")
-@click.option("--json", "as_json", is_flag=True, help="Print all modes as JSON instead of the table.")
 @click.option("--all-modes", is_flag=True, help="Put every mode into the table, not only as many as fit.")
+@output.output_options(csv="Write a row for each airspeed and mode.", plot="Draw frequency and damping")
 @model_options
 def sweep(
     case: str,
@@ -62,7 +59,7 @@ def sweep(
       proprotor sweep xv15 --speed 50:400:5kt --set rotor.precone="1.5 deg"
       proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
     """
-    check_figure_format(plot)
+    output.check_outputs(csv, plot)
     options = in_order(options)
     with waiting("Analysing"):
         loaded, table = _analysed(case, settings, speed, options)

@@ -1,9 +1,7 @@
-"""The command `proprotor figures`."""
+"""The command `proprotor figures`: the analytical figures of the paper."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import partial
 from operator import methodcaller
 from pathlib import Path
@@ -11,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from proprotor.commands import output
 from proprotor.commands.arguments import EXIT_CODES
-from proprotor.commands.output import print_json
 from proprotor.errors import InputError
 from proprotor.output_file import write_whole
 
@@ -46,7 +44,7 @@ _BAND_WORK = 10  # a sample takes about as long as so many figures
     help="Between airspeeds, kt.",
 )
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Of the samples.")
-@click.option("--json", "as_json", is_flag=True, help="Print the files written as JSON.")
+@output.output_options()
 def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed: int, as_json: bool) -> None:
     """Make the analytical figures of AIAA-2002-1604, each with its numbers as CSV.
 
@@ -73,7 +71,7 @@ def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed:
         for number in wanted:
             progress.update(task, description=f"Figure {number}")
             content = make_figure(number, analyses)
-            with _told(folder):
+            with output.told("--out", str(folder)):
                 write_whole(folder / f"figure-{number:02}.png", partial(save, content))
                 write_whole(folder / f"figure-{number:02}.csv", methodcaller("write", csv_of(content)))
             progress.advance(task)
@@ -84,26 +82,17 @@ def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed:
             number: [str(folder / f"figure-{number:02}.{kind}") for kind in ("png", "csv")]
             for number in wanted
         }
-        print_json({"samples": samples, "step (kt)": step, "seed": seed, "figures": names})
+        output.print_json({"samples": samples, "step (kt)": step, "seed": seed, "figures": names})
 
 
 def _folder(out: str) -> Path:
     folder = Path(out)
     if folder.exists() and not folder.is_dir():
         raise InputError("--out", out, "must be a folder")
-    with _told(folder):
+    with output.told("--out", out):
         folder.mkdir(parents=True, exist_ok=True)
+    output.check_writable("--out", str(folder / "figure.png"))
     return folder
-
-
-@contextmanager
-def _told(folder: Path) -> Iterator[None]:
-    """An output that cannot be written, in one message."""
-    try:
-        yield
-    except OSError as error:
-        reason = error.strerror or error
-        raise click.ClickException(f"--out = {folder}: cannot be written ({reason})") from None
 
 
 def _progress() -> Progress:
@@ -111,4 +100,5 @@ def _progress() -> Progress:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     columns = (TextColumn("{task.description:<10}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
-    return Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True))
+    console = Console(stderr=True)
+    return Progress(*columns, TimeElapsedColumn(), console=console, disable=not console.is_terminal)

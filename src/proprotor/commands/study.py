@@ -1,0 +1,192 @@
+"""The command `proprotor study`: many designs of a case, into a netCDF file."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from proprotor.commands import output
+from proprotor.commands.arguments import (
+    EXIT_CODES,
+    InputValues,
+    case_argument,
+    in_order,
+    loaded_case,
+    model_options,
+    settings_of,
+)
+from proprotor.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.sampling import Plan
+
+SAMPLES = ("latin-hypercube", "sobol", "saltelli")
+_OF_DECK = " of deck"
+_REASONS = 5  # of failures, the most frequent first
+
+
+@click.command(epilog=EXIT_CODES, short_help="Many designs: grids, lists and samples.")
+@case_argument
+@click.option(
+    "--vary",
+    "varied",
+    multiple=True,
+    required=True,
+    type=InputValues(),
+    metavar="INPUT=VALUES",
+    help='What varies, by deck path: "rotor.precone=1:4:0.5 deg" or "=1 deg, 2 deg"; in a sample the limits, '
+    '"=1:4 deg" or "=0.9:1.1 of deck". Repeatable.',
+)
+@click.option(
+    "--speed",
+    required=True,
+    metavar="RANGE",
+    help='Airspeeds with their unit: "160:460:20kt" or "300 kt".',
+)
+@click.option("--out", metavar="FILE", help="Write the results: a .nc file (netCDF).")
+@click.option("--sample", type=click.Choice(SAMPLES), help="Sample the inputs; without it all combinations.")
+@click.option("--size", type=click.IntRange(1), default=256, show_default=True, help="Of the sample.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the sample.")
+@click.option("--flutter", is_flag=True, help="Find the flutter speed of each design in the range.")
+@click.option("--checkpoint", metavar="FOLDER", help="Keep finished batches, and go on from those kept.")
+@click.option("--workers", type=click.IntRange(1), help="Processes; by default one for each core.")
+@output.output_options()
+@model_options
+def study(
+    case: str,
+    settings: tuple[str, ...],
+    varied: tuple[str, ...],
+    speed: str,
+    out: str | None,
+    sample: str | None,
+    size: int,
+    seed: int,
+    flutter: bool,
+    checkpoint: str | None,
+    workers: int | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Stability and trim of many designs of a case.
+
+    CASE is a bundled case or a TOML file; `proprotor cases CASE` lists its inputs. A study that was stopped goes on
+    where it was when it has a checkpoint.
+
+    \b
+    Examples:
+      proprotor study xv15 --vary "rotor.precone=1:4:1 deg" --speed 160:460:20kt --flutter
+      proprotor study xv15 --vary "rotor.precone=1:4 deg" --vary "support.modes[chord].frequency=0.9:1.1 of deck"
+        --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter --out study.nc --checkpoint batches
+    """
+    from proprotor.results_file import check_path, save_results
+    from proprotor.study import study as analyse
+    from proprotor.study_batch import DEFAULT_QUANTITIES
+    from proprotor.study_summary import study_summary
+    from proprotor.units import speeds
+
+    output.check_writable("--out", out)
+    if out:
+        check_path(out, "--out")
+    options, airspeeds = in_order(options), speeds(speed, "--speed")
+    loaded, plan = loaded_case(case, settings), _plan(varied, sample, size, seed)
+    with output.told("--checkpoint", checkpoint):
+        results = analyse(
+            loaded,
+            plan,
+            airspeeds if len(airspeeds) > 1 else airspeeds[0],
+            (*DEFAULT_QUANTITIES, *["flutter"] * flutter),
+            workers=workers,
+            checkpoint=checkpoint,
+            **{name: value for name, value in options.items() if value is not None},
+        )
+    if out:
+        with output.told("--out", out):
+            save_results(results, out)
+        click.echo(f"Wrote {out}", err=True)
+    if as_json:
+        head = output.about(loaded, options, settings_of(settings))
+        output.print_json(head | study_summary(results) | {"results": out})
+    else:
+        _print(results)
+    if bool((results.reason != "").all()):
+        raise click.exceptions.Exit(1)
+
+
+def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> Plan:
+    from proprotor import sampling
+
+    inputs = {}
+    for text in varied:
+        path, equals, values = text.partition("=")
+        if not equals or not values.strip():
+            raise InputError(
+                "--vary", text, 'must be an input and its values, such as "rotor.precone=1:4:0.5 deg"'
+            )
+        if path.strip() in inputs:
+            raise InputError("--vary", text, "must not vary an input twice")
+        inputs[path.strip()] = _limits(text, values) if sample else _values(values)
+    if sample is None:
+        return sampling.grid(inputs)
+    draw: Callable[..., Plan] = getattr(sampling, sample.replace("-", "_"))
+    return draw(inputs, size, seed)
+
+
+def _values(text: str) -> Any:
+    parts = [part.strip() for part in text.split(",")]
+    return parts if len(parts) > 1 else parts[0]
+
+
+def _limits(whole: str, text: str) -> Any:
+    """``"1:4 deg"`` or ``"0.9:1.1 of deck"``."""
+    from proprotor.sampling import Relative
+
+    low, colon, high = text.removesuffix(_OF_DECK).strip().partition(":")
+    if not colon or ":" in high:
+        raise InputError("--vary", whole, 'must have two limits, such as "rotor.precone=1:4 deg"')
+    if text.endswith(_OF_DECK):
+        try:
+            return Relative(float(low), float(high))
+        except ValueError:
+            raise InputError("--vary", whole, 'must have two factors, such as "0.9:1.1 of deck"') from None
+    unit = high.strip().lstrip("0123456789.+-eE").strip()
+    return f"{low.strip()} {unit}", high.strip()
+
+
+def _print(results: xarray.Dataset) -> None:
+    from proprotor.study_summary import study_summary
+
+    out, found = output.console(), study_summary(results)
+    out.print(f"{found['title']}: {found['points']} points, {found['failed']} failed")
+    for text, count in list(found["reasons"].items())[:_REASONS]:
+        out.print(f"  {count} × {text}", soft_wrap=True)
+    if "flutter_speed" in results:
+        _print_flutter(results)
+    elif "points unstable" in found:
+        lowest = found["lowest damping (% of critical)"]
+        out.print(f"{found['points unstable']} points unstable; lowest damping {lowest:.3g} %")
+    out.print(results.attrs["reservations"])
+
+
+def _print_flutter(results: xarray.Dataset) -> None:
+    from proprotor.speed import KNOT
+    from proprotor.uncertainty import distribution
+
+    stacked = results[["flutter_speed", "flutter_note"]]
+    if "design" not in stacked.dims:
+        stacked = stacked.stack(design=stacked.flutter_speed.dims)
+    notes = Counter(text for text in stacked.flutter_note.values if text)
+    try:
+        found = distribution(stacked)
+    except InputError:
+        output.console().print("no flutter speed was found")
+    else:
+        shares = zip(found.percentile.values, found.value.values, strict=True)
+        rows = ((f"{share:g}", f"{speed:.2f}", f"{speed / KNOT:.1f}") for share, speed in shares)
+        output.print_table(("% of designs", "flutter speed at most, m/s", "kt"), rows)
+    for text, count in notes.most_common(_REASONS):
+        output.console().print(f"  {count} × {text}", soft_wrap=True)
