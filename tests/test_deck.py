@@ -564,7 +564,7 @@ def test_speeds_in_other_units():
         ("fast", "must be a speed such as"),
         ("300", "needs a unit"),
         ("50:400:5", "needs a unit"),
-        ("50:400 kt", "cannot be read"),
+        ("50:400 kt", "or a range such as"),
         ("300 ft", "must be a speed"),
         ("300 nots", "unknown unit"),
         ("-5 kt", "must not be negative"),
