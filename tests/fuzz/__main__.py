@@ -22,7 +22,7 @@ from tests.fuzz.campaign import KINDS, Verdict, campaign, inputs, make
 
 ROOT = Path(__file__).resolve().parents[2]
 _MEMORY = 4 << 30  # bytes a process may have
-_HANG = 60  # seconds without a verdict after which a process is ended: what holds on to the interpreter
+_HANG = 300  # seconds of the clock without a verdict after which a process is ended: what holds on to the interpreter
 _CHUNK = 2500  # inputs of one process, which the next then follows: what crashes costs no more than these
 _FIRST = 3  # of the same fault are shown
 
@@ -61,7 +61,7 @@ def _share(given: argparse.Namespace) -> int:
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
     begin, end = map(int, given.share.split(":"))
     which = list(inputs(given.inputs))[begin:end]
-    faulthandler.dump_traceback_later(10 * _HANG, exit=True)  # the warm-up imports much
+    faulthandler.dump_traceback_later(2 * _HANG, exit=True)  # the warm-up imports much
     for verdict in campaign(given.seed, which):
         faulthandler.dump_traceback_later(_HANG, exit=True)
         print(json.dumps(verdict), flush=True)

@@ -71,8 +71,8 @@ def judged(kind: str, number: int, seed: int, folder: Path) -> Verdict:
         os.chdir(before)
     if breaches:
         outcome, told = "breach", "\n".join(breaches)
-    elif (left := set(_names(folder))) != set(files):
-        outcome, told = "breach", f"files changed: {sorted(left ^ set(files))}"
+    elif changed := _changed(files, folder):
+        outcome, told = "breach", f"files changed: {changed}"
     return Verdict(kind, number, outcome, told)
 
 
@@ -96,8 +96,11 @@ def _write(files: dict[str, bytes], folder: Path) -> None:
         (folder / name).write_bytes(content)
 
 
-def _names(folder: Path) -> Iterator[str]:
-    return (path.name for path in folder.iterdir() if path.name != _OUTPUT)
+def _changed(files: dict[str, bytes], folder: Path) -> list[str]:
+    """Files that are new, gone or not what they were, outside the output folder."""
+    left = {path.name for path in folder.iterdir()} - {_OUTPUT}
+    rewritten = {name for name in left & set(files) if (folder / name).read_bytes() != files[name]}
+    return sorted(left ^ set(files) | rewritten)
 
 
 @contextlib.contextmanager

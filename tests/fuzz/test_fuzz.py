@@ -5,6 +5,7 @@ import pickle
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from hypothesis import given, settings
@@ -178,10 +179,44 @@ def test_what_becomes_of_an_input_is_told(tmp_path, monkeypatch, outcome):
     assert campaign.judged("bad", 0, SEED, tmp_path).outcome == outcome
 
 
-def test_an_input_that_takes_too_long_is_a_fault(tmp_path, monkeypatch):
+def _works(folder):
+    while True:
+        pass
+
+
+def test_an_input_that_works_too_long_is_a_fault(tmp_path, monkeypatch):
     monkeypatch.setattr(watch, "SECONDS", 0.05)
-    monkeypatch.setitem(campaign.KINDS, "bad", _kind(lambda folder: time.sleep(5)))
-    assert campaign.judged("bad", 0, SEED, tmp_path).outcome == "too slow"
+    monkeypatch.setitem(campaign.KINDS, "bad", _kind(_works))
+    verdict = campaign.judged("bad", 0, SEED, tmp_path)
+    assert verdict.outcome == "too slow" and "0.05 s of the processor" in verdict.told
+
+
+def test_an_input_that_waits_for_ever_is_a_fault(tmp_path, monkeypatch):
+    monkeypatch.setattr(watch, "WAITING", 0.05)
+    monkeypatch.setitem(campaign.KINDS, "bad", _kind(lambda folder: time.sleep(60)))
+    verdict = campaign.judged("bad", 0, SEED, tmp_path)
+    assert verdict.outcome == "too slow" and "0.05 s of waiting" in verdict.told
+
+
+def test_a_busy_machine_makes_no_input_slow(tmp_path, monkeypatch):
+    """Time of the clock in which others work does not count."""
+    monkeypatch.setattr(watch, "SECONDS", 0.05)
+    monkeypatch.setitem(campaign.KINDS, "bad", _kind(lambda folder: time.sleep(0.3)))
+    assert campaign.judged("bad", 0, SEED, tmp_path).outcome == "accepted"
+
+
+@pytest.mark.parametrize("name", ["input", "new"])
+def test_a_file_written_unseen_is_a_breach(tmp_path, monkeypatch, name):
+    """By another thread, which the hook does not watch, as it does not see what C code writes."""
+    with ThreadPoolExecutor(1) as unwatched:
+        unwatched.submit(len, "").result()
+
+        def use(folder):
+            unwatched.submit((folder / name).write_text, "y").result()
+
+        monkeypatch.setitem(campaign.KINDS, "bad", _kind(use))
+        verdict = campaign.judged("bad", 0, SEED, tmp_path)
+    assert verdict == ("bad", 0, "breach", f"files changed: ['{name}']")
 
 
 def test_a_warning_is_a_fault(tmp_path, monkeypatch):
