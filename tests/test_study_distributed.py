@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import proprotor as pp
-from proprotor import sampling
+from proprotor import InputError, sampling
 from proprotor.study import study
 from proprotor.study_workers import on_cluster
 
@@ -66,6 +66,12 @@ def test_a_study_begun_on_a_cluster_may_end_here(client, alone, tmp_path):
     for place in sorted(tmp_path.glob("batch-*"))[::2]:
         place.unlink()
     xr.testing.assert_identical(study(CASE, PLAN, SPEEDS, checkpoint=tmp_path, workers=1), alone)
+
+
+def test_a_cluster_of_other_code_is_refused(client, monkeypatch):
+    monkeypatch.setitem(study.__globals__, "code_fingerprint", lambda: "0" * 64)
+    with pytest.raises(InputError, match="runs other code of proprotor than the study"):
+        study(CASE, PLAN, SPEEDS, client=client)
 
 
 def test_an_error_on_the_cluster_is_raised_here(client):

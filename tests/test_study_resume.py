@@ -1,17 +1,19 @@
 """A study that is killed goes on where it was: nothing lost, nothing computed twice, the same bits."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import proprotor as pp
-from proprotor import sampling, study_workers
+from proprotor import sampling, source_code, study_workers
 from proprotor.checkpoint import Checkpoint
 from proprotor.errors import InputError
 from proprotor.study import study
@@ -128,6 +130,101 @@ def test_batches_of_another_study_are_refused(finished):
         run(finished)
     place.write_text(manifest)
     assert batches(finished) == kept
+
+
+# Code ---------------------------------------------------------------------------------------------
+
+RESUMED = """
+import sys
+from proprotor import InputError, study_batch
+from tests.test_study_resume import run
+
+def computed(self, batch):
+    raise AssertionError("a batch that is there was computed again")
+
+study_batch.Analysis.__call__ = computed
+try:
+    run(sys.argv[1])
+except InputError as error:
+    print(error)
+else:
+    print("resumed")
+"""
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def copied_code(tmp_path):
+    """A folder with copies of both packages."""
+    for package in (ROOT / "src" / "proprotor", ROOT / "generated" / "proprotor_equations"):
+        shutil.copytree(package, tmp_path / "code" / package.name)
+    return tmp_path / "code"
+
+
+def resumed_with(code, folder):
+    """What a study of that code makes of the batches in a folder."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(code), *filter(None, sys.path)])}
+    command = [sys.executable, "-c", RESUMED, str(folder)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    return done.stdout.strip() or done.stderr
+
+
+def test_batches_of_other_code_are_refused(finished, copied_code):
+    kept = batches(finished)
+    with (copied_code / "proprotor_equations" / "pitch.py").open("a") as file:
+        file.write("\n# another way to compute\n")
+    rule = "holds another study (different: code); give another folder, or delete this one"
+    told = resumed_with(copied_code, finished)
+    assert told.startswith("checkpoint = ") and told.endswith(rule) and "\n" not in told
+    assert batches(finished) == kept
+
+
+def test_batches_outlive_a_change_of_what_only_draws(finished, copied_code):
+    with (copied_code / "proprotor" / "plots" / "__init__.py").open("a") as file:
+        file.write("\n# another colour\n")
+    assert resumed_with(copied_code, finished) == "resumed"
+
+
+def test_all_that_computes_is_in_the_fingerprint():
+    names = {name for name, _ in source_code.modules()}
+    loaded = {name.replace(".", "/") for name in sys.modules if name.startswith("proprotor")}
+    left_out = {f"proprotor/{name}" for name in source_code.SHOWING}
+    for name in loaded:
+        if not any(f"{name}/".startswith(f"{folder}/") for folder in left_out):
+            assert {f"{name}.py", f"{name}/__init__.py"} & names, name
+
+
+STUDIES = """
+import sys
+import proprotor as pp
+from proprotor import source_code
+from proprotor.study_batch import QUANTITIES
+
+for name in pp.list_cases():
+    found = pp.study(pp.load_case(name), {"operation.density": [1.0, 1.1]}, [60.0, 70.0], QUANTITIES, workers=1)
+    assert (found.reason == "").all(), name
+print([name for name in sys.modules if name.startswith("proprotor.") and name.split(".")[1] in source_code.SHOWING])
+"""
+
+
+def test_no_study_uses_what_is_left_out_of_the_fingerprint():
+    done = subprocess.run([sys.executable, "-c", STUDIES], capture_output=True, text=True)
+    assert done.stdout == "[]\n", done.stderr
+
+
+def test_workers_of_other_code_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setitem(study.__globals__, "code_fingerprint", lambda: "0" * 64)
+    with pytest.raises(InputError, match=r"^workers = .*: runs other code of proprotor than the study"):
+        run(tmp_path, workers=2)
+    assert not batches(tmp_path)
+
+
+def test_code_that_changed_since_it_was_imported_keeps_no_batches(tmp_path, monkeypatch):
+    monkeypatch.setattr(source_code, "_IMPORTED", 0.0)
+    source_code.code_fingerprint.cache_clear()
+    with pytest.raises(InputError, match=r"^code = .*\.py: was changed after this process had read it"):
+        run(tmp_path / "kept")
+    assert not (tmp_path / "kept").exists()
 
 
 def test_a_study_goes_on_in_the_batches_it_began_with(finished, uninterrupted):

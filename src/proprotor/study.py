@@ -20,6 +20,7 @@ from proprotor.fingerprint import fingerprint
 from proprotor.modes import held_coordinates
 from proprotor.options import parse_options
 from proprotor.sampling import AIRSPEED, Designs, Plan, as_plan
+from proprotor.source_code import code_fingerprint
 from proprotor.speed import in_metres_per_second
 from proprotor.study_batch import (
     ALONG_AIRSPEEDS,
@@ -81,7 +82,7 @@ def study(
         A cluster that analyses the batches in place of this computer.
     checkpoint : path, optional
         A folder that keeps each finished batch. The same call goes on where a killed one was, with the same results
-        to the last bit.
+        to the last bit, as long as the code is the same.
     progress : bool, optional
         A progress bar on the error stream; by default on a terminal.
     batch : int, optional
@@ -100,9 +101,12 @@ def study(
     Raises
     ------
     InputError
-        For an unknown input, quantity or option, a value with a wrong unit, or a checkpoint of another study.
+        For an unknown input, quantity or option, a value with a wrong unit, a checkpoint of another study or of other
+        code, or a cluster that runs other code.
     """
-    work = _Study.of(case, inputs, airspeed, quantities, tolerance, options)
+    # What is kept, or comes from other computers, must all be of one code.
+    code = "" if checkpoint is None and client is None else code_fingerprint()
+    work = _Study.of(case, inputs, airspeed, quantities, tolerance, options, code)
     if batch is not None and (not isinstance(batch, int) or batch < 1):
         raise InputError("batch", batch, "must be a whole number above zero")
     if workers is not None and (not isinstance(workers, int) or workers < 1):
@@ -137,6 +141,7 @@ class _Study:
         quantities: Any,
         tolerance: Any,
         options: Mapping[str, Any],
+        code: str,
     ) -> _Study:
         quantities = _known_quantities(quantities)
         parse_options(case.model_options(options))
@@ -158,7 +163,7 @@ class _Study:
         tried = designs.values[AIRSPEED] if speeds is None else np.atleast_1d(speeds)
         dofs, states = _coordinates(case, tried, options)
         own_tolerance = {} if tolerance is None else {"tolerance": _positive("tolerance", tolerance)}
-        analysis = Analysis(case, quantities, options, dofs, states, **own_tolerance)
+        analysis = Analysis(case, quantities, options, dofs, states, code=code, **own_tolerance)
         line = None if speeds is None else np.atleast_1d(speeds)
         return cls(analysis, designs, line, speeds is not None and not speeds.ndim)
 
@@ -180,6 +185,7 @@ class _Study:
             "quantities": analysis.quantities,
             "options": dict(analysis.options),
             "tolerance": analysis.tolerance,
+            "code": analysis.code,
             "versions": [version(package) for package in ("proprotor", "numpy", "scipy")],
         }
         return {name: fingerprint(part) for name, part in parts.items()}

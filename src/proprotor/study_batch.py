@@ -24,6 +24,7 @@ from proprotor.modes import (
     state_matrix,
 )
 from proprotor.sampling import AIRSPEED
+from proprotor.source_code import check_code
 from proprotor.study_modes import follow_designs
 
 if TYPE_CHECKING:
@@ -168,6 +169,8 @@ class Analysis:
         Its number of eigenvalues.
     tolerance : float
         On a flutter speed, m/s.
+    code : str
+        Fingerprint of the code that must analyse; empty where any may.
     """
 
     case: Case
@@ -176,9 +179,18 @@ class Analysis:
     dofs: tuple[str, ...] = ()
     states: int = 0
     tolerance: float = flutter_scan.TOLERANCE
+    code: str = ""
 
     def __call__(self, batch: Batch) -> dict[str, Array]:
-        """All variables of a batch: (designs, speeds, …) those of points, (designs,) those of designs."""
+        """All variables of a batch: (designs, speeds, …) those of points, (designs,) those of designs.
+
+        Raises
+        ------
+        InputError
+            When this process runs other code than it should.
+        """
+        if self.code:
+            check_code(self.code)
         found = self._blank(batch.shape)
         every = np.arange(batch.shape[0]), np.arange(batch.shape[1])
         try:
