@@ -8,7 +8,7 @@ demo: .venv/installed  ## Set up .venv, then analyse the XV-15 from 50 to 400 kt
 test: .venv/installed  ## Run the tests
 	$(BIN)/python -m pytest --ignore=tests/verify --numprocesses auto --maxprocesses 8
 
-verify: .venv/verify-installed  ## Check the equations: generated against derived, inertia against an independent engine
+verify: .venv/verify-installed  ## Check the equations against derivation and an independent engine; build and check packages and site
 	$(BIN)/python -m derive --check
 	$(BIN)/python -m pytest tests/verify
 
@@ -17,8 +17,8 @@ regenerate-equations: .venv/installed  ## Derive the equations again, write gene
 	$(BIN)/python -m derive.index
 
 lint: .venv/installed  ## Check the style of the source
-	$(BIN)/ruff check src derive tests benchmarks notebooks
-	$(BIN)/ruff format --check src derive tests benchmarks notebooks
+	$(BIN)/ruff check src derive tests benchmarks notebooks docs
+	$(BIN)/ruff format --check src derive tests benchmarks notebooks docs
 
 notebooks: .venv/installed  ## Run the audit's notebooks and render them into docs/notebooks/
 	$(BIN)/python -m derive.notebooks
@@ -35,6 +35,12 @@ audit: .venv/installed  ## Judge every equation of the paper against the derivat
 
 gallery: .venv/installed  ## Draw the pictures of docs/plots.md
 	$(BIN)/python -m benchmarks.gallery
+
+docs: .venv/docs-installed  ## Build the documentation site, docs/_build/html/index.html
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+
+glossary: .venv/installed  ## Write docs/symbols.md, every symbol of the derivation
+	$(BIN)/python -m derive.glossary
 
 decks: .venv/installed  ## Write docs/decks.md, every field of a deck
 	$(BIN)/proprotor describe --markdown > docs/decks.md
@@ -56,12 +62,12 @@ golden: .venv/installed  ## Accept the modes of every combination of switches as
 	$(BIN)/python -m tests.accept_golden
 
 clean:  ## Remove all that make has made
-	rm -rf .venv .hypothesis .pytest_cache .ruff_cache build dist damping.png figures
+	rm -rf .venv .hypothesis .pytest_cache .ruff_cache build dist damping.png figures docs/_build docs/reference/api
 
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation gallery decks types mutate fuzz peers golden clean help
+.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
@@ -70,6 +76,10 @@ help:  ## List the targets
 	$(BIN)/python -m pip install --editable . --group dev
 	touch $@
 
-.venv/verify-installed: .venv/installed
+.venv/docs-installed: .venv/installed
+	$(BIN)/python -m pip install --group docs
+	touch $@
+
+.venv/verify-installed: .venv/docs-installed
 	$(BIN)/python -m pip install --group verify
 	touch $@
