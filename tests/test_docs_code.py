@@ -5,6 +5,7 @@ import re
 import pytest
 from PIL import Image
 
+from proprotor.command_line import main
 from tests import documentation
 from tests.documentation import DOCS, NOT_RUN, Block, Runner, blocks, compare, name_of, pages
 
@@ -44,9 +45,11 @@ def test_every_picture_of_the_gallery_is_made_by_the_code_of_its_page():
 
 
 def test_what_is_not_run_is_still_somewhere():
-    """A name in the list that no page needs any more has to go."""
+    """A name in the list that no page needs any more has to go, unless it is of a command that is not there."""
     firsts = [line.strip() for page in pages() for block in blocks(page) for line in block.text.splitlines()]
     for start in NOT_RUN:
+        if start.startswith("proprotor ") and start.split()[1] not in main.commands:
+            continue
         assert any(line.startswith(start) for line in firsts), start
 
 
