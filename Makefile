@@ -12,6 +12,9 @@ verify: .venv/verify-installed  ## Check the equations against derivation and an
 	$(BIN)/python -m derive --check
 	$(BIN)/python -m pytest tests/verify
 
+verify-versions: .venv/installed  ## Derive the equations under other hash seeds, another Python and another SymPy
+	$(BIN)/python -m tests.verify.determinism
+
 regenerate-equations: .venv/installed  ## Derive the equations again, write generated/ and the index of equations
 	$(BIN)/python -m derive
 	$(BIN)/python -m derive.index
@@ -62,12 +65,12 @@ golden: .venv/installed  ## Accept the modes of every combination of switches as
 	$(BIN)/python -m tests.accept_golden
 
 clean:  ## Remove all that make has made
-	rm -rf .venv .hypothesis .pytest_cache .ruff_cache build dist damping.png figures docs/_build docs/reference/api
+	rm -rf .venv .venv-verify .hypothesis .pytest_cache .ruff_cache build dist damping.png figures docs/_build docs/reference/api
 
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types mutate fuzz peers golden clean help
+.PHONY: demo test verify verify-versions regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

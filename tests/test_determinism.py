@@ -1,5 +1,7 @@
 """The comparison of generated equations between versions finds what differs. `make verify-versions` uses it."""
 
+from pathlib import Path
+
 import pytest
 
 from tests.verify import determinism
@@ -34,6 +36,36 @@ def test_a_part_in_a_million_million_is_found(accepted, path, old, new):
     _, worst, where = determinism.compared(accepted, other)
     assert where.startswith(path.removesuffix(".py"))
     assert worst > 5 * determinism.TOLERANCE
+
+
+def test_a_machine_without_a_second_python_is_told_so_in_one_line(accepted, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(determinism, "derived", lambda interpreter, hash_seed=None: accepted)
+    monkeypatch.setattr(determinism, "environment", lambda *_: Path("python"))
+    monkeypatch.setattr(determinism, "_installed", lambda *_: "1.99")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert determinism.main([]) == 0
+    told = capsys.readouterr().out.splitlines()
+    assert sum("byte for byte" in line for line in told) == len(determinism.HASH_SEEDS) == len(told) - 2
+    assert told[-1].startswith("A second Python: NOT shown, for 3.")
+
+
+def test_interpreters_kept_by_pyenv_and_uv_are_found(tmp_path, monkeypatch):
+    numbers = {}
+    for place, number in (
+        (".pyenv/versions/3.12.1/bin/python", (3, 12, 1)),
+        (".local/share/uv/python/cpython-3.13.1-linux-x86_64-gnu/bin/python3", (3, 13, 1)),
+        (".pyenv/versions/3.10.2/bin/python", (3, 10, 2)),
+    ):
+        path = tmp_path / place
+        path.parent.mkdir(parents=True)
+        path.touch()
+        numbers[str(path)] = number
+    monkeypatch.setattr(determinism, "_version_of", numbers.get)
+    monkeypatch.setattr(determinism.sys, "version_info", (3, 11, 7))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert sorted(map(numbers.get, determinism.other_pythons())) == [(3, 12, 1), (3, 13, 1)]
 
 
 def test_another_text_is_shown_as_a_difference(accepted):

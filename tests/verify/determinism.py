@@ -1,13 +1,13 @@
-"""The generated equations under another Python and another SymPy.
+"""The generated equations under other hash seeds, another Python and another SymPy.
 
     python -m tests.verify.determinism            (make verify-versions)
 
-Under another version of Python, with the packages of the group `derive` as they are pinned, the derivation must write
-every file of `generated/` byte for byte. Under another version of SymPy, the newest or, where that is the pinned one,
-the newest before it, the text may differ; every function must give the same numbers.
+Under other hash seeds, and under another version of Python with the packages of the group `derive` as they are pinned,
+the derivation must write every file of `generated/` byte for byte. Under another version of SymPy, the newest or, where
+that is the pinned one, the newest before it, the text may differ; every function must give the same numbers.
 
-Environments are made once, in `.venv-verify`, for what is found: Pythons on the path, of pyenv, or named by
-`--python`. What is not there is told and not counted as shown.
+Environments are made once, in `.venv-verify`, for what is found: Pythons on the path, of pyenv or uv, or named by
+`--python`. Nothing is fetched but packages; a machine without a second Python is told so in the last line.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import argparse
 import difflib
 import inspect
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -34,7 +35,11 @@ ROOT = Path(__file__).resolve().parents[2]
 GENERATED = ROOT / "generated" / "proprotor_equations"
 ENVIRONMENTS = ROOT / ".venv-verify"
 OLDEST = (3, 11)
+HASH_SEEDS = (0, 1, 271828)
 TOLERANCE = 1e-13  # of each entry, cancellation allowed for as `compared` says
+
+# Where versions of Python are kept that are not on the path: those of pyenv and of uv, below the home folder.
+_KEPT = (".pyenv/versions/3.*/bin/python", ".local/share/uv/python/cpython-3.*/bin/python3")
 
 _DERIVE = (
     "import json, sys; from derive import emit; json.dump(emit.derive_files(lambda line: None), sys.stdout)"
@@ -51,26 +56,48 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--python", action="append", help="another Python to derive with; may be repeated")
     given = parser.parse_args(arguments)
     accepted = {path: (GENERATED / path).read_text(encoding="utf-8") for path in generated_files()}
-    shown = [_python(python, accepted) for python in given.python or other_pythons()]
-    if not shown:
-        print(f"no other Python of {'.'.join(map(str, OLDEST))} or later found: name one by --python")
-    return int(not all([*shown, _sympy(accepted)]))
+    pythons = given.python or other_pythons()
+    shown = [_hash_seeds(accepted), *(_python(python, accepted) for python in pythons), _sympy(accepted)]
+    if not pythons:
+        print(NO_PYTHON)
+    return int(not all(shown))
 
 
 def generated_files() -> list[str]:
     return sorted(path.relative_to(GENERATED).as_posix() for path in GENERATED.rglob("*.py"))
 
 
-# Another Python -----------------------------------------------------------------------------------
+NO_PYTHON = (
+    f"A second Python: NOT shown, for {'.'.join(map(str, sys.version_info[:2]))} alone is on the path, of pyenv or of "
+    f"uv; install {'.'.join(map(str, OLDEST))} or later, or name one by --python"
+)
+
+
+# Hash seeds and another Python --------------------------------------------------------------------
+
+
+def _hash_seeds(accepted: Files) -> bool:
+    """Whether this Python writes the same files under each hash seed."""
+    python = Path(sys.executable)
+    return all(_told(derived(python, seed), accepted, f"Hash seed {seed}") for seed in HASH_SEEDS)
+
+
+def _told(files: Files, accepted: Files, under: str) -> bool:
+    """Whether the files are those that are accepted; tell."""
+    for line in differences(accepted, files):
+        print(line)
+    same = files == accepted
+    print(f"{under}: {len(files)} files, {'byte for byte' if same else 'NOT the same'}", flush=True)
+    return same
 
 
 def other_pythons() -> list[str]:
     """One interpreter of each minor version that is not this one's."""
     names = [f"python3.{minor}" for minor in range(OLDEST[1], 30)]
     on_path = [found for name in names if (found := shutil.which(name))]
-    pyenv = sorted(map(str, Path.home().glob(".pyenv/versions/3.*/bin/python")))
+    kept = sorted(str(path) for places in _KEPT for path in Path.home().glob(places))
     found: dict[tuple[int, int], str] = {}
-    for python in (*on_path, *pyenv):
+    for python in (*on_path, *kept):
         number = _version_of(python)
         if number is not None and number[:2] >= OLDEST and number[:2] != sys.version_info[:2]:
             found.setdefault(number[:2], python)
@@ -95,12 +122,7 @@ def _python(python: str, accepted: Files) -> bool:
         return False
     name = "python-" + ".".join(map(str, number))
     files = derived(environment(name, python, requirements()))
-    for line in differences(accepted, files):
-        print(line)
-    same = files == accepted
-    told = "byte for byte" if same else "NOT the same"
-    print(f"Python {'.'.join(map(str, number))}, SymPy {version('sympy')}: {len(files)} files, {told}")
-    return same
+    return _told(files, accepted, f"Python {'.'.join(map(str, number))}, SymPy {version('sympy')}")
 
 
 def differences(accepted: Files, files: Files) -> Iterator[str]:
@@ -237,9 +259,13 @@ def _installed(interpreter: Path, package: str) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
-def derived(interpreter: Path) -> Files:
-    """All generated files as this interpreter derives them."""
-    done = subprocess.run([interpreter, "-c", _DERIVE], cwd=ROOT, capture_output=True, text=True)
+def derived(interpreter: Path, hash_seed: int | None = None) -> Files:
+    """All generated files as this interpreter derives them; its hash seed is a random one where none is given."""
+    seed = "random" if hash_seed is None else str(hash_seed)
+    environment = os.environ | {"PYTHONHASHSEED": seed}
+    done = subprocess.run(
+        [interpreter, "-c", _DERIVE], cwd=ROOT, env=environment, capture_output=True, text=True
+    )
     if done.returncode:
         raise SystemExit(f"{interpreter}: the derivation failed\n{done.stderr[-4000:]}")
     return json.loads(done.stdout)
