@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import Phase, assume, given, settings
+from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
@@ -87,6 +88,28 @@ def test_no_airspeed_is_the_limit_of_low_airspeeds(kind, pitch):
     assert not windmilling.trim.converged and windmilling.trim.reason
 
 
+def assert_numbers_or_a_reason(model):
+    """A point has its matrices and modes, or says why not."""
+    converged = bool(model.trim.converged)
+    assert converged == (model.trim.reason == "")
+    assert all(np.isfinite(getattr(model, name)).all() == converged for name in "MCK")
+    assume(converged)
+    assert np.isfinite(np.linalg.eigvals(state_matrix(model))).all()
+
+
+@any_rotor
+@given(
+    flights(hinges="off centre"),
+    seeds,
+    st.sampled_from(["full", "lift-slope", "none"]),
+    st.sampled_from(["dynamic", "coupling", "rigid"]),
+)
+def test_any_rotor_on_any_support_at_no_airspeed(flight, seed, airloads, pitch):
+    operation = replace(flight.operation, trim={"collective": 0.05})
+    flight = replace(flight, operation=operation, airspeed=0.0)
+    assert_numbers_or_a_reason(flight.on(random_support(flight, seed), airloads=airloads, pitch=pitch))
+
+
 # Stiff and soft -----------------------------------------------------------------------------------
 
 STIFF = {
@@ -135,6 +158,20 @@ def test_a_spring_may_be_as_stiff_as_can_be(name, stiffness):
     for one in (model, turning):
         assert all(np.isfinite(getattr(one, part)).all() == bool(one.trim.converged) for part in "MCK")
     assert turning.trim.converged or stiffness > 1e9
+
+
+@any_rotor
+@given(
+    flights(hinges="off centre"),
+    seeds,
+    st.sampled_from(sorted(STIFF)),
+    st.sampled_from([1e-20, 1e-9, 1e-4, 1e4, 1e8, 1e30]),
+)
+def test_any_spring_of_any_rotor_may_be_very_stiff_or_very_soft(flight, seed, name, per_rev_squared):
+    field, inertia = STIFF[name]
+    stiffness = per_rev_squared * getattr(flight.rotor, inertia) * flight.rotor_speed**2
+    model = flight.with_rotor(**{field: stiffness}).on(random_support(flight, seed))
+    assert_numbers_or_a_reason(model)
 
 
 @pytest.mark.parametrize("name", ["flap", "lag", "gimbal"])
