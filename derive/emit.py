@@ -143,7 +143,7 @@ def describe(function: Function) -> dict[str, Any]:
         "entries": printed_entries(function),
         "blade_matrices": function.blade_matrices,
         "product": print_code(function.product) if function.product is not None else "",
-        "shape": (len(function.rows), len(function.columns)),
+        "shape": getattr(function.product, "shape", (len(function.rows), len(function.columns))),
     }
 
 

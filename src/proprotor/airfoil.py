@@ -68,9 +68,9 @@ class Airfoil:
     zero_lift_angle : float
         Angle of attack without lift, rad.
     drag : float
-        c_d, not negative.
+        c_d, dimensionless, not negative.
     moment : float
-        c_m about the reference line, nose up.
+        c_m about the reference line, nose up, dimensionless.
 
     Raises
     ------
@@ -95,7 +95,20 @@ class Airfoil:
                 raise InputError(name, getattr(self, name), "must not be negative")
 
     def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
-        """Linear lift, constant drag and moment; shapes as `alpha`."""
+        """Linear lift, constant drag and moment.
+
+        Parameters
+        ----------
+        alpha : array (...)
+            Angle of attack, rad.
+        mach : array (...)
+            Mach number of the section, dimensionless.
+
+        Returns
+        -------
+        SectionCoefficients
+            Coefficients, dimensionless, and their derivatives with angle (1/rad) and Mach number; shapes as `alpha`.
+        """
         return SectionCoefficients(
             lift_coefficient=self.lift_slope * (alpha - self.zero_lift_angle),
             lift_coefficient_alpha=self.lift_slope,
@@ -109,7 +122,17 @@ class Airfoil:
         )
 
     def flattened(self, shape: tuple[int, ...]) -> Airfoil:
-        """Arrays of designs broadcast to `shape` and flattened, with a last axis for the stations."""
+        """Arrays of designs broadcast to `shape` and flattened, with a last axis for the stations.
+
+        Parameters
+        ----------
+        shape : tuple of int
+            Of the batch.
+
+        Returns
+        -------
+        Airfoil
+        """
         arrays = {entry.name: np.asarray(getattr(self, entry.name)) for entry in fields(self)}
         many: dict[str, Any] = {
             name: np.broadcast_to(value, shape).reshape(-1, 1) for name, value in arrays.items() if value.ndim
@@ -117,13 +140,36 @@ class Airfoil:
         return replace(self, **many)
 
     def take(self, rows: Array | slice) -> Airfoil:
-        """A flattened airfoil at some of the points."""
+        """A flattened airfoil at some of the points.
+
+        Parameters
+        ----------
+        rows : slice, or array of int or bool
+            Places in the batch.
+
+        Returns
+        -------
+        Airfoil
+        """
         values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         many = {name: value[rows] for name, value in values.items() if np.ndim(value)}
         return replace(self, **many) if many else self
 
     def warnings(self, alpha: Array, mach: Array) -> dict[str, Array]:
-        """Where linear lift or the Prandtl-Glauert factor is not to be trusted."""
+        """Where linear lift or the Prandtl-Glauert factor is not to be trusted.
+
+        Parameters
+        ----------
+        alpha : array (...)
+            Angle of attack, rad.
+        mach : array (...)
+            Mach number of the section, dimensionless.
+
+        Returns
+        -------
+        dict of str to array of bool
+            Masks of the broadcast shape, by reason.
+        """
         return {
             f"angle of attack beyond {np.degrees(LINEAR_ALPHA):.0f} deg": np.abs(alpha) > LINEAR_ALPHA,
             f"Mach number beyond {LINEAR_MACH:g}": np.real(mach) > LINEAR_MACH,

@@ -65,6 +65,15 @@ class AirfoilTable:
     def from_c81(cls, path: str | os.PathLike[str]) -> AirfoilTable:
         """The airfoil of a C81 file; its name is the file's title.
 
+        Parameters
+        ----------
+        path : str or path
+            A C81 file.
+
+        Returns
+        -------
+        AirfoilTable
+
         Raises
         ------
         InputError
@@ -79,9 +88,22 @@ class AirfoilTable:
         return any(len(surface.mach) > 1 for surface in self._surfaces.values())
 
     def coefficients(self, alpha: ArrayLike, mach: ArrayLike) -> SectionCoefficients:
-        """Coefficients and derivatives at angles of attack (rad) and Mach numbers that broadcast.
+        """Coefficients and derivatives by smooth interpolation.
 
         Complex arguments give complex coefficients, for derivatives by a complex step.
+
+        Parameters
+        ----------
+        alpha : array_like (...)
+            Angle of attack, rad.
+        mach : array_like (...)
+            Mach number of the section, dimensionless.
+
+        Returns
+        -------
+        SectionCoefficients
+            Coefficients, dimensionless, and their derivatives with angle (1/rad) and Mach number, of the
+            broadcast shape.
         """
         alpha, mach = np.broadcast_arrays(alpha, mach)
         with np.errstate(invalid="ignore"):  # not a number in, not a number out
@@ -89,10 +111,22 @@ class AirfoilTable:
         return SectionCoefficients(*(number for part in parts for number in part))
 
     def warnings(self, alpha: ArrayLike, mach: ArrayLike) -> dict[str, Array]:
-        """Where the coefficients are not to be trusted, and why: masks of the broadcast shape by reason.
+        """Where the coefficients are not to be trusted, and why.
 
         Stall begins at the first maximum of the lift curve above the angle nearest zero, and at the first
         minimum below it; between the columns of the table these angles are linear in Mach number.
+
+        Parameters
+        ----------
+        alpha : array_like (...)
+            Angle of attack, rad.
+        mach : array_like (...)
+            Mach number of the section, dimensionless.
+
+        Returns
+        -------
+        dict of str to array of bool
+            Masks of the broadcast shape, by reason.
         """
         alpha, mach = np.broadcast_arrays(alpha, mach)
         angle = np.real(self._surfaces["lift"].turned(alpha))

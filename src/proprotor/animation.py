@@ -42,7 +42,7 @@ def animate_mode(
     frames : int
         Of one cycle, at least 4.
     frames_per_second : float
-        How fast they are shown; the title tells the true frequency.
+        Frames in 1 s; the title tells the true frequency.
     dpi : int
         Dots per inch of a picture of 8 by 4.4 inches.
 
@@ -69,7 +69,16 @@ def animate_mode(
 
 
 def title_of(motion: ModeMotion) -> str:
-    """The mode with airspeed, frequency and damping."""
+    """The mode with airspeed, frequency and damping.
+
+    Parameters
+    ----------
+    motion : ModeMotion
+
+    Returns
+    -------
+    str
+    """
     value = motion.eigenvalue
     per_rev = f", {value.imag / motion.rotor_speed:.2f}/rev" if motion.rotor_speed else ""
     damping = -100 * value.real / abs(value)

@@ -28,7 +28,13 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
         Six hub coordinates, then any others: `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere.
     support : NormalModes
     rigid_mass : array_like, shape (..., 6, 6)
-        M_hub, such as `rigid_hub_mass(rotor)`; only asked for where the support's masses include the rotor.
+        M_hub in SI (kg, kg m, kg m²), such as `rigid_hub_mass(rotor)`; only asked for where the support's masses
+        include the rotor.
+
+    Returns
+    -------
+    LinearModel
+        With the coordinates of the support first, SI.
 
     Raises
     ------

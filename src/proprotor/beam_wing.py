@@ -231,6 +231,10 @@ def beam_wing(
         kg; the modes, those kept and those damped, are the ones with this mass at the hub. It does not stay in
         the matrices: the rotor model brings it.
 
+    Returns
+    -------
+    NormalModes
+
     Raises
     ------
     InputError

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.options import parse_options
 from proprotor.stability_map import AIRSPEED, largest_growth
 
 if TYPE_CHECKING:
@@ -22,7 +23,14 @@ _DIVERGES = 1e-6  # of the rotor speed: a root this slow is real
 class BoundaryLine(NamedTuple):
     """A line along which one mode is neutral.
 
-    mode : its name; x, y (vertices,) in SI, as the axes of the map; frequency (vertices,) of the mode, rad/s.
+    Parameters
+    ----------
+    mode : str
+        Its name.
+    x, y : array (vertices,)
+        In SI, as the axes of the map.
+    frequency : array (vertices,)
+        Of the mode, rad/s.
     """
 
     mode: str
@@ -44,13 +52,21 @@ def boundary_lines(
     case : Case
     found : xarray.Dataset
         Of `Case.stability_map`.
-    airspeed, **options
-        As they were given for the map.
+    airspeed : float in m/s, text such as "300 kt", or pint quantity, optional
+        As it was given for the map.
+    **options
+        As they were given for the map, see `proprotor.options.Options`.
 
     Returns
     -------
     list of BoundaryLine
+
+    Raises
+    ------
+    InputError
+        For an unknown option.
     """
+    parse_options(case.model_options(options))  # which tells an unknown one, also where there is no line
     names = [str(name) for name in found.axis.values]
     lines = []
     for vertices in _parted(found.boundary.values):

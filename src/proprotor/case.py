@@ -89,9 +89,21 @@ class Case:
 
         Parameters
         ----------
-        airspeed : float, array (...) in m/s, text such as "250 kt", or pint quantity
+        airspeed : float, array (...) in m/s, text such as "250 kt", pint quantity or xarray.DataArray
+            One speed, or a batch of any shape.
         **options
             See `proprotor.options.Options`.
+
+        Returns
+        -------
+        LinearModel
+            M, C, K (..., n, n), SI, on the coordinates of support and rotor; failed points are NaN, with their
+            reason in `trim`.
+
+        Raises
+        ------
+        InputError
+            For an unknown option, an airspeed that is none, or a rotor that the options do not allow.
         """
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
@@ -119,13 +131,48 @@ class Case:
         return found
 
     def vary(self, values: Mapping[str, Any]) -> Case:
-        """The case with other numbers in its deck, and all that follows from them: see `proprotor.design.vary`."""
+        """The case with other numbers in its deck, and all that follows from them: see `proprotor.design.vary`.
+
+        Parameters
+        ----------
+        values : mapping of str to float, array, text, pint quantity or xarray.DataArray
+            By path in the deck (`proprotor.design_inputs`): SI, or with their unit.
+
+        Returns
+        -------
+        Case
+
+        Raises
+        ------
+        InputError
+            For an unknown path, with the nearest known one, or a value that is not physical.
+        """
         from proprotor.design import vary
 
         return vary(self, values)
 
     def sweep(self, airspeeds: Any, vary: Mapping[str, Any] | None = None, **options: Any) -> xarray.Dataset:
-        """Modes along airspeeds, or along one input, tracked and named: see `proprotor.sweep.sweep_case`."""
+        """Modes along airspeeds, or along one input, tracked and named: see `proprotor.sweep.sweep_case`.
+
+        Parameters
+        ----------
+        airspeeds : array (points,) in m/s, text such as "50:400:5kt", pint quantity or xarray.DataArray
+            One airspeed with `vary`.
+        vary : mapping of str to array (points,), optional
+            One input by its path in the deck, and its values in SI.
+        **options
+            See `proprotor.options.Options`.
+
+        Returns
+        -------
+        xarray.Dataset
+            See `proprotor.sweep.sweep`.
+
+        Raises
+        ------
+        InputError
+            For an unknown option or input, airspeeds that do not form a line, or more than one input.
+        """
         from proprotor.sweep import sweep_case
 
         return sweep_case(self, airspeeds, vary, **options)
@@ -138,13 +185,54 @@ class Case:
         level: float = 0.0,
         **options: Any,
     ) -> Crossings:
-        """All crossings of a damping level along airspeeds, or one input: see `proprotor.flutter.boundaries`."""
+        """All crossings of a damping level along airspeeds, or one input: see `proprotor.flutter.boundaries`.
+
+        Parameters
+        ----------
+        airspeeds : array (points,) in m/s, text such as "50:400:5kt", pint quantity or xarray.DataArray, optional
+            The scan; one airspeed with `vary`.
+        vary : mapping of str to array (points,), optional
+            One input by its path in the deck, and the values of the scan in SI.
+        level : float
+            Damping ratio that counts as the boundary.
+        **options
+            See `proprotor.options.Options`.
+
+        Returns
+        -------
+        Crossings
+            By position, m/s or in SI units of the input.
+
+        Raises
+        ------
+        InputError
+            As `sweep`.
+        """
         from proprotor.flutter import boundaries
 
         return boundaries(self, airspeeds, vary, level=level, **options)
 
     def flutter_point(self, airspeeds: Any = None, *, level: float = 0.0, **options: Any) -> FlutterPoint:
-        """The lowest airspeed at which a mode becomes unstable: see `proprotor.flutter.flutter_point`."""
+        """The lowest airspeed at which a mode becomes unstable: see `proprotor.flutter.flutter_point`.
+
+        Parameters
+        ----------
+        airspeeds : array (points,) in m/s, text such as "50:400:5kt", pint quantity or xarray.DataArray, optional
+            The scan; 0.2 to 1.2 of the tip speed by default.
+        level : float
+            Damping ratio that counts as the boundary: 0.03 for a margin of 3 % of critical.
+        **options
+            See `proprotor.options.Options`.
+
+        Returns
+        -------
+        FlutterPoint
+
+        Raises
+        ------
+        InputError
+            As `sweep`.
+        """
         from proprotor.flutter import flutter_point
 
         return flutter_point(self, airspeeds, level=level, **options)
@@ -152,19 +240,75 @@ class Case:
     def sensitivity(
         self, of: str = "flutter_speed", wrt: Sequence[str] | None = None, **options: Any
     ) -> xarray.Dataset:
-        """Exact derivatives by inputs of the deck: see `proprotor.sensitivity.sensitivity`."""
+        """Exact derivatives by inputs of the deck: see `proprotor.sensitivity.sensitivity`.
+
+        Parameters
+        ----------
+        of : "flutter_speed", "damping" or "eigenvalue"
+        wrt : sequence of str, optional
+            Paths of inputs; all by default.
+        **options
+            airspeed, mode and level of `proprotor.sensitivity.sensitivity`, and those of `proprotor.options.Options`.
+
+        Returns
+        -------
+        xarray.Dataset
+            derivative (input,) or (input, mode), SI units per SI unit of the input.
+
+        Raises
+        ------
+        InputError
+            For an unknown quantity, input, mode or option, or where nothing becomes unstable.
+        """
         from proprotor.sensitivity import sensitivity
 
         return sensitivity(self, of, wrt, **options)
 
     def attribution(self, airspeed: Any, mode: str | None = None, **options: Any) -> xarray.Dataset:
-        """What drives and what damps each mode, by physical origin: see `proprotor.attribution.attribution`."""
+        """What drives and what damps each mode, by physical origin: see `proprotor.attribution.attribution`.
+
+        Parameters
+        ----------
+        airspeed : float in m/s, text such as "300 kt", pint quantity or xarray.DataArray
+        mode : str, optional
+            One mode by name; all by default.
+        **options
+            See `proprotor.options.Options`.
+
+        Returns
+        -------
+        xarray.Dataset
+            contribution and growth (origin, mode), rad/s.
+
+        Raises
+        ------
+        InputError
+            For an airspeed that is not one, or that cannot be analysed, and an unknown mode.
+        """
         from proprotor.attribution import attribution
 
         return attribution(self, airspeed, mode, **options)
 
     def stability_map(self, axes: Mapping[str, Any], **options: Any) -> xarray.Dataset:
-        """Where in the plane of two inputs the case is stable: see `proprotor.stability_map.stability_map`."""
+        """Where in the plane of two inputs the case is stable: see `proprotor.stability_map.stability_map`.
+
+        Parameters
+        ----------
+        axes : mapping of str to array
+            Two inputs by path, or "airspeed", and their rising values, in SI.
+        **options
+            airspeed and level of `proprotor.stability_map.stability_map`, and those of `proprotor.options.Options`.
+
+        Returns
+        -------
+        xarray.Dataset
+            growth (y, x), 1/s, positive where a mode is beyond the level; boundary (vertex, axis), the line between.
+
+        Raises
+        ------
+        InputError
+            For axes that are not two, values that do not rise, an unknown input, or an airspeed that is missing.
+        """
         from proprotor.stability_map import stability_map
 
         return stability_map(self, axes, **options)
@@ -179,6 +323,10 @@ def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] 
         A bundled deck (`list_cases`) or a TOML file; `proprotor describe` tells its fields.
     settings : mapping of str to str, optional
         Fields to set first, as text: ``{"rotor.precone": "1.5 deg"}``. See `proprotor.deck_settings`.
+
+    Returns
+    -------
+    Case
 
     Raises
     ------

@@ -47,7 +47,13 @@ _LARGEST = 1_000_000  # bytes
 
 
 def list_cases() -> tuple[str, ...]:
-    """Names of the bundled decks, for `load_case`."""
+    """Names of the bundled decks, for `load_case`.
+
+    Returns
+    -------
+    tuple of str
+        In alphabetical order.
+    """
     return tuple(sorted(_bundled()))
 
 

@@ -26,6 +26,15 @@ def design_inputs(case: Case) -> dict[str, Datum]:
     ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. Distributions along the blade, blade
     frequencies, files and what follows from other numbers are left out.
 
+    Parameters
+    ----------
+    case : Case
+        Made from a deck.
+
+    Returns
+    -------
+    dict of str to Datum
+
     Raises
     ------
     InputError

@@ -13,6 +13,8 @@ from proprotor.errors import InputError
 class DriveTrain:
     """Inertia, damping and shaft stiffness to an end that turns at constant speed, all referred to the rotor's speed.
 
+    Any of them may be an array that broadcasts with the airspeeds, for many designs at once.
+
     Parameters
     ----------
     drive_inertia : float
@@ -21,8 +23,6 @@ class DriveTrain:
         Torque per change of rotor speed, N m s/rad.
     shaft_stiffness : float
         Torque per azimuth, N m/rad; 0 leaves the rotor free to find its speed.
-
-    Any of them may be an array that broadcasts with the airspeeds, for many designs at once.
 
     Raises
     ------

@@ -37,7 +37,17 @@ class InputError(ValueError):
         return "\n".join([f"{_on_one_line(self.field)}{shown}: {self.rule}", *map(str, self.others)])
 
     def within(self, path: str) -> InputError:
-        """The same error, with the field named from further outside."""
+        """The same error, with the field named from further outside.
+
+        Parameters
+        ----------
+        path : str
+            Of the section, put before the field.
+
+        Returns
+        -------
+        InputError
+        """
         return InputError(".".join(filter(None, (path, self.field))), self.value, self.rule, self.others)
 
 

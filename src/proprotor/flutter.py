@@ -51,11 +51,11 @@ class Boundary:
     rate : float
         dG/dposition, 1/s per unit of the position: the growth Re λ + ζ0 |λ| with ζ0 the level.
     eigenvalue_rate : complex
-        dλ/dposition.
+        dλ/dposition, rad/s per SI unit of the position.
     mechanism : mapping of str to float
-        Participation at the boundary, the largest first, by the names of modes.
+        Participation at the boundary, dimensionless, the largest first, by the names of modes.
     defect : float
-        1 for a well-separated mode; large where the mode nearly falls into one with another
+        Dimensionless: 1 for a well-separated mode, large where the mode nearly falls into one with another
         (`proprotor.eigenvalue_derivatives.defect`).
     eigen_solves : int
         Spent on this crossing beyond those that bracketed it.
@@ -120,12 +120,35 @@ class FlutterPoint:
         return summary.of_flutter_point(self)
 
     def margin(self, airspeed: float) -> float:
-        """How far the flutter speed lies above an airspeed (m/s), as a part of it; NaN where nothing flutters."""
+        """How far the flutter speed lies above an airspeed, as a part of it.
+
+        Parameters
+        ----------
+        airspeed : float
+            m/s.
+
+        Returns
+        -------
+        float
+            Dimensionless; NaN where nothing becomes unstable.
+        """
         return self.speed / airspeed - 1
 
 
 class Crossings(NamedTuple):
-    """Boundaries along a line, by position, with the modes beyond the level at its start."""
+    """Boundaries along a line, with the modes beyond the level at its start.
+
+    Parameters
+    ----------
+    boundaries : tuple of Boundary
+        By position.
+    unstable_at_start : tuple of str
+        Modes beyond the level at the first position that could be analysed.
+    searched : tuple of float
+        First and last position that could be analysed, m/s or in SI units of the input.
+    scan_solves, eigen_solves : int
+        What it took to bracket every boundary, and in all.
+    """
 
     boundaries: tuple[Boundary, ...]
     unstable_at_start: tuple[str, ...]
@@ -258,6 +281,11 @@ def boundaries(
     **options
         See `proprotor.options.Options`.
 
+    Returns
+    -------
+    Crossings
+        By position, m/s or in SI units of the input.
+
     Raises
     ------
     InputError
@@ -275,7 +303,19 @@ def boundaries(
 
 
 def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:
-    """Airspeeds (points,) in m/s, 0.2 to 1.2 of the tip speed, where boundaries are looked for."""
+    """Airspeeds where boundaries are looked for: 0.2 to 1.2 of the tip speed.
+
+    Parameters
+    ----------
+    case : Case
+    points : int
+        How many.
+
+    Returns
+    -------
+    array (points,)
+        m/s.
+    """
     return np.linspace(*_RANGE[:2], points) * tip_speed(case)
 
 
@@ -291,6 +331,10 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
         Damping ratio that counts as the boundary: 0.03 for a margin of 3 % of critical.
     **options
         See `proprotor.options.Options`.
+
+    Returns
+    -------
+    FlutterPoint
 
     Raises
     ------

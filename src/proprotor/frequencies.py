@@ -26,7 +26,7 @@ class BladeFrequencies:
     against : "collective" or "airspeed"
         What they depend on: trim collective in rad, or airspeed in m/s.
     at : array (k,), optional
-        Where the tables have their entries, increasing; not needed for numbers and functions.
+        Where the tables have their entries, rad or m/s, increasing; not needed for numbers and functions.
     flap, lag : float, array (k,) or function of an array
         Frequency per revolution. Tables are interpolated smoothly without overshoot and held at their ends.
     cyclic_flap : the same, optional
@@ -105,7 +105,27 @@ class BladeFrequencies:
         return found
 
     def rotating(self, collective: Array, airspeed: Array, rotor_speed: Array) -> dict[str, Array]:
-        """Rotating frequencies in rad/s by the names of the derivation, shapes of the arguments broadcast."""
+        """Rotating frequencies by the names of the derivation; the arguments broadcast.
+
+        Parameters
+        ----------
+        collective : array (...)
+            Trim collective, rad.
+        airspeed : array (...)
+            m/s.
+        rotor_speed : float or array (...)
+            rad/s.
+
+        Returns
+        -------
+        dict of str to array (...)
+            rad/s.
+
+        Raises
+        ------
+        InputError
+            Where a function gives what is not above zero.
+        """
         abscissa = np.asarray(collective if self.against == "collective" else airspeed)
         cyclic = self.flap if self.cyclic_flap is None else self.cyclic_flap
         curves = {"flap": self.flap, "lag": self.lag, "cyclic": cyclic}

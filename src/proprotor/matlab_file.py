@@ -82,6 +82,11 @@ def matlab_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, s
     names : iterable of str
     taken : iterable of str
         Names that others have already.
+
+    Returns
+    -------
+    dict of str to str
+        By the names that were given.
     """
     found: dict[str, str] = {}
     used = set(taken)

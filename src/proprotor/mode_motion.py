@@ -31,10 +31,20 @@ _HARMONIC = re.compile(r"(flap|lag|pitch|gimbal)_(0|(\d+)([cs]))")
 
 
 class WingSketch(NamedTuple):
-    """A wing to be drawn, m and rad.
+    """A wing to be drawn.
 
-    span : from the root to the axis of the pylon; mast : from the wing forward to the hub; chord : of the wing;
-    sweep : of its axis, back where positive; assumed : whether the deck does not tell.
+    Parameters
+    ----------
+    span : float
+        From the root to the axis of the pylon, m.
+    mast : float
+        From the wing forward to the hub, m.
+    chord : float
+        Of the wing, m.
+    sweep : float
+        Of its axis, rad, back where positive.
+    assumed : bool
+        Whether the deck does not tell.
     """
 
     span: float
@@ -45,7 +55,16 @@ class WingSketch(NamedTuple):
 
 
 class Part(NamedTuple):
-    """A line of the picture: its name, points (k, 3) in x, y, z from the hub at trim, m, and their complex motion."""
+    """A line of the picture.
+
+    Parameters
+    ----------
+    name : str
+    points : array (k, 3)
+        x, y, z from the hub at trim, m.
+    motion : array (k, 3)
+        Complex amplitudes of the points, m.
+    """
 
     name: str
     points: Array
@@ -82,7 +101,18 @@ class ModeMotion:
     sketched: bool
 
     def at(self, phase: float) -> dict[str, Array]:
-        """Points (k, 3) of every part, m, at a phase of the cycle in rad; growth and decay are left out."""
+        """Every part at a phase of the cycle; growth and decay are left out.
+
+        Parameters
+        ----------
+        phase : float
+            rad.
+
+        Returns
+        -------
+        dict of str to array (k, 3)
+            Points in x, y, z from the hub at trim, m, by the name of the part.
+        """
         return {part.name: part.points + (part.motion * np.exp(1j * phase)).real for part in self.parts}
 
 
@@ -102,6 +132,10 @@ def mode_motion(
         What to draw; by default what the deck says of its wing, else the proportions of the XV-15.
     **options
         See `proprotor.options.Options`.
+
+    Returns
+    -------
+    ModeMotion
 
     Raises
     ------
@@ -145,7 +179,17 @@ def mode_motion(
 
 
 def sketch_of(case: Case) -> WingSketch:
-    """The wing of a case as far as its deck tells, else in the proportions of the XV-15."""
+    """The wing of a case as far as its deck tells, else in the proportions of the XV-15.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    WingSketch
+        m and rad.
+    """
     given = {path.removeprefix("support."): number.si for path, number in case.given.items()}
     radius = float(case.rotor.radius)
     if "distance" in given:  # a pivot: a mast and no wing

@@ -97,19 +97,50 @@ class LinearModel:
         return place is not None and bool(np.any(np.nan_to_num(self.K[..., place, place]) > 0))
 
     def modes(self) -> xarray.Dataset:
-        """Eigenvalues and mode shapes, see `proprotor.modes.modes`."""
+        """Eigenvalues and mode shapes, see `proprotor.modes.modes`.
+
+        Returns
+        -------
+        xarray.Dataset
+            eigenvalue (..., mode), rad/s, and more.
+
+        Raises
+        ------
+        InputError
+            When the mass matrix has no inverse, as that of a rotor alone may not.
+        """
         from proprotor.modes import modes
 
         return modes(self)
 
     def to_state_space(self) -> StateSpace:
-        """A, B, C, D with named states, inputs and outputs, see `proprotor.state_space.state_space`."""
+        """A, B, C, D with named states, inputs and outputs, see `proprotor.state_space.state_space`.
+
+        Returns
+        -------
+        StateSpace
+
+        Raises
+        ------
+        InputError
+            When the model has no inputs, as one from elsewhere may.
+        """
         from proprotor.state_space import state_space
 
         return state_space(self)
 
     def submodel(self, dofs: tuple[str, ...]) -> LinearModel:
-        """The model with other coordinates held at zero."""
+        """The model with other coordinates held at zero.
+
+        Parameters
+        ----------
+        dofs : tuple of str
+            Names of those that stay, in the order wanted.
+
+        Returns
+        -------
+        LinearModel
+        """
         places = [self.dofs.index(name) for name in dofs]
         parts = {name: getattr(self, name)[..., places, :][..., places] for name in "MCK"}
         inputs = None if self.B is None else self.B[..., places, :]
@@ -171,7 +202,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     ----------
     rotor : Rotor
     operation : Operation
-    airspeed : float, array (...) in m/s, or pint quantity
+    airspeed : float, array (...) in m/s, text such as "250 kt", pint quantity or xarray.DataArray
     **options
         See `proprotor.options.Options`.
 

@@ -144,12 +144,22 @@ def coordinate_shares(held: list[int], n: int, left: Array, right: Array) -> Arr
 def modes(model: LinearModel) -> xarray.Dataset:
     """Modes with frequency at or above zero, by frequency.
 
+    Parameters
+    ----------
+    model : LinearModel
+        Leading axes of a batch are kept.
+
     Returns
     -------
     xarray.Dataset
         eigenvalue (rad/s), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
         largest component 1), dominant (name of the coordinate with the largest participation); dimensions (..., mode)
         and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN.
+
+    Raises
+    ------
+    InputError
+        When the mass matrix has no inverse, as that of a rotor alone may not.
     """
     system = eigensystem(model)
     values = system.values

@@ -48,7 +48,16 @@ _UNITS = {"": None, "K": "degK"}  # where OpenMDAO writes a unit otherwise
 
 
 def variable_name(path: str) -> str:
-    """The name of a variable of OpenMDAO for a path or a mode: ``support.modes[beam].x`` is support_modes_beam_x."""
+    """The name of a variable of OpenMDAO for a path or a mode: ``support.modes[beam].x`` is support_modes_beam_x.
+
+    Parameters
+    ----------
+    path : str
+
+    Returns
+    -------
+    str
+    """
     return re.sub(r"[^A-Za-z0-9]+", "_", path).strip("_")
 
 
@@ -104,7 +113,13 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         declare("model_options", default={}, recordable=False, desc="options of the model")
 
     def setup(self) -> None:
-        """Add inputs, outputs and partial derivatives."""
+        """Add inputs, outputs and partial derivatives.
+
+        Raises
+        ------
+        InputError
+            For an unknown path or mode, airspeeds that are missing, or when no output is asked for.
+        """
         case = self.options["case"]
         self._case = case if isinstance(case, Case) else load_case(case)
         self._paths = self._paths_by_name()
@@ -136,7 +151,20 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
                 self.declare_partials(output, list(self._paths))
 
     def compute(self, inputs: Mapping[str, NDArray[np.float64]], outputs: Any) -> None:
-        """Find the flutter speed and the damping at the airspeeds."""
+        """Find the flutter speed and the damping at the airspeeds.
+
+        Parameters
+        ----------
+        inputs : mapping of str to array
+            SI, by the names of the variables.
+        outputs : mapping of str to array
+            Filled: flutter_speed in m/s, flutter_frequency in rad/s, damping ratios.
+
+        Raises
+        ------
+        openmdao.api.AnalysisError
+            When the point cannot be analysed, with the reason.
+        """
         try:
             case = self._varied(inputs)
             if self.options["flutter_speed"]:
@@ -154,7 +182,20 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             raise om.AnalysisError(str(error)) from None
 
     def compute_partials(self, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
-        """Exact derivatives by complex steps of the equations; no further flutter search."""
+        """Exact derivatives by complex steps of the equations; no further flutter search.
+
+        Parameters
+        ----------
+        inputs : mapping of str to array
+            SI, by the names of the variables.
+        partials : mapping
+            Filled, by output and input, SI.
+
+        Raises
+        ------
+        openmdao.api.AnalysisError
+            When the point cannot be analysed, with the reason.
+        """
         try:
             case = self._varied(inputs)
             if self.options["flutter_speed"] and self._paths:

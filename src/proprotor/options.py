@@ -45,7 +45,7 @@ class Options:
     frequencies : BladeFrequencies
         For structure="tabulated".
     pitch_flap_coupling, pitch_lag_coupling : float or array that broadcasts with the airspeeds, optional
-        For pitch="coupling": values in place of Eqs. 36 and 37.
+        For pitch="coupling": values (dimensionless) in place of Eqs. 36 and 37.
     airloads : "full", "lift-slope" or "none"
         Perturbation airloads: all, those proportional to the lift slope, or none. The trim has them all.
     compressibility : bool

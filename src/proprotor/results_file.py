@@ -52,6 +52,12 @@ def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
 def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
     """See that results can be written there, before they are computed.
 
+    Parameters
+    ----------
+    path : str or path
+    field : str
+        What a message calls it.
+
     Raises
     ------
     InputError
@@ -68,6 +74,15 @@ def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
 
 def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
     """Read what `save_results` has written, complex numbers as such.
+
+    Parameters
+    ----------
+    path : str or path
+        A .nc file.
+
+    Returns
+    -------
+    xarray.Dataset
 
     Raises
     ------

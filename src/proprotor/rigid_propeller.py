@@ -38,12 +38,18 @@ _TO_ATTITUDE = np.array([[0.0, 1.0], [-1.0, 0.0]])  # (θ, ψ) from (αx, αy)
 class WhirlDerivatives(NamedTuple):
     """Derivatives of a propeller's forces and moments in pitch and yaw, dimensionless, as defined above.
 
-    z_theta, z_psi : C_Zθ and C_Zψ, force against the shaft's angles to its path.
-    z_r : C_Zr, force against the yaw rate.
-    m_psi : C_mψ, pitching moment against the yaw angle.
-    m_q : C_mq, pitching moment against the pitch rate.
-
     The propeller is alike in all directions, so these give the force along Y and the moment about Z as well.
+
+    Parameters
+    ----------
+    z_theta, z_psi : float or array
+        C_Zθ and C_Zψ, force against the shaft's angles to its path; dimensionless.
+    z_r : float or array
+        C_Zr, force against the yaw rate; dimensionless.
+    m_psi : float or array
+        C_mψ, pitching moment against the yaw angle; dimensionless.
+    m_q : float or array
+        C_mq, pitching moment against the pitch rate; dimensionless.
     """
 
     z_theta: Numbers
@@ -82,6 +88,11 @@ def rigid_propeller(
         ρ, kg/m³.
     mass, polar_inertia, diametral_inertia : float or array
         kg; about the shaft and about a diameter through the hub, kg m².
+
+    Returns
+    -------
+    LinearModel
+        On the hub coordinates x, y, z, alpha_x, alpha_y, alpha_z, SI.
 
     Raises
     ------

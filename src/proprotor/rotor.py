@@ -71,11 +71,11 @@ class Rotor:
     flap_stiffness, lag_stiffness : float
         Hub and blade spring in series, N m/rad (Eq. 18 of AIAA-2002-1604).
     flap_outboard_fraction, lag_outboard_fraction : float
-        Share of that flexibility outboard of the pitch bearing, 0 to 1 (Eq. 19).
+        Share of that flexibility (dimensionless) outboard of the pitch bearing, 0 to 1 (Eq. 19).
     gimbal_stiffness : float
         Hub spring, N m/rad.
     pitch_gimbal_coupling : float
-        K_PG = tan δ3 (Eq. 16).
+        K_PG = tan δ3 (Eq. 16), dimensionless.
     pitch_inertia, control_stiffness : float
         Of one blade: kg m², N m/rad.
     flap_damping, lag_damping, pitch_damping, gimbal_damping : float
@@ -261,13 +261,35 @@ class Rotor:
         return self.twist_at(self.quadrature.stations)
 
     def chord_at(self, r: Array) -> Array:
-        """Chord at radii (..., stations) in m; a constant chord has one station."""
+        """Chord at radii.
+
+        Parameters
+        ----------
+        r : array (..., stations)
+            From the centre of rotation, m.
+
+        Returns
+        -------
+        array (..., stations)
+            m; a constant chord has one station.
+        """
         if isinstance(self.chord, tuple) or callable(self.chord):
             return _interpolate(self.chord, r)
         return np.asarray(self.chord)[..., None]
 
     def twist_at(self, r: Array) -> Array:
-        """Twist at radii (..., stations) in m, from the pitch at 0.75 R, rad."""
+        """Twist at radii.
+
+        Parameters
+        ----------
+        r : array (..., stations)
+            From the centre of rotation, m.
+
+        Returns
+        -------
+        array (..., stations)
+            From the pitch at 0.75 R, rad.
+        """
         reference = 0.75 * np.asarray(self.radius)[..., None]
         if isinstance(self.twist, tuple) or callable(self.twist):
             twist: Array = _interpolate(self.twist, r) - _interpolate(self.twist, reference)
@@ -277,10 +299,23 @@ class Rotor:
 
     @classmethod
     def from_mass_distribution(cls, r: ArrayLike, mass_per_length: ArrayLike, **fields_: Any) -> Rotor:
-        """A rotor whose seven mass integrals come from mass per length (kg/m), linear between the stations r (m).
+        """A rotor whose seven mass integrals come from mass per length, linear between stations.
 
         Exact for that distribution: each interval between stations and hinges is integrated as the cubic it is. Hinge
         offsets and, with leading axes, r may be arrays of many designs.
+
+        Parameters
+        ----------
+        r : array_like, shape (..., k)
+            Stations from the centre of rotation, m, increasing.
+        mass_per_length : array_like, shape (k,)
+            kg/m, not negative.
+        **fields_
+            The other fields of `Rotor`.
+
+        Returns
+        -------
+        Rotor
 
         Raises
         ------

@@ -27,35 +27,72 @@ class Quantity(Protocol):
     """What a plan needs to know of an input: its value in the deck, and its SI unit."""
 
     @property
-    def si(self) -> Any: ...
+    def si(self) -> Any:
+        """Value in the deck, in SI units."""
+        ...
 
     @property
-    def unit(self) -> str: ...
+    def unit(self) -> str:
+        """SI unit."""
+        ...
 
 
 _SPEED = Datum("", None, "m/s")  # airspeed is no number of the deck
 
 
 class Range(NamedTuple):
-    """Any value between two, all equally likely; in SI when it stands in `Designs`."""
+    """Any value between two, all equally likely; numbers are in SI.
+
+    Parameters
+    ----------
+    low, high : float, text with a unit, or pint quantity
+    """
 
     low: Any
     high: Any
 
     def ppf(self, share: Array) -> Array:
-        """The value below which a share lies."""
+        """The value below which a share lies.
+
+        Parameters
+        ----------
+        share : array (...)
+            0 to 1, dimensionless.
+
+        Returns
+        -------
+        array (...)
+            In the unit of the limits, SI once it is resolved.
+        """
         value: Array = self.low + (self.high - self.low) * share
         return value
 
 
 class Normal(NamedTuple):
-    """A normal distribution by its mean and standard deviation, in any unit of the input."""
+    """A normal distribution by its mean and standard deviation, in any unit of the input.
+
+    Parameters
+    ----------
+    mean, deviation : float, text with a unit, or pint quantity
+        The deviation is that of the distribution; numbers are in SI.
+    """
 
     mean: Any
     deviation: Any
 
     def ppf(self, share: Array) -> Array:
-        """The value below which a share lies."""
+        """The value below which a share lies.
+
+        Parameters
+        ----------
+        share : array (...)
+            0 to 1, dimensionless.
+
+        Returns
+        -------
+        array (...)
+            In the unit of the limits, SI once it is resolved.
+        """
         from scipy.special import ndtri
 
         value: Array = self.mean + self.deviation * ndtri(share)
@@ -63,7 +100,13 @@ class Normal(NamedTuple):
 
 
 class Relative(NamedTuple):
-    """Any value between two multiples of what the deck has: ``Relative(0.9, 1.1)`` is 10 % either way."""
+    """Any value between two multiples of what the deck has: ``Relative(0.9, 1.1)`` is 10 % either way.
+
+    Parameters
+    ----------
+    low, high : float
+        Factors, dimensionless.
+    """
 
     low: float
     high: float
@@ -76,9 +119,9 @@ class Designs:
     Attributes
     ----------
     values : dict of array (designs,)
-        Each input by its deck path; all of one length, the last axis of a grid fastest.
+        Each input by its deck path, SI; all of one length, the last axis of a grid fastest.
     axes : dict of array
-        Values of each input along its own axis of a grid; ``{"design": 0, 1, 2, …}`` for lists and samples.
+        Values of each input along its own axis of a grid, SI; ``{"design": 0, 1, 2, …}`` for lists and samples.
     units : dict of str
     sample : dict
         How a sample was drawn: method, size, seed and what is needed to analyse it; empty for grids and lists.
@@ -113,7 +156,17 @@ class Designs:
 
 @dataclass(frozen=True)
 class Plan:
-    """How inputs vary; made by `grid`, `points`, `latin_hypercube`, `sobol` or `saltelli`."""
+    """How inputs vary; made by `grid`, `points`, `latin_hypercube`, `sobol` or `saltelli`.
+
+    Parameters
+    ----------
+    inputs : mapping
+        As they were given, by deck path.
+    lay_out : callable
+        Designs from the values that were read and their SI units.
+    read : callable
+        A value in SI from an input's name, what was given, and the `Quantity` of the deck.
+    """
 
     inputs: Mapping[str, Any]
     lay_out: Callable[[dict[str, Any], dict[str, str]], Designs]
@@ -126,6 +179,10 @@ class Plan:
         ----------
         known : mapping
             The inputs that may vary, such as `proprotor.design_inputs(case)`; ``airspeed`` always may.
+
+        Returns
+        -------
+        Designs
 
         Raises
         ------
@@ -148,12 +205,26 @@ def grid(inputs: Mapping[str, Any]) -> Plan:
     inputs : mapping
         Values by deck path (``"rotor.precone"``): numbers in SI, a pint quantity, text with a unit, or a list of them;
         ``"1:4:0.5 deg"`` is 1 to 4 deg by 0.5 deg.
+
+    Returns
+    -------
+    Plan
     """
     return Plan(dict(inputs), _outer_product, _values)
 
 
 def points(inputs: Mapping[str, Any]) -> Plan:
-    """Designs given one by one: lists of equal lengths; a single value is that of every design."""
+    """Designs given one by one: lists of equal lengths; a single value is that of every design.
+
+    Parameters
+    ----------
+    inputs : mapping
+        Lists by deck path, as for `grid`.
+
+    Returns
+    -------
+    Plan
+    """
     return Plan(dict(inputs), _side_by_side, _values)
 
 
@@ -168,12 +239,28 @@ def latin_hypercube(inputs: Mapping[str, Any], size: int, seed: int = 0) -> Plan
     size : int
         Number of designs.
     seed : int
+
+    Returns
+    -------
+    Plan
     """
     return _sampled("latin hypercube", inputs, size, seed, _draw_latin_hypercube)
 
 
 def sobol(inputs: Mapping[str, Any], size: int, seed: int = 0) -> Plan:
     """A scrambled Sobol sequence (scipy.stats.qmc.Sobol) of independent inputs, as `latin_hypercube`.
+
+    Parameters
+    ----------
+    inputs : mapping
+        As for `latin_hypercube`.
+    size : int
+        Number of designs, a power of two.
+    seed : int
+
+    Returns
+    -------
+    Plan
 
     Raises
     ------
@@ -189,19 +276,43 @@ def saltelli(inputs: Mapping[str, Any], size: int, seed: int = 0, second_order: 
 
     Parameters
     ----------
-    inputs, seed
+    inputs : mapping
         As for `latin_hypercube`.
     size : int
         Number of base samples, a power of two.
+    seed : int
     second_order : bool
         Also what interactions of two inputs need: size · (2k + 2) designs.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        When the size is no power of two.
     """
     _check_power_of_two(size)
     return _sampled("saltelli", inputs, size, seed, _draw_saltelli, second_order=second_order)
 
 
 def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
-    """A plan as it is, and a mapping as a `grid`."""
+    """A plan as it is, and a mapping as a `grid`.
+
+    Parameters
+    ----------
+    inputs : Plan or mapping
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
     if isinstance(inputs, Plan):
         return inputs
     if isinstance(inputs, Mapping):

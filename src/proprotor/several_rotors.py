@@ -56,6 +56,11 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     support : NormalModes
         Its own `hub` is not used: each rotor has one.
 
+    Returns
+    -------
+    LinearModel
+        With the coordinates of the support first, SI.
+
     Raises
     ------
     InputError

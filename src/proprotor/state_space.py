@@ -33,7 +33,14 @@ class StateSpace:
 
     Attributes
     ----------
-    A, B, C, D : array (..., states, states), (..., states, inputs), (..., outputs, states), (..., outputs, inputs)
+    A : array (..., states, states)
+        SI units.
+    B : array (..., states, inputs)
+        Per unit of the inputs, SI.
+    C : array (..., outputs, states)
+        SI units.
+    D : array (..., outputs, inputs)
+        SI units.
     states, inputs, outputs : tuple of str
         States are displacements (without the rotor's azimuth unless a shaft holds it), then rates ("… rate").
         Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
@@ -51,6 +58,10 @@ class StateSpace:
 
     def to_control(self) -> control.StateSpace:
         """The same as a `control.StateSpace` of python-control; one point at a time.
+
+        Returns
+        -------
+        control.StateSpace
 
         Raises
         ------
@@ -72,6 +83,15 @@ class StateSpace:
 
 def state_space(model: LinearModel) -> StateSpace:
     """State space of a rotor, alone or on a support.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Leading axes of a batch are kept.
+
+    Returns
+    -------
+    StateSpace
 
     Raises
     ------

@@ -45,7 +45,12 @@ def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
     model : LinearModel
         Without structural damping, its stiffness with the springs as elastic ones; viscous damping stays.
     springs : array_like, shape (n, n)
-        S, invertible, such as the stiffness of the support of a rigid propeller.
+        S, SI (N/m, N m/rad), invertible, such as the stiffness of the support of a rigid propeller.
+
+    Returns
+    -------
+    NeutralDamping
+        The largest first, dampings dimensionless, frequencies in rad/s.
 
     Raises
     ------

@@ -70,7 +70,7 @@ def study(
         What varies, by deck path (`proprotor.design_inputs`): a mapping of lists is a grid of all combinations; lists
         point by point, Latin hypercube, Sobol and Saltelli samples are plans of `proprotor.sampling`. Values are in SI,
         pint quantities or text with a unit. ``"airspeed"`` may be among them.
-    airspeed : float, array, text such as "100:300:20kt" or pint quantity
+    airspeed : float or array in m/s, text such as "100:300:20kt", pint quantity or xarray.DataArray
         For every design; not where it is among the inputs.
     quantities : str or sequence of str
         "eigenvalue", "least_stable", "trim" (these three by default); "flutter", the lowest airspeed of the range at

@@ -69,7 +69,19 @@ class NormalModes:
             raise InputError("mass", self.mass.tolist(), "must not be negative in any direction")
 
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
-        """The support at airspeeds (m/s) and densities (kg/m³): itself, for its matrices depend on neither."""
+        """The support at airspeeds and densities: itself, for its matrices depend on neither.
+
+        Parameters
+        ----------
+        airspeed : float or array (...)
+            m/s.
+        density : float or array (...)
+            kg/m³.
+
+        Returns
+        -------
+        NormalModes
+        """
         return self
 
     @classmethod
@@ -86,10 +98,23 @@ class NormalModes:
 
         Parameters
         ----------
+        names : sequence of str
+            As for `NormalModes`.
         generalized_mass, frequency, damping_ratio : array_like, shape (..., n)
             m in kg or kg m², ω in rad/s, ζ as a fraction of critical.
-        names, hub, includes_rotor
+        hub : array_like, shape (..., 6, n)
+            As for `NormalModes`, SI.
+        includes_rotor : bool
             As for `NormalModes`.
+
+        Returns
+        -------
+        NormalModes
+
+        Raises
+        ------
+        InputError
+            When sizes differ, or a value is not finite or negative.
         """
         n = (len(names),)
         m = _finite("generalized_mass", generalized_mass, n)
@@ -129,6 +154,11 @@ def two_axis_pivot(
     includes_rotor : bool
         Whether the inertias include the rotor's, its mass at the hub included.
 
+    Returns
+    -------
+    NormalModes
+        With the coordinates pitch and yaw, rad.
+
     Raises
     ------
     InputError
@@ -149,7 +179,12 @@ def two_axis_pivot(
 
 
 def rigid_support() -> NormalModes:
-    """A support that does not move: no coordinate, the hub fixed."""
+    """A support that does not move: no coordinate, the hub fixed.
+
+    Returns
+    -------
+    NormalModes
+    """
     none = np.zeros((0, 0))
     return NormalModes((), none, none, none, hub=np.zeros((len(HUB_AXES), 0)), includes_rotor=False)
 

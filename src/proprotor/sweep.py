@@ -197,6 +197,11 @@ def sweep_case(
     **options
         See `proprotor.options.Options`.
 
+    Returns
+    -------
+    xarray.Dataset
+        As `sweep` has it.
+
     Raises
     ------
     InputError

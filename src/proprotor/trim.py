@@ -32,6 +32,7 @@ class Trim:
     torque : array
         Of the airloads on the whole rotor, positive where it speeds the rotor up, N m.
     converged : array of bool
+        Whether a trim was found.
     reason : array of str
         Why a point failed, empty where it did not.
     warning : array of str
@@ -57,7 +58,17 @@ class Trim:
         return self.collective + self.elastic_pitch
 
     def broadcast(self, shape: tuple[int, ...]) -> Trim:
-        """The same at every point of a batch with more axes."""
+        """The same at every point of a batch with more axes.
+
+        Parameters
+        ----------
+        shape : tuple of int
+            Of the batch.
+
+        Returns
+        -------
+        Trim
+        """
         return Trim(**{e.name: np.broadcast_to(getattr(self, e.name), shape) for e in fields(self)})
 
 

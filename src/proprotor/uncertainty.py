@@ -35,6 +35,7 @@ def distribution(
     of : str
         A variable with one number for each design.
     percentiles : sequence of float
+        0 to 100, dimensionless.
 
     Returns
     -------
@@ -77,6 +78,20 @@ def distribution(
 def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed") -> float:
     """Share of the designs whose result is below a limit (SI), such as those that flutter below a speed.
 
+    Parameters
+    ----------
+    results : xarray.Dataset
+        As for `distribution`.
+    limit : float
+        In the SI unit of the result.
+    of : str
+        A variable with one number for each design.
+
+    Returns
+    -------
+    float
+        A share of the designs that did not fail, 0 to 1.
+
     Raises
     ------
     InputError
@@ -107,7 +122,7 @@ def sobol_indices(
         A variable with one number for each design. Base samples with a design that has none are left out, at most
         5 % of them.
     confidence : float
-        Level of the intervals, from 0 to 1.
+        Level of the intervals, dimensionless, from 0 to 1.
     resamples : int
         Of the bootstrap that finds them.
 

@@ -119,8 +119,14 @@ def plot_sweep(
 
     Parameters
     ----------
-    sweep, rotor_speed, unit, damping_limits
-        As for `plot_frequency` and `plot_damping`.
+    sweep : xarray.Dataset
+        Of `Case.sweep`.
+    rotor_speed : float or array (points,), optional
+        rad/s, as for `plot_frequency`.
+    unit : str, optional
+        In which airspeeds are shown, as for `plot_frequency`.
+    damping_limits : (float, float)
+        As for `plot_damping`, percent of critical.
     title, footer : str
         Above and below; the footer is the place for what the numbers rest on.
 

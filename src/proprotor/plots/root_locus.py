@@ -51,7 +51,7 @@ def plot_root_locus(
     marks : float, optional
         Distance of the markers in that unit.
     growth_limits, frequency_limits : (float, float), optional
-        Of both axes; by default what holds the modes of the support and those that become unstable.
+        Of both axes, in their units; by default what holds the modes of the support and those that become unstable.
 
     Returns
     -------

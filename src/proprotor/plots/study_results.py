@@ -40,8 +40,8 @@ def plot_distribution(
     of : str
         A variable with one number for each design.
     percentiles : sequence of float
-        Those that lie among designs beyond the range of the study have no line; the note above the axes counts these
-        designs.
+        0 to 100, dimensionless. Those that lie among designs beyond the range of the study have no line; the note
+        above the axes counts these designs.
     unit : str, optional
         Of the result; "kt" by default for speeds.
     bins : int or str

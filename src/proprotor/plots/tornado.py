@@ -47,7 +47,7 @@ def plot_sensitivity(
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     percent : float
-        Every input grows by so much of itself, where no ranges are given; those that are zero are left out.
+        Every input grows by so many percent of itself, where no ranges are given; those that are zero are left out.
     ranges : mapping of str to (low, high), optional
         Of some inputs by path, in SI: what both ends of each would do, a bar to either side.
     count : int
