@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.arrays import Array
-from proprotor.errors import InputError
+from proprotor.errors import InputError, check_number
 
 
 class SectionCoefficients(NamedTuple):
@@ -88,6 +88,7 @@ class Airfoil:
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
+            check_number(entry.name, value)
             if not np.all(np.isfinite(value)):
                 raise InputError(entry.name, value, "must be finite")
         for name in ("lift_slope", "drag"):

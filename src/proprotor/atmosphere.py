@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.arrays import Array
-from proprotor.errors import InputError
+from proprotor.errors import InputError, check_number
 
 LOWEST, HIGHEST = -610.0, 32_000.0  # m: where the library holds, and where the standards are one
 MOST_OFFSET = 100.0  # K: beyond what the air of any day has; a temperature given as an offset is told by it
@@ -51,6 +51,8 @@ def standard_air(altitude: ArrayLike, temperature_offset: ArrayLike = 0.0) -> Ai
     InputError
         When an altitude or an offset is not finite or out of range.
     """
+    check_number("altitude", altitude)
+    check_number("temperature_offset", temperature_offset)
     altitude, offset = np.broadcast_arrays(np.asarray(altitude), np.asarray(temperature_offset))
     _check("altitude", altitude, LOWEST, HIGHEST, "m")
     _check("temperature_offset", offset, -MOST_OFFSET, MOST_OFFSET, "K")

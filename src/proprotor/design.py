@@ -10,6 +10,7 @@ import numpy as np
 
 from proprotor.case import assemble
 from proprotor.errors import InputError, unknown_name
+from proprotor.speed import has_own_unit
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -92,10 +93,10 @@ def _deck_of(case: Case) -> Deck:
 
 
 def _number(path: str, value: Any, unit: str) -> np.ndarray:
-    if isinstance(value, str) or hasattr(value, "to") or "units" in getattr(value, "attrs", {}):
-        from proprotor.units import as_si  # here, because pint takes long to import
+    if has_own_unit(value):
+        from proprotor.units import values_in_si  # here, because pint takes long to import
 
-        value = as_si(value, unit, path)
+        value = values_in_si(value, unit, path)
     number = np.asarray(value)
     if number.dtype.kind not in "fciu":
         raise InputError(path, value, "must be a number or an array of numbers")

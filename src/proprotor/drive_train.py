@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from proprotor.errors import InputError
+from proprotor.errors import InputError, check_number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +37,7 @@ class DriveTrain:
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
+            check_number(entry.name, value)
             if not np.all(np.isfinite(value)):
                 raise InputError(entry.name, value, "must be finite")
             if np.any(np.real(value) < 0):

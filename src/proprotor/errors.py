@@ -5,6 +5,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection, Iterable
 
+import numpy as np
+
 _WIDEST_VALUE = 60  # characters of a value worth repeating in a message
 
 
@@ -49,6 +51,18 @@ class InputError(ValueError):
         InputError
         """
         return InputError(".".join(filter(None, (path, self.field))), self.value, self.rule, self.others)
+
+
+def check_number(field: str, value: object) -> None:
+    """Refuse what is neither a number nor an array of numbers.
+
+    Raises
+    ------
+    InputError
+        For text, None and the like.
+    """
+    if getattr(np.asarray(value), "dtype", np.dtype(object)).kind not in "biufc":
+        raise InputError(field, value, "must be a number in SI units")
 
 
 def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:

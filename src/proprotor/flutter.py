@@ -22,6 +22,7 @@ from proprotor.mode_names import name_list, name_shares
 from proprotor.model import LinearModel
 from proprotor.modes import held_coordinates
 from proprotor.path import Line, follow
+from proprotor.speed import in_metres_per_second
 from proprotor.sweep import approach_to, line_of_case, rotor_speed_of, state_names, tip_speed
 
 if TYPE_CHECKING:
@@ -119,20 +120,19 @@ class FlutterPoint:
     def __repr__(self) -> str:
         return summary.of_flutter_point(self)
 
-    def margin(self, airspeed: float) -> float:
+    def margin(self, airspeed: Any) -> float:
         """How far the flutter speed lies above an airspeed, as a part of it.
 
         Parameters
         ----------
-        airspeed : float
-            m/s.
+        airspeed : float in m/s, text such as "250 kt", or pint quantity
 
         Returns
         -------
         float
             Dimensionless; NaN where nothing becomes unstable.
         """
-        return self.speed / airspeed - 1
+        return self.speed / float(in_metres_per_second(airspeed)) - 1
 
 
 class Crossings(NamedTuple):

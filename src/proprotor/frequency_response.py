@@ -10,7 +10,7 @@ import numpy as np
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import HUB, SWASHPLATE, LinearModel
 from proprotor.state_space import LOADS, StateSpace
-from proprotor.units import as_si
+from proprotor.units import values_in_si
 
 if TYPE_CHECKING:
     import xarray
@@ -34,7 +34,7 @@ def frequency_response(
     ----------
     model : LinearModel
         Leading axes of a batch are kept.
-    frequency : array (frequencies,) in rad/s, text such as "3 Hz", or pint quantity
+    frequency : array (frequencies,) in rad/s, text such as "3 Hz" or "1:5:0.1 Hz", or pint quantity
         Of the excitation; not negative.
     inputs, outputs : sequence of str, optional
         Names as `StateSpace` has them; all by default.
@@ -81,7 +81,7 @@ def frequency_response(
 
 
 def _frequencies(frequency: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
-    omega = as_si(frequency, "rad/s", "frequency").reshape(-1)
+    omega = values_in_si(frequency, "rad/s", "frequency").reshape(-1)
     wrong = ~(np.isfinite(omega) & (omega >= 0))
     if wrong.any():
         raise InputError("frequency", omega[wrong][0], "must be finite and not negative")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_number, unknown_name
 
 TRIM_TARGETS = ("collective", "thrust_coefficient", "power_coefficient")
 
@@ -42,6 +42,7 @@ class Operation:
 
     def __post_init__(self) -> None:
         for name in ("rotor_speed", "density", "speed_of_sound"):
+            check_number(name, getattr(self, name))
             value = np.real(getattr(self, name))
             if not np.all(np.isfinite(value)):
                 raise InputError(name, getattr(self, name), "must be finite")

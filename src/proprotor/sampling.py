@@ -6,7 +6,6 @@ A plan says how inputs vary, in any unit; with the numbers of a deck it becomes 
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable, Mapping, Sized
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
@@ -20,7 +19,6 @@ from proprotor.errors import InputError, unknown_name
 AIRSPEED = "airspeed"
 DESIGN = "design"  # the dimension of a list or a sample
 _MOST_DESIGNS = 100_000_000
-_RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([0-9.eE+-]*[0-9.])\s*(.*?)\s*")
 
 
 class Quantity(Protocol):
@@ -327,35 +325,14 @@ def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
 
 def _values(name: str, given: Any, known: Quantity) -> Array:
     """Values of an input in SI, one dimension; a single value has none."""
-    from proprotor import units  # here, because pint takes long to import
+    from proprotor.units import values_in_si  # here, because pint takes long to import
 
-    if isinstance(given, str) and ":" in given:
-        return _written_range(given, known.unit, name)
-    if np.iterable(given) and not isinstance(given, str) and not hasattr(given, "to"):
-        one_by_one = [units.as_si(value, known.unit, name) for value in given]
-        values = np.array(one_by_one, dtype=float)
-    else:
-        values = units.as_si(given, known.unit, name)
+    values = values_in_si(given, known.unit, name)
     if values.ndim > 1:
         raise InputError(name, f"array of shape {values.shape}", "must be a value or a list of values")
     if not values.size:
         raise InputError(name, given, "must have at least one value")
     return values
-
-
-def _written_range(text: str, unit: str, name: str) -> Array:
-    """``"1:4:0.5 deg"``: start, stop and step, the stop included."""
-    from proprotor import units
-
-    match = _RANGE.fullmatch(text)
-    if match is None:
-        raise InputError(name, text, 'must be a value such as "2 deg" or a range such as "1:4:0.5 deg"')
-    start, stop, step = (float(units.as_si(f"{match[place]} {match[4]}", unit, name)) for place in (1, 2, 3))
-    if not step > 0 or stop < start:
-        raise InputError(name, text, "must rise from start to stop, start:stop:step, by a positive step")
-    steps = (stop - start) / step * (1 + 1e-12)  # a hair more, so that 0:1:0.1 has its 1
-    _check_size(steps)
-    return start + step * np.arange(int(steps) + 1)
 
 
 def _distribution(name: str, given: Any, known: Quantity) -> Any:

@@ -12,6 +12,13 @@ from proprotor.errors import InputError
 KNOT = 1852 / 3600  # m/s
 
 
+def has_own_unit(value: Any) -> bool:
+    """Whether a value says its unit: text, a quantity, a data array with an attribute ``units``, or a list of these."""
+    if isinstance(value, list | tuple):
+        return any(map(has_own_unit, value))
+    return isinstance(value, str) or hasattr(value, "to") or "units" in getattr(value, "attrs", {})
+
+
 def in_metres_per_second(airspeed: Any) -> Array:
     """Airspeed as an array in m/s.
 
@@ -19,7 +26,8 @@ def in_metres_per_second(airspeed: Any) -> Array:
     ----------
     airspeed : float, array (...), text, pint quantity or xarray.DataArray
         A bare number is in m/s and may be complex, for derivatives by a complex step; text such as "250 kt" (one
-        speed) or "50:400:5kt" (a list), quantities and data arrays with an attribute ``units`` are converted.
+        speed) or "50:400:5kt" (a list), quantities, lists of these, and data arrays with an attribute
+        ``units`` are converted.
 
     Returns
     -------
@@ -31,12 +39,14 @@ def in_metres_per_second(airspeed: Any) -> Array:
     InputError
         When it is not a speed.
     """
-    if isinstance(airspeed, str):
+    if isinstance(airspeed, str) or (isinstance(airspeed, list | tuple) and has_own_unit(airspeed)):
         from proprotor import units  # here, because pint takes long to import
 
+        if not isinstance(airspeed, str):
+            return units.values_in_si(airspeed, "m/s", "airspeed")
         found = units.speeds(airspeed)
         return found if ":" in airspeed else found.reshape(())
-    if hasattr(airspeed, "to") or "units" in getattr(airspeed, "attrs", {}):
+    if has_own_unit(airspeed):
         from proprotor import units
 
         return units.as_si(airspeed, "m/s", "airspeed")

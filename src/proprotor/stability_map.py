@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from proprotor.arrays import Array
 from proprotor.crossings import growth
-from proprotor.errors import InputError
+from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
 from proprotor.modes import some_points, state_matrix
 from proprotor.speed import in_metres_per_second
@@ -73,8 +73,8 @@ def stability_map(
     ----------
     case : Case
     axes : mapping of str to array
-        Two inputs, x and y, and their values in SI, rising: paths in the deck
-        (`proprotor.design.design_inputs`), or "airspeed", which may be text such as "50:400:5kt".
+        Two inputs, x and y, and their values, rising: paths in the deck (`proprotor.design.design_inputs`), or
+        "airspeed". Numbers are in SI; text such as "1:4:0.5 deg", quantities and data arrays have their unit.
     airspeed : float in m/s, text such as "300 kt", or pint quantity
         Where it is not one of the axes.
     level : float
@@ -96,7 +96,7 @@ def stability_map(
     """
     from proprotor.design import design_inputs
 
-    names, values = _axes(axes)
+    names, values = _axes(case, axes)
     plane = _plane(case, names, airspeed, options)
     x, y = values
     grid_x, grid_y = (part.reshape(-1) for part in np.meshgrid(x, y))
@@ -115,12 +115,19 @@ def stability_map(
     return found
 
 
-def _axes(axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[Array, Array]]:
+def _axes(case: Case, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[Array, Array]]:
     if len(axes) != 2:
         raise InputError("axes", ", ".join(axes), "must be two inputs")
+    from proprotor.design import design_inputs
+    from proprotor.units import values_in_si
+
+    known = design_inputs(case)
+    for name in axes:
+        if name != AIRSPEED and name not in known:
+            raise InputError(name, None, unknown_name(name, known, "input"))
     names = tuple(axes)
     values = tuple(
-        in_metres_per_second(given) if name == AIRSPEED else np.asarray(given, dtype=float)
+        in_metres_per_second(given) if name == AIRSPEED else values_in_si(given, known[name].unit, name)
         for name, given in axes.items()
     )
     for name, given in zip(names, values, strict=True):

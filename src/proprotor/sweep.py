@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.arrays import Array
-from proprotor.errors import InputError
+from proprotor.errors import InputError, unknown_name
 from proprotor.mode_names import SECOND, assign_names, name_list, name_shares, whirl
 from proprotor.model import LinearModel, batch_shape
 from proprotor.modes import (
@@ -241,19 +241,24 @@ def _line_of_input(
     case: Case, speed: Array, vary: Mapping[str, ArrayLike], options: Mapping[str, Any]
 ) -> Line:
     from proprotor.design import design_inputs
+    from proprotor.units import values_in_si
 
     if len(vary) != 1:
         raise InputError("vary", ", ".join(vary), "must be one input to sweep")
     (path, given), *_ = vary.items()
-    values = np.asarray(given, dtype=float)
+    known = design_inputs(case)
+    if path not in known:
+        raise InputError(path, None, unknown_name(path, known, "input"))
+    unit = known[path].unit
+    values = values_in_si(given, unit, path)
     if len(speed) != 1 or values.ndim != 1:
         raise InputError("vary", path, "needs a list of values, and one airspeed")
 
     def linearize(positions: Array) -> LinearModel:
         return case.vary({path: positions}).linearize(speed[0], **options)
 
-    case.vary({path: values})  # which tells what is wrong with the path
-    return Line(values, linearize, path, design_inputs(case)[path].unit)
+    case.vary({path: values})  # which tells what is wrong with the values
+    return Line(values, linearize, path, unit)
 
 
 def approach_to(case: Case, line: Line, model: LinearModel, options: Mapping[str, Any]) -> Line | None:

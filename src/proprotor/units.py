@@ -86,6 +86,8 @@ _NUMBER_AND_UNIT = re.compile(rf"\s*({_NUMBER}|[+-]?(?:nan|inf)\b)\s*(.*?)\s*", 
 _RANGE_AND_UNIT = re.compile(rf"\s*({_NUMBER})(?:\s*:\s*({_NUMBER})\s*:\s*({_NUMBER}))?\s*(.*?)\s*")
 _LONGEST = 80  # characters in a quantity
 LARGEST = 1e30  # of any quantity in SI: what is made of several must be finite too
+_MOST_VALUES = 100_000_000
+_ANY_RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([0-9.eE+-]*[0-9.])\s*(.*?)\s*")
 _MOST_SPEEDS = 100_000
 
 # A unit is a product of names, each with at most a one-digit power: nothing else ever reaches a parser, so
@@ -175,6 +177,44 @@ def as_si(
         return np.asarray(value.to(unit).magnitude if hasattr(value, "to") else value, dtype=float)
     except (TypeError, ValueError):  # pint's DimensionalityError is a TypeError
         raise InputError(field, value, f"must be {meaning(unit)}") from None
+
+
+def values_in_si(given: Any, unit: str, field: str = "value") -> NDArray[np.float64]:
+    """Values in SI: what `as_si` takes, a list of it, or a range as text, ``"1:4:0.5 deg"``.
+
+    Parameters
+    ----------
+    given : array_like, str, pint.Quantity, xarray.DataArray, or a list of them
+        A range is start:stop:step, the stop included.
+    unit : str
+        SI unit of the result.
+    field : str
+        Name of the argument, for the message.
+
+    Raises
+    ------
+    InputError
+        When a value has another dimension or is not numeric, or a range does not rise.
+    """
+    if isinstance(given, str) and ":" in given:
+        return _written_range(given, unit, field)
+    if isinstance(given, list | tuple):
+        return np.array([as_si(value, unit, field) for value in given], dtype=float)
+    return as_si(given, unit, field)
+
+
+def _written_range(text: str, unit: str, field: str) -> NDArray[np.float64]:
+    """Start, stop and step, the stop included."""
+    match = _ANY_RANGE.fullmatch(text)
+    if match is None:
+        raise InputError(field, text, 'must be a value such as "2 deg" or a range such as "1:4:0.5 deg"')
+    start, stop, step = (float(as_si(f"{match[place]} {match[4]}", unit, field)) for place in (1, 2, 3))
+    if not step > 0 or stop < start:
+        raise InputError(field, text, "must rise from start to stop, start:stop:step, by a positive step")
+    steps = (stop - start) / step * (1 + 1e-12)  # a hair more, so that 0:1:0.1 has its 1
+    if steps > _MOST_VALUES:
+        raise InputError(field, text, f"must have at most {_MOST_VALUES} values")
+    return start + step * np.arange(int(steps) + 1, dtype=float)
 
 
 def _factor_of_attribute(written: str, unit: str) -> float:
