@@ -6,7 +6,10 @@ demo: .venv/installed  ## Set up .venv, then analyse the XV-15 from 50 to 400 kt
 	$(BIN)/proprotor sweep xv15 --speed 50:400:5kt --plot damping.png
 
 test: .venv/installed  ## Run the tests
-	$(BIN)/python -m pytest --ignore=tests/verify --numprocesses auto --maxprocesses 8
+	$(BIN)/python -m pytest --ignore=tests/verify --ignore=tests/browser --numprocesses auto --maxprocesses 8
+
+test-browser: .venv/installed  ## Move the sliders of `proprotor explore` in a real browser; needs Chromium and its driver
+	$(BIN)/python -m pytest tests/browser
 
 verify: .venv/verify-installed  ## Check the equations against derivation and an independent engine; build and check packages and site
 	$(BIN)/python -m derive --check
@@ -70,7 +73,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test verify verify-versions regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types mutate fuzz peers golden clean help
+.PHONY: demo test test-browser verify verify-versions regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

@@ -15,6 +15,7 @@ from proprotor.commands.attribution import attribution
 from proprotor.commands.audit import audit
 from proprotor.commands.cases import cases
 from proprotor.commands.describe import describe
+from proprotor.commands.explore import explore
 from proprotor.commands.figures import figures
 from proprotor.commands.flutter import flutter
 from proprotor.commands.new import new
@@ -88,6 +89,7 @@ def main() -> None:
       proprotor sweep xv15 --speed 50:400:5kt       frequency and damping of each mode
       proprotor flutter xv15                        flutter speed and all other boundaries
       proprotor report xv15                         all of it on one page, HTML or PDF
+      proprotor explore xv15                        a page with sliders on the inputs
       proprotor new my.toml                         a commented deck of your own
       proprotor describe rotor.precone              what a field of it is
       proprotor sweep --help                        all there is to choose
@@ -111,6 +113,7 @@ for _command in (
     sensitivity,
     attribution,
     report,
+    explore,
     study,
     figures,
     audit,

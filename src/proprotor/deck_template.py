@@ -57,7 +57,7 @@ def deck_text(
     place = Path(file)
     parts = [_HEAD.format(origin=f", made from {base}" if base else "", file=place.name)]
     if variant:
-        parts.append(f"# A variant: what stands here replaces what the base has.\nbase = {_toml(base)}\n")
+        parts.append(f"# A variant: what stands here replaces what the base has.\nbase = {toml(base)}\n")
     for section in _SECTIONS:
         parts.append("\n".join(_section(section, tables, place, variant)))
     modes = tables.get("support", {}).get("modes")
@@ -146,7 +146,7 @@ def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
 
 def _given(field: DeckField, name: str, value: Any, place: Path, mark: str) -> Iterator[str]:
     yield f"# {_told(field)}"
-    yield "\n".join(f"{mark}{line}" for line in f"{name} = {_toml(_from(value, place))}".split("\n"))
+    yield "\n".join(f"{mark}{line}" for line in f"{name} = {toml(_from(value, place))}".split("\n"))
 
 
 def _left_out(field: DeckField, name: str) -> Iterator[str]:
@@ -174,20 +174,21 @@ def _from(value: Any, place: Path) -> Any:
     return value
 
 
-def _toml(value: Any) -> str:
+def toml(value: Any) -> str:
+    """A value as TOML has it."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
         return json.dumps(str(value), ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Mapping):
-        return f"{{ {', '.join(f'{key} = {_toml(entry)}' for key, entry in value.items())} }}"
+        return f"{{ {', '.join(f'{key} = {toml(entry)}' for key, entry in value.items())} }}"
     if isinstance(value, list):
         return _list(value)
     return repr(value)
 
 
 def _list(values: list[Any]) -> str:
-    texts = [_toml(value) for value in values]
+    texts = [toml(value) for value in values]
     if len(texts) <= _COLUMNS and not any(isinstance(value, str) for value in values):
         return f"[{', '.join(texts)}]"
     step = 1 if isinstance(values[0], str) else _COLUMNS

@@ -201,11 +201,17 @@ def _gauss_points(starts: Array, widths: Array, tip: Array) -> tuple[Array, Arra
     for panel, share in enumerate(shares):
         by_share = next(count for limit, count in _POINTS if share <= limit)
         points = max(by_share, _points_near_axis(nearness[panel]))
-        nodes, gauss = np.polynomial.legendre.leggauss(points)
+        nodes, gauss = _gauss(points)
         half = widths[..., panel, None] / 2
         stations.append(starts[..., panel, None] + half * (1 + nodes))
         weights.append(half * gauss)
     return np.concatenate(stations, axis=-1), np.concatenate(weights, axis=-1)
+
+
+@functools.cache
+def _gauss(points: int) -> tuple[Array, Array]:
+    """Nodes and weights on -1 to 1, which take longer to find than a rotor's panels to fill."""
+    return np.polynomial.legendre.leggauss(points)
 
 
 def _points_near_axis(nearness: float) -> int:

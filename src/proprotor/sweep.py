@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
-_ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where modes get their names, the first that has a trim
+ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where modes get their names, the first that has a trim
 _STRIDE = 0.02  # of the tip speed, between the first points of the way there
 
 
@@ -89,7 +89,7 @@ def sweep(
     path = follow(model, line)
     order = path.order(points)
     named = state_names(model, line, path, rotor_speed, approach)
-    columns, modes = _columns(model.dofs, path, named)
+    columns, modes = mode_columns(model.dofs, path, named)
     values, right, left = path.spectrum.at(slice(points)).modes(order[:, columns])
     # Of a pair that parts into two real roots the second is a mode only where it is real.
     values = np.where(values.imag < 0, np.nan, values)
@@ -155,7 +155,7 @@ def names_at(
     return assign_names(dofs, held, shares, values)
 
 
-def _columns(dofs: tuple[str, ...], path: Path, named: Named) -> tuple[Array, list[str]]:
+def mode_columns(dofs: tuple[str, ...], path: Path, named: Named) -> tuple[Array, list[str]]:
     """Which followed states are modes, in the order of the coordinates, and what they are called.
 
     A state is a mode where it is in the upper half plane, or real; of each pair the one above is, and the other only if
@@ -301,7 +301,7 @@ def anchor_speed(case: Case, **options: Any) -> float | None:
 
     Seven tenths of the tip speed, which is near cruise; less where there is no trim; None where there is none at all.
     """
-    speeds = tip_speed(case) * np.array(_ANCHORS)
+    speeds = tip_speed(case) * np.array(ANCHORS)
     works = np.flatnonzero(case.linearize(speeds, **options).trim.converged)
     return float(speeds[works[0]]) if len(works) else None
 

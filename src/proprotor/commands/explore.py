@@ -1,0 +1,100 @@
+"""The command `proprotor explore`: a page on this machine with sliders on the inputs."""
+
+from __future__ import annotations
+
+import webbrowser
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from proprotor.commands import output
+from proprotor.commands.arguments import (
+    EXIT_CODES,
+    case_argument,
+    in_order,
+    loaded_case,
+    model_options,
+    settings_of,
+)
+from proprotor.errors import InputError
+from proprotor.waiting import waiting
+
+if TYPE_CHECKING:
+    from bokeh.document import Document
+
+_POINTS = 60
+
+
+@click.command(epilog=EXIT_CODES, short_help="A page with sliders on the inputs, and at once what they do.")
+@case_argument
+@click.option(
+    "--speed",
+    metavar="RANGE",
+    help='Airspeeds drawn, such as "100:400:5kt"; by default 60 from 0.2 to 1.2 of the tip speed.',
+)
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=5006, show_default=True, help="0 takes a free one."
+)
+@click.option("--no-browser", is_flag=True, help="Tell the address, and open no browser.")
+@output.output_options()
+@model_options
+def explore(
+    case: str,
+    settings: tuple[str, ...],
+    speed: str | None,
+    port: int,
+    no_browser: bool,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Sliders on the inputs of a deck, with damping and root locus that follow.
+
+    CASE is a bundled case or a TOML file, which stays as it is: what one sets is saved from the page as a deck of its
+    own. The page is served to this machine alone, until Ctrl+C. Needs the extra `explore`: pip install
+    "proprotor[explore]".
+
+    \b
+    Examples:
+      proprotor explore xv15
+      proprotor explore my.toml --speed 100:350:5kt --pitch coupling
+      proprotor explore my.toml --port 0 --no-browser
+    """
+    import numpy as np
+
+    from proprotor.flutter import scan_speeds
+    from proprotor.units import speeds
+
+    try:
+        import bokeh  # noqa: F401
+    except ImportError:
+        raise InputError("explore", None, 'needs Bokeh: pip install "proprotor[explore]"') from None
+    options, given = in_order(options), settings_of(settings)
+    airspeeds = None if speed is None else np.unique(speeds(speed, "--speed"))
+    if airspeeds is not None and len(airspeeds) < 2:
+        raise InputError("--speed", speed, "must be a range of airspeeds")
+    loaded = loaded_case(case, settings)
+    with waiting("Making the page"):
+        from proprotor.explore.analysis import live_modes
+        from proprotor.explore.page import ExplorePage
+        from proprotor.explore.server import ADDRESS, listen, serve
+
+        drawn = scan_speeds(loaded, _POINTS) if airspeeds is None else airspeeds
+        live_modes(loaded, drawn, **options)  # which tells what is wrong before anything is served
+    try:
+        opened = listen(port)
+    except OSError as error:
+        reason = error.strerror or error
+        raise click.ClickException(f"--port = {port}: cannot listen on {ADDRESS} ({reason})") from None
+
+    def put_on(document: Document) -> None:
+        ExplorePage(loaded, case, drawn, given, options).put_on(document)
+
+    def ready(address: str) -> None:
+        if as_json:
+            output.print_json(output.about(loaded, options, given) | {"address": address})
+        else:
+            click.echo(f"{address}  (Ctrl+C ends it)")
+        if not no_browser:
+            webbrowser.open(address)
+
+    serve(put_on, opened, ready)

@@ -1,0 +1,93 @@
+"""What was found on the page as a deck, so that it is not lost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from proprotor.deck_file import read_tables
+from proprotor.deck_settings import with_settings
+from proprotor.deck_template import toml
+from proprotor.explore.inputs import slider_input
+from proprotor.options import CHOICES
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+
+def settings_of_values(case: Case, values: Mapping[str, float]) -> dict[str, str]:
+    """SI values by path as a deck has them, in the units of the case's own deck."""
+    found = {}
+    for path, value in values.items():
+        slider = slider_input(case, path)
+        number = f"{value / slider.factor:.12g}"
+        found[path] = number + ("" if slider.unit.startswith("/") else " " * bool(slider.unit)) + slider.unit
+    return found
+
+
+def altered_deck(
+    base: str,
+    case: Case,
+    values: Mapping[str, float],
+    settings: Mapping[str, str] | None = None,
+    options: Mapping[str, Any] | None = None,
+) -> str:
+    """A deck that alters another, with each changed number marked as assumed.
+
+    Parameters
+    ----------
+    base : str
+        Name of a bundled deck, or of the file that the new one is put beside.
+    case : Case
+        Of the base, with its settings.
+    values : mapping of str to float
+        SI values by path.
+    settings : mapping of str to str, optional
+        Fields that were set before.
+    options : mapping, optional
+        Of the model, which no deck holds: a comment tells those that are no default.
+
+    Raises
+    ------
+    InputError
+        For a path that is no input.
+    """
+    changed = dict(settings or {}) | settings_of_values(case, values)
+    tables = with_settings(read_tables(base), changed)
+    lines = ["# Made by `proprotor explore`: what stands here replaces what the base has."]
+    chosen = {name: value for name, value in (options or {}).items() if name in CHOICES}
+    flags = [_flag(name, value) for name, value in chosen.items() if value != CHOICES[name][0]]
+    if flags:
+        lines.append(f"# Explored with {' '.join(flags)}")
+    lines += [f"base = {toml(base)}", "", "[case]", f"name = {toml(_name(case.name))}"]
+    lines.append(f"title = {toml(tables['case'].get('title', case.name))}")
+    sections: dict[str, list[str]] = {}
+    for path in changed:
+        if "[" in path:
+            continue
+        section, _, name = path.rpartition(".")
+        if section != "case":
+            sections.setdefault(section, []).append(f"{name} = {toml(_at(tables, path))}")
+    for section, entries in sorted(sections.items()):
+        lines += ["", f"[{section}]", *entries]
+    if any("[" in path for path in changed):  # a list replaces the base's, so all of it is written
+        for mode in tables["support"]["modes"]:
+            lines += ["", "[[support.modes]]", *(f"{name} = {toml(value)}" for name, value in mode.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _at(tables: Any, path: str) -> Any:
+    for name in path.split("."):
+        tables = tables[name]
+    return tables
+
+
+def _name(name: str) -> str:
+    return f"{name.removesuffix('-explored')}-explored"
+
+
+def _flag(name: str, value: Any) -> str:
+    flag = name.replace("_", "-")
+    if isinstance(value, bool):
+        return f"--{flag}" if value else f"--no-{flag}"
+    return f"--{flag} {value}"

@@ -1,0 +1,138 @@
+"""The modes of a case along airspeeds as fast as a slider moves: followed and named, without the rest of a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.arrays import Array
+from proprotor.model import LinearModel
+from proprotor.path import Line, Path, follow
+from proprotor.sweep import ANCHORS, Named, mode_columns, names_at, rotor_speed_of, tip_speed
+from proprotor.sweep_summary import UnstableRange, unstable_ranges
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+
+@dataclass(frozen=True, eq=False)
+class LiveModes:
+    """Modes along airspeeds.
+
+    Attributes
+    ----------
+    airspeed : array (points,)
+        m/s.
+    names : list of str
+        Of the modes, in the order of the coordinates.
+    eigenvalue : array (points, modes)
+        rad/s; NaN at failed points.
+    reason, warning : array (points,) of str
+        Why a point failed, or is doubtful; empty where it is neither.
+    unstable : list of UnstableRange
+        Their ends are interpolated between the points.
+    """
+
+    airspeed: Array
+    names: list[str]
+    eigenvalue: Array
+    reason: Array
+    warning: Array
+    unstable: list[UnstableRange]
+
+    @property
+    def flutter(self) -> UnstableRange | None:
+        """The lowest airspeed at which a mode becomes unstable; None where none does within the points."""
+        onsets = [found for found in self.unstable if not found.open_start]
+        return min(onsets, key=lambda found: found.start, default=None)
+
+    @property
+    def damping(self) -> Array:
+        """-Re s/|s| (points, modes) in percent of critical, NaN for a root at zero."""
+        size = np.abs(self.eigenvalue)
+        with np.errstate(all="ignore"):
+            return np.where(size > 0, -100 * self.eigenvalue.real / size, np.nan)
+
+
+def live_modes(
+    case: Case, airspeeds: Array, values: Mapping[str, float] | None = None, **options: Any
+) -> LiveModes:
+    """Modes of a case, or of one with other inputs, along airspeeds.
+
+    Modes are those of `Case.sweep`: the same names, given at the same airspeed, and the same tracking, but for one
+    thing. Where a step does not tell modes apart, the matrices between its ends come from splines through those of
+    the points, which are smooth, and not from new trims. They only tell which mode is which: no number that is shown
+    comes from them.
+
+    Parameters
+    ----------
+    case : Case
+    airspeeds : array (points,)
+        m/s, rising.
+    values : mapping of str to float, optional
+        SI values by path, see `proprotor.design.design_inputs`.
+    **options
+        See `proprotor.options.Options`.
+
+    Raises
+    ------
+    InputError
+        For values that are not physical, and as `Case.sweep`.
+    """
+    varied = case.vary(values) if values else case
+    anchors = np.array(ANCHORS) * tip_speed(varied)
+    within = anchors[(anchors > airspeeds[0]) & (anchors < airspeeds[-1])]
+    positions = np.union1d(airspeeds, within)
+    shown = np.searchsorted(positions, airspeeds)
+    model = varied.linearize(positions, **options)
+    path = follow(model, Line(positions, _between(model)))
+    named = _named(model, path, within, rotor_speed_of(varied))
+    columns, names = mode_columns(model.dofs, path, named)
+    order = path.order(len(positions))[:, columns]
+    found = np.take_along_axis(path.spectrum.values[: len(positions)], order, 1)[shown]
+    found = np.where(
+        found.imag < 0, np.nan, found
+    )  # of a pair that parts, the second root only where it is real
+    reason, warning = model.trim.reason[shown], model.trim.warning[shown]
+    return LiveModes(airspeeds, names, found, reason, warning, _unstable(airspeeds, names, found))
+
+
+def _between(model: LinearModel) -> Any:
+    """Models between the points of one, by cubic splines of its matrices; None with too few points."""
+    from scipy.interpolate import CubicSpline  # here, because it takes long to import
+
+    good = np.flatnonzero(model.trim.converged)
+    if len(good) < 4:
+        return None
+    matrices = np.stack([model.M, model.C, model.K], axis=1)[good]
+    spline = CubicSpline(model.airspeed[good], matrices)
+
+    def linearize(positions: Array) -> LinearModel:
+        M, C, K = np.moveaxis(spline(positions), 1, 0)
+        return replace(model, airspeed=positions, M=M, C=C, K=K, B=None, rotor=None)
+
+    return linearize
+
+
+def _named(model: LinearModel, path: Path, anchors: Array, rotor_speed: float | None) -> Named:
+    """Names at the first anchor that has a trim, or else at the first point that has."""
+    from proprotor.modes import held_coordinates
+
+    if not len(path.points):
+        return Named(0, [], "", 0)
+    at = path.positions[path.points]
+    places = [int(np.flatnonzero(at == anchor)[0]) for anchor in anchors if anchor in at]
+    place = places[0] if places else 0
+    names = names_at(model.dofs, held_coordinates(model), path.spectrum, int(path.points[place]), rotor_speed)
+    return Named(place, names, f"airspeed {at[place]:.6g} m/s", 0)
+
+
+def _unstable(airspeeds: Array, names: list[str], eigenvalue: Array) -> list[UnstableRange]:
+    import xarray
+
+    by_mode = ("airspeed", "mode")
+    data = {"eigenvalue": (by_mode, eigenvalue)}
+    return unstable_ranges(xarray.Dataset(data, coords={"airspeed": airspeeds, "mode": names}))

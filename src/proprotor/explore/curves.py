@@ -1,0 +1,58 @@
+"""The data that the page draws: a line for each mode, in the units of its axes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from proprotor_equations import FIXED_COORDINATES
+
+from proprotor.explore.analysis import LiveModes
+from proprotor.mode_names import SECOND
+from proprotor.plots.style import COLOURS
+
+_DASHES = ("solid", "dashed", "dotted")
+
+
+def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str, list[Any]]:
+    """Columns of a source of lines, a row for each mode.
+
+    Parameters
+    ----------
+    found : LiveModes
+    rotor_speed : float
+        rad/s, for frequencies per revolution.
+    speed_unit : float
+        m/s in one unit of the axis of airspeed.
+    """
+    count = len(found.names)
+    turns = found.eigenvalue / rotor_speed
+    unstable = {one.mode for one in found.unstable}
+    broad = [name in unstable or name.removesuffix(SECOND) not in _rotor_names() for name in found.names]
+    airspeed = (found.airspeed / speed_unit).astype(np.float32)
+    return {
+        "mode": found.names,
+        "airspeed": [airspeed] * count,
+        "damping": list(found.damping.T.astype(np.float32)),
+        "growth": list(turns.real.T.astype(np.float32)),
+        "frequency": list(np.abs(turns.imag).T.astype(np.float32)),
+        "colour": [COLOURS[place % len(COLOURS)] for place in range(count)],
+        "dash": [_DASHES[place // len(COLOURS) % len(_DASHES)] for place in range(count)],
+        "width": [3.0 if one else 1.5 for one in broad],
+    }
+
+
+def ends(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:
+    """Where each root locus ends, at the highest airspeed that works: the markers that tell the sense of the lines."""
+    growth, frequency = [], []
+    for real, imaginary in zip(columns["growth"], columns["frequency"], strict=True):
+        works = np.flatnonzero(np.isfinite(real))
+        growth.append(float(real[works[-1]]) if len(works) else np.nan)
+        frequency.append(float(imaginary[works[-1]]) if len(works) else np.nan)
+    return {"mode": columns["mode"], "growth": growth, "frequency": frequency, "colour": columns["colour"]}
+
+
+def _rotor_names() -> set[str]:
+    from proprotor.mode_names import name_list
+
+    return set(name_list(tuple(FIXED_COORDINATES)))

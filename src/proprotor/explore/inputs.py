@@ -1,0 +1,137 @@
+"""Sliders for the inputs of a deck: which to begin with, and how far each goes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from proprotor.deck_units import deck_unit
+from proprotor.describe import deck_fields
+from proprotor.design import design_inputs
+from proprotor.errors import InputError, unknown_name
+from proprotor.plots.input_names import short_name
+from proprotor.plots.line_of_sweep import written
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+_FIRST = (
+    "rotor.precone",
+    "rotor.control_stiffness",
+    "rotor.gimbal_stiffness",
+    "rotor.pitch_gimbal_coupling",
+    "rotor.flap_frequency",
+    "rotor.flap_stiffness",
+    "rotor.lag_frequency",
+    "rotor.lag_stiffness",
+    "rotor.structural_pitch_offset",
+)
+_FIRST_OF_SUPPORT = ("frequency", "damping_ratio")
+_MOST = 13  # to begin with
+
+# By the last part of a path: the ends of the range in parts of the deck's value.
+_FACTORS = {
+    "frequency": (0.5, 1.6),
+    "stiffness": (0.2, 3.0),
+    "damping_ratio": (0.0, 4.0),
+    "rotor_speed": (0.7, 1.3),
+    "density": (0.2, 1.2),
+}
+_ANGLES = ("rad", 0.0873)  # at least five degrees to either side
+_COUPLING = 0.6  # to either side, of a number such as K_PG
+_STEPS = 250  # at most
+
+
+@dataclass(frozen=True)
+class SliderInput:
+    """An input with the range of its slider, in the unit that the deck has it in.
+
+    Attributes
+    ----------
+    path, name, unit, meaning : str
+    factor : float
+        SI units in one of the unit.
+    value, low, high : float
+        The deck's value, and the ends.
+    """
+
+    path: str
+    name: str
+    unit: str
+    meaning: str
+    factor: float
+    value: float
+    low: float
+    high: float
+
+    @property
+    def label(self) -> str:
+        """What it is, with its unit."""
+        return f"{self.name} ({written(self.unit)})" if self.unit else self.name
+
+    @property
+    def step(self) -> float:
+        """Of the slider: a round number, 100 to 250 of which are its range."""
+        raw = (self.high - self.low) / _STEPS
+        power = 10.0 ** int(f"{raw:e}".partition("e")[2])
+        return next(digit * power for digit in (1, 2, 5, 10) if digit * power >= raw * 0.999)
+
+    def widened(self, value: float) -> SliderInput:
+        """With a range that holds a value."""
+        return replace(self, low=min(self.low, value), high=max(self.high, value))
+
+
+def first_inputs(case: Case) -> list[str]:
+    """Paths of the inputs that have sliders to begin with, those the field turns first."""
+    known = design_inputs(case)
+    of_support = [
+        path
+        for last in _FIRST_OF_SUPPORT
+        for path in known
+        if path.startswith("support.") and path.endswith(f".{last}")
+    ]
+    return [path for path in (*_FIRST, *of_support) if path in known][:_MOST]
+
+
+def slider_input(case: Case, path: str) -> SliderInput:
+    """The slider of an input.
+
+    Raises
+    ------
+    InputError
+        For a path that is no input.
+    """
+    known = design_inputs(case)
+    if path not in known:
+        raise InputError(path, None, unknown_name(path, known, "input"))
+    number = known[path]
+    unit, factor = deck_unit(number, float(case.operation.rotor_speed))
+    value = float(f"{float(number.si) / factor:.10g}")  # free of the rounding of conversion
+    low, high = (float(f"{end:.3g}") for end in _range(path, value, number.unit, factor))
+    return SliderInput(
+        path, short_name(path), unit, _meanings().get(_plain(path), ""), factor, value, low, high
+    )
+
+
+def _range(path: str, value: float, si_unit: str, factor: float) -> tuple[float, float]:
+    last = path.rpartition(".")[2]
+    if last.endswith("coupling"):
+        return value - _COUPLING, value + _COUPLING
+    if si_unit == _ANGLES[0]:
+        reach = max(abs(value), _ANGLES[1] / factor)
+        return value - reach, value + reach
+    if value == 0:
+        return -1.0, 1.0
+    ends = next((ends for end, ends in _FACTORS.items() if last.endswith(end)), (0.5, 1.5))
+    low, high = sorted(part * value for part in ends)
+    return low, high
+
+
+def _plain(path: str) -> str:
+    return re.sub(r"\[[^\]]*\]", "", path)
+
+
+def _meanings() -> Mapping[str, str]:
+    return {_plain(field.path): field.meaning for field in deck_fields()}

@@ -1,0 +1,361 @@
+"""The page: sliders on the left, what was found above, damping and root locus below."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from bokeh.layouts import column, row
+from bokeh.models import ColumnDataSource, CustomJS, HoverTool, Range1d, TabPanel, Tabs
+from bokeh.models.annotations import BoxAnnotation, Legend, LegendItem, Span
+from bokeh.models.widgets import Button, Div, MultiChoice, Select, Slider, TextInput
+from bokeh.plotting import figure
+
+from proprotor.arrays import Array
+from proprotor.design import design_inputs
+from proprotor.errors import InputError
+from proprotor.explore.altered_deck import altered_deck
+from proprotor.explore.analysis import LiveModes, live_modes
+from proprotor.explore.curves import curves, ends
+from proprotor.explore.inputs import SliderInput, first_inputs, slider_input
+from proprotor.options import CHOICES
+from proprotor.plots.style import UNSTABLE
+from proprotor.provenance import reservations
+from proprotor.speed import KNOT
+from proprotor.units import to_si
+
+if TYPE_CHECKING:
+    from bokeh.document import Document
+
+    from proprotor.case import Case
+
+_SWITCHES = (
+    "equations",
+    "pitch",
+    "structure",
+    "airloads",
+    "compressibility",
+    "section_damping",
+    "rotor_speed",
+)
+_TOGETHER = 15  # ms in which several moves count as one
+_DAMPING, _FREQUENCY, _GROWTH = (-5, 20), (0, 4.5), (-0.3, 0.15)
+_SIDE, _HEIGHT = 330, 560  # pixels
+
+_DOWNLOAD = """
+const place = document.createElement("a");
+place.href = URL.createObjectURL(new Blob(cb_obj.data.text, {type: "application/toml"}));
+place.download = name;
+place.click();
+URL.revokeObjectURL(place.href);
+"""
+_HELP = """<p>Move a slider, or focus it (Tab) and press the arrow keys. <b>Reset</b> brings the
+deck's own values back, and <b>Save as a deck</b> downloads what you have set as a TOML file that alters the deck.</p>
+<p>Damping below zero is unstable. On the right, each root moves with airspeed towards its dot, which is the highest.
+Broad lines are modes of the support and modes that become unstable. The flutter speed is interpolated between the
+airspeeds analysed; <code>proprotor flutter</code> finds it to rounding.</p>"""
+
+
+class ExplorePage:
+    """One reader's page.
+
+    Parameters
+    ----------
+    case : Case
+    base : str
+        The deck, as the saved one names it.
+    airspeeds : array (points,)
+        m/s.
+    settings, options : mapping
+        What was set on the command line.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        base: str,
+        airspeeds: Array,
+        settings: Mapping[str, str],
+        options: Mapping[str, Any],
+    ) -> None:
+        self.case, self.base, self.airspeeds, self.settings = case, base, airspeeds, settings
+        self.options = {"structure": _structure_of(case)} | dict(options)
+        self.first_options = dict(self.options)
+        self.values: dict[str, float] = {}  # SI, of the inputs that differ from the deck's
+        self.sliders: dict[str, Slider] = {}
+        self.inputs: dict[str, SliderInput] = {}
+        self.document: Document | None = None
+        self._waiting = self._held = False
+        self.lines, self.dots = ColumnDataSource(name="lines"), ColumnDataSource(name="dots")
+        self.readout = Div(name="readout", width=900)
+        self.message = Div(name="message", width=900)
+        self.side = column(name="sliders", width=_SIDE)
+        self.guide = Div(name="help", width=_SIDE)
+        self.deck = ColumnDataSource(name="deck")  # whose text goes to the browser when it is asked for
+        self.choice = MultiChoice(
+            title="Inputs with a slider (type to find others)",
+            options=list(design_inputs(case)),
+            value=first_inputs(case),
+            width=_SIDE,
+            name="choice",
+        )
+        self.exact = TextInput(
+            title="Set exactly, then Enter: rotor.precone = 1.5 deg", name="exact", width=_SIDE
+        )
+        self.switches = {name: _switch(case, name, self.options[name]) for name in _SWITCHES}
+
+    def put_on(self, document: Document) -> None:
+        """Build the page in a document of Bokeh, and draw the deck as it is."""
+        self.document = document
+        document.title = f"{self.case.title or self.case.name}: explore"
+        self._show_sliders(self.choice.value)
+        self.choice.on_change("value", lambda _, __, chosen: self._show_sliders(chosen))
+        self.exact.on_change("value", lambda _, __, text: self._set_exactly(text))
+        for name, switch in self.switches.items():
+            switch.on_change("value", partial(self._switch_to, name))
+        document.add_root(self._layout())
+        document.add_root(self.deck)
+        self.update()
+
+    def update(self) -> None:
+        """Analyse what is set and draw it; where that cannot be, say why and leave the last drawing."""
+        self._waiting = False
+        try:
+            found = live_modes(self.case, self.airspeeds, self.values, **self.options)
+        except InputError as error:
+            self.message.text = _alert(f"{error}. Drawn is what was before.")
+            return
+        columns = curves(found, self._rotor_speed(), KNOT)
+        self.lines.data = columns
+        self.dots.data = ends(columns)
+        self.readout.text = readout(found, self.values, self.inputs)
+        self.message.text = messages(found)
+
+    # What is moved ----------------------------------------------------------------------------------------------
+
+    def _show_sliders(self, paths: list[str]) -> None:
+        for path in paths:
+            if path not in self.sliders:
+                self._add_slider(slider_input(self.case, path))
+        self.side.children = [self.sliders[path] for path in paths]
+        meanings = (
+            f"<dt><b>{escape(self.inputs[path].label)}</b></dt><dd>{escape(self.inputs[path].meaning)}</dd>"
+            for path in paths
+        )
+        self.guide.text = f"{_HELP}<dl>{''.join(meanings)}</dl>"
+
+    def _add_slider(self, given: SliderInput) -> None:
+        self.inputs[given.path] = given
+        slider = Slider(
+            title=given.label,
+            value=given.value,
+            start=given.low,
+            end=given.high,
+            step=given.step,
+            format="0,0.[00000]",
+            width=_SIDE - 20,
+            height=36,
+            name=given.path,
+            bar_color="#0072B2",
+        )
+        slider.on_change("value", lambda _, __, value: self._moved(given.path, value))
+        self.sliders[given.path] = slider
+
+    def _moved(self, path: str, value: float) -> None:
+        given = self.inputs[path]
+        if value == given.value:
+            self.values.pop(path, None)
+        else:
+            self.values[path] = value * given.factor
+        self._soon()
+
+    def _switch_to(self, name: str, _: str, __: str, chosen: str) -> None:
+        self.options[name] = {"yes": True, "no": False}.get(chosen, chosen)
+        self._soon()
+
+    def _set_exactly(self, text: str) -> None:
+        path, _, written = (part.strip() for part in text.partition("="))
+        if not text:
+            return
+        try:
+            given = slider_input(self.case, path)
+            number = written.removesuffix("/rev") if given.unit == "/rev" else written
+            unit = "" if given.unit == "/rev" and number != written else design_inputs(self.case)[path].unit
+            value = to_si(number, unit) / (1.0 if unit == "" and given.unit == "/rev" else given.factor)
+        except InputError as error:
+            told = error if error.field else error.within(path)
+            self.message.text = _alert(f"{told}.")
+            return
+        if path not in self.choice.value:
+            self.choice.value = [*self.choice.value, path]
+        slider = self.sliders[path]
+        slider.update(start=min(slider.start, value), end=max(slider.end, value))
+        slider.value = value
+
+    def _reset(self) -> None:
+        self._held = True
+        for path, slider in self.sliders.items():
+            given = self.inputs[path]
+            slider.update(start=given.low, end=given.high, value=given.value)
+        for name, switch in self.switches.items():
+            switch.value = _word(self.first_options[name])
+        self.values, self.options, self._held = {}, dict(self.first_options), False
+        self.update()
+
+    def _save(self) -> None:
+        text = altered_deck(self.base, self.case, self.values, self.settings, self.options)
+        self.deck.data = {"text": [text]}
+
+    def _soon(self) -> None:
+        """Update once for all moves that come together."""
+        if self._waiting or self._held or self.document is None:
+            return
+        self._waiting = True
+        self.document.add_timeout_callback(self.update, _TOGETHER)
+
+    def _rotor_speed(self) -> float:
+        return self.values.get("operation.rotor_speed", float(self.case.operation.rotor_speed))
+
+    # What is seen -----------------------------------------------------------------------------------------------
+
+    def _layout(self) -> Any:
+        reset = Button(label="Reset", name="reset", width=90)
+        reset.on_click(self._reset)
+        save = Button(label="Save as a deck", name="save", button_type="primary", width=150)
+        save.on_click(self._save)
+        name = f"{self.case.name.removesuffix('-explored')}-explored.toml"
+        self.deck.js_on_change("data", CustomJS(args={"name": name}, code=_DOWNLOAD))
+        more = column(self.exact, self.choice)
+        model = column(*self.switches.values())
+        tabs = (
+            ("Inputs", self.side),
+            ("More inputs", more),
+            ("Model", model),
+            ("Help", self.guide),
+        )
+        panels = Tabs(tabs=[TabPanel(title=name, child=child) for name, child in tabs], name="tabs")
+        side = column(row(reset, save), panels, width=_SIDE + 20)
+        title = Div(
+            text=f"<h1 style='font-size:18px;margin:4px 0'>{escape(self.case.title or self.case.name)}</h1>",
+            width=880,
+        )
+        foot = Div(
+            text=f"<small>{escape(' '.join(reservations(self.case)))}</small>", width=880, name="reservations"
+        )
+        plots = row(self._damping(), self._root_locus())
+        return row(side, column(title, self.readout, plots, self.message, foot), spacing=8)
+
+    def _damping(self) -> Any:
+        first, last = (float(speed) / KNOT for speed in self.airspeeds[[0, -1]])
+        plot = figure(
+            width=500,
+            height=_HEIGHT,
+            x_range=Range1d(start=first, end=last),
+            y_range=Range1d(start=_DAMPING[0], end=_DAMPING[1]),
+            x_axis_label="Airspeed (kt)",
+            y_axis_label="Damping −Re s/|s| (% of critical)",
+            tools="pan,wheel_zoom,box_zoom,reset,save",
+            title="Damping",
+            name="damping",
+        )
+        self._draw(plot, "airspeed", "damping", [("airspeed", "$x{0.0} kt"), ("damping", "$y{0.00} %")])
+        plot.add_layout(Span(location=0, dimension="width", line_color="black"))
+        plot.add_layout(BoxAnnotation(top=0, fill_color=UNSTABLE, fill_alpha=1, level="image"))
+        return plot
+
+    def _root_locus(self) -> Any:
+        plot = figure(
+            width=390,
+            height=_HEIGHT,
+            x_range=Range1d(start=_GROWTH[0], end=_GROWTH[1]),
+            y_range=Range1d(start=_FREQUENCY[0], end=_FREQUENCY[1]),
+            x_axis_label="Growth Re s (per rev)",
+            y_axis_label="Frequency |Im s| (per rev)",
+            tools="pan,wheel_zoom,box_zoom,reset,save",
+            title="Root locus",
+            name="root-locus",
+        )
+        self._draw(plot, "growth", "frequency", [("growth", "$x{0.000}"), ("frequency", "$y{0.000}")])
+        plot.scatter("growth", "frequency", source=self.dots, color="colour", size=7)
+        plot.add_layout(Span(location=0, dimension="height", line_color="black"))
+        plot.add_layout(BoxAnnotation(left=0, fill_color=UNSTABLE, fill_alpha=1, level="image"))
+        return plot
+
+    def _draw(self, plot: Any, across: str, up: str, told: list[tuple[str, str]]) -> None:
+        drawn = plot.multi_line(
+            across,
+            up,
+            source=self.lines,
+            line_color="colour",
+            line_dash="dash",
+            line_width="width",
+        )
+        plot.add_tools(
+            HoverTool(renderers=[drawn], tooltips=[("mode", "@mode"), *told], line_policy="nearest")
+        )
+        if up == "damping":
+            legend = Legend(items=[LegendItem(label={"field": "mode"}, renderers=[drawn])])
+            legend.update(label_text_font_size="10px", spacing=5, padding=3, glyph_width=28, glyph_height=12)
+            legend.update(location="bottom_left", ncols=4, label_height=12, border_line_color=None)
+            plot.add_layout(legend, "below")
+        plot.toolbar.logo = None
+
+
+def _structure_of(case: Case) -> str:
+    """What `Case.linearize` takes where no option says otherwise."""
+    return CHOICES["structure"][0] if case.frequencies is None else "tabulated"
+
+
+def _switch(case: Case, name: str, value: Any) -> Select:
+    kept = [choice for choice in CHOICES[name] if choice != "tabulated" or case.frequencies is not None]
+    choices: list[Any] = [_word(choice) for choice in kept]
+    label = name.replace("_", " ")
+    return Select(
+        title=label[:1].upper() + label[1:], value=_word(value), options=choices, width=_SIDE - 20, name=name
+    )
+
+
+def _word(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return str(value)
+
+
+def _alert(text: str) -> str:
+    style = "border-left:6px double #b34700;background:#fdf3ec;padding:4px 10px;margin:0"
+    return f'<p role="alert" style="{style}"><b>Cannot be:</b> {escape(text)}</p>'
+
+
+def readout(found: LiveModes, values: Mapping[str, float], inputs: Mapping[str, SliderInput]) -> str:
+    """The flutter speed and what was changed, as HTML."""
+    low, high = (f"{speed / KNOT:.4g}" for speed in found.airspeed[[0, -1]])
+    onset = found.flutter
+    if not np.any(found.reason == ""):
+        told = "No airspeed could be analysed."
+    elif onset is None:
+        told = f"No mode becomes unstable between {low} and {high} kt."
+    else:
+        told = f"Flutter speed {onset.start / KNOT:.1f} kt ({escape(onset.mode)}), interpolated."
+    already = [one.mode for one in found.unstable if one.open_start]
+    if already:
+        told += f" Already unstable at {low} kt: {escape(', '.join(already))}."
+    changed = [
+        f"{inputs[path].name} {value / inputs[path].factor:.4g} {inputs[path].unit} "
+        f"(deck {inputs[path].value:.4g})"
+        for path, value in values.items()
+    ]
+    set_to = "Changed: " + "; ".join(changed) if changed else "All inputs as in the deck."
+    return f'<div aria-live="polite"><b style="font-size:16px">{told}</b><br>{escape(set_to)}</div>'
+
+
+def messages(found: LiveModes) -> str:
+    """Reasons of points that failed or are doubtful, as HTML."""
+    lines = []
+    for told, texts in (("Not analysed", found.reason), ("Doubtful", found.warning)):
+        for text in dict.fromkeys(texts[texts != ""].tolist()):
+            at = found.airspeed[texts == text] / KNOT
+            lines.append(f"{told} at {len(at)} airspeeds, {at[0]:.4g} to {at[-1]:.4g} kt: {text}.")
+    return "".join(f"<p>{escape(line)}</p>" for line in lines)

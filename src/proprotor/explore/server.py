@@ -1,0 +1,87 @@
+"""A server of the page for this machine alone."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from bokeh.application import Application
+from bokeh.application.handlers.function import FunctionHandler
+from bokeh.server.server import BaseServer
+from bokeh.server.tornado import BokehTornado
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import IOLoop
+from tornado.web import ErrorHandler
+
+if TYPE_CHECKING:
+    from bokeh.document import Document
+
+ADDRESS = "127.0.0.1"
+
+
+class _OwnNames(BokehTornado):
+    """Answers those who ask for this machine by its own names, and nobody else.
+
+    A foreign page may have a name of its own point here; the browser then sends that name along.
+    """
+
+    names: frozenset[str] = frozenset()
+
+    def find_handler(self, request: Any, **more: Any) -> Any:
+        if request.host not in self.names:
+            return self.get_handler_delegate(request, ErrorHandler, {"status_code": 403})
+        return super().find_handler(request, **more)
+
+
+def listen(port: int) -> socket.socket:
+    """A socket on this machine's own address; port 0 takes a free one.
+
+    Raises
+    ------
+    OSError
+        When the port is taken.
+    """
+    opened = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        opened.bind((ADDRESS, port))
+        opened.listen(16)
+    except OSError:
+        opened.close()
+        raise
+    opened.setblocking(False)
+    return opened
+
+
+def serve(page: Callable[[Document], None], opened: socket.socket, ready: Callable[[str], None]) -> None:
+    """Serve a page until it is interrupted.
+
+    Parameters
+    ----------
+    page : callable
+        Puts a page on the document of each reader.
+    opened : socket
+        Of `listen`.
+    ready : callable
+        Told the address once the page can be opened.
+    """
+    port = opened.getsockname()[1]
+    names = frozenset(f"{name}:{port}" for name in (ADDRESS, "localhost"))
+    loop = IOLoop()
+    application = _OwnNames(
+        {"/": Application(FunctionHandler(page))}, extra_websocket_origins=sorted(names), use_index=False
+    )
+    application.names = names
+    http = HTTPServer(application)
+    http.add_socket(opened)
+    server = BaseServer(loop, application, http)
+    server.start()
+    ready(f"http://{ADDRESS}:{port}/")
+    try:
+        loop.start()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        server.stop()
+        http.stop()
