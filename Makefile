@@ -54,6 +54,18 @@ decks: .venv/installed  ## Write docs/decks.md, every field of a deck
 types: .venv/installed  ## Check the types
 	$(BIN)/python -m mypy
 
+coverage: .venv/installed  ## Run the tests and tell which share of the branches of src and derive they take
+	$(BIN)/python -m coverage erase
+	$(BIN)/python -m pytest --ignore=tests/verify --ignore=tests/browser --numprocesses auto --maxprocesses 8 --cov --cov-report=
+	$(BIN)/python -m tests.branch_coverage
+
+audit-dependencies: .venv/installed  ## Find dependencies that are undeclared, unused or at odds with each other
+	$(BIN)/python -m deptry src generated derive
+	$(BIN)/python -m pip check
+
+audit-vulnerabilities: .venv/installed  ## Look up known vulnerabilities of what is installed; needs the package index's advisories
+	$(BIN)/python -m pip_audit --strict --skip-editable
+
 mutate: .venv/installed  ## Change every term of the equations, one at a time, and tell which change no test sees
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.mutation --processes 2 --report docs/mutation.md
 
@@ -73,7 +85,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test test-browser verify verify-versions regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types mutate fuzz peers golden clean help
+.PHONY: demo test test-browser verify verify-versions regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
