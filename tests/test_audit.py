@@ -1,6 +1,7 @@
 """The audit judges every printed equation by computation, and a changed print changes its verdict."""
 
 import csv
+import re
 from dataclasses import replace
 
 import pytest
@@ -150,3 +151,32 @@ def test_the_report_has_the_verdicts():
     report = audit.REPORT.read_text(encoding="utf-8")
     for number, title, verdict, terms, *_ in audit.summary(lambda number: ""):
         assert f"| {number} | {title} | {verdict} | {terms} |" in report
+
+
+KNOTS = re.compile(r"(none below )?[0-9.]+ kt|none$", re.MULTILINE)
+
+
+@pytest.fixture
+def any_boundary(monkeypatch):
+    """Boundaries without their sweeps, which the last notebook compares with its page."""
+    for name in ("base", "boundary", "without", "published_with"):
+        monkeypatch.setattr(consequences, name, lambda *of, **options: 300.0)
+    kept = audit.consequence_of_conflict, audit._consequences
+    for cached in kept:
+        cached.cache_clear()
+    yield
+    for cached in kept:
+        cached.cache_clear()
+
+
+def test_the_report_is_what_the_audit_writes(tmp_path, monkeypatch, capsys, any_boundary):
+    """All of it but the boundaries, and the table on the terminal has them too."""
+    page = audit.REPORT.read_text(encoding="utf-8")
+    monkeypatch.setattr(audit, "ROOT", tmp_path)
+    monkeypatch.setattr(audit, "REPORT", tmp_path / "audit.md")
+    assert audit.main([]) == 0
+    written = audit.REPORT.read_text(encoding="utf-8")
+    assert KNOTS.sub("kt", written) == KNOTS.sub("kt", page), "`make audit` writes the report anew"
+    shown = capsys.readouterr().out
+    assert "written: audit.md" in shown and "verdicts, all as recorded" in shown
+    assert shown.count("300.0 kt") >= 2 * len(consequences.OF_CONFLICT)  # as printed, instead of derived

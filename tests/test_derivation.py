@@ -216,6 +216,33 @@ def test_what_cannot_be_printed_is_refused():
         emit.print_code(sp.Function("f")(s.coning))
 
 
+@pytest.mark.parametrize("power", [-3, 3])
+def test_a_cube_is_printed_without_a_general_power(power):
+    text = emit.print_code(s.coning**power)
+    assert "**2*" in text and "**3" not in text and "**(-" not in text
+    assert eval(text, {"coning": 1.7}) == pytest.approx(1.7**power, rel=1e-15)
+
+
+def test_one_name_is_one_index_in_a_module():
+    functions = [
+        dataclasses.replace(a_function(s.flap_stiffness), rows=rows, columns=("flap",))
+        for rows in (("flap", "lag"), ("lag", "flap"))
+    ]
+    assert emit.index_groups(functions[:1])
+    with pytest.raises(ValueError, match="would be two indices"):
+        emit.index_groups(functions)
+
+
+def test_a_term_that_nobody_drops_is_told():
+    with pytest.raises(ValueError, match="no such term: weight; known: "):
+        emit.reduced_modules(frozenset({"weight"}))
+
+
+def test_a_harmonic_that_the_sum_over_three_blades_does_not_take_is_refused():
+    with pytest.raises(ValueError, match="harmonic above 2"):
+        multiblade.average(sp.cos(multiblade.psi) ** 3)
+
+
 # The check ----------------------------------------------------------------------------------------
 
 

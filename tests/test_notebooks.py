@@ -53,6 +53,54 @@ def test_a_notebook_runs_without_a_warning_and_shows_what_its_page_shows(source)
         assert _is_drawn(data) and _is_drawn((notebooks.PAGES / name).read_bytes()), name
 
 
+SMALL = """# %% [markdown]
+# See [the audit](../docs/audit.md), [springs](3-springs.py) and [the code](../derive/audit.py).
+
+# %%
+print("to a stream")
+"to the page"
+
+# %%
+from IPython.display import Image, Markdown, display
+from matplotlib.figure import Figure
+import io
+file = io.BytesIO()
+Figure(figsize=(1, 1)).savefig(file, format="png")
+display(Image(file.getvalue(), metadata={"alt": "a square"}), Markdown("*as it is*"))
+"""
+
+
+def test_pages_are_written_with_their_pictures_alone(tmp_path, monkeypatch, capsys):
+    pages = tmp_path / "docs" / "notebooks"
+    monkeypatch.setattr(notebooks, "ROOT", tmp_path)
+    monkeypatch.setattr(notebooks, "NOTEBOOKS", tmp_path)
+    monkeypatch.setattr(notebooks, "PAGES", pages)
+    for name in ("7-small", "8-not-asked-for"):
+        (tmp_path / f"{name}.py").write_text(SMALL)
+    pages.mkdir(parents=True)
+    for old in ("7-small-2.png", "8-not-asked-for-1.png"):
+        (pages / old).touch()
+    monkeypatch.chdir(tmp_path)  # where the sockets of the kernel are, as of the shell that starts it
+    monkeypatch.setattr("sys.argv", ["derive.notebooks", "7-small"])
+    assert notebooks.main() == 0
+    assert capsys.readouterr().out == "written: docs/notebooks/7-small.md\n"
+    found = {path.name for path in pages.iterdir()}
+    assert found == {"7-small.md", "7-small-1.png", "8-not-asked-for-1.png"}
+    with Image.open(pages / "7-small-1.png") as picture:
+        assert picture.size == (100, 100)
+    text = (pages / "7-small.md").read_text()
+    assert "[the audit](../audit.md), [springs](3-springs.md) and [the code](../../derive/audit.py)" in text
+    assert "```text\nto a stream\n```" in text and "```text\n'to the page'\n```" in text
+    assert "![a square](7-small-1.png)\n\n*as it is*\n" in text
+
+
+def test_a_notebook_that_there_is_not_is_told(monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["derive.notebooks", "9-none"])
+    assert notebooks.main() == 2
+    told = capsys.readouterr().out
+    assert told.startswith("no such notebook: 9-none; known: 1-kinematics, ") and told.count("\n") == 1
+
+
 def _is_drawn(data: bytes) -> bool:
     """More than a frame on white."""
     with Image.open(io.BytesIO(data)) as image:
