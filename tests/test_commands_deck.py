@@ -250,6 +250,13 @@ def test_describe_tells_a_field_a_section_and_all():
     output = run("describe", "rotor.precone").stdout
     assert "Cone built into the hub" in output and "rad" in output
     assert "support.span" in run("describe", "beam-wing").stdout
+    for field, line in (
+        ("rotor.flap_damping", "default 0 N*m*s/rad"),
+        ("rotor.n_blades", "range 3 or more"),
+        ("rotor.blade_mass", "instead of mass_distribution"),
+        ("support.span", 'of [support] of kind "beam-wing"'),
+    ):
+        assert line in re.sub(r" +", " ", run("describe", field).stdout), field
     everything = run("describe").stdout
     assert all(f.path in everything for f in deck_fields())
     records = json.loads(run("describe", "operation", "--json").stdout)

@@ -74,6 +74,20 @@ def test_a_circle_is_one_closed_line():
     assert np.all(np.diff(angle) > 0) or np.all(np.diff(angle) < 0)
 
 
+@pytest.mark.parametrize("height", [0.3, -0.3])
+def test_at_a_saddle_the_boundary_parts_what_the_middle_keeps_apart(height):
+    """x y + height on a square of four corners: the corners of the sign that the middle has are joined."""
+    largest = np.array([[1.0, -1.0], [-1.0, 1.0]]) + height
+    crossings = {((0, 0), (0, 1)): (0.0, -1.0), ((0, 0), (1, 0)): (-1.0, 0.0),
+                 ((0, 1), (1, 1)): (1.0, 0.0), ((1, 0), (1, 1)): (0.0, 1.0)}  # fmt: skip
+    edges = Edges(*(np.array(part) for part in (*zip(*crossings, strict=True), list(crossings.values()))))
+    lines = _lines(edges, largest)
+    parts = np.split(lines, np.flatnonzero(np.isnan(lines[:, 0])))
+    middles = sorted(tuple(part[np.isfinite(part[:, 0])].mean(axis=0)) for part in parts)
+    corner = 0.5 if height > 0 else -0.5  # the corners cut off: (1, -1) and (-1, 1), or (-1, -1) and (1, 1)
+    assert middles == sorted([(0.5, -corner), (-0.5, corner)])
+
+
 def test_the_level_shifts_the_growth():
     """ζ = 0.02: growth at a level of 0.05 is that of the missing damping."""
     model = linear_model(np.eye(1)[None], 0.4 * np.eye(1)[None], 100 * np.eye(1)[None])

@@ -304,6 +304,38 @@ def test_flutter_speed_is_that_of_a_root_finder_on_single_points():
         assert found.flutter_coordinate[design] == "chord"
 
 
+def test_a_design_whose_search_meets_a_bad_input_spoils_no_other():
+    """A frequency that is none between two airspeeds of the range, where one design has its boundary."""
+    inputs = sampling.points({CHORD_MODE: [30.0, 28.0, 31.0, 33.0]})
+    options = {"structure": "tabulated"}
+
+    def flap(gap):
+        return lambda speed: np.where((speed > gap[0]) & (speed < gap[1]), -1.0, 1.85)
+
+    def analysed(gap):
+        table = pp.BladeFrequencies(against="airspeed", at=[0, 300], flap=flap(gap), lag=1.3)
+        return study(CASE, inputs, "160:460:20kt", "flutter", frequencies=table, workers=1, **options)
+
+    whole = analysed((0.0, 0.0))
+    speeds = whole.flutter_speed.values
+    assert np.isfinite(speeds).all() and speeds[1] != speeds[0]
+    found = analysed((speeds[1] - 0.02, speeds[1] + 0.02))
+    expected = np.array([False, True, False, False])
+    assert np.array_equal(np.isnan(found.flutter_speed), expected)
+    assert "frequencies" in str(found.flutter_note.values[1])
+    for name in ("flutter_speed", "flutter_frequency", "flutter_coordinate"):
+        assert np.array_equal(found[name].values[~expected], whole[name].values[~expected]), name
+
+
+def test_an_airspeed_of_one_design_that_is_none_spoils_no_other():
+    inputs = {PRECONE: [0.04, 0.05, 0.03], "airspeed": [120.0, -1.0, 140.0]}
+    found = study(CASE, sampling.points(inputs))
+    assert (found.reason.values != "").tolist() == [False, True, False]
+    assert "airspeed" in str(found.reason.values[1])
+    alone = study(CASE, sampling.points({name: values[2:] for name, values in inputs.items()}))
+    assert np.array_equal(found.eigenvalue[2], alone.eigenvalue[0])
+
+
 def test_designs_without_a_flutter_speed_say_why():
     found = study(CASE, {PRECONE: [0.04]}, [100.0, 110.0], "flutter")
     assert np.isnan(found.flutter_speed) and found.flutter_note == flutter_scan.STABLE
@@ -501,11 +533,25 @@ def test_a_fingerprint_tells_apart():
         lambda r: r,
         lambda r: r + 1,
         lambda r: r + 2,
+        lambda r: max(r, key=lambda x: x + 1),
+        lambda r: max(r, key=lambda x: x + 2),
+        {"a"},
+        {"a", "b"},
+        np.array(["a", None], dtype=object),
+        np.array(["b", None], dtype=object),
+        np.sin,
+        np.cos,
         CASE,
         replace(CASE, rotor=replace(CASE.rotor, precone=np.nextafter(CASE.rotor.precone, 1))),
     ]
     assert len({fingerprint(one) for one in different}) == len(different)
     assert fingerprint({"a": 1, "b": 2}) == fingerprint({"b": 2, "a": 1})
+    assert fingerprint(set("abc")) == fingerprint(set("cab"))
+
+
+def test_what_cannot_be_told_has_no_fingerprint():
+    with pytest.raises(InputError, match=r"^checkpoint = builtins.object: stands among the inputs"):
+        fingerprint([1, object()])
 
 
 # Files --------------------------------------------------------------------------------------------

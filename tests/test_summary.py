@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from proprotor.boundary_summary import verdict
 
 CASE = pp.load_case("xv15")
 
@@ -26,6 +27,24 @@ def test_a_model_says_its_coordinates_and_what_failed():
     assert "15 coordinates" in told and "shape (3,)" in told and "gimbal_1s" in told
     assert told.count("1 of 3 failed") == 2 and "Mach" in told
     assert "one point" in repr(CASE.linearize(100.0))
+
+
+def test_the_margin_at_an_airspeed_is_told_in_words():
+    found = CASE.flutter_point("240:440:20kt")
+    speed = found.speed * 3600 / 1852
+
+    def at(knots):
+        return list(verdict(found, knots / 3600 * 1852, "kt", 1852 / 3600))
+
+    assert at(250) == [
+        f"Flutter speed {speed:.2f} kt ({found.mode}, flutter).",
+        f"Margin at 250 kt: {100 * (speed / 250 - 1):+.1f} % of that airspeed.",
+    ]
+    modes = CASE.sweep(np.array([430.0]) * 1852 / 3600)
+    count = int((modes.damping_ratio < 0).sum())
+    told = f"At 430 kt {count} mode{'s are' if count > 1 else ' is'} unstable."
+    assert count and told in at(430)
+    assert "500 kt lies outside the range searched, 240 to 440 kt." in at(500)
 
 
 def test_a_flutter_point_says_the_speed_in_knots_and_all_boundaries():
