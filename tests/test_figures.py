@@ -1,6 +1,7 @@
 """The figures of AIAA-2002-1604: the command, the files, the bands, and what the figures must show relatively."""
 
 import csv
+from io import BytesIO
 
 import matplotlib.image
 import numpy as np
@@ -14,7 +15,8 @@ from proprotor.design import design_inputs
 from proprotor.errors import InputError
 from proprotor.figures import NUMBERS, Analyses, csv_of, decks_with_bands, make_figure
 from proprotor.figures.analyses import XV15, own_frequencies
-from proprotor.figures.drawing import draw
+from proprotor.figures.content import Mark
+from proprotor.figures.drawing import draw, draw_intervals
 from proprotor.input_ranges import RANGES
 from proprotor.mode_following import follow_support_modes, support_names
 from proprotor.uncertainty_band import InputRange, boundary, damping_band, sample
@@ -332,3 +334,18 @@ def test_the_sample_is_the_same_for_the_same_seed():
     )
     np.testing.assert_array_equal(one, same)
     assert np.abs(one - other).max() > 1e-6
+
+
+def test_intervals_are_as_wide_as_their_percentiles():
+    """Two rows side by side, the second of which spans twice as much."""
+    rows = [("narrow", 370.0, 360.0, 372.0, 380.0), ("wide", 370.0, 350.0, 372.0, 390.0)]
+    first, again = BytesIO(), BytesIO()
+    for file in (first, again):
+        draw_intervals(rows, Mark((365.0, 375.0), "published"), "boundary (kt)", file)
+    assert first.getvalue() == again.getvalue()
+    pixels = matplotlib.image.imread(BytesIO(first.getvalue()))[..., :3]
+    blue = (pixels[..., 2] > pixels[..., 0] + 0.2) & (pixels[..., 2] > 0.85)
+    rows_of_pixels = [np.flatnonzero(row) for row in blue if row.sum() > 100]
+    narrow, wide = rows_of_pixels[0], rows_of_pixels[-1]
+    assert np.ptp(wide) / np.ptp(narrow) == pytest.approx(2, rel=0.01)
+    assert wide.min() + wide.max() == pytest.approx(narrow.min() + narrow.max(), abs=4)  # both about 370
