@@ -240,7 +240,7 @@ def test_a_term_that_nobody_drops_is_told():
 
 def test_a_harmonic_that_the_sum_over_three_blades_does_not_take_is_refused():
     with pytest.raises(ValueError, match="harmonic above 2"):
-        multiblade.average(sp.cos(multiblade.psi) ** 3)
+        multiblade.azimuth_mean(sp.cos(multiblade.psi) ** 3)
 
 
 # The check ----------------------------------------------------------------------------------------
