@@ -90,8 +90,8 @@ class ExplorePage:
         self.document: Document | None = None
         self._waiting = self._held = False
         self.lines, self.dots = ColumnDataSource(name="lines"), ColumnDataSource(name="dots")
-        self.readout = Div(name="readout", width=900)
-        self.message = Div(name="message", width=900)
+        self.readout = Div(name="readout", width=850)
+        self.message = Div(name="message", width=850)
         self.side = column(name="sliders", width=_SIDE)
         self.guide = Div(name="help", width=_SIDE)
         self.deck = ColumnDataSource(name="deck")  # whose text goes to the browser when it is asked for
@@ -240,10 +240,10 @@ class ExplorePage:
         side = column(row(reset, save), panels, width=_SIDE + 20)
         title = Div(
             text=f"<h1 style='font-size:18px;margin:4px 0'>{escape(self.case.title or self.case.name)}</h1>",
-            width=880,
+            width=850,
         )
         foot = Div(
-            text=f"<small>{escape(' '.join(reservations(self.case)))}</small>", width=880, name="reservations"
+            text=f"<small>{escape(' '.join(reservations(self.case)))}</small>", width=850, name="reservations"
         )
         plots = row(self._damping(), self._root_locus())
         return row(side, column(title, self.readout, plots, self.message, foot), spacing=8)
@@ -251,7 +251,7 @@ class ExplorePage:
     def _damping(self) -> Any:
         first, last = (float(speed) / KNOT for speed in self.airspeeds[[0, -1]])
         plot = figure(
-            width=500,
+            width=490,
             height=_HEIGHT,
             x_range=Range1d(start=first, end=last),
             y_range=Range1d(start=_DAMPING[0], end=_DAMPING[1]),
@@ -268,7 +268,7 @@ class ExplorePage:
 
     def _root_locus(self) -> Any:
         plot = figure(
-            width=390,
+            width=360,
             height=_HEIGHT,
             x_range=Range1d(start=_GROWTH[0], end=_GROWTH[1]),
             y_range=Range1d(start=_FREQUENCY[0], end=_FREQUENCY[1]),
