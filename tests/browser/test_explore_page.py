@@ -61,6 +61,7 @@ def page(browser):
         browser.get(address)
         wait(browser, lambda: "Flutter speed" in readout(browser))
         yield browser
+        browser.get("about:blank")  # or the page would call for its server after that has ended
 
 
 def wait(browser, condition):
