@@ -179,7 +179,7 @@ def coarse_panels(
     edges = np.stack([root, *hinges, (hinges[-1] + tip) / 2, tip], axis=-1)
     widths = np.diff(edges, axis=-1)
     used = (np.real(widths) > 1e-12 * np.real(tip)[..., None]).reshape(-1, widths.shape[-1]).any(axis=0)
-    nodes, gauss = np.polynomial.legendre.leggauss(_COARSE_POINTS)
+    nodes, gauss = _gauss(_COARSE_POINTS)
     half = widths[..., used, None] / 2
     stations = edges[..., :-1][..., used][..., None] + half * (1 + nodes)
     flat = (*root.shape, -1)

@@ -46,14 +46,14 @@ def of_model(model: LinearModel) -> str:
 
 def of_boundary(boundary: Boundary) -> str:
     """Where which mode crosses the level, and how."""
-    verb = "begins" if boundary.onset else "ends"
     hertz = f", {boundary.frequency / math.tau:.4g} Hz" if boundary.kind == "flutter" else ""
-    return f"Boundary at {boundary.position:.6g}: {boundary.kind} of {boundary.mode} {verb}{hertz}"
+    return f"Boundary at {boundary.position:.6g}: {_event(boundary)}{hertz}"
 
 
 def of_crossings(found: Crossings) -> str:
     """All boundaries of a line, which need not be airspeeds: SI."""
-    lines = [f"{len(found.boundaries)} boundaries from {_ends(found.searched)}"]
+    low, high = found.searched
+    lines = [f"{len(found.boundaries)} boundaries from {low:.6g} to {high:.6g}"]
     lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
     return "\n".join(lines + list(_at_start(found)))
 
@@ -85,7 +85,3 @@ def _at_start(found: Crossings | FlutterPoint) -> Iterator[str]:
 def _range(values: np.ndarray) -> str:
     low, high = float(np.min(values.real)), float(np.max(values.real))
     return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"
-
-
-def _ends(searched: tuple[float, float]) -> str:
-    return f"{searched[0]:.6g} to {searched[1]:.6g}"

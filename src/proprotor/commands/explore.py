@@ -87,7 +87,7 @@ def explore(
         raise click.ClickException(f"--port = {port}: cannot listen on {ADDRESS} ({reason})") from None
 
     def put_on(document: Document) -> None:
-        ExplorePage(loaded, case, drawn, given, options).put_on(document)
+        ExplorePage(loaded, case, drawn, given, output.told_options(loaded, options)).put_on(document)
 
     def ready(address: str) -> None:
         if as_json:

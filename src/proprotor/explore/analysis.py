@@ -10,6 +10,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.model import LinearModel
+from proprotor.modes import held_coordinates
 from proprotor.path import Line, Path, follow
 from proprotor.sweep import ANCHORS, Named, mode_columns, names_at, rotor_speed_of, tip_speed
 from proprotor.sweep_summary import UnstableRange, unstable_ranges
@@ -93,9 +94,8 @@ def live_modes(
     columns, names = mode_columns(model.dofs, path, named)
     order = path.order(len(positions))[:, columns]
     found = np.take_along_axis(path.spectrum.values[: len(positions)], order, 1)[shown]
-    found = np.where(
-        found.imag < 0, np.nan, found
-    )  # of a pair that parts, the second root only where it is real
+    # Of a pair that parts into two real roots the second is a mode only where it is real.
+    found = np.where(found.imag < 0, np.nan, found)
     reason, warning = model.trim.reason[shown], model.trim.warning[shown]
     return LiveModes(airspeeds, names, found, reason, warning, _unstable(airspeeds, names, found))
 
@@ -119,8 +119,6 @@ def _between(model: LinearModel) -> Any:
 
 def _named(model: LinearModel, path: Path, anchors: Array, rotor_speed: float | None) -> Named:
     """Names at the first anchor that has a trim, or else at the first point that has."""
-    from proprotor.modes import held_coordinates
-
     if not len(path.points):
         return Named(0, [], "", 0)
     at = path.positions[path.points]

@@ -8,10 +8,11 @@ import numpy as np
 from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.explore.analysis import LiveModes
-from proprotor.mode_names import SECOND
+from proprotor.mode_names import SECOND, name_list
 from proprotor.plots.style import COLOURS
 
 _DASHES = ("solid", "dashed", "dotted")
+_ROTOR_NAMES = frozenset(name_list(FIXED_COORDINATES))  # of modes; what has another is the support's
 
 
 def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str, list[Any]]:
@@ -28,7 +29,7 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
     count = len(found.names)
     turns = found.eigenvalue / rotor_speed
     unstable = {one.mode for one in found.unstable}
-    broad = [name in unstable or name.removesuffix(SECOND) not in _rotor_names() for name in found.names]
+    broad = [name in unstable or name.removesuffix(SECOND) not in _ROTOR_NAMES for name in found.names]
     airspeed = (found.airspeed / speed_unit).astype(np.float32)
     return {
         "mode": found.names,
@@ -50,9 +51,3 @@ def ends(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:
         growth.append(float(real[works[-1]]) if len(works) else np.nan)
         frequency.append(float(imaginary[works[-1]]) if len(works) else np.nan)
     return {"mode": columns["mode"], "growth": growth, "frequency": frequency, "colour": columns["colour"]}
-
-
-def _rotor_names() -> set[str]:
-    from proprotor.mode_names import name_list
-
-    return set(name_list(tuple(FIXED_COORDINATES)))

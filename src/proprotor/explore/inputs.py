@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -133,5 +134,6 @@ def _plain(path: str) -> str:
     return re.sub(r"\[[^\]]*\]", "", path)
 
 
+@functools.cache
 def _meanings() -> Mapping[str, str]:
     return {_plain(field.path): field.meaning for field in deck_fields()}

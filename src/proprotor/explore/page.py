@@ -69,8 +69,10 @@ class ExplorePage:
         The deck, as the saved one names it.
     airspeeds : array (points,)
         m/s.
-    settings, options : mapping
+    settings : mapping
         What was set on the command line.
+    options : mapping
+        Of the model, all of them.
     """
 
     def __init__(
@@ -82,8 +84,7 @@ class ExplorePage:
         options: Mapping[str, Any],
     ) -> None:
         self.case, self.base, self.airspeeds, self.settings = case, base, airspeeds, settings
-        self.options = {"structure": _structure_of(case)} | dict(options)
-        self.first_options = dict(self.options)
+        self.options, self.first_options = dict(options), dict(options)
         self.values: dict[str, float] = {}  # SI, of the inputs that differ from the deck's
         self.sliders: dict[str, Slider] = {}
         self.inputs: dict[str, SliderInput] = {}
@@ -105,7 +106,7 @@ class ExplorePage:
         self.exact = TextInput(
             title="Set exactly, then Enter: rotor.precone = 1.5 deg", name="exact", width=_SIDE
         )
-        self.switches = {name: _switch(case, name, self.options[name]) for name in _SWITCHES}
+        self.switches = {name: _switch(case, name, options[name]) for name in _SWITCHES}
 
     def put_on(self, document: Document) -> None:
         """Build the page in a document of Bokeh, and draw the deck as it is."""
@@ -302,11 +303,6 @@ class ExplorePage:
             legend.update(location="bottom_left", ncols=4, label_height=12, border_line_color=None)
             plot.add_layout(legend, "below")
         plot.toolbar.logo = None
-
-
-def _structure_of(case: Case) -> str:
-    """What `Case.linearize` takes where no option says otherwise."""
-    return CHOICES["structure"][0] if case.frequencies is None else "tabulated"
 
 
 def _switch(case: Case, name: str, value: Any) -> Select:
