@@ -365,9 +365,6 @@ def _interpolate(distribution: Table | Callable[[Array], Array], r: Array) -> Ar
     if callable(distribution):
         return np.asarray(distribution(r))
     stations, values = np.asarray(distribution[0]), np.asarray(distribution[1])
-    if stations.ndim == 1 and not any(map(np.iscomplexobj, (stations, values, r))):
-        found: Array = np.interp(r, stations, values)
-        return found
     last = stations.shape[-1] - 2
     panel = np.sum(np.real(r)[..., None] >= np.real(stations)[..., None, :], axis=-1) - 1
     panel = np.clip(panel, 0, last)
