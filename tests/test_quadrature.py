@@ -30,24 +30,36 @@ def tables(draw, low, high):
     return RADIUS * np.array([0, *sorted(inner), 100]) / 100, np.array(values)
 
 
-@st.composite
-def blades(draw):
-    """Blades with a hinge on either side of the cutout, or on it, or at the centre."""
-    flap, gap = draw(zero_or(between(0.01, 0.4))), draw(zero_or(between(0.01, 0.3)))
+def blade(radius, cutout, flap, gap, chord, twist):
+    """A blade by shares of its radius, or many by arrays; tables stretch with the radius."""
+
+    def stretched(distribution):
+        if not isinstance(distribution, tuple):
+            return distribution
+        return np.asarray(radius)[..., None] * distribution[0] / RADIUS, distribution[1]
+
+    r, mass = stretched((np.array([0.0, RADIUS]), [5.0, 5.0]))
     return pp.Rotor.from_mass_distribution(
-        [0.0, RADIUS],
-        [5.0, 5.0],
+        r,
+        mass,
         n_blades=3,
-        radius=RADIUS,
-        root_cutout=RADIUS * draw(between(0.05, 0.3)),
-        flap_hinge_offset=RADIUS * flap,
-        lag_hinge_offset=RADIUS * (flap + gap),
+        radius=radius,
+        root_cutout=radius * cutout,
+        flap_hinge_offset=radius * flap,
+        lag_hinge_offset=radius * (flap + gap),
         flap_stiffness=1.0,
         lag_stiffness=1.0,
-        chord=draw(between(0.1, 0.5) | tables(0.1, 0.5)),
-        twist=draw(between(-0.9, 0.0) | tables(-0.3, 0.9)),
+        chord=stretched(chord),
+        twist=stretched(twist),
         airfoil=pp.Airfoil(lift_slope=5.7),
     )
+
+
+# Shares of the radius that put a hinge on either side of the cutout, or on it, or at the centre.
+SHARES = (between(0.05, 0.3), zero_or(between(0.01, 0.4)), zero_or(between(0.01, 0.3)))
+chords = between(0.1, 0.5) | tables(0.1, 0.5)
+twists = between(-0.9, 0.0) | tables(-0.3, 0.9)
+blades = st.tuples(*SHARES, chords, twists).map(lambda drawn: blade(RADIUS, *drawn))
 
 
 airspeeds = between(np.log(0.02), np.log(3.0)).map(lambda logarithm: TIP_SPEED * np.exp(logarithm))
@@ -109,7 +121,7 @@ def fine_moments(rotor, airspeed, start, end):
 
 
 @many
-@given(blades(), airspeeds)
+@given(blades, airspeeds)
 def test_radial_moments_of_section_loads(rotor, airspeed):
     quadrature = rotor.quadrature
     loads = loads_and_derivatives(quadrature.stations, rotor.station_chord, rotor.station_twist, airspeed)
@@ -122,7 +134,7 @@ def test_radial_moments_of_section_loads(rotor, airspeed):
 
 
 @many
-@given(blades())
+@given(blades)
 def test_segments_lie_between_the_hinges(rotor):
     quadrature, ends = rotor.quadrature, segment_ends(rotor)
     middles = (ends[:-1] + ends[1:]) / 2
@@ -131,7 +143,42 @@ def test_segments_lie_between_the_hinges(rotor):
     lengths = quadrature.moments(np.ones((1, quadrature.stations.shape[-1])))[0, :, 0]
     assert np.allclose(lengths, np.diff(ends), rtol=1e-13)
     stations = quadrature.stations
-    assert np.array_equal(quadrature.segment, np.searchsorted(ends, stations) - 1)
+    segments = np.searchsorted(ends, stations) - 1
+    assert np.array_equal(quadrature.counts, np.bincount(segments)) and np.all(np.diff(segments) >= 0)
+
+
+def moments_of_a_load(rotor, quadrature):
+    """Of chord times twist squared, which takes no function that might round otherwise in arrays."""
+    twist = rotor.twist_at(quadrature.stations)
+    return quadrature.moments(rotor.chord_at(quadrature.stations) * twist * twist)
+
+
+@pytest.mark.parametrize("step", [0.0, 1e-30j])
+@settings(many, max_examples=40)
+@given(st.lists(st.tuples(between(3.5, 4.5), *SHARES), min_size=5, max_size=9), chords, twists)
+def test_each_of_many_blades_has_the_quadrature_it_would_have_alone(step, shares, chord, twist):
+    """Bit for bit, however many stations the others have, and to the imaginary parts of a complex step."""
+    radius, *others = np.transpose(shares)
+    radius = radius * (1 + step)
+    singles = [blade(*numbers, chord, twist) for numbers in zip(radius, *others, strict=True)]
+    whole = blade(radius, *others, chord, twist).quadrature
+    seen = []
+    for rows in whole.alike():
+        some = blade(radius[rows], *(other[rows] for other in others), chord, twist)
+        moments = moments_of_a_load(some, whole.take(rows))
+        for row, found in zip(rows, moments, strict=True):
+            alone = singles[row].quadrature
+            present = whole.counts[row] > 0
+            assert np.array_equal(whole.counts[row][present], alone.counts)
+            assert np.array_equal(whole.edges[row][present], alone.edges)
+            for name in ("stations", "weights"):
+                own = getattr(alone, name)
+                assert np.array_equal(getattr(whole, name)[row][: len(own)], own)
+            assert not whole.weights[row, len(alone.stations) :].any()
+            assert np.array_equal(found[present], moments_of_a_load(singles[row], alone))
+            assert not found[~present].any()
+        seen += rows.tolist()
+    assert sorted(seen) == list(range(len(shares)))
 
 
 @many

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from types import ModuleType
 from typing import Any, cast
@@ -78,9 +79,22 @@ class BladeSections:
 
     def take(self, rows: Array | slice) -> BladeSections:
         """Sections at some of the points."""
-        chord, twist = (part[rows] if part.ndim > 1 else part for part in (self.chord, self.twist))
+        quadrature = self.quadrature.take(rows)
+        own = slice(quadrature.stations.shape[-1])
+        chord, twist = (part[rows][:, own] if part.ndim > 1 else part for part in (self.chord, self.twist))
         airfoil = self.airfoil.take(rows) if isinstance(self.airfoil, Airfoil) else self.airfoil
-        return BladeSections(self.quadrature.take(rows), chord, twist, airfoil)
+        return BladeSections(quadrature, chord, twist, airfoil)
+
+    def blocks(self, points: int) -> Iterator[tuple[Array | slice, BladeSections]]:
+        """Points whose stations are alike, few enough at a time for the cache, and their sections."""
+        most = max(1, _BLOCK // self.quadrature.stations.shape[-1])
+        rows: Iterable[Array | slice]
+        if self.quadrature.counts.ndim == 1:
+            rows = (slice(start, start + most) for start in range(0, points, most))
+        else:
+            alike = self.quadrature.alike()
+            rows = (group[start : start + most] for group in alike for start in range(0, len(group), most))
+        return ((some, self.take(some)) for some in rows)
 
 
 def along_segments(quantities: Quantities) -> dict[str, Any]:
@@ -177,16 +191,13 @@ def load_moments(
     shape = (points, len(sections.quadrature.beyond_lag_hinge), POWERS)
     numbers = (sections.quadrature.stations, sections.chord, sections.twist, *segments.values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
-    moments: dict[str, Any] = {}
-    block_of = max(1, _BLOCK // sections.quadrature.stations.shape[-1])
+    moments: defaultdict[str, Array] = defaultdict(lambda: np.zeros(shape, dtype=kind))
     needed = {name: segments[name] for name in _needed(equations)}
-    for start in range(0, points, block_of):
-        rows = slice(start, min(start + block_of, points))
+    for rows, here in sections.blocks(points):
         block = {
             name: value[rows] if np.ndim(value) > 1 and len(value) > 1 else value
             for name, value in needed.items()
         }
-        here = sections.take(rows)
         air, coefficients, spins = _aerodynamics(here, block, compressibility, equations)
         if doubts is not None:
             _doubt(doubts, here, block, air, rows, points)
@@ -194,9 +205,7 @@ def load_moments(
             coefficients = _lift_slope_alone(coefficients)
         for name, load in _loads(air, coefficients, spins, steady_only).items():
             if np.ndim(load):
-                moment = moments.setdefault(name, np.zeros(shape, dtype=kind))
-                full = np.broadcast_to(load, (rows.stop - rows.start, load.shape[-1]))
-                moment[rows] = _block_moments(here.quadrature, full, block_of)
+                moments[name][rows] = here.quadrature.moments(load)
     found = {
         f"{name}_{power}": moment[..., power] for name, moment in moments.items() for power in range(POWERS)
     }
@@ -208,16 +217,6 @@ def _needed(equations: ModuleType) -> tuple[str, ...]:
     """Names of what the section loads need of a segment."""
     others = ("density", "speed_of_sound", "section_damping", "pitch", "radius")
     return tuple(dict.fromkeys((*keywords(equations.trim_velocity), *others)))
-
-
-def _block_moments(quadrature: RadialQuadrature, load: Array, block_of: int) -> Array:
-    """Radial moments of a block of points, filled up so that a point's sums do not depend on how many it comes with."""
-    rows = len(load)
-    if quadrature.segment.ndim > 1 or rows == block_of:
-        return quadrature.moments(load)
-    full = np.zeros((block_of, load.shape[-1]), dtype=load.dtype)
-    full[:rows] = load
-    return quadrature.moments(full)[:rows]
 
 
 def _aerodynamics(
@@ -249,7 +248,7 @@ def _doubt(
     sections: BladeSections,
     segments: Quantities,
     air: Quantities,
-    rows: slice,
+    rows: Array | slice,
     points: int,
 ) -> None:
     """Mark the points at which outboard stations are beyond what the airfoil knows."""

@@ -16,10 +16,14 @@ POWERS = 3  # moments of r^0, r^1 and r^2
 # airspeed they turn within V/Ω of the axis: panels near the root double outward, with points by distance from the
 # axis. These keep every radial moment within 1e-10 of itself (tests/test_quadrature.py).
 _LONGEST_PANEL = 0.1
-_POINTS = ((0.021, 3), (0.03, 4), (0.06, 6), (np.inf, 8))
+_SHARES, _POINTS = np.array([0.021, 0.03, 0.06]), np.array([3, 4, 6, 8])
 _NEAR_ROOT = 0.2 / 2.0 ** np.arange(7)  # of the radius
 _TINY = np.finfo(float).tiny
 _DIGITS, _MOST_POINTS = 12, 16
+# Width of a panel, as a share of its outer radius, up to which 1, 2, ... points resolve what turns at the axis. Gauss
+# errors fall as rho^(-2n), with rho the size of the ellipse about the panel that reaches the axis; that is
+# (rho + 1/rho)/2 half widths from the panel's centre.
+_NEARNESS = 2 / (1 + np.cosh(_DIGITS * np.log(10) / (2 * np.arange(1, _MOST_POINTS))))
 _COARSE_POINTS = 12
 
 
@@ -27,23 +31,26 @@ _COARSE_POINTS = 12
 class RadialQuadrature:
     """Stations of the blade and the weights that turn section loads into radial moments by segment.
 
+    Each of many blades has the stations it would have alone. Where others have more, its own are followed by some
+    without weight.
+
     Attributes
     ----------
     stations : array (..., stations)
-        Radii, m.
-    segment : array (..., stations)
-        Segment each station lies on.
-    weights : array (..., stations, segments, 3)
-        Weight of a station in the integral of f r^n over each segment.
+        Radii from root to tip, m.
+    weights : array (..., stations, 3)
+        Weight of a station in the integral of f r^n over its segment.
+    counts : array (..., segments)
+        How many stations lie on each segment; none on one that only others of many blades have.
     edges : array (..., segments, 2)
-        Where each segment begins and ends, m.
+        Where each segment begins and ends, m; at the tip without stations.
     beyond_flap_hinge, beyond_lag_hinge : array (segments,)
         1 on segments outboard of the hinge, else 0.
     """
 
     stations: Array
-    segment: Array
     weights: Array
+    counts: Array
     edges: Array
     beyond_flap_hinge: Array
     beyond_lag_hinge: Array
@@ -57,60 +64,60 @@ class RadialQuadrature:
 
     def flattened(self, shape: tuple[int, ...]) -> RadialQuadrature:
         """The same with leading axes, if there are any, broadcast to `shape` and flattened."""
-        if self.segment.ndim == 1:
-            return self
-        points = {"stations": 1, "segment": 1, "weights": 3, "edges": 2}
-        flat = {name: flatten_points(getattr(self, name), shape, own) for name, own in points.items()}
+        flat = {name: flatten_points(getattr(self, name), shape, own) for name, own in _OWN_AXES.items()}
         return replace(self, **flat)
 
     def take(self, rows: Array | slice) -> RadialQuadrature:
-        """The quadrature at some of the points."""
-        if self.segment.ndim == 1:
+        """The quadrature at some of the points, without the stations that none of them has."""
+        if self.counts.ndim == 1:
             return self
-        return replace(
-            self, **{name: getattr(self, name)[rows] for name in ("stations", "segment", "weights", "edges")}
-        )
+        some = {name: getattr(self, name)[rows] for name in _OWN_AXES}
+        longest = some["counts"].sum(axis=-1).max()
+        some |= {name: some[name][:, :longest] for name in ("stations", "weights")}
+        return replace(self, **some)
+
+    def alike(self) -> list[Array]:
+        """Points, of those with stations of their own, by how many these are on each segment."""
+        order = np.lexsort(self.counts.T)
+        differ = np.diff(self.counts[order], axis=0).any(axis=-1)
+        return np.split(order, 1 + np.flatnonzero(differ))
 
     def along_lines(self, at_axis: Array, per_radius: Array | None = None) -> Array:
-        """Values (..., stations) of what is linear in r along each segment.
+        """Values (..., stations) of what is linear in r along each segment, of one blade or of those alike.
 
         Parameters
         ----------
         at_axis, per_radius : array (..., segments)
             Value at r = 0, and its change with r; without the latter it is constant.
         """
-        if self.segment.ndim > 1:
-            start = self._spread(at_axis)
-            return start if per_radius is None else start + self._spread(per_radius) * self.stations
-        line = np.empty(
-            (*at_axis.shape[:-1], len(self.stations)), dtype=np.result_type(at_axis, self.stations)
-        )
+        leading = np.broadcast_shapes(at_axis.shape[:-1], self.stations.shape[:-1])
+        line = np.empty((*leading, self.stations.shape[-1]), dtype=np.result_type(at_axis, self.stations))
         for place, own in enumerate(self._slices):
             segment = min(place, at_axis.shape[-1] - 1)
             if per_radius is None:
                 line[..., own] = at_axis[..., segment, None]
             else:
-                np.multiply(per_radius[..., segment, None], self.stations[own], out=line[..., own])
+                np.multiply(per_radius[..., segment, None], self.stations[..., own], out=line[..., own])
                 line[..., own] += at_axis[..., segment, None]
         return line
+
+    def moments(self, section_load: Array) -> Array:
+        """Radial moments (..., segments, 3) of a section load (..., stations), of one blade or of those alike.
+
+        A product for each point, of a shape that does not depend on how many there are: so nor does its result.
+        """
+        products = [section_load[..., None, own] @ self.weights[..., own, :] for own in self._slices]
+        return np.concatenate(products, axis=-2)
 
     @functools.cached_property
     def _slices(self) -> list[slice]:
         """Stations of each segment, which follow each other."""
-        ends = np.searchsorted(self.segment, np.arange(len(self.beyond_lag_hinge)), side="right")
-        return [slice(start, end) for start, end in itertools.pairwise([0, *ends])]
+        counts = self.counts.reshape(-1, self.counts.shape[-1])
+        assert (counts == counts[0]).all(), "these points' stations have no slices in common"
+        return [slice(start, end) for start, end in itertools.pairwise([0, *np.cumsum(counts[0])])]
 
-    def _spread(self, at_segments: Array) -> Array:
-        segments = np.broadcast_to(at_segments, (*at_segments.shape[:-1], self.weights.shape[-2]))
-        places = np.broadcast_to(self.segment, (*segments.shape[:-1], self.segment.shape[-1]))
-        return np.take_along_axis(segments, places, axis=-1)
 
-    def moments(self, section_load: Array) -> Array:
-        """Radial moments (..., segments, 3) of a section load (..., stations)."""
-        *leading, stations, segments, powers = self.weights.shape
-        table = self.weights.reshape(*leading, stations, segments * powers)
-        moments = (section_load[..., None, :] @ table)[..., 0, :] if leading else section_load @ table
-        return moments.reshape(*moments.shape[:-1], segments, powers)
+_OWN_AXES = {"stations": 1, "weights": 2, "counts": 1, "edges": 2}  # of each blade
 
 
 def flatten_points(array: Array, shape: tuple[int, ...], own_axes: int) -> Array:
@@ -143,23 +150,20 @@ def gauss_panels(
     root, tip, flap, lag, _ = np.broadcast_arrays(
         root_cutout, radius, flap_hinge_offset, lag_hinge_offset, at
     )
+    inner, outer = root[..., None], tip[..., None]
     share = np.linspace(0, 1, max(2, int(np.ceil(1 / _LONGEST_PANEL)) + 1))[1:-1]
-    interior = root[..., None] + (tip - root)[..., None] * share
+    even, tabulated = inner + (outer - inner) * share, np.broadcast_to(knots, (*root.shape, knots.shape[-1]))
     if knots.shape[-1]:
-        tabulated = np.broadcast_to(knots, (*root.shape, knots.shape[-1]))
         # Where a table already splits the blade finely, even panels would only add stations.
-        longest = np.max(np.diff(np.sort(np.real(knots), axis=-1)), initial=0)
-        finely = longest <= _LONGEST_PANEL * np.real(tip).min()
-        interior = tabulated if finely else np.concatenate([tabulated, interior], axis=-1)
-    near_root = tip[..., None] * _NEAR_ROOT
-    ends = [root[..., None], tip[..., None], flap[..., None], lag[..., None], interior, near_root]
-    edges = np.sort(_within(np.concatenate(ends, axis=-1), root[..., None], tip[..., None]), axis=-1)
-    widths = np.real(np.diff(edges, axis=-1))
-    used = (widths > 1e-12 * np.real(tip)[..., None]).reshape(-1, widths.shape[-1]).any(axis=0)
+        longest = np.max(np.diff(np.sort(np.real(tabulated), axis=-1)), axis=-1, initial=0)
+        even = np.where((longest <= _LONGEST_PANEL * np.real(tip))[..., None], inner, even)
+    ends = [inner, outer, flap[..., None], lag[..., None], tabulated, even, outer * _NEAR_ROOT]
+    edges = np.sort(_within(np.concatenate(ends, axis=-1), inner, outer), axis=-1)
     # Between edges that coincide the last one counts for both sides: with complex radii they may differ a little.
-    starts = edges[..., :-1][..., used]
-    widths = np.diff(np.concatenate([starts, tip[..., None]], axis=-1), axis=-1)
-    stations, weights = _gauss_points(starts, widths, tip)
+    # Panels without width end up beyond the others, at the tip.
+    starts = np.sort(np.where(_wide(edges, tip), edges[..., :-1], outer), axis=-1)
+    widths = np.diff(starts, axis=-1, append=outer)
+    stations, weights = _gauss_points(starts, widths, _points(starts, widths, tip), tip)
     return _by_segment(stations, weights, root, tip, flap, lag)
 
 
@@ -177,13 +181,9 @@ def coarse_panels(
     root, tip, flap, lag = np.broadcast_arrays(root_cutout, radius, flap_hinge_offset, lag_hinge_offset)
     hinges = [_within(hinge, root, tip) for hinge in (flap, lag)]
     edges = np.stack([root, *hinges, (hinges[-1] + tip) / 2, tip], axis=-1)
-    widths = np.diff(edges, axis=-1)
-    used = (np.real(widths) > 1e-12 * np.real(tip)[..., None]).reshape(-1, widths.shape[-1]).any(axis=0)
-    nodes, gauss = _gauss(_COARSE_POINTS)
-    half = widths[..., used, None] / 2
-    stations = edges[..., :-1][..., used][..., None] + half * (1 + nodes)
-    flat = (*root.shape, -1)
-    return _by_segment(stations.reshape(flat), (half * gauss).reshape(flat), root, tip, flap, lag)
+    points = np.where(_wide(edges, tip), _COARSE_POINTS, 0)
+    stations, weights = _gauss_points(edges[..., :-1], np.diff(edges, axis=-1), points, tip)
+    return _by_segment(stations, weights, root, tip, flap, lag)
 
 
 def _within(edges: Array, root: Array, tip: Array) -> Array:
@@ -192,20 +192,35 @@ def _within(edges: Array, root: Array, tip: Array) -> Array:
     return np.where(np.real(edges) >= np.real(tip), tip, edges)
 
 
-def _gauss_points(starts: Array, widths: Array, tip: Array) -> tuple[Array, Array]:
-    """Stations and weights of all panels; panels get points by their share of the radius and their place."""
+def _wide(edges: Array, tip: Array) -> Array:
+    """Which panels between edges (..., n) have a width, (..., n - 1)."""
+    wide: Array = np.real(np.diff(edges, axis=-1)) > 1e-12 * np.real(tip)[..., None]
+    return wide
+
+
+def _points(starts: Array, widths: Array, tip: Array) -> Array:
+    """Points of each panel (..., panels), by its share of the radius and its place; none on one without width."""
     long, ends = np.real(widths), np.real(starts + widths)
-    shares = (long / np.real(tip)[..., None]).reshape(-1, widths.shape[-1]).max(axis=0)
-    nearness = (long / np.maximum(ends, _TINY)).reshape(-1, widths.shape[-1]).max(axis=0)
-    stations, weights = [], []
-    for panel, share in enumerate(shares):
-        by_share = next(count for limit, count in _POINTS if share <= limit)
-        points = max(by_share, _points_near_axis(nearness[panel]))
-        nodes, gauss = _gauss(points)
-        half = widths[..., panel, None] / 2
-        stations.append(starts[..., panel, None] + half * (1 + nodes))
-        weights.append(half * gauss)
-    return np.concatenate(stations, axis=-1), np.concatenate(weights, axis=-1)
+    by_share = _POINTS[np.searchsorted(_SHARES, long / np.real(tip)[..., None])]
+    near_axis = 1 + np.searchsorted(_NEARNESS, long / np.maximum(ends, _TINY))
+    return np.where(long > 0, np.maximum(by_share, near_axis), 0)
+
+
+def _gauss_points(starts: Array, widths: Array, points: Array, tip: Array) -> tuple[Array, Array]:
+    """Stations and weights (..., stations) of panels (..., panels), each with its number of points."""
+    *leading, panels = points.shape
+    starts, half, points = (part.reshape(-1, panels) for part in (starts, widths / 2, points))
+    ends = np.cumsum(points, axis=-1)
+    count = ends[:, -1].max(initial=0)
+    stations = np.repeat(tip.reshape(-1, 1), count, axis=-1).astype(half.dtype)
+    weights = np.zeros_like(stations)
+    for number in np.unique(points[points > 0]):
+        nodes, gauss = _gauss(int(number))
+        blade, panel = np.nonzero(points == number)
+        places = blade[:, None], (ends[blade, panel] - number)[:, None] + np.arange(number)
+        stations[places] = starts[blade, panel, None] + half[blade, panel, None] * (1 + nodes)
+        weights[places] = half[blade, panel, None] * gauss
+    return stations.reshape(*leading, count), weights.reshape(*leading, count)
 
 
 @functools.cache
@@ -214,28 +229,18 @@ def _gauss(points: int) -> tuple[Array, Array]:
     return np.polynomial.legendre.leggauss(points)
 
 
-def _points_near_axis(nearness: float) -> int:
-    """Points that resolve what turns at the axis, for a panel whose width is this share of its outer radius.
-
-    Gauss errors fall as rho^(-2n), with rho the size of the ellipse about the panel that reaches the axis.
-    """
-    center = 2 / max(nearness, 1e-3) - 1  # of the panel, in half widths from the axis
-    rho = center + np.sqrt(max(center**2 - 1, 0.0))
-    return _MOST_POINTS if rho <= 1 else min(_MOST_POINTS, int(np.ceil(_DIGITS / (2 * np.log10(rho)))))
-
-
 def _by_segment(
     stations: Array, weights: Array, root: Array, tip: Array, flap: Array, lag: Array
 ) -> RadialQuadrature:
-    beyond_flap, beyond_lag = (np.real(stations) > np.real(hinge)[..., None] for hinge in (flap, lag))
-    kinds = ((False, False), (True, False), (True, True))
-    masks = [(beyond_flap == flap_side) & (beyond_lag == lag_side) for flap_side, lag_side in kinds]
-    present = [place for place, mask in enumerate(masks) if mask.any()]
+    inboard = (np.sum(np.real(stations) <= np.real(hinge)[..., None], axis=-1) for hinge in (flap, lag))
+    whole = np.sum(np.real(weights) > 0, axis=-1)
+    counts = np.diff(np.stack([*inboard, whole], axis=-1), axis=-1, prepend=0)
+    present = np.flatnonzero(counts.any(axis=tuple(range(counts.ndim - 1))))
+    counts = counts[..., present]
+    steps = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)])[present]
     moments = weights[..., None] * stations[..., None] ** np.arange(POWERS)
-    table = np.stack([masks[place][..., None] * moments for place in present], axis=-2)
-    segment = np.argmax(np.stack([masks[place] for place in present]), axis=0)
-    steps = np.array([kinds[place] for place in present], dtype=float)
     hinges = _within(np.stack([flap, lag], axis=-1), root[..., None], tip[..., None])
     ends = np.concatenate([root[..., None], hinges, tip[..., None]], axis=-1)
-    edges = np.stack([ends[..., present], ends[..., np.add(present, 1)]], axis=-1)
-    return RadialQuadrature(stations, segment, table, edges, steps[:, 0], steps[:, 1])
+    edges = np.stack([ends[..., present], ends[..., present + 1]], axis=-1)
+    edges = np.where(counts[..., None] > 0, edges, tip[..., None, None])
+    return RadialQuadrature(stations, moments, counts, edges, steps[:, 0], steps[:, 1])
