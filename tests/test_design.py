@@ -122,6 +122,39 @@ def test_one_of_many_designs_is_that_design_bit_for_bit(case, options):
         assert all(np.array_equal(getattr(batch, name)[place], getattr(model, name)) for name in "MCKB")
 
 
+BLADES_MOVED = {
+    # from the centre to beyond hinges and inner stations of the twist
+    "cutout": {"rotor.root_cutout": np.linspace(0.0, 0.3, 12)},
+    "radius": {"rotor.radius": np.linspace(0.9, 1.1, 12)},
+    "both": {"rotor.radius": np.linspace(1.1, 0.9, 12), "rotor.root_cutout": np.linspace(0.02, 0.3, 12)},
+    "hinges": {
+        "rotor.flap_hinge_offset": np.array([0, 0, 0, 0, 2, 2, 4, 6, 8, 10, 12, 20]) / 100,
+        "rotor.lag_hinge_offset": np.array([0, 2, 8, 20, 2, 6, 4, 12, 8, 30, 14, 20]) / 100,
+        "rotor.root_cutout": np.tile([0.0, 0.05], 6),
+    },
+}
+
+
+@pytest.mark.parametrize("moved", BLADES_MOVED)
+@pytest.mark.parametrize(
+    "options", [{}, {"equations": "published", "airloads": "lift-slope", "compressibility": False}]
+)
+def test_one_of_many_blades_is_that_blade_bit_for_bit(moved, options):
+    """Whatever stations and segments the others have: they differ in number."""
+    case = pp.load_case("xv15-mass-distribution")
+    values = {path: share * case.rotor.radius for path, share in BLADES_MOVED[moved].items()}
+    airspeeds = np.linspace(40.0, 180.0, 12)
+    varied = case.vary(values)
+    assert len(np.unique(varied.rotor.quadrature.counts, axis=0)) >= 3
+    batch = varied.linearize(airspeeds, **options)
+    assert batch.trim.converged.all()
+    for place, airspeed in enumerate(airspeeds):
+        one = case.vary({path: value[place] for path, value in values.items()}).linearize(airspeed, **options)
+        for name in "MCKB":
+            assert np.array_equal(getattr(batch, name)[place], getattr(one, name)), (place, name)
+        assert batch.trim.warning[place] == one.trim.warning
+
+
 def test_supports_alone_may_be_many(case):
     frequencies = np.array([20.0, 25.0])
     model = case.vary({"support.modes[beam].frequency": frequencies}).linearize(AIRSPEED)
