@@ -7,7 +7,6 @@ only the print has stands for in the derivation; both sides are then compared in
 
 from __future__ import annotations
 
-import copy
 import functools
 from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
@@ -126,9 +125,7 @@ def position(dropped: frozenset[str]) -> Parts:
 
 def _inertia(dropped: frozenset[str]) -> inertia.BladeInertia:
     """The blade without some terms; the vectors themselves are those of the whole derivation."""
-    blade = copy.copy(inertia.blade_inertia())
-    blade.dropped = dropped | PAPER_ORDER
-    return blade
+    return inertia.BladeInertia(dropped | PAPER_ORDER)
 
 
 def _in_arms(component: Any) -> sp.Expr:
@@ -149,7 +146,7 @@ def _trim_arms() -> dict[sp.Symbol, sp.Expr]:
 def _acceleration_terms(name: str, dropped: frozenset[str]) -> tuple[sp.Matrix, ...]:
     """What a coordinate's displacement, rate and acceleration contribute to the acceleration in rotating axes."""
     blade, omega = _inertia(dropped), s.rotor_speed
-    moved = blade.derivative[name]
+    moved = blade.motion.derivative[name]
     spun = _spin(moved)
     kinds = (("centrifugal", _spin(spun), omega**2), ("gyroscopic", spun, 2 * omega), ("mass", moved, 1))
     return tuple(
@@ -164,7 +161,7 @@ def _spin(vector: list[Any]) -> list[Any]:
 
 @functools.cache
 def _steady_acceleration() -> sp.Matrix:
-    position = inertia.blade_inertia().position
+    position = inertia.blade_motion().position
     return s.rotor_speed**2 * sp.Matrix([_in_arms(part) for part in _spin(_spin(position))])
 
 

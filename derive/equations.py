@@ -240,7 +240,7 @@ def inertia_shared() -> Iterator[Function]:
 
 
 def inertia_functions(dropped: frozenset[str] = CONSISTENT) -> Iterator[Function]:
-    blade = inertia.blade_inertia(dropped)
+    blade = inertia.BladeInertia(dropped)
     yield values(
         "inertia",
         "trim_integrals",
@@ -699,16 +699,21 @@ STEPS = {
 }
 
 
+@functools.cache
+def _consistent(changing: Callable[..., Iterator[Function]]) -> tuple[Function, ...]:
+    return tuple(changing())
+
+
 def consistent_functions(module: str) -> list[Function]:
     """All functions of a module, with every first-order term."""
     shared, changing = STEPS[module]
-    return [*shared(), *changing()]
+    return [*shared(), *_consistent(changing)]
 
 
 def reduced_functions(module: str, dropped: frozenset[str] = PUBLISHED) -> list[Function]:
     """The functions that dropped terms can change, without those terms, under the consistent signatures."""
     _, changing = STEPS[module]
-    signatures = {function.name: tuple(function.arguments) for function in changing()}
+    signatures = {function.name: tuple(function.arguments) for function in _consistent(changing)}
     return [
         dataclasses.replace(function, signature=signatures[function.name]) for function in changing(dropped)
     ]

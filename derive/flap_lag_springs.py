@@ -14,7 +14,7 @@ import sympy as sp
 
 from derive import kinematics as kin
 from derive import symbols as s
-from derive.inertia import blade_inertia, trim_integrals
+from derive.inertia import BladeInertia, trim_integrals
 from derive.published import CONSISTENT
 
 FLAP_LAG = ("flap", "lag")
@@ -147,6 +147,7 @@ def effective_stiffness() -> list[tuple[sp.Symbol, sp.Expr]]:
     return steps
 
 
+@functools.cache
 def spring_energy(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """U of the flap and lag springs, K_eff a function of the pitch relative to the yoke."""
     deflection = {"flap": kin.FLAP_ANGLE, "lag": kin.LAG_ANGLE}
@@ -167,6 +168,12 @@ def _stiffness_function(a: str, b: str, pitch_change: sp.Expr) -> sp.Expr:
     return sum(STIFFNESS[(*pair, order)] * pitch_change**order / sp.factorial(order) for order in range(3))
 
 
+@functools.cache
+def _spring_moment(i: str, dropped: frozenset[str]) -> sp.Expr:
+    """Gradient of the spring energy, not yet taken at trim."""
+    return sp.diff(spring_energy(dropped), kin.q[i])
+
+
 def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Second derivative of the spring energy at trim."""
     if (
@@ -177,12 +184,12 @@ def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
         return sp.Integer(0)
     if "spring_curvature" in dropped and i == j == "pitch":
         return sp.Integer(0)
-    return sp.factor_terms(sp.expand(kin.at_trim(sp.diff(spring_energy(dropped), kin.q[i], kin.q[j]))))
+    return sp.factor_terms(sp.expand(kin.at_trim(sp.diff(_spring_moment(i, dropped), kin.q[j]))))
 
 
 def steady(i: str) -> sp.Expr:
     """Gradient of the spring energy at trim."""
-    return sp.factor_terms(sp.expand(kin.at_trim(sp.diff(spring_energy(), kin.q[i]))))
+    return sp.factor_terms(sp.expand(kin.at_trim(_spring_moment(i, CONSISTENT))))
 
 
 cyclic_flap_stiffness_excess = s.quantity(
@@ -195,7 +202,7 @@ cyclic_flap_stiffness_excess = s.quantity(
 
 def stiffness_of_frequencies() -> list[tuple[sp.Symbol, sp.Expr]]:
     """Diagonal stiffness that gives a blade its tabulated rotating frequencies, uncoupled and at zero cone."""
-    blade = blade_inertia()
+    blade = BladeInertia()
     flat = dict.fromkeys((s.precone, s.coning, s.lag), 0)
     integrals = {symbol: sp.sympify(value).subs(flat) for symbol, value in trim_integrals().items()}
 

@@ -199,11 +199,10 @@ _DROPPED_ACCELERATIONS = {
 }
 
 
-class BladeInertia:
-    """Virtual displacements and derivatives of the position at trim, and the forms that are made of them."""
+class BladeMotion:
+    """Virtual displacements and derivatives of the position, at trim."""
 
-    def __init__(self, dropped: frozenset[str]):
-        self.dropped = dropped
+    def __init__(self) -> None:
         trig = [symbol for pair in WHOLE_BLADE_ANGLES.values() for symbol in pair]
         self.ring = PolynomialRing([*trig, *ARMS, *TRIM_INTEGRALS.values()])
         position = kin.position()
@@ -219,8 +218,21 @@ class BladeInertia:
         named = name_trigonometry(kin.at_trim(vector), WHOLE_BLADE_ANGLES)
         return self.ring.vector(named.subs(kin.chordwise_arm, kin.lag_arm * sin_lag))
 
+
+@functools.cache
+def blade_motion() -> BladeMotion:
+    return BladeMotion()
+
+
+class BladeInertia:
+    """The forms that are made of a blade's motion, without dropped terms."""
+
+    def __init__(self, dropped: frozenset[str] = CONSISTENT):
+        self.dropped = dropped
+        self.motion = blade_motion()
+
     def _integral(self, product: PolyElement) -> sp.Expr:
-        integral = integrate_mass(self.ring.shortest(product), TRIM_INTEGRALS)
+        integral = integrate_mass(self.motion.ring.shortest(product), TRIM_INTEGRALS)
         if "trim_lag" in self.dropped:
             integral = integral.subs({sin_lag: 0, cos_lag: 1})
         return first_order(integral) if "finite_trim_angles" in self.dropped else integral
@@ -241,29 +253,24 @@ class BladeInertia:
     def mass(self, i: str, j: str) -> sp.Expr:
         if self._is_dropped(i):
             return sp.Integer(0)
-        return self._integral(_dot(self.virtual[i], self._kept("mass", j, self.derivative[j])))
+        return self._integral(_dot(self.motion.virtual[i], self._kept("mass", j, self.motion.derivative[j])))
 
     def gyroscopic(self, i: str, j: str) -> sp.Expr:
         if self._is_dropped(i):
             return sp.Integer(0)
-        coriolis = self._kept("gyroscopic", j, _spin(self.derivative[j]))
-        return 2 * s.rotor_speed * self._integral(_dot(self.virtual[i], coriolis))
+        coriolis = self._kept("gyroscopic", j, _spin(self.motion.derivative[j]))
+        return 2 * s.rotor_speed * self._integral(_dot(self.motion.virtual[i], coriolis))
 
     def centrifugal(self, i: str, j: str) -> sp.Expr:
         if self._is_dropped(i, j):
             return sp.Integer(0)
-        moved = _dot(self.virtual[i], self._kept("centrifugal", j, _spin(_spin(self.derivative[j]))))
-        turned = _dot(self.virtual_change[i, j], _spin(_spin(self.position)))
+        moved = _dot(self.motion.virtual[i], self._kept("centrifugal", j, _spin(_spin(self.motion.derivative[j]))))
+        turned = _dot(self.motion.virtual_change[i, j], _spin(_spin(self.motion.position)))
         return s.rotor_speed**2 * self._integral(moved + turned)
 
     def steady(self, i: str) -> sp.Expr:
         """Virtual work of the steady inertia forces, row i."""
-        return s.rotor_speed**2 * self._integral(_dot(self.virtual[i], _spin(_spin(self.position))))
-
-
-@functools.cache
-def blade_inertia(dropped: frozenset[str] = CONSISTENT) -> BladeInertia:
-    return BladeInertia(dropped)
+        return s.rotor_speed**2 * self._integral(_dot(self.motion.virtual[i], _spin(_spin(self.motion.position))))
 
 
 def _dot(a: list[PolyElement], b: list[PolyElement]) -> PolyElement:

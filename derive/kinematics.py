@@ -12,6 +12,7 @@ and second derivatives at trim; written in the arms of the deflected blade these
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 
 import sympy as sp
@@ -126,6 +127,7 @@ def trim_arms() -> dict[sp.Symbol, sp.Expr]:
     return dict(zip((chordwise_arm, radial_arm, axial_arm), line.expand(), strict=True))
 
 
+@functools.cache
 def deflected_flap_arm() -> sp.Expr:
     """The flap arm of the deflected blade in the arms of the undeflected one: lag brings the tip inboard."""
     normal = at_trim(sp.diff(blade_line(), q["flap"]))

@@ -80,6 +80,7 @@ def azimuth_mean(expression: sp.Expr) -> sp.Expr:
     return sum(coefficient * means.get(powers, 0) for powers, coefficient in polynomial.terms())
 
 
+@functools.cache
 def _blade_matrix(base: sp.IndexedBase) -> dict[tuple[int, int], sp.Expr]:
     indices = [BLADE_INDEX[name] for name in kin.COORDINATES]
     return {(i, j): base[indices[i], indices[j]] for i in range(len(indices)) for j in range(len(indices))}

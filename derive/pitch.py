@@ -24,6 +24,7 @@ def rate(expression: sp.Expr) -> sp.Expr:
     return sum(sp.diff(expression, kin.q[name]) * RATES[name] for name in kin.COORDINATES)
 
 
+@functools.cache
 def kinetic_energy(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     to_shaft, _ = kin.pitch_angles(dropped)
     if "gimbal_pitch_inertia" in dropped:
@@ -56,6 +57,7 @@ def gimbal_energy() -> sp.Expr:
     return s.gimbal_stiffness / s.n_blades * (kin.q["gimbal_flap"] ** 2 + kin.q["gimbal_roll"] ** 2) / 2
 
 
+@functools.cache
 def dissipation() -> sp.Expr:
     """Rayleigh function of the blade's dampers and of its share of the gimbal damper, which does not rotate."""
     dampers = {"flap": s.flap_damping, "lag": s.lag_damping, "pitch": s.pitch_damping}
@@ -76,6 +78,7 @@ def damping(i: str, j: str) -> sp.Expr:
     return at_rest(sp.diff(dissipation(), RATES[i], RATES[j]))
 
 
+@functools.cache
 def potential(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     return control_energy() + propeller_energy(dropped) + gimbal_energy()
 

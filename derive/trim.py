@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive import flap_lag_springs, pitch
 from derive import symbols as s
-from derive.inertia import blade_inertia
+from derive.inertia import BladeInertia
 
 BALANCES = ("flap", "lag", "pitch", "azimuth")
 UNKNOWNS = ("flap", "lag", "pitch", "collective")
@@ -21,7 +21,7 @@ STEADY_ROWS = (*BALANCES, "hub_k")
 
 def residual(row: str) -> sp.Expr:
     """Inertia, springs and control system at trim; airloads are subtracted from it."""
-    return blade_inertia().steady(row) + flap_lag_springs.steady(row) + pitch.steady(row)
+    return BladeInertia().steady(row) + flap_lag_springs.steady(row) + pitch.steady(row)
 
 
 def blade_coordinate(unknown: str) -> str:
@@ -35,4 +35,4 @@ def jacobian(row: str, unknown: str) -> sp.Expr:
     control_system = pitch.stiffness(row, name)
     if unknown == "collective":
         control_system = control_system.subs(s.control_stiffness, 0)
-    return blade_inertia().centrifugal(row, name) + flap_lag_springs.stiffness(row, name) + control_system
+    return BladeInertia().centrifugal(row, name) + flap_lag_springs.stiffness(row, name) + control_system

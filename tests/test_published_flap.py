@@ -16,7 +16,7 @@ GIMBAL = sp.symbols("beta_G beta_G_dot beta_G_ddot")
 
 def derived_flap_equation() -> sp.Expr:
     """Flap row of one blade over I_b Omega², derivatives with respect to azimuth, hub motion in the fixed frame."""
-    blade = inertia.blade_inertia(PUBLISHED)
+    blade = inertia.BladeInertia(PUBLISHED)
     row = sp.Integer(0)
     transformation = multiblade.blade_coordinates()
     for place, name in enumerate(kin.COORDINATES):
@@ -100,5 +100,5 @@ def test_eq_13_is_reproduced_but_for_the_coriolis_term_of_lag(difference):
 
 def test_the_derived_sign_of_the_coriolis_term_is_the_one_that_does_no_work():
     """Gyroscopic matrix skew: flap by lag is minus lag by flap."""
-    blade = inertia.blade_inertia(PUBLISHED)
+    blade = inertia.BladeInertia(PUBLISHED)
     assert sp.expand(blade.gyroscopic("flap", "lag") + blade.gyroscopic("lag", "flap")) == 0

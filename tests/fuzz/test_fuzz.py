@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from proprotor import InputError, load_case
 from tests.fuzz import campaign, watch
+from tests.fuzz.__main__ import _verdicts
 from tests.fuzz.decks import written
 
 SEED = 0
@@ -177,6 +178,40 @@ def _refuse(rule):
 def test_what_becomes_of_an_input_is_told(tmp_path, monkeypatch, outcome):
     monkeypatch.setitem(campaign.KINDS, "bad", _kind(FAULTS[outcome]))
     assert campaign.judged("bad", 0, SEED, tmp_path).outcome == outcome
+
+
+ENDS = {
+    "dies": ("__import__('os').abort()", "crash", "ended with code -6"),
+    "holds on to the interpreter": ("3 ** 10**9", "crash", "Timeout"),
+    "takes all memory": ("bytearray(1 << 40)", "fault", "MemoryError"),
+}
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_the_end_of_a_process_is_a_fault_of_its_input(end):
+    """And of no other: those before it keep their verdicts, those after it are told to be unused."""
+    deed, outcome, told = ENDS[end]
+    code = f"""
+import sys
+from tests.fuzz import __main__ as fuzz, campaign
+
+class Kind:
+    make = staticmethod(lambda rng: ({{}}, {{}}))
+    use = staticmethod(lambda folder: {deed} if folder.name == "1" else None)
+
+fuzz._HANG, campaign._WARM_UP, campaign._IMPORTED_LATE = 1.0, 0, ()
+campaign.KINDS, campaign.SHARES = {{"bad": Kind}}, {{"bad": 1.0}}
+sys.exit(fuzz.main(["--share", "0:3", "--inputs", "3"]))
+"""
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    found = _verdicts(process, [("bad", number) for number in range(3)])
+    assert found[0].outcome == "accepted" and found[1].outcome == outcome and told in found[1].told
+    if outcome == "crash":
+        assert len(found) == 2 and "1 inputs after it were not used" in found[1].told
+    else:
+        assert found[2].outcome == "accepted"
 
 
 def _works(folder):
