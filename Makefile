@@ -1,19 +1,21 @@
 # Needs Python 3.11 or newer with venv, make and git; everything else goes into .venv.
 PYTHON ?= python3
 BIN := .venv/bin
+# A file's tests stay together: what they have in common is computed once.
+PARALLEL := --numprocesses auto --maxprocesses 8 --dist loadfile
 
 demo: .venv/installed  ## Set up .venv, then analyse the XV-15 from 50 to 400 kt: a table, and damping.png (the default)
 	$(BIN)/proprotor sweep xv15 --speed 50:400:5kt --plot damping.png
 
 test: .venv/installed  ## Run the tests
-	$(BIN)/python -m pytest --ignore=tests/verify --ignore=tests/browser --numprocesses auto --maxprocesses 8
+	$(BIN)/python -m pytest --ignore=tests/verify --ignore=tests/browser $(PARALLEL)
 
 test-browser: .venv/installed  ## Move the sliders of `proprotor explore` in a real browser; needs Chromium and its driver
 	$(BIN)/python -m pytest tests/browser
 
 verify: .venv/verify-installed  ## Check the equations against derivation and an independent engine; build and check packages and site
 	$(BIN)/python -m derive --check
-	$(BIN)/python -m pytest tests/verify
+	$(BIN)/python -m pytest tests/verify $(PARALLEL)
 
 verify-versions: .venv/installed  ## Derive the equations under other hash seeds, another Python and another SymPy
 	$(BIN)/python -m tests.verify.determinism
@@ -56,7 +58,7 @@ types: .venv/installed  ## Check the types
 
 coverage: .venv/installed  ## Run the tests and tell which share of the branches of src and derive they take
 	$(BIN)/python -m coverage erase
-	$(BIN)/python -m pytest --ignore=tests/verify --ignore=tests/browser --numprocesses auto --maxprocesses 8 --cov --cov-report=
+	$(BIN)/python -m pytest --ignore=tests/verify --ignore=tests/browser $(PARALLEL) --cov --cov-report=
 	$(BIN)/python -m tests.branch_coverage
 
 audit-dependencies: .venv/installed  ## Find dependencies that are undeclared, unused or at odds with each other

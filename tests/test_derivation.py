@@ -1,7 +1,8 @@
 """The derivation and what it generates: dimensions, reproducible text, the check of the generated files, and no more
 symbols than quantities that are declared.
 
-To derive takes a while, so it is done once for each of three hash seeds, side by side, in processes of their own.
+To derive takes a while, so it is done once for each of two hash seeds, side by side, in processes of their own;
+`make verify` does it with a seed at random, `make verify-versions` with three.
 """
 
 import dataclasses
@@ -27,7 +28,7 @@ from derive import symbols as s
 from derive.equations import DimensionError, Entry, Function
 from tests.rotors import between, mass_distributions, zero_or
 
-HASH_SEEDS = (0, 1, 2)
+HASH_SEEDS = (0, 1)
 GIGABYTE = 2**30
 
 DERIVE = """
