@@ -264,13 +264,17 @@ class BladeInertia:
     def centrifugal(self, i: str, j: str) -> sp.Expr:
         if self._is_dropped(i, j):
             return sp.Integer(0)
-        moved = _dot(self.motion.virtual[i], self._kept("centrifugal", j, _spin(_spin(self.motion.derivative[j]))))
+        moved = _dot(
+            self.motion.virtual[i], self._kept("centrifugal", j, _spin(_spin(self.motion.derivative[j])))
+        )
         turned = _dot(self.motion.virtual_change[i, j], _spin(_spin(self.motion.position)))
         return s.rotor_speed**2 * self._integral(moved + turned)
 
     def steady(self, i: str) -> sp.Expr:
         """Virtual work of the steady inertia forces, row i."""
-        return s.rotor_speed**2 * self._integral(_dot(self.motion.virtual[i], _spin(_spin(self.motion.position))))
+        return s.rotor_speed**2 * self._integral(
+            _dot(self.motion.virtual[i], _spin(_spin(self.motion.position)))
+        )
 
 
 def _dot(a: list[PolyElement], b: list[PolyElement]) -> PolyElement:

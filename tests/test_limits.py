@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
-from proprotor.modes import state_matrix
+from proprotor.assembly import mount
+from proprotor.model import rotor_model
+from proprotor.modes import eigensystem, state_matrix
 from tests.c81_files import made_up_tables
 from tests.rotors import flights, random_support, seeds
 
@@ -92,14 +94,15 @@ def assert_numbers_or_a_reason(model):
     """A point has its matrices and modes, or says why not."""
     converged = bool(model.trim.converged)
     assert converged == (model.trim.reason == "")
-    assert all(np.isfinite(getattr(model, name)).all() == converged for name in "MCK")
+    numbers = [np.isfinite(getattr(model, name)).all() for name in "MCK"]
+    assert all(numbers) if "without any mass" in str(model.trim.reason) else numbers == [converged] * 3
+    assert np.isfinite(eigensystem(model).values).all() == converged
     assume(converged)
-    assert np.isfinite(np.linalg.eigvals(state_matrix(model))).all()
 
 
 @any_rotor
 @given(
-    flights(hinges="off centre"),
+    flights(),
     seeds,
     st.sampled_from(["full", "lift-slope", "none"]),
     st.sampled_from(["dynamic", "coupling", "rigid"]),
@@ -162,7 +165,7 @@ def test_a_spring_may_be_as_stiff_as_can_be(name, stiffness):
 
 @any_rotor
 @given(
-    flights(hinges="off centre"),
+    flights(),
     seeds,
     st.sampled_from(sorted(STIFF)),
     st.sampled_from([1e-20, 1e-9, 1e-4, 1e4, 1e8, 1e30]),
@@ -183,6 +186,61 @@ def test_a_very_soft_spring_is_none(name):
     assert whole > 0
     assert tenth / whole == pytest.approx(0.1, rel=0.02)
     assert hardly < 1e-12
+
+
+# Hinges at the centre -----------------------------------------------------------------------------
+
+
+@any_rotor
+@given(flights(hinges="at centre"), seeds)
+def test_what_moves_the_blade_as_another_coordinate_does_is_told(flight, seed):
+    """Flapping about the centre is the gimbal's tilt, and lagging about it is the rotor's turning, once more."""
+    support = random_support(flight, seed)
+    whole, constant, hinged, both = (
+        flight.on(support, **options)
+        for options in (
+            {},
+            {"rotor_speed": "constant"},
+            {"locked": ["gimbal"]},
+            {"locked": ["gimbal"], "rotor_speed": "constant"},
+        )
+    )
+    assume(both.trim.converged)
+    for model, told in ((whole, "azimuth"), (whole, "gimbal_1c"), (constant, "flap_1s"), (hinged, "lag_0")):
+        assert not model.trim.converged and np.isfinite(model.M).all()
+        assert told in str(model.trim.reason) and "without any mass" in str(model.trim.reason)
+    assert np.isfinite(np.linalg.eigvals(state_matrix(both))).all()
+
+
+def test_a_hinge_at_the_centre_spoils_no_other_point():
+    """In one batch, and in a sweep that goes over it."""
+    offsets = np.array([0.0, 0.08]) * ROTOR.radius
+    same = (
+        "n_blades",
+        "radius",
+        "root_cutout",
+        "precone",
+        "flap_stiffness",
+        "lag_stiffness",
+        "gimbal_stiffness",
+    )
+    same += ("pitch_inertia", "control_stiffness", "chord", "twist", "airfoil")
+    fields = {name: getattr(ROTOR, name) for name in same}
+
+    def case(place):
+        hinges = {"flap_hinge_offset": offsets[place], "lag_hinge_offset": offsets[place]}
+        rotor = pp.Rotor.from_mass_distribution([0.0, ROTOR.radius], [8.0, 8.0], **hinges, **fields)
+        return replace(CASE, rotor=rotor)
+
+    both, alone = (case(place) for place in (slice(None), 1))
+    model, alone = both.linearize(AIRSPEED), alone.linearize(AIRSPEED)
+    assert list(model.trim.converged) == [False, True]
+    np.testing.assert_array_equal(model.K[1], alone.K)
+    modes = model.modes()
+    assert "flap_1c" in str(modes.reason[0].values) and np.isnan(modes.eigenvalue[0]).all()
+    np.testing.assert_array_equal(modes.eigenvalue[1], alone.modes().eigenvalue)
+    with pytest.raises(pp.InputError, match="no inverse"):
+        mount(rotor_model(both.rotor, OPERATION, AIRSPEED), CASE.support, np.zeros((6, 6))).modes()
 
 
 @pytest.mark.parametrize("factor", [1e-9, 1e9])

@@ -20,6 +20,7 @@ from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
 from proprotor.drive_train import DriveTrain
 from proprotor.errors import InputError
 from proprotor.frequencies import BladeFrequencies
+from proprotor.massless import with_reasons
 from proprotor.model import LinearModel, rigid_hub_mass, rotor_model
 from proprotor.operation import Operation
 from proprotor.rotor import Rotor
@@ -98,7 +99,7 @@ class Case:
         -------
         LinearModel
             M, C, K (..., n, n), SI, on the coordinates of support and rotor; failed points are NaN, with their
-            reason in `trim`.
+            reason in `trim`. A point whose mass matrix has no inverse has its matrices, but no modes.
 
         Raises
         ------
@@ -107,7 +108,7 @@ class Case:
         """
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
-        return mount(rotor_alone, support, rigid_hub_mass(self.rotor))
+        return with_reasons(mount(rotor_alone, support, rigid_hub_mass(self.rotor)))
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options of the model with what the case has in place of those that are not given.

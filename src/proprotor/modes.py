@@ -13,6 +13,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
+from proprotor.massless import massless, massless_coordinates
 from proprotor.model import ROTOR_SPEED, LinearModel
 from proprotor.tracking import Spectrum
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from proprotor.path import Line
 
 _NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping ratio
-_NO_INERTIA = 1e13  # condition number of a mass matrix, scaled to a unit diagonal, that has no inverse
 
 
 class Eigensystem(NamedTuple):
@@ -53,15 +53,11 @@ def state_matrix(model: LinearModel) -> Array:
 
 def _check_inertia(model: LinearModel) -> None:
     """A rotor alone has massless directions: its hub may move against azimuth and gimbal without moving any mass."""
-    if model.hub is not None:  # on a support, which has mass
-        return
-    mass = model.M[_good(model)]
-    diagonal = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
-    diagonal = np.where(diagonal > 0, diagonal, 1)
-    scaled = mass / diagonal[..., None, :] / diagonal[..., None]
-    if np.any(np.linalg.cond(scaled) > _NO_INERTIA):
-        rule = "gives the mass matrix no inverse: mount the rotor on a support, or hold hub coordinates with submodel"
-        raise InputError("dofs", ", ".join(model.dofs), rule)
+    singular = massless(model.M)
+    if singular.any():
+        names = massless_coordinates(model.M[singular][0], model.dofs)
+        rule = "give the mass matrix no inverse: mount the rotor on a support, or hold some of them with submodel"
+        raise InputError("dofs", ", ".join(names), rule)
 
 
 def held_coordinates(model: LinearModel) -> list[int]:
@@ -71,8 +67,9 @@ def held_coordinates(model: LinearModel) -> list[int]:
     ]
 
 
-def _good(model: LinearModel) -> Array:
-    return np.asarray(np.isfinite(model.M).all(axis=(-2, -1)))
+def have_modes(model: LinearModel) -> Array:
+    """Which points of a batch (...) did not fail."""
+    return np.asarray(model.trim.converged & np.isfinite(model.M).all(axis=(-2, -1)))
 
 
 def eigensystem(model: LinearModel) -> Eigensystem:
@@ -84,7 +81,7 @@ def eigensystem(model: LinearModel) -> Eigensystem:
 
 def decomposition(model: LinearModel) -> Spectrum:
     """Eigenvalues and right vectors in the state space; of a complex model, those of its real part."""
-    good, model = _good(model), _real(model)
+    good, model = have_modes(model), _real(model)
     if good.all():
         return _solved(state_matrix(model))
     states = len(held_coordinates(model)) + len(model.dofs)

@@ -17,7 +17,7 @@ from proprotor.arrays import Array
 from proprotor.crossings import growth
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
-from proprotor.modes import some_points, state_matrix
+from proprotor.modes import have_modes, some_points, state_matrix
 from proprotor.speed import in_metres_per_second
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Edges(NamedTuple):
 
 def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
     """Largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points."""
-    good = np.asarray(np.isfinite(model.M).all(axis=(-2, -1)))
+    good = have_modes(model)
     best, value = np.full(good.shape, np.nan), np.full(good.shape, np.nan, dtype=complex)
     if good.any():
         values = np.linalg.eigvals(state_matrix(some_points(model, good))).astype(complex)

@@ -32,7 +32,7 @@ class Trim:
     torque : array
         Of the airloads on the whole rotor, positive where it speeds the rotor up, N m.
     converged : array of bool
-        Whether a trim was found.
+        Whether a trim was found, and the model has modes there.
     reason : array of str
         Why a point failed, empty where it did not.
     warning : array of str
