@@ -213,7 +213,7 @@ def test_what_moves_the_blade_as_another_coordinate_does_is_told(flight, seed):
 
 
 def test_a_hinge_at_the_centre_spoils_no_other_point():
-    """In one batch, and in a sweep that goes over it."""
+    """Of a batch."""
     offsets = np.array([0.0, 0.08]) * ROTOR.radius
     same = (
         "n_blades",

@@ -19,7 +19,7 @@ _TAKES_PART = 0.01  # component of a unit vector
 
 
 def massless(mass: Array) -> Array:
-    """Which mass matrices of a batch (..., n, n) have no inverse, (...); those that are not numbers have none to have."""
+    """Which mass matrices of a batch (..., n, n) have no inverse, (...); those of failed points are not asked."""
     found = np.zeros(mass.shape[:-2], dtype=bool)
     good = np.isfinite(mass).all(axis=(-2, -1))
     scaled = _scaled(np.real(mass[good]))
