@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
+from proprotor.massless import with_reasons
 from proprotor.model import HUB, LinearModel
 from proprotor.support import NormalModes
 
@@ -34,7 +35,8 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
     Returns
     -------
     LinearModel
-        With the coordinates of the support first, SI.
+        With the coordinates of the support first, SI. A point whose mass matrix has no inverse has its matrices, but
+        no modes, and the reason in `trim`.
 
     Raises
     ------
@@ -61,13 +63,14 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
         at_hub = np.swapaxes(support.hub, -1, -2) @ rotor_alone.B[..., : len(HUB), :]
         matrices["B"] = np.concatenate([at_hub, rotor_alone.B[..., len(HUB) :, :]], axis=-2)
     still = np.zeros((*support.hub.shape[:-1], len(own)))
-    return replace(
+    coupled = replace(
         rotor_alone,
         **matrices,
         dofs=(*support.names, *own),
         hub=np.concatenate([support.hub, still], axis=-1),
         rotor=rotor_alone,
     )
+    return with_reasons(coupled)
 
 
 def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:

@@ -20,7 +20,6 @@ from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
 from proprotor.drive_train import DriveTrain
 from proprotor.errors import InputError
 from proprotor.frequencies import BladeFrequencies
-from proprotor.massless import with_reasons
 from proprotor.model import LinearModel, rigid_hub_mass, rotor_model
 from proprotor.operation import Operation
 from proprotor.rotor import Rotor
@@ -108,7 +107,7 @@ class Case:
         """
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
-        return with_reasons(mount(rotor_alone, support, rigid_hub_mass(self.rotor)))
+        return mount(rotor_alone, support, rigid_hub_mass(self.rotor))
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options of the model with what the case has in place of those that are not given.

@@ -158,7 +158,7 @@ class RotorSection(Section):
     radius: PositiveLength = needed("Centre of rotation to tip.")
     root_cutout: Length = needed("Where the airloads begin, from the centre of rotation.")
     flap_hinge_offset: Length = needed(
-        "Centre of rotation to flap hinge; at the centre flapping is a gimbal's tilt once more, and one is to be locked."
+        "Centre of rotation to flap hinge; at the centre flapping is a gimbal's tilt once more: lock one."
     )
     lag_hinge_offset: Length = needed("Centre of rotation to lag hinge, not inboard of the flap hinge.")
     precone: Angle = needed("Cone built into the hub, towards thrust.")

@@ -68,8 +68,9 @@ def held_coordinates(model: LinearModel) -> list[int]:
 
 
 def have_modes(model: LinearModel) -> Array:
-    """Which points of a batch (...) did not fail."""
-    return np.asarray(model.trim.converged & np.isfinite(model.M).all(axis=(-2, -1)))
+    """Which points of a batch (...) are numbers and, on a support, have mass in every motion; (...)."""
+    good = np.isfinite(model.M).all(axis=(-2, -1))
+    return np.asarray(good if model.hub is None else good & ~massless(model.M))
 
 
 def eigensystem(model: LinearModel) -> Eigensystem:
@@ -85,7 +86,7 @@ def decomposition(model: LinearModel) -> Spectrum:
     if good.all():
         return _solved(state_matrix(model))
     states = len(held_coordinates(model)) + len(model.dofs)
-    values = np.full((*good.shape, states), np.nan, dtype=complex)
+    values = np.full((*good.shape, states), complex(np.nan, np.nan))
     right = np.full((*good.shape, states, states), np.nan, dtype=complex)
     if good.any():
         values[good], right[good] = _solved(state_matrix(some_points(model, good)))
