@@ -147,12 +147,13 @@ def test_one_of_many_blades_is_that_blade_bit_for_bit(moved, options):
     varied = case.vary(values)
     assert len(np.unique(varied.rotor.quadrature.counts, axis=0)) >= 3
     batch = varied.linearize(airspeeds, **options)
-    assert batch.trim.converged.all()
+    assert np.isfinite(batch.M).all()  # with hinges at the centre, too, where it has no inverse
+    assert batch.trim.converged[values.get("rotor.flap_hinge_offset", airspeeds) > 0].all()
     for place, airspeed in enumerate(airspeeds):
         one = case.vary({path: value[place] for path, value in values.items()}).linearize(airspeed, **options)
         for name in "MCKB":
             assert np.array_equal(getattr(batch, name)[place], getattr(one, name)), (place, name)
-        assert batch.trim.warning[place] == one.trim.warning
+        assert batch.trim.warning[place] == one.trim.warning and batch.trim.reason[place] == one.trim.reason
 
 
 def test_supports_alone_may_be_many(case):
