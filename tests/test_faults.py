@@ -54,11 +54,15 @@ def content(folder):
 
 SWEEP = ("sweep", "xv15", "--speed", "100:200:50kt")
 STUDY = ("study", "xv15", "--speed", "100:200:50kt", "--vary", "rotor.precone=1:3:1 deg", "--workers", "1")
+MAP = ("map", "xv15", "--x", "airspeed=200:260:5kt", "--y", "rotor.precone=1:2:1 deg")
 OUTPUTS = {
     "out.csv": (*SWEEP, "--csv"),
     "out.png": (*SWEEP, "--plot"),
     "out.svg": (*SWEEP, "--plot"),
     "out.nc": (*STUDY, "--out"),
+    "map.csv": (*MAP, "--csv"),
+    "map.pdf": (*MAP, "--plot"),
+    "deck.toml": ("new", "--force"),
 }
 
 
@@ -82,6 +86,16 @@ def test_an_output_that_has_no_place_is_told(tmp_path, name):
         assert done.exit_code in (1, 2) and isinstance(done.exception, SystemExit), done.output
         assert sum("Error: " in line for line in done.stderr.splitlines()) == 1
     assert content(tmp_path) == {"file": b"before"}
+
+
+def test_a_figure_on_a_full_disk_leaves_what_was(tmp_path):
+    """The picture does not fit, so there are no numbers of it either."""
+    (tmp_path / "figure-12.csv").write_bytes(b"before")
+    with full_disk():
+        done = run("figures", 12, "--samples", 0, "--out", tmp_path)
+    assert done.exit_code == 1 and isinstance(done.exception, SystemExit), done.output
+    assert sum("cannot be written" in line for line in done.stderr.splitlines()) == 1
+    assert content(tmp_path) == {"figure-12.csv": b"before"}
 
 
 def test_a_full_disk_under_the_standard_output_is_no_traceback():

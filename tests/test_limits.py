@@ -213,22 +213,9 @@ def test_what_moves_the_blade_as_another_coordinate_does_is_told(flight, seed):
 def test_a_hinge_at_the_centre_spoils_no_other_point():
     """Of a batch."""
     offsets = np.array([0.0, 0.08]) * ROTOR.radius
-    same = (
-        "n_blades",
-        "radius",
-        "root_cutout",
-        "precone",
-        "flap_stiffness",
-        "lag_stiffness",
-        "gimbal_stiffness",
-    )
-    same += ("pitch_inertia", "control_stiffness", "chord", "twist", "airfoil")
-    fields = {name: getattr(ROTOR, name) for name in same}
 
     def case(place):
-        hinges = {"flap_hinge_offset": offsets[place], "lag_hinge_offset": offsets[place]}
-        rotor = pp.Rotor.from_mass_distribution([0.0, ROTOR.radius], [8.0, 8.0], **hinges, **fields)
-        return replace(CASE, rotor=rotor)
+        return replace(CASE, rotor=with_hinges(offsets[place], offsets[place]))
 
     both, alone = (case(place) for place in (slice(None), 1))
     model, alone = both.linearize(AIRSPEED), alone.linearize(AIRSPEED)
