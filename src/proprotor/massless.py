@@ -22,9 +22,9 @@ def massless(mass: Array) -> Array:
     """Which mass matrices of a batch (..., n, n) have no inverse, (...); those of failed points are not asked."""
     found = np.zeros(mass.shape[:-2], dtype=bool)
     good = np.isfinite(mass).all(axis=(-2, -1))
-    scaled = _scaled(np.real(mass[good]))
-    if not _clearly_positive(scaled):
-        found[good] = np.linalg.cond(scaled) > _NO_INERTIA
+    numbers = np.real(mass[good])
+    if not _clearly_positive(numbers):
+        found[good] = np.linalg.cond(_scaled(numbers)) > _NO_INERTIA
     return found
 
 
@@ -56,10 +56,11 @@ def _scaled(mass: Array) -> Array:
     return scaled
 
 
-def _clearly_positive(scaled: Array) -> bool:
-    """Whether every motion has mass by the symmetric parts' triangular factors, much cheaper than singular values."""
+def _clearly_positive(mass: Array) -> bool:
+    """Whether every motion has mass by the triangular factors of M + Mᵀ, much cheaper than singular values."""
+    twice = mass + np.swapaxes(mass, -1, -2)
     try:
-        factors = np.linalg.cholesky((scaled + np.swapaxes(scaled, -1, -2)) / 2)
+        pivots = np.diagonal(np.linalg.cholesky(twice), axis1=-2, axis2=-1) ** 2
     except np.linalg.LinAlgError:
         return False
-    return bool(np.all(np.diagonal(factors, axis1=-2, axis2=-1) ** 2 > _CLEARLY_MASS))
+    return bool(np.all(pivots > _CLEARLY_MASS * np.diagonal(twice, axis1=-2, axis2=-1)))

@@ -41,8 +41,13 @@ class Eigensystem(NamedTuple):
 
 def state_matrix(model: LinearModel) -> Array:
     """A of ẋ = A x with x the displacements without the azimuth, then all velocities; (..., 2n - 1, 2n - 1)."""
-    n = len(model.dofs)
     _check_inertia(model)
+    return first_order(model)
+
+
+def first_order(model: LinearModel) -> Array:
+    """The same for a model whose mass matrices are known to have inverses, see `have_modes`."""
+    n = len(model.dofs)
     held = held_coordinates(model)
     acceleration = -np.linalg.solve(model.M, np.concatenate([model.K[..., held], model.C], axis=-1))
     matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
@@ -68,9 +73,12 @@ def held_coordinates(model: LinearModel) -> list[int]:
 
 
 def have_modes(model: LinearModel) -> Array:
-    """Which points of a batch (...) are numbers and, on a support, have mass in every motion; (...)."""
-    good = np.isfinite(model.M).all(axis=(-2, -1))
-    return np.asarray(good if model.hub is None else good & ~massless(model.M))
+    """Which points of a batch (...) did not fail; a rotor alone with motions that have no mass is refused."""
+    good = np.asarray(np.isfinite(model.M).all(axis=(-2, -1)))
+    if model.hub is None:
+        _check_inertia(model)
+        return good
+    return good & ~massless(model.M)
 
 
 def eigensystem(model: LinearModel) -> Eigensystem:
@@ -84,12 +92,12 @@ def decomposition(model: LinearModel) -> Spectrum:
     """Eigenvalues and right vectors in the state space; of a complex model, those of its real part."""
     good, model = have_modes(model), _real(model)
     if good.all():
-        return _solved(state_matrix(model))
+        return _solved(first_order(model))
     states = len(held_coordinates(model)) + len(model.dofs)
     values = np.full((*good.shape, states), complex(np.nan, np.nan))
     right = np.full((*good.shape, states, states), np.nan, dtype=complex)
     if good.any():
-        values[good], right[good] = _solved(state_matrix(some_points(model, good)))
+        values[good], right[good] = _solved(first_order(some_points(model, good)))
     return Spectrum(values, right)
 
 

@@ -17,13 +17,8 @@ from proprotor.errors import InputError
 
 _IMPORTED = time.time()
 _PACKAGES = (Path(__file__).parent, Path(proprotor_equations.__file__).parent)
-SHOWING = (
-    "commands",
-    "explore",
-    "figures",
-    "plots",
-    "report_page",
-)  # what only shows results; no study imports it
+# What only shows results; no study imports it.
+SHOWING = ("commands", "explore", "figures", "plots", "report_page")
 
 
 def modules() -> Iterator[tuple[str, Path]]:

@@ -17,7 +17,7 @@ from proprotor.arrays import Array
 from proprotor.crossings import growth
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
-from proprotor.modes import have_modes, some_points, state_matrix
+from proprotor.modes import first_order, have_modes, some_points
 from proprotor.speed import in_metres_per_second
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array
     good = have_modes(model)
     best, value = np.full(good.shape, np.nan), np.full(good.shape, np.nan, dtype=complex)
     if good.any():
-        values = np.linalg.eigvals(state_matrix(some_points(model, good))).astype(complex)
+        values = np.linalg.eigvals(first_order(some_points(model, good))).astype(complex)
         found = growth(values, level)
         found = np.where(np.abs(found) <= _NEUTRAL * np.abs(values).max(axis=-1, keepdims=True), 0.0, found)
         place = found.argmax(axis=-1)[:, None]
