@@ -157,9 +157,7 @@ class RotorSection(Section):
     n_blades: Count = needed("Number of blades.")
     radius: PositiveLength = needed("Centre of rotation to tip.")
     root_cutout: Length = needed("Where the airloads begin, from the centre of rotation.")
-    flap_hinge_offset: Length = needed(
-        "Centre of rotation to flap hinge; at the centre flapping is a gimbal's tilt once more: lock one."
-    )
+    flap_hinge_offset: Length = needed("Centre of rotation to flap hinge; at 0 lock flap or gimbal.")
     lag_hinge_offset: Length = needed("Centre of rotation to lag hinge, not inboard of the flap hinge.")
     precone: Angle = needed("Cone built into the hub, towards thrust.")
     blade_mass: Mass = optional("Integral of m over the whole blade.")
