@@ -67,6 +67,7 @@ QUASI_STEADY = {
     "locked": ("flap", "lag", "pitch", "gimbal"),
     "rotor_speed": "constant",
     "compressibility": False,
+    "section_damping": False,  # the report's strips have the incidence of the quarter chord
 }
 
 

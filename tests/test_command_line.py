@@ -190,7 +190,7 @@ def test_every_option_of_the_model_is_a_flag_that_says_what_it_does():
     for name, choices in CHOICES.items():
         # a structure that is not given is the deck's, see test_deck_rotor_options.py
         assert parameters[name].default == (choices[0] if name != "structure" else None)
-        if not isinstance(choices[0], bool):
+        if not isinstance(choices[-1], bool):
             assert tuple(parameters[name].type.choices) == choices
     assert tuple(parameters["locked"].type.choices) == LOCKABLE
 

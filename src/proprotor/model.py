@@ -176,7 +176,7 @@ def model_quantities(
         for name, value in given.items()
         if value is not None
     }
-    damping = {"section_damping": float(options.section_damping)}
+    damping = {"section_damping": float(bool(options.section_damping))}
     return rotor_quantities(rotor, operation, airspeed, points) | given | damping
 
 

@@ -212,7 +212,10 @@ def _moments(
     if in_closed_form(sections, choice):
         return segments | closed_form_moments(sections, segments)
     some = replace(sections, airfoil=_SomeCoefficients(sections.airfoil, kept, choice.compressibility))
-    return segments | load_moments(some, segments, compressibility=False, equations=equations)
+    alone = choice.airloads == "lift-slope"
+    return segments | load_moments(
+        some, segments, compressibility=False, lift_slope_only=alone, equations=equations
+    )
 
 
 def _loads(pool: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from proprotor.deck_file import read_tables
 from proprotor.deck_settings import with_settings
 from proprotor.deck_template import toml
 from proprotor.explore.inputs import slider_input
-from proprotor.options import CHOICES
+from proprotor.options import CHOICES, default_choice
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -56,7 +56,7 @@ def altered_deck(
     tables = with_settings(read_tables(base), changed)
     lines = ["# Made by `proprotor explore`: what stands here replaces what the base has."]
     chosen = {name: value for name, value in (options or {}).items() if name in CHOICES}
-    flags = [_flag(name, value) for name, value in chosen.items() if value != CHOICES[name][0]]
+    flags = [_flag(name, value) for name, value in chosen.items() if value != default_choice(name, chosen)]
     if flags:
         lines.append(f"# Explored with {' '.join(flags)}")
     lines += [f"base = {toml(base)}", "", "[case]", f"name = {toml(_name(case.name))}"]

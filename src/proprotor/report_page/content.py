@@ -11,7 +11,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.boundary_summary import boundary_record, mechanism_told, verdict
-from proprotor.options import CHOICES
+from proprotor.options import CHOICES, default_choice
 from proprotor.provenance import doubtful_inputs, reservations
 from proprotor.report_page import pictures
 from proprotor.report_page.analyses import Findings
@@ -173,7 +173,7 @@ def _model(
     paragraphs = (case.description, f"{len(table.airspeed)} airspeeds, {_range(table, 0, -1)[5:]}.")
     yield Text(tuple(filter(None, paragraphs)))
     rows = [
-        (name.replace("_", " "), option_told(value), "default" if _is_default(name, value) else "chosen")
+        (name.replace("_", " "), option_told(value), "default" if _is_default(name, options) else "chosen")
         for name, value in options.items()
         if value is not None
     ]
@@ -182,8 +182,9 @@ def _model(
         yield Table("Fields set for this run", ("field", "value"), tuple(settings.items()))
 
 
-def _is_default(name: str, value: Any) -> bool:
-    return bool(value == CHOICES[name][0]) if name in CHOICES else not value
+def _is_default(name: str, options: Mapping[str, Any]) -> bool:
+    value = options[name]
+    return bool(value == default_choice(name, options)) if name in CHOICES else not value
 
 
 def _sweep(case: Case, found: Findings, unit: str) -> Iterator[Any]:
