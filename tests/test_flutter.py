@@ -46,6 +46,29 @@ def test_any_damping_level(level):
     assert -found.eigenvalue.real / abs(found.eigenvalue) == pytest.approx(level, abs=1e-12)
 
 
+def test_the_least_damping_of_a_search_is_told_with_its_mode_and_position():
+    """ζ = c/20 with c = 1 + (p - 6)², which is least at p = 6: a twentieth; beside it a mode of 30 % and a neutral one."""
+
+    def three(x):
+        damping = np.diag([6.0, 1.0, 0.0]) + (x - 6) ** 2 * np.diag([0.0, 1.0, 0.0])
+        return np.eye(3), damping, np.diag([100.0, 100.0, 0.0])
+
+    found = crossings(three, np.arange(0, 11), level=0.01)
+    assert found.boundaries == () and found.searched == (0, 10)
+    assert found.least.ratio == pytest.approx(1 / 20, rel=1e-12)
+    assert found.least.position == 6 and found.least.mode == "q1"
+    failed = crossings(oscillator(lambda x: 1 + 0 * x, lambda x: x + np.nan), np.arange(3)).least
+    assert np.isnan(failed.ratio) and failed.mode == ""
+
+
+def test_an_unstable_mode_is_the_least_damped():
+    """Growth of a real root is -1, of a pair -Re λ/|λ|."""
+    grown = crossings(oscillator(lambda x: 2 - x), np.arange(0, 6)).least
+    assert grown.ratio == pytest.approx(-3 / 20, rel=1e-12) and grown.position == 5
+    diverged = crossings(oscillator(lambda x: 5.0 + 0 * x, lambda x: 1 - x / 7.3), np.arange(0, 11)).least
+    assert diverged.ratio == -1 and diverged.position == 8
+
+
 @pytest.mark.parametrize("depth", [1e-1, 1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("at", [50.3, 52.5, 54.9])
 def test_a_hump_between_two_points_of_the_scan_is_found(at, depth):

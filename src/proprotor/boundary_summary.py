@@ -55,6 +55,14 @@ def mechanism_told(mechanism: dict[str, float]) -> str:
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in mechanism.items())
 
 
+def least_told(found: FlutterPoint, unit: str, factor: float) -> str:
+    """Return the least damping of a search, with its mode and airspeed; "" where there was no mode."""
+    if math.isnan(found.least_damping):
+        return ""
+    where = f"{found.least_damping_mode} at {found.least_damping_speed / factor:.4g} {unit}"
+    return f"{100 * found.least_damping:.2g} % of critical: {where}"
+
+
 def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
     """Sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
     low, high = (speed / factor for speed in found.searched)
@@ -63,6 +71,8 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
         yield f"Already {beyond} at {low:.4g} {unit}: {', '.join(found.unstable_at_start)}."
     if math.isnan(found.speed):
         yield f"No mode becomes {beyond} between {low:.4g} and {high:.4g} {unit}."
+        if told := least_told(found, unit, factor):
+            yield f"The least damping there is {told}."
     else:
         yield f"Flutter speed {found.speed / factor:.2f} {unit} ({found.mode}, {found.kind})."
     if at is None:

@@ -18,6 +18,7 @@ from proprotor.arrays import Array
 from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
+from proprotor.least_damping import NOWHERE, LeastDamping, least_damping
 from proprotor.mode_names import name_list, name_shares
 from proprotor.model import LinearModel
 from proprotor.modes import held_coordinates
@@ -104,6 +105,11 @@ class FlutterPoint:
     scan_solves : int
     level : float
         Damping ratio.
+    least_damping : float
+        The smallest damping ratio of any mode at the airspeeds of the search, dimensionless; NaN where there is none.
+    least_damping_mode : str
+    least_damping_speed : float
+        Where that was, m/s.
     """
 
     speed: float
@@ -116,6 +122,9 @@ class FlutterPoint:
     eigen_solves: int
     scan_solves: int
     level: float = 0.0
+    least_damping: float = np.nan
+    least_damping_mode: str = ""
+    least_damping_speed: float = np.nan
 
     def __repr__(self) -> str:
         return summary.of_flutter_point(self)
@@ -148,6 +157,8 @@ class Crossings(NamedTuple):
         First and last position that could be analysed, m/s or in SI units of the input.
     scan_solves, eigen_solves : int
         What it took to bracket every boundary, and in all.
+    least : LeastDamping
+        The smallest damping ratio of any mode at the points of the search, with the mode's name and the position.
     """
 
     boundaries: tuple[Boundary, ...]
@@ -155,6 +166,7 @@ class Crossings(NamedTuple):
     searched: tuple[float, float]
     scan_solves: int
     eigen_solves: int
+    least: LeastDamping = NOWHERE
 
     def __repr__(self) -> str:
         return summary.of_crossings(self)
@@ -209,6 +221,7 @@ def find_crossings(
         (float(scan.positions[0]), float(scan.positions[-1])),
         scan_solves,
         scan_solves + (0 if crossing is None else int(crossing.solves.sum())),
+        least_damping(path, names),
     )
 
 
@@ -355,4 +368,7 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
         eigen_solves=found.eigen_solves,
         scan_solves=found.scan_solves,
         level=level,
+        least_damping=found.least.ratio,
+        least_damping_mode=found.least.mode,
+        least_damping_speed=found.least.position,
     )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from proprotor.boundary_summary import least_told
 from proprotor.provenance import reservations
 from proprotor.speed import KNOT
 
@@ -63,6 +64,7 @@ def of_flutter_point(found: FlutterPoint) -> str:
     low, high = (f"{speed / KNOT:.4g}" for speed in found.searched)
     if math.isnan(found.speed):
         first = f"FlutterPoint: nothing becomes unstable between {low} and {high} kt"
+        first += f"; least damping {told}" if (told := least_told(found, "kt", KNOT)) else ""
     else:
         where = f"{found.speed / KNOT:.2f} kt ({found.speed:.6g} m/s)"
         first = f"FlutterPoint: {where}, {found.kind} of {found.mode}, {found.frequency / math.tau:.4g} Hz"
