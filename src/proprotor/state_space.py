@@ -103,26 +103,25 @@ def state_space(model: LinearModel) -> StateSpace:
     """
     if model.B is None:
         raise InputError("B", None, "must be given: the model has no inputs")
-    model, system = without_massless(model), state_matrix(model)
+    system, mass = state_matrix(model), without_massless(model).M
     n, held = len(model.dofs), held_coordinates(model)
     rates = slice(len(held), len(held) + n)
-    acceleration_by_input = np.linalg.solve(model.M, model.B)
+    acceleration_by_input = np.linalg.solve(mass, model.B)
     inputs = np.zeros((*system.shape[:-1], len(INPUTS)))
     inputs[..., rates, :] = acceleration_by_input
-    free = lack_azimuth(model)
-    if free.any():
-        inputs[free, model.dofs.index(ROTOR_SPEED), :] = np.nan
     displacement = np.zeros((n, system.shape[-1]))
     displacement[held, np.arange(len(held))] = 1
     rate = np.zeros((n, system.shape[-1]))
     rate[:, rates] = np.eye(n)
     motion = (displacement, rate, system[..., rates, :])
     names, rows, feedthrough = _outputs(model, motion, acceleration_by_input)
+    free, failed = lack_azimuth(model), ~np.isfinite(mass).all(axis=(-2, -1))
     if free.any():
-        rows, feedthrough = rows.copy(), feedthrough.copy()
-        rows[free, :, model.dofs.index(ROTOR_SPEED)] = np.nan
-        rows[free, names.index(ROTOR_SPEED), :] = np.nan
-        feedthrough[free, names.index(ROTOR_SPEED), :] = np.nan
+        state, output = model.dofs.index(ROTOR_SPEED), names.index(ROTOR_SPEED)
+        inputs[free, state], rows[free, :, state] = np.nan, np.nan
+        rows[free, output], feedthrough[free, output] = np.nan, np.nan
+    for part in (inputs, rows, feedthrough):
+        part[failed] = np.nan
     states = (*(model.dofs[place] for place in held), *(f"{name} rate" for name in model.dofs))
     return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names)
 
