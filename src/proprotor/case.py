@@ -402,8 +402,11 @@ def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
 
 
 def _per_second(number: Datum, rotor_speed: float) -> Datum:
-    """A frequency per revolution in rad/s: n cycles per revolution are n Ω."""
-    return replace(number, si=number.si * rotor_speed, unit="rad/s") if number.unit == PER_REV else number
+    """A frequency per revolution in rad/s: n cycles per revolution are n Ω, with Ω of the file it was written in."""
+    if number.unit != PER_REV:
+        return number
+    own = rotor_speed if number.rotor_speed is None else number.rotor_speed
+    return replace(number, si=number.si * own, unit="rad/s", rotor_speed=own)
 
 
 def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -36,6 +36,8 @@ class Datum:
         Where the number was read, or how it was found.
     r_over_R : tuple of float or None
         Stations of a distribution.
+    rotor_speed : float or None
+        rad/s, of a frequency written per revolution: what one per revolution is.
     """
 
     written: str
@@ -44,6 +46,7 @@ class Datum:
     status: str = "unstated"
     source: str = ""
     r_over_R: tuple[float, ...] | None = None
+    rotor_speed: float | None = None
 
 
 class FileName(str):
@@ -57,6 +60,27 @@ class FileName(str):
         file = cls(name)
         file.folder = folder
         return file
+
+
+class PerRevolution(str):
+    """A frequency per revolution as a deck has it, and the rotor speed (rad/s) of the file that it was written in."""
+
+    rotor_speed: float
+
+    @classmethod
+    def of(cls, text: str, rotor_speed: float) -> PerRevolution:
+        """A frequency per revolution of a rotor speed."""
+        frequency = cls(text)
+        frequency.rotor_speed = rotor_speed
+        return frequency
+
+    @property
+    def per_second(self) -> str:
+        """The same in rad/s, or as it is where it is no number."""
+        try:
+            return f"{to_si(self.removesuffix('/rev'), '') * self.rotor_speed!r} rad/s"
+        except InputError:
+            return str(self)
 
 
 class Bound(NamedTuple):
@@ -95,15 +119,16 @@ def read_count(raw: Any, least: int) -> Datum:
 
 
 def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
-    """A frequency; one written per revolution (``"0.42/rev"``) keeps the unit `PER_REV`."""
+    """A frequency; one written per revolution (``"0.42/rev"``) has the unit `PER_REV` and its rotor speed, if told."""
     table = _as_table(raw, ("value",))
     value = table["value"]
     if not isinstance(value, str) or not value.endswith("/rev"):
         return read_quantity(raw, "rad/s", bound)
     try:
-        return _datum(table, value, _bounded(value.removesuffix("/rev"), "", bound), PER_REV)
+        found = _datum(table, str(value), _bounded(value.removesuffix("/rev"), "", bound), PER_REV)
     except InputError as error:
         raise InputError(error.field, value, error.rule) from None
+    return replace(found, rotor_speed=value.rotor_speed) if isinstance(value, PerRevolution) else found
 
 
 def read_distribution(raw: Any, unit: str, bound: Bound = ANY) -> Datum:

@@ -37,8 +37,10 @@ file, ``{ file = "stations.csv", column = "twist" }`` (`proprotor.stations_file`
 ``[support]``
     kind and the fields of that kind: `proprotor.support_sections` lists them.
 
-A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution at the deck's rotor
-speed. `proprotor.units` lists the units.
+A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
+written in the same file, or in its base where the file gives none. It is a frequency in hertz from then on: a
+deck that alters another, ``--set``, a study and a map change the rotor speed and not the frequency, and a
+frequency that is set in /rev is one of the deck's own rotor speed too. `proprotor.units` lists the units.
 """
 
 from __future__ import annotations

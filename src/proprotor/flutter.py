@@ -227,7 +227,7 @@ def find_crossings(
 
 def _beyond(values: Array, names: list[str], level: float) -> tuple[str, ...]:
     """Modes beyond the level."""
-    above = growth(values, level) > NEUTRAL * np.abs(values).max()
+    above = growth(values, level) > NEUTRAL * np.nanmax(np.abs(values))
     return tuple(dict.fromkeys(names[state] for state in np.flatnonzero(above & (values.imag >= 0))))
 
 
@@ -236,7 +236,7 @@ def _boundary(
 ) -> Boundary:
     position, spectrum, state, change, slope = crossing.found[place]
     value = complex(spectrum.values[state])
-    real = abs(value.imag) <= _REAL * np.abs(spectrum.values).max()
+    real = abs(value.imag) <= _REAL * np.nanmax(np.abs(spectrum.values))
     mode = spectrum.modes(np.array([state]))
     shares = name_shares(
         model.dofs, held_coordinates(model), mode.values, mode.left, mode.right, rotor_speed

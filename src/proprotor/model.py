@@ -91,10 +91,12 @@ class LinearModel:
         return of_model(self)
 
     @property
-    def shaft_holds_azimuth(self) -> bool:
-        """Whether a shaft to a constant-speed end makes the azimuth a displacement of its own; else it is a rate."""
-        place = self.dofs.index(ROTOR_SPEED) if ROTOR_SPEED in self.dofs else None
-        return place is not None and bool(np.any(np.nan_to_num(self.K[..., place, place]) > 0))
+    def shaft_holds_azimuth(self) -> Array:
+        """Points (...) where a shaft to a constant-speed end makes the azimuth a displacement; else it is a rate."""
+        if ROTOR_SPEED not in self.dofs:
+            return np.zeros(self.K.shape[:-2], dtype=bool)
+        place = self.dofs.index(ROTOR_SPEED)
+        return np.asarray(np.nan_to_num(np.real(self.K[..., place, place])) > 0)
 
     def modes(self) -> xarray.Dataset:
         """Eigenvalues and mode shapes, see `proprotor.modes.modes`.

@@ -37,12 +37,15 @@ def named_modes(case: Case, airspeed: Any, mode: str | None, options: Mapping[st
     Raises
     ------
     InputError
-        For an airspeed that is not one, or that cannot be analysed, and an unknown mode.
+        For an airspeed that is not one, or that cannot be analysed, many designs, and an unknown mode.
     """
     speed = in_metres_per_second(airspeed).reshape(-1)
     if len(speed) != 1:
         raise InputError("airspeed", airspeed, "must be one speed")
-    named = sweep_case(case, speed, **options).isel(airspeed=0)
+    named = sweep_case(case, speed, **options)
+    if named.sizes["airspeed"] != 1:
+        raise InputError("case", case.name, f"must be one design, not {named.sizes['airspeed']}")
+    named = named.isel(airspeed=0)
     if named.reason.item():
         raise InputError("airspeed", airspeed, named.reason.item())
     found = named.isel(mode=np.flatnonzero(np.isfinite(named.eigenvalue.values.real)))

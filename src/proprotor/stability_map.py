@@ -17,7 +17,7 @@ from proprotor.arrays import Array
 from proprotor.crossings import growth
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
-from proprotor.modes import first_order, have_modes, some_points
+from proprotor.modes import eigenvalues
 from proprotor.speed import in_metres_per_second
 
 if TYPE_CHECKING:
@@ -46,17 +46,12 @@ class Edges(NamedTuple):
 
 def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
     """Largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points."""
-    good = have_modes(model)
-    best, value = np.full(good.shape, np.nan), np.full(good.shape, np.nan, dtype=complex)
-    if good.any():
-        values = np.linalg.eigvals(first_order(some_points(model, good))).astype(complex)
-        found = growth(values, level)
-        found = np.where(np.abs(found) <= _NEUTRAL * np.abs(values).max(axis=-1, keepdims=True), 0.0, found)
-        place = found.argmax(axis=-1)[:, None]
-        best[good] = np.take_along_axis(found, place, -1)[:, 0]
-        critical = np.take_along_axis(values, place, -1)[:, 0]
-        value[good] = critical.real + 1j * np.abs(critical.imag)
-    return best, value
+    values = eigenvalues(model)
+    found, size = growth(values, level), np.nan_to_num(np.abs(values))
+    found = np.where(np.abs(found) <= _NEUTRAL * size.max(axis=-1, keepdims=True), 0.0, found)
+    place = np.where(np.isnan(found), -np.inf, found).argmax(axis=-1)[..., None]
+    critical = np.take_along_axis(values, place, -1)[..., 0]
+    return np.take_along_axis(found, place, -1)[..., 0], critical.real + 1j * np.abs(critical.imag)
 
 
 def stability_map(

@@ -17,7 +17,7 @@ from proprotor.arrays import Array
 from proprotor.checkpoint import Checkpoint
 from proprotor.errors import InputError, unknown_name
 from proprotor.fingerprint import fingerprint
-from proprotor.modes import held_coordinates
+from proprotor.model import ROTOR_SPEED
 from proprotor.options import parse_options
 from proprotor.sampling import AIRSPEED, Designs, Plan, as_plan
 from proprotor.source_code import code_fingerprint
@@ -44,6 +44,7 @@ BATCH = 2000  # points at most: enough for NumPy's own cost to vanish beside LAP
 _BYTES_PER_POINT = 100_000  # while a batch is analysed; the XV-15 takes 30 kB, 46 kB with vectors
 _SHARE_OF_MEMORY = 0.25  # of what is free, for the batches of all processes together
 _SMALL = 4000  # points that are analysed before worker processes have started
+_SHAFT = "drive_train.shaft_stiffness"
 _MOST_TRIED = 25  # airspeeds, to see the coordinates of the model
 
 
@@ -161,7 +162,8 @@ class _Study:
         if set(ALONG_AIRSPEEDS) & set(quantities):
             _check_range(speeds, next(name for name in ALONG_AIRSPEEDS if name in quantities))
         tried = designs.values[AIRSPEED] if speeds is None else np.atleast_1d(speeds)
-        dofs, states = _coordinates(case, tried, options)
+        dofs = _coordinates(case, tried, options)
+        states = 2 * len(dofs) - (ROTOR_SPEED in dofs and not _a_shaft_holds(case, designs, options))
         own_tolerance = {} if tolerance is None else {"tolerance": _positive("tolerance", tolerance)}
         analysis = Analysis(case, quantities, options, dofs, states, code=code, **own_tolerance)
         line = None if speeds is None else np.atleast_1d(speeds)
@@ -228,6 +230,8 @@ class _Study:
         data = {}
         for name, it in variables(self.analysis.quantities).items():
             array = self.found[name]
+            if name == "missing" and not (array != "").any():
+                continue
             if it.on == POINT:
                 array = array.reshape(*shape, *self.shape[1:] * over_speeds, *array.shape[2:])
             else:
@@ -350,8 +354,17 @@ def _positive(name: str, value: ArrayLike) -> float:
     return float(value)
 
 
-def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple[tuple[str, ...], int]:
-    """Coordinates and number of eigenvalues of the case's model."""
+def _a_shaft_holds(case: Case, designs: Designs, options: Mapping[str, Any]) -> bool:
+    """Whether a shaft holds the azimuth of any design, which then has one eigenvalue more than others."""
+    train = case.model_options(options).get("drive_train")
+    stiffness = 0.0 if train is None else train.shaft_stiffness
+    if "drive_train" not in options:
+        stiffness = designs.values.get(_SHAFT, stiffness)
+    return bool(np.any(np.nan_to_num(stiffness) > 0))
+
+
+def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple[str, ...]:
+    """Coordinates of the case's model."""
     few = speeds[np.unique(np.linspace(0, len(speeds) - 1, _MOST_TRIED).astype(int))]
     few = np.roll(few, -(len(few) // 2))  # the middle is the likeliest to have a trim
     for tried in (few[:1], few):
@@ -362,4 +375,4 @@ def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple
         raise InputError(
             "options", ", ".join(options), "must not hold arrays: vary the case's inputs instead"
         )
-    return model.dofs, len(held_coordinates(model)) + len(model.dofs)
+    return model.dofs

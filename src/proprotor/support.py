@@ -61,8 +61,8 @@ class NormalModes:
         for field in ("mass", "damping", "stiffness"):
             matrix = _finite(field, getattr(self, field), (n, n))
             turned = np.swapaxes(matrix, -1, -2)
-            tolerance = {"rtol": 1e-9, "atol": 1e-12 * np.abs(matrix).max(initial=0)}
-            if field in self.symmetric and not np.allclose(matrix, turned, **tolerance):
+            rounding = 1e-12 * np.abs(matrix).max(axis=(-2, -1), keepdims=True, initial=0)
+            if field in self.symmetric and not np.allclose(matrix, turned, rtol=1e-9, atol=rounding):
                 raise InputError(field, matrix.tolist(), "must be symmetric")
             object.__setattr__(self, field, matrix)
         if not _nowhere_negative(np.real(self.mass)):

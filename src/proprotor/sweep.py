@@ -18,6 +18,7 @@ from proprotor.modes import (
     coordinate_shares,
     held_coordinates,
     mode_dataset,
+    with_azimuth,
 )
 from proprotor.path import Line, Path, follow, path_of
 from proprotor.speed import in_metres_per_second
@@ -97,7 +98,8 @@ def sweep(
     data = mode_dataset(model, values, shapes, coordinate_shares(held, n, left, right), line)
     by_mode = data.eigenvalue.dims
     sense = np.where(np.isnan(values), np.nan, whirl(model.dofs, held, values, left, right))
-    trust = np.where(np.isnan(path.spectrum.values[:points, :1]), np.nan, path.trust(points)[:, columns])
+    works = path.spectrum.works[:points, None]
+    trust = np.where(works, path.trust(points)[:, columns], np.nan)
     data["whirl"] = by_mode, sense, {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
     data["tracking_quality"] = by_mode, trust, {"units": "1", "long_name": "trust in the steps to a point"}
     data.attrs = {"eigen_solves": len(path.points) + named.eigen_solves, "named_at": named.told}
@@ -125,23 +127,29 @@ def state_names(
     if not len(path.points):
         return Named(0, [], "", 0)
     if approach is not None:
-        leg = follow(approach.models(approach.positions), approach)
+        leg_model = approach.models(approach.positions)
+        held = max(
+            held, held_coordinates(leg_model), key=len
+        )  # a shaft may hold the azimuth on one of them only
+        leg = follow(leg_model, approach, held)
         ends = [0, len(approach.positions) - 1]
         if len(leg.points) and [leg.points[0], leg.points[-1]] == ends:
             nearest = int(np.argmin(np.abs(path.positions[path.points] - approach.end)))
             given = names_at(model.dofs, held, leg.spectrum, 0, rotor_speed)
-            successor = _same_point(leg, ends[1], path, int(path.points[nearest]))
+            here = path.spectrum.at([int(path.points[nearest])])
+            successor = _same_point(leg, ends[1], with_azimuth(here, model.dofs, len(held) + len(model.dofs)))
             names = {int(state): given[first] for first, state in zip(leg.places[0], successor, strict=True)}
             told = f"{approach.name} {approach.positions[0]:.6g} {approach.units}"
-            return Named(nearest, [names[state] for state in range(len(names))], told, len(leg.points))
+            given = [names[state] for state in range(here.values.shape[1])]
+            return Named(nearest, given, told, len(leg.points))
     first = int(path.points[0])
     told = f"{line.name} {float(line.positions[first]):.6g} {line.units}"
     return Named(0, names_at(model.dofs, held, path.spectrum, first, rotor_speed), told, 0)
 
 
-def _same_point(leg: Path, last: int, path: Path, point: int) -> Array:
-    """Which states of a point of a path the followed states of another path are at the same point."""
-    both = leg.spectrum.at([last]).joined(path.spectrum.at([point]))
+def _same_point(leg: Path, last: int, here: Spectrum) -> Array:
+    """Which states of a point, a spectrum (1, states), the followed states of a path are at the same point."""
+    both = leg.spectrum.at([last]).joined(here)
     successor = link(both, np.array([0]), np.array([1])).successor[0]
     states: Array = successor[leg.places[-1]]
     return states
@@ -159,7 +167,7 @@ def mode_columns(dofs: tuple[str, ...], path: Path, named: Named) -> tuple[Array
     """Which followed states are modes, in the order of the coordinates, and what they are called.
 
     A state is a mode where it is in the upper half plane, or real; of each pair the one above is, and the other only if
-    it is real somewhere, as the second root.
+    it is real somewhere, as the second root. A root that some points do not have comes after one that all have.
     """
     if not len(path.points):  # no point worked: there are no modes
         return np.empty(0, dtype=int), []
@@ -167,11 +175,11 @@ def mode_columns(dofs: tuple[str, ...], path: Path, named: Named) -> tuple[Array
     names = [named.names[state] for state in path.places[named.point]]
     above, real = (values.imag > 0).sum(axis=0), (values.imag == 0).any(axis=0)
     below = (values.imag < 0).sum(axis=0)
-    slow = np.abs(values).mean(axis=0)
+    slow, absent = np.nan_to_num(np.abs(values)).mean(axis=0), np.isnan(values).sum(axis=0)
     columns, modes = [], []
     for name in name_list(dofs):
         own = [c for c, called in enumerate(names) if called == name]
-        own.sort(key=lambda c: (below[c] - above[c], slow[c]))
+        own.sort(key=lambda c: (below[c] - above[c], absent[c], slow[c]))
         for place, column in enumerate(own):
             if place == 0 or real[column]:
                 columns.append(column)

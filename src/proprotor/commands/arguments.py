@@ -124,7 +124,8 @@ def set_option(command: Command) -> Command:
         type=Setting(),
         metavar="FIELD=VALUE",
         help='A field of the deck to set first, such as rotor.precone="1.5 deg", operation.trim=windmill or '
-        '"support.modes[beam].frequency=3 Hz"; `proprotor describe` lists them. Repeatable.',
+        '"support.modes[beam].frequency=3 Hz"; `proprotor describe` lists them. Frequencies in /rev are those of the '
+        "deck's own rotor speed, and keep their hertz where another is set. Repeatable.",
     )(command)
 
 
