@@ -120,7 +120,7 @@ def rigid_propeller(
         dofs=HUB,
         trim=_unloaded(speed.shape),
         airspeed=speed,
-        mass_at_rest=inertia,
+        mass_at_rest=inertia.copy(),
     )
 
 
