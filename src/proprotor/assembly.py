@@ -33,8 +33,8 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     Returns
     -------
     LinearModel
-        With the coordinates of the support first, SI. A point whose mass matrix has no inverse, or whose support has no
-        mass without the rotor, has its matrices, but no modes, and the reason in `trim`.
+        With the coordinates of the support first, SI. A point whose mass matrix has no inverse has its matrices, but
+        no modes, and the reason in `trim`; one whose support has no mass without the rotor has neither.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
 
 
 def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> LinearModel:
-    """Return the model with each point failed whose support has no mass without its rotors.
+    """Return the model with NaN and the reason at each point whose support has no mass without its rotors.
 
     Raises
     ------
@@ -86,8 +86,15 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
     everywhere = np.broadcast_to(refusal, model.M.shape[:-2])
     if not (refused := everywhere != "").any():
         return model
-    reason = np.where(refused, "support.includes_rotor " + everywhere, model.trim.reason)
-    return replace(model, trim=replace(model.trim, reason=reason, converged=model.trim.converged & ~refused))
+    field = str(InputError("support.includes_rotor", support.includes_rotor, ""))
+    reason = np.where(refused, field + everywhere, model.trim.reason)
+    trim = replace(model.trim, reason=reason, converged=model.trim.converged & ~refused)
+    matrices: dict[str, Any] = {
+        name: np.where(refused[..., None, None], np.nan, getattr(model, name))
+        for name in ("M", "C", "K", "B")
+        if getattr(model, name) is not None
+    }
+    return replace(model, **matrices, trim=trim)
 
 
 def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:

@@ -131,7 +131,7 @@ def settled(support: NormalModes, mass_at_rest: Array) -> NormalModes:
 def refuse(refusal: Array, support: NormalModes) -> None:
     """Raise the refusal of a single design, if it is one."""
     if reason := str(refusal[()]):
-        raise InputError("includes_rotor", support.includes_rotor, reason)
+        raise InputError("support.includes_rotor", support.includes_rotor, reason)
 
 
 def _holds(left: Array, given: Array) -> bool:
