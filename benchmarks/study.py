@@ -52,7 +52,7 @@ PARTS = {
     "trim: the rest": [(model, "solve_trim")],
     "blade matrices and airloads": [(model, "_blade_matrices")],
     "blades to rotor": [(model, "_fixed_frame")],
-    "rotor on its support": [(case_module, "mount"), (case_module, "rigid_hub_mass")],
+    "rotor on its support": [(case_module, "mount")],
     "state matrix": [(study_batch, "state_matrix")],
     "eigenvalues (LAPACK)": [(np.linalg, "eigvals")],
 }

@@ -20,9 +20,10 @@ from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
 from proprotor.drive_train import DriveTrain
 from proprotor.errors import InputError
 from proprotor.frequencies import BladeFrequencies
-from proprotor.model import LinearModel, rigid_hub_mass, rotor_model
+from proprotor.model import LinearModel, mass_at_rest, rotor_model
 from proprotor.operation import Operation
 from proprotor.rotor import Rotor
+from proprotor.rotor_share import settled, spring_warnings
 from proprotor.support import NormalModes
 from proprotor.support_of_deck import support_of
 
@@ -107,7 +108,7 @@ class Case:
         """
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
-        return mount(rotor_alone, support, rigid_hub_mass(self.rotor))
+        return mount(rotor_alone, support)
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options of the model with what the case has in place of those that are not given.
@@ -370,17 +371,19 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
     with _told_as_written("drive_train", numbers):
         train = None if deck.drive_train is None else DriveTrain(**_values(numbers, "drive_train"))
     with _told_as_written("support", numbers):
-        support = support_of(deck.support, numbers)
+        at_rest = mass_at_rest(rotor)
+        support = settled(support_of(deck.support, numbers), at_rest)
+        doubts = spring_warnings(support, at_rest, rotor.gimbal_stiffness)
     return Case(
         name=deck.case.name,
         title=deck.case.title,
         description=deck.case.description,
         calibration=deck.case.calibration,
-        warnings=tuple(deck.case.warnings),
+        warnings=(*deck.case.warnings, *doubts),
         rotor=rotor,
         operation=operation,
         support=support,
-        sources=dict(numbers) | air | derived,
+        sources=dict(numbers) | air | derived | _how_held(support, numbers),
         frequencies=frequencies,
         drive_train=train,
         deck=deck,
@@ -461,6 +464,18 @@ def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datu
         derived["chord"] = _chord(bare, lock_number, density)
     rotor = replace(bare, **{name: number.si for name, number in derived.items()})
     return rotor, {f"rotor.{name}": number for name, number in derived.items()}
+
+
+def _how_held(support: NormalModes, numbers: Mapping[str, Datum]) -> dict[str, Datum]:
+    """Return how the rotor was held while the modes were found, where the deck leaves that to the program."""
+    taken = {}
+    given = numbers.get("support.includes_rotor")
+    if given is not None and given.si is True:
+        source = f"{given.source}; " * bool(given.source) + "true, of a rotor with a gimbal"
+        taken["support.includes_rotor"] = replace(given, si=support.includes_rotor, source=source)
+    if support.includes_rotor in ("gimballed", "rigid") and "support.shaft" not in numbers:
+        taken["support.shaft"] = Datum("held", "held", "", source="left out")
+    return taken
 
 
 def _spring(rotor: Rotor, hinge: str, frequency: float) -> Datum:

@@ -27,7 +27,8 @@ class Datum:
     written : str
         The value as the deck gives it.
     si : float, int, array, tuple of float or str
-        The value in `unit`; an array of those of many designs, a tuple for a distribution, the path for a file.
+        The value in `unit`; an array of those of many designs, a tuple for a distribution, a `FilePath` for a file, the
+        word for a choice.
     unit : str
         SI unit, ``""`` for a plain number.
     status : str
@@ -83,6 +84,10 @@ class PerRevolution(str):
             return str(self)
 
 
+class FilePath(str):
+    """The path of a file, the SI value of a field that names one."""
+
+
 class Bound(NamedTuple):
     """A condition on the SI value, and how a message states it."""
 
@@ -116,6 +121,30 @@ def read_count(raw: Any, least: int) -> Datum:
     if not _is_number(value) or not isinstance(value, int) or value < least:
         raise InputError("", value, f"must be a whole number, at least {least}")
     return _datum(table, str(value), value, "")
+
+
+def read_choice(raw: Any, choices: tuple[bool | str, ...]) -> Datum:
+    """One of some words, true or false, or a table holding one."""
+    table = _as_table(raw, ("value",))
+    value = table["value"]
+    if not is_choice(value, choices):
+        raise InputError("", value, f"must be {told_choices(choices)}")
+    return _datum(table, as_toml(value), value, "")
+
+
+def is_choice(value: Any, choices: tuple[bool | str, ...]) -> bool:
+    """Whether a value is one of some words, true or false; 1 is not true."""
+    return isinstance(value, bool | str) and value in choices
+
+
+def told_choices(choices: tuple[bool | str, ...]) -> str:
+    """The choices as a message lists them."""
+    return " or ".join(f'"{choice}"' if isinstance(choice, str) else as_toml(choice) for choice in choices)
+
+
+def as_toml(value: bool | str) -> str:
+    """A word, true or false as a deck has it, without quotation marks."""
+    return value if isinstance(value, str) else str(value).lower()
 
 
 def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
@@ -226,13 +255,13 @@ def read_file(raw: Any) -> Datum:
     if not isinstance(name, str) or not name:
         raise InputError("", name, "must be the name of a file")
     folder = name.folder if isinstance(name, FileName) else FileName.folder
-    return _datum(table, str(name), str(folder / name), "")
+    return _datum(table, str(name), FilePath(folder / name), "")
 
 
 def _datum(
     table: Mapping[str, Any],
     written: str,
-    si: float | tuple[float, ...] | str,
+    si: bool | float | tuple[float, ...] | str,
     unit: str,
     r_over_R: tuple[float, ...] | None = None,
 ) -> Datum:

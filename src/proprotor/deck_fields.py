@@ -21,6 +21,7 @@ from proprotor.datum import (
     POSITIVE,
     Bound,
     Datum,
+    read_choice,
     read_column,
     read_count,
     read_curve,
@@ -32,6 +33,7 @@ from proprotor.datum import (
     read_quantity,
 )
 from proprotor.errors import InputError
+from proprotor.support import INCLUDES_ROTOR, SHAFT
 
 
 def read_spanwise(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
@@ -67,18 +69,21 @@ class Reading:
     ----------
     form : str
         "number", "count", "frequency", "along the blade", "distribution" (along the blade, never one number),
-        "along the wing", "curve" (one number or a list of them), "rising list" or "file".
+        "along the wing", "curve" (one number or a list of them), "rising list", "file" or "choice".
     unit : str
         SI unit.
     bound : Bound
     least : int
         Of a count.
+    choices : tuple of str or bool
+        Of a choice.
     """
 
     form: str
     unit: str = ""
     bound: Bound = ANY
     least: int = 0
+    choices: tuple[bool | str, ...] = ()
 
     def read(self, raw: Any) -> Datum:
         """The value of a field.
@@ -90,6 +95,8 @@ class Reading:
         """
         if self.form == "count":
             return read_count(raw, self.least)
+        if self.form == "choice":
+            return read_choice(raw, self.choices)
         return _READERS[self.form](raw, self.unit, self.bound)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
@@ -194,6 +201,8 @@ TemperatureDifference = Annotated[Datum | None, Reading("number", "K")]
 CurvePerRev = Annotated[Datum | None, Reading("curve", "", POSITIVE)]
 Abscissa = Annotated[Datum | None, ByAbscissa("rising list", "rad", of_speed="m/s")]
 File = Annotated[Datum | None, Reading("file")]
+IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
+Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
 
 GeneralizedMass = Annotated[Datum | None, ByCoordinate("number", "kg", POSITIVE, of_angle="kg*m**2")]
 HubDisplacement = Annotated[Datum | None, ByCoordinate("number", "", of_angle="m/rad")]

@@ -103,6 +103,8 @@ def _value(reading: Reading) -> Schema:
         return {"type": "integer", "minimum": reading.least}
     if reading.form == "file":
         return {"type": "string", "minLength": 1}
+    if reading.form == "choice":
+        return {"enum": list(reading.choices)}
     text = {"type": "string", "pattern": _NUMBER, "description": _told(reading)}
     plain = {"type": "number", **_LIMITS.get(reading.bound, {})}
     dimensional = reading.unit and getattr(reading, "of_angle", reading.unit)

@@ -81,6 +81,8 @@ def example(field: DeckField) -> str:
     if field.form == "distribution":
         unit = _first_example(field.unit).strip('"').partition(" ")[2]
         return f'{{ r_over_R = [0, 1], value = [0.3, 0.2], unit = "{unit}" }}'
+    if field.form == "choice":
+        return field.takes.partition(" or ")[0]
     unit = field.unit.partition(" or ")[0]
     return _EXAMPLES.get(field.form) or _first_example("" if unit == "1" else unit)
 

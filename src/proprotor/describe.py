@@ -11,7 +11,7 @@ from dataclasses import MISSING, asdict, dataclass, fields
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
-from proprotor.datum import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
+from proprotor.datum import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound, told_choices
 from proprotor.errors import InputError
 from proprotor.units import meaning
 
@@ -161,6 +161,8 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
         return "a whole number"
     if reading.form == "file":
         return "the name of a file"
+    if reading.form == "choice":
+        return told_choices(reading.choices)
     by_angle = getattr(reading, "of_angle", None)
     if reading.form == "rising list":
         return "{ value = [...], unit = ... }"

@@ -49,6 +49,7 @@ HUB = FIXED_COORDINATES[:6]
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
+MASS_AT_REST = (*HUB, "gimbal_1c", "gimbal_1s")  # coordinates of a rotor at rest with locked blades
 COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
 _SOFTEST_SPRING = 1e-100  # of the other spring: a free hinge, without a division by zero in series
 
@@ -73,6 +74,9 @@ class LinearModel:
         Hub motion in the coordinates; None for a model whose first six coordinates are the hub's own.
     rotor : LinearModel, optional
         The rotor alone of a rotor on a support, from which the hub loads follow.
+    mass_at_rest : array (..., 6, 6) or (..., 8, 8), optional
+        Of a rotor alone: its mass matrix at rest with locked blades on the hub's coordinates and, where it has a
+        gimbal, that gimbal's (`MASS_AT_REST`), whatever the options. A support whose masses include the rotor needs it.
     """
 
     M: Array
@@ -84,6 +88,7 @@ class LinearModel:
     B: Array | None = None
     hub: Array | None = None
     rotor: LinearModel | None = None
+    mass_at_rest: Array | None = None
 
     def __repr__(self) -> str:
         from proprotor.summary import of_model
@@ -238,7 +243,13 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    model = LinearModel(**parts, dofs=coordinates, trim=shaped, airspeed=np.broadcast_to(speed, shape))
+    model = LinearModel(
+        **parts,
+        dofs=coordinates,
+        trim=shaped,
+        airspeed=np.broadcast_to(speed, shape),
+        mass_at_rest=mass_at_rest(rotor),
+    )
     return model if dofs == coordinates else model.submodel(dofs)
 
 
@@ -458,15 +469,23 @@ def in_closed_form(sections: BladeSections, options: Options) -> bool:
     return options.airloads == "lift-slope" and simple and has_closed_form(sections)
 
 
-def rigid_hub_mass(rotor: Rotor) -> Array:
-    """Mass matrix (6, 6) of the undeflected rotor on its hub coordinates, everything else locked."""
-    still = {name: 0.0 for name in UNKNOWNS}
+def mass_at_rest(rotor: Rotor) -> Array:
+    """Return the mass matrix of the undeflected rotor with locked blades, which no option of an analysis changes.
+
+    Parameters
+    ----------
+    rotor : Rotor
+
+    Returns
+    -------
+    array (..., 8, 8)
+        On the coordinates `MASS_AT_REST`, in kg, kg m and kg m².
+    """
     names = [e.name for e in fields(rotor) if e.name not in ("airfoil", "chord", "twist")]
-    pool = {
-        name: getattr(rotor, name)
-        for name in (*names, "flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")
-    }
-    pool |= still
+    names += ["flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia"]
+    pool = {name: getattr(rotor, name) for name in names} | dict.fromkeys(UNKNOWNS, 0.0)
     pool |= evaluate(inertia.trim_integrals, pool)._asdict()
-    mass: Array = evaluate(multiblade.mass, pool, evaluate(inertia.mass, pool))
-    return mass[..., :6, :6]
+    blade = evaluate(inertia.mass, pool) + evaluate(pitch.mass, pool)
+    places = np.array([FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
+    mass: Array = evaluate(multiblade.mass, pool, blade)[..., places[:, None], places]
+    return mass

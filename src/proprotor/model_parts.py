@@ -32,10 +32,11 @@ from proprotor.model import (
     batch_shape,
     couplings,
     in_closed_form,
+    mass_at_rest,
     model_quantities,
-    rigid_hub_mass,
 )
 from proprotor.options import Options, parse_options
+from proprotor.rotor_share import without_rotors
 from proprotor.support import NormalModes
 from proprotor.trim import UNKNOWNS, with_trim
 
@@ -268,9 +269,7 @@ def _support_parts(
         filled[..., :modes, :modes] = matrix
         return filled
 
-    mass = np.asarray(support.mass)
-    if support.includes_rotor:
-        mass = mass - np.swapaxes(support.hub, -1, -2) @ rigid_hub_mass(case.rotor) @ support.hub
+    mass, _ = without_rotors(support, [(support.hub, mass_at_rest(case.rotor))])
     zero, own = np.zeros((*shape, n, n)), case.support
     air = Part(
         whole(mass * 0 + support.mass - own.mass),

@@ -31,7 +31,8 @@ def nastran_modes(
     file: str | os.PathLike[str],
     grid: int,
     *,
-    includes_rotor: bool,
+    includes_rotor: bool | str,
+    shaft: str = "held",
     damping_ratio: ArrayLike = 0.0,
     modes: int | None = None,
     subcase: int | None = None,
@@ -49,8 +50,9 @@ def nastran_modes(
         table LAMA.
     grid : int
         The grid point at the hub; its motion is read in its own output coordinate system.
-    includes_rotor : bool
-        Whether the run had the rotor's mass at the hub.
+    includes_rotor, shaft : bool or str, str
+        How the run had the rotor on, as for `proprotor.support.NormalModes`: "mass only" for a point mass at the hub's
+        grid point (CONM2 without inertias), "rigid" with the rotor's inertias, "gimballed" with a gimbal between.
     damping_ratio : float or array
         Of critical for the lowest modes, the last for all above them.
     modes : int, optional
@@ -98,6 +100,7 @@ def nastran_modes(
         damping_ratio=per_mode(damping_ratio, count),
         hub=motion,
         includes_rotor=includes_rotor,
+        shaft=shaft,
     )
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.flutter import Boundary, Crossings, FlutterPoint
     from proprotor.model import LinearModel
+    from proprotor.support import NormalModes
 
 _RPM = math.pi / 30  # rad/s
 
@@ -27,9 +28,17 @@ def of_case(case: Case) -> str:
     lines = [
         f"Case {case.name}" + (f": {case.title}" if case.title else ""),
         f"  rotor: {rotor.n_blades} blades, radius {_range(np.asarray(rotor.radius))} m, {_range(speed)} rpm",
-        f"  support: {', '.join(case.support.names) or 'a rigid hub'}",
+        f"  support: {', '.join(case.support.names) or 'a rigid hub'}{_held(case.support)}",
     ]
     return "\n".join(lines + [f"  {sentence}" for sentence in reservations(case)])
+
+
+def _held(support: NormalModes) -> str:
+    """How the rotor was held when the modes were found with it on."""
+    if not support.includes_rotor:
+        return ""
+    shaft = "" if support.includes_rotor == "mass only" else f", shaft {support.shaft}"
+    return f"; found with the rotor on, {support.includes_rotor}{shaft}"
 
 
 def of_model(model: LinearModel) -> str:

@@ -109,7 +109,8 @@ def support_from_matrices(
     *,
     dofs: Sequence[str],
     hub: Mapping[str, str] | None = None,
-    includes_rotor: bool = False,
+    includes_rotor: bool | str = False,
+    shaft: str = "held",
     modes: int | None = None,
     damping_ratio: ArrayLike = 0.0,
     rotor_mass: float = 0.0,
@@ -126,8 +127,8 @@ def support_from_matrices(
         The n coordinates' names.
     hub : mapping of str to str, optional
         As for `read_npz`.
-    includes_rotor : bool
-        Whether the mass holds the rotor's rigid-body share.
+    includes_rotor, shaft : bool or str, str
+        How the mass holds the rotor's, as for `proprotor.support.NormalModes`.
     modes : int, optional
         How many of the lowest modes to keep, named mode_1 and so on; all coordinates when left out.
     damping_ratio : float or array
@@ -160,6 +161,7 @@ def support_from_matrices(
         damping_ratio=damping_ratio,
         rotor_mass=0.0 if includes_rotor else rotor_mass,
         includes_rotor=includes_rotor,
+        shaft=shaft,
         **matrices,
     ).support
 

@@ -48,6 +48,7 @@ def support_of(section: SupportSection, numbers: Mapping[str, Datum]) -> NormalM
 
 def _normal_modes(section: NormalModesSection, numbers: Mapping[str, Datum]) -> NormalModes:
     names = [mode.name for mode in section.modes]
+    own = _values(numbers, "support")
     modes = [_values(numbers, f"support.modes[{name}]") for name in names]
     hub = [_side_by_side(mode.get(axis, 0.0) for mode in modes) for axis in HUB_AXES]
     support = NormalModes.from_frequencies(
@@ -56,18 +57,19 @@ def _normal_modes(section: NormalModesSection, numbers: Mapping[str, Datum]) -> 
         frequency=_side_by_side(mode["frequency"] for mode in modes),
         damping_ratio=_side_by_side(mode["damping_ratio"] for mode in modes),
         hub=np.stack(np.broadcast_arrays(*hub), axis=-2),
-        includes_rotor=section.includes_rotor,
+        **own,
     )
     return _with_assumed_airloads(support, section, numbers)
 
 
 def _pivot(section: PivotSection, numbers: Mapping[str, Datum]) -> NormalModes:
     given = _values(numbers, "support")
-    pairs = {
+    pairs: dict[str, Any] = {
         name: _side_by_side(given.get(f"{axis}_{name}", 0.0) for axis in ("pitch", "yaw"))
         for name in ("inertia", "stiffness", "damping")
     }
-    return two_axis_pivot(given["distance"], **pairs, includes_rotor=section.includes_rotor)
+    held: dict[str, Any] = {name: given[name] for name in ("includes_rotor", "shaft") if name in given}
+    return two_axis_pivot(given["distance"], **pairs, **held)
 
 
 def _rigid(section: RigidSection, numbers: Mapping[str, Datum]) -> NormalModes:
@@ -80,7 +82,7 @@ def _matrices(section: MatricesSection, numbers: Mapping[str, Datum]) -> NormalM
     given = _values(numbers, "support")
     _must_be_real(given)
     read = read_matrix_market if section.file is None else read_npz
-    support = read(**given, hub=section.hub, includes_rotor=section.includes_rotor)
+    support = read(**given, hub=section.hub)
     return _with_assumed_airloads(support, section, numbers)
 
 
@@ -89,7 +91,7 @@ def _nastran(section: NastranSection, numbers: Mapping[str, Datum]) -> NormalMod
 
     given = _values(numbers, "support")
     _must_be_real(given)
-    support = nastran_modes(**given, hub=section.hub, includes_rotor=section.includes_rotor)
+    support = nastran_modes(**given, hub=section.hub)
     return _with_assumed_airloads(support, section, numbers)
 
 

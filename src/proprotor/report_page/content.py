@@ -11,6 +11,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.boundary_summary import boundary_record, mechanism_told, verdict
+from proprotor.datum import Datum, FilePath, as_toml
 from proprotor.options import CHOICES, default_choice
 from proprotor.provenance import doubtful_inputs, reservations
 from proprotor.report_page import pictures
@@ -23,7 +24,6 @@ from proprotor.units import factor_to_si
 
 if TYPE_CHECKING:
     from proprotor.case import Case
-    from proprotor.datum import Datum
 
 _SPEEDS = 9  # in the tables of modes and of trim
 _ANGLES = ("collective", "coning", "lag", "elastic_pitch")  # of the trim
@@ -334,8 +334,10 @@ def _si(number: Datum) -> str:
     if number.r_over_R is not None:
         low, high = min(number.si), max(number.si)
         return f"{low:.6g} to {high:.6g} {number.unit}".strip() + ", see below"
-    if isinstance(number.si, str):
+    if isinstance(number.si, FilePath):
         return "a file"
+    if isinstance(number.si, bool | str):
+        return as_toml(number.si)
     return f"{number.si:.6g} {number.unit}".strip()
 
 
