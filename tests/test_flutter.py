@@ -223,7 +223,9 @@ def test_a_boundary_costs_few_eigen_solves_and_does_not_depend_on_the_scan(case,
 def test_what_a_flutter_point_tells(case, point):
     assert point.mode == "chord" and point.kind == "flutter"
     assert point.unstable_at_start == ()
-    assert case.flutter_point("50:100:10kt", section_damping=False).unstable_at_start == ("progressive pitch",)
+    assert case.flutter_point("50:100:10kt", section_damping=False).unstable_at_start == (
+        "progressive pitch",
+    )
     first = next(boundary for boundary in point.boundaries if boundary.onset)
     assert first.position == point.speed and max(first.mechanism, key=first.mechanism.get) == "chord"
     assert point.margin(point.speed / 1.2) == pytest.approx(0.2)
