@@ -73,6 +73,8 @@ class LinearModel:
         Hub motion in the coordinates; None for a model whose first six coordinates are the hub's own.
     rotor : LinearModel, optional
         The rotor alone of a rotor on a support, from which the hub loads follow.
+    rotor_speed : array (...), optional
+        rad/s; None for matrices from elsewhere that do not tell it.
     """
 
     M: Array
@@ -84,6 +86,7 @@ class LinearModel:
     B: Array | None = None
     hub: Array | None = None
     rotor: LinearModel | None = None
+    rotor_speed: Array | None = None
 
     def __repr__(self) -> str:
         from proprotor.summary import of_model
@@ -236,7 +239,11 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    model = LinearModel(**parts, dofs=coordinates, trim=shaped, airspeed=np.broadcast_to(speed, shape))
+    per_point = {
+        name: np.broadcast_to(value, shape)
+        for name, value in (("airspeed", speed), ("rotor_speed", np.real(operation.rotor_speed)))
+    }
+    model = LinearModel(**parts, **per_point, dofs=coordinates, trim=shaped)
     return model if dofs == coordinates else model.submodel(dofs)
 
 

@@ -114,9 +114,9 @@ def _real(model: LinearModel) -> LinearModel:
 
 def some_points(model: LinearModel, points: Array) -> LinearModel:
     """M, C and K of a model at some of its points."""
-    return replace(
-        model, M=model.M[points], C=model.C[points], K=model.K[points], B=None, hub=None, rotor=None
-    )
+    parts = {name: getattr(model, name)[points] for name in "MCK"}
+    speed = None if model.rotor_speed is None else model.rotor_speed[points]
+    return replace(model, **parts, B=None, hub=None, rotor=None, rotor_speed=speed)
 
 
 def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:
@@ -159,26 +159,35 @@ def modes(model: LinearModel) -> xarray.Dataset:
     -------
     xarray.Dataset
         eigenvalue (rad/s), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
-        largest component 1), dominant (name of the coordinate with the largest participation); dimensions (..., mode)
-        and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN.
+        largest component 1), dominant (name of the coordinate with the largest participation), name (what moves, see
+        `proprotor.mode_names`) and share (how much of the mode that is, 0 to 1); dimensions (..., mode) and dof. A real
+        root is a mode of its own, with frequency 0. Points with fewer modes end in NaN.
 
     Raises
     ------
     InputError
         When the mass matrix has no inverse, as that of a rotor alone may not.
     """
+    from proprotor.mode_names import moving  # which needs the vectors of this module
+
     system = eigensystem(model)
     values = system.values
+    moves = moving(model, values, system.left, system.right)
     kept = np.where(values.imag >= 0, np.abs(values.imag), np.inf)
     order = np.argsort(kept, axis=-1, kind="stable")
     count = int(np.isfinite(kept).sum(axis=-1).max(initial=0))
     order = order[..., :count]
-    values = np.where(
-        np.isfinite(np.take_along_axis(kept, order, -1)), np.take_along_axis(values, order, -1), np.nan
-    )
+    there = np.isfinite(np.take_along_axis(kept, order, -1))
+    values = np.where(there, np.take_along_axis(values, order, -1), np.nan)
     shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
     shares = np.take_along_axis(participation(model, system), order[..., None, :], -1)
-    return mode_dataset(model, values, shapes, shares)
+    data = mode_dataset(model, values, shapes, shares)
+    by_mode = data.eigenvalue.dims
+    names = np.where(there, np.take_along_axis(moves.names, order, -1), "").astype(str)
+    data["name"] = by_mode, names, {"long_name": "what moves"}
+    share = np.where(there, np.take_along_axis(moves.share, order, -1), np.nan)
+    data["share"] = by_mode, share, {"units": "1", "long_name": "participation of what the name says"}
+    return data
 
 
 def mode_dataset(

@@ -119,6 +119,7 @@ def rigid_propeller(
         dofs=HUB,
         trim=_unloaded(speed.shape),
         airspeed=speed,
+        rotor_speed=omega,
     )
 
 

@@ -21,7 +21,7 @@ import numpy as np
 from proprotor.arrays import Array
 
 _BLOCK = 64  # steps whose matrices stay in the cache
-_COUPLED = 0.01  # likeness of different modes below which they pass each other as strangers
+_COUPLED = 1e-6  # likeness of different modes below which it is rounding, and they pass each other as strangers
 POOR = 0.5  # quality of a step below which it is divided
 
 
