@@ -14,6 +14,7 @@ import numpy as np
 from proprotor import flutter_scan
 from proprotor.arrays import Array
 from proprotor.errors import InputError
+from proprotor.mode_names import moving
 from proprotor.modes import (
     coordinate_motion,
     coordinate_shares,
@@ -79,6 +80,7 @@ VARIABLES: dict[str, dict[str, Variable]] = {
         "flutter_frequency": Variable(
             DESIGN, (), float, "rad/s", "|Im s| of the mode that loses it; 0: divergence"
         ),
+        "flutter_mode": Variable(DESIGN, (), str, "", "what moves in it at that airspeed"),
         "flutter_coordinate": Variable(DESIGN, (), str, "", "coordinate that takes part in it most"),
         "flutter_note": Variable(DESIGN, (), str, "", "why there is no flutter speed"),
     },
@@ -94,6 +96,8 @@ VARIABLES: dict[str, dict[str, Variable]] = {
         "mode_quality": Variable(
             POINT, ("state",), float, "1", "trust in the step from the airspeed before, 0 to 1"
         ),
+        "mode_name": Variable(POINT, ("state",), str, "", "what moves in it at the point"),
+        "mode_share": Variable(POINT, ("state",), float, "1", "participation of what its name says, 0 to 1"),
         "mode_coordinate": Variable(DESIGN, ("state",), str, "", "coordinate that takes part most at first"),
     },
 }
@@ -335,13 +339,15 @@ class Analysis:
 
     @staticmethod
     def _mode_at_boundary(model: LinearModel) -> dict[str, Array]:
-        """Frequency and main coordinate of the mode with the largest real part."""
+        """Frequency, name and main coordinate of the mode with the largest real part."""
         system = eigensystem(model)
         place = np.nan_to_num(_growth(system.values), nan=-np.inf).argmax(axis=-1)[..., None]
         shares = np.take_along_axis(participation(model, system), place[..., None], -1)[..., 0]
         frequency = np.abs(np.take_along_axis(system.values, place, -1)[..., 0].imag)
         main = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-1)]
-        return {"flutter_frequency": frequency, "flutter_coordinate": main}
+        names = moving(model, system.values, system.left, system.right).names
+        name = np.take_along_axis(names, place, -1)[..., 0]
+        return {"flutter_frequency": frequency, "flutter_mode": name, "flutter_coordinate": main}
 
 
 def _good_part(model: LinearModel) -> tuple[Array | None, LinearModel]:
@@ -349,7 +355,8 @@ def _good_part(model: LinearModel) -> tuple[Array | None, LinearModel]:
     good = np.asarray(model.trim.converged)
     if good.all():
         return None, model
-    parts = {name: getattr(model, name)[good] for name in ("M", "C", "K", "airspeed")}
+    names = ("M", "C", "K", "airspeed", "rotor_speed")
+    parts = {name: getattr(model, name)[good] for name in names if getattr(model, name) is not None}
     return good, replace(model, **parts)
 
 
@@ -406,17 +413,20 @@ def _eigenvalues_and_vectors(model: LinearModel, states: int) -> dict[str, Array
 def _followed(model: LinearModel, with_vectors: bool) -> dict[str, Array]:
     """Eigenvalues by frequency and followed along the airspeeds, and the motion of the coordinates if asked for."""
     spectrum = decomposition(model)
-    values, right = spectrum
+    values, right, left = spectrum.all_modes
     held, n = held_coordinates(model), len(model.dofs)
     order = _by_frequency(values)
     places, quality, first = follow_designs(spectrum, order)
     designs = np.arange(len(values))
-    shares = coordinate_shares(held, n, *reversed(spectrum.at((designs, first)).all_modes[1:]))
+    moves = moving(model, values, left, right)
+    shares = coordinate_shares(held, n, left[designs, first], right[designs, first])
     main = np.take_along_axis(np.nan_to_num(shares).argmax(axis=-2), places[designs, first], -1)
     found = {
         "eigenvalue": np.take_along_axis(values, order, -1),
         "mode_eigenvalue": np.take_along_axis(values, places, -1),
         "mode_quality": quality,
+        "mode_name": np.take_along_axis(moves.names, places, -1),
+        "mode_share": np.take_along_axis(moves.share, places, -1),
         "mode_coordinate": np.where((first < 0)[:, None], "", np.array(model.dofs, dtype=object)[main]),
     }
     if with_vectors:

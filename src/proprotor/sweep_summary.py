@@ -13,6 +13,7 @@ from proprotor.arrays import Array
 if TYPE_CHECKING:
     import xarray
 
+_BRIDGED, _NEARLY = 2.0, 0.02  # of the way that both roots go, and of a root: a name that passes no farther goes on
 _ROUNDING = 1e-9  # of the largest eigenvalue: a real part within this of zero says nothing
 
 
@@ -91,6 +92,27 @@ def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[int, float, float,
 def _zero(airspeed: Array, growth: Array, i: int) -> float:
     """Where the line through points i and i + 1 is zero."""
     return float(airspeed[i] - growth[i] * (airspeed[i + 1] - airspeed[i]) / (growth[i + 1] - growth[i]))
+
+
+def leaps(sweep: xarray.Dataset) -> Array:
+    """Where a name passes to a root that lies elsewhere (points - 1, mode): a line drawn across would be no root.
+
+    Where two roots veer and exchange their motions they are near each other: from one point to the next, the name goes
+    no farther than twice as far as both roots do, or by 2 % of the root. Then the line of the name goes on.
+    """
+    values, branch = sweep.eigenvalue.values, sweep.branch.values
+    both = np.isfinite(values[:-1]) & np.isfinite(values[1:])
+    found = np.zeros(both.shape, dtype=bool)
+    for point, mode in np.argwhere(both & (branch[:-1] != branch[1:])):
+        here, there = values[point], values[point + 1]
+        ways = [
+            there[branch[point + 1] == branch[point, mode]] - here[mode],
+            there[mode] - here[branch[point] == branch[point + 1, mode]],
+        ]
+        moved = sum(float(np.abs(way).max(initial=0)) for way in ways)
+        reach = max(_BRIDGED * moved, _NEARLY * float(np.abs(here[mode])))
+        found[point, mode] = np.abs(there[mode] - here[mode]) > reach
+    return found
 
 
 def support_coordinates(sweep: xarray.Dataset) -> list[str]:
