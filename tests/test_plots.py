@@ -71,7 +71,7 @@ def test_lines_are_the_numbers_of_the_sweep(case, sweep):
 
 
 def test_a_line_is_broken_where_its_name_leaps_to_another_root_and_goes_on_where_roots_veer(sweep):
-    """Near 130 kt chord and regressive lag exchange their motions at 7 % of critical; near 380 kt a name leaps to 80 %."""
+    """Near 130 kt chord and regressive lag exchange motions at 7 % of critical; near 380 kt a name leaps to 80 %."""
     leaping = leaps(sweep)
     passes = sweep.branch.values[1:] != sweep.branch.values[:-1]
     assert (leaping & ~passes).sum() == 0 and (passes & ~leaping).any() and leaping.any()

@@ -98,7 +98,9 @@ def test_a_step_that_hides_a_veering_has_a_poor_quality():
     data = sweep(along(lambda x: oscillators(x, 1.0))(p), Line(p, name="p", units="1"))
     quality = data.tracking_quality.min("mode").values
     assert quality[3:].max() < POOR and quality[:3].min() > POOR
-    assert [place for place, text in enumerate(data.warning.values) if "which root is which: q0, q1" in text] == [3]
+    assert [
+        place for place, text in enumerate(data.warning.values) if "which root is which: q0, q1" in text
+    ] == [3]
     looked = sweep(
         along(lambda x: oscillators(x, 1.0))(p), Line(p, along(lambda x: oscillators(x, 1.0)), "p", "1")
     )

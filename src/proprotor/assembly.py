@@ -14,6 +14,7 @@ from proprotor.errors import InputError
 from proprotor.massless import with_reasons
 from proprotor.model import HUB, LinearModel
 from proprotor.support import NormalModes
+from proprotor.trim import Trim
 
 
 def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike | None = None) -> LinearModel:
@@ -69,8 +70,25 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
         dofs=(*support.names, *own),
         hub=np.concatenate([support.hub, still], axis=-1),
         rotor=rotor_alone,
+        shapes=_at_points(support.shapes, shape, 2),
+        trim=_with_warning(rotor_alone.trim, _at_points(support.warning, shape, 0)),
     )
     return with_reasons(coupled)
+
+
+def _at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
+    """An array of many designs, with some axes of its own, at each point of a batch."""
+    if values is None:
+        return None
+    return np.broadcast_to(values, (*shape, *values.shape[values.ndim - own :]))
+
+
+def _with_warning(trim: Trim, warning: Array | None) -> Trim:
+    if warning is None:
+        return trim
+    pairs = zip(trim.warning.ravel(), warning.ravel(), strict=True)
+    joined = np.array(["; ".join(filter(None, texts)) for texts in pairs], dtype=object)
+    return replace(trim, warning=joined.reshape(trim.warning.shape))
 
 
 def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:

@@ -230,7 +230,8 @@ def _moving_at_crossings(crossing: Brackets, rotor_speed: float | None) -> Movin
     """What moves in all modes of every crossing."""
     positions = np.array([position for position, *_ in crossing.found.values()])
     spectra = [spectrum for _, spectrum, *_ in crossing.found.values()]
-    values, right, left = Spectrum(*(np.stack(parts) for parts in zip(*spectra, strict=True))).all_modes
+    stacked = (np.stack([getattr(spectrum, part) for spectrum in spectra]) for part in ("values", "right"))
+    values, right, left = Spectrum(*stacked).all_modes
     return moving(crossing.scan.line.models(positions), values, left, right, rotor_speed)
 
 

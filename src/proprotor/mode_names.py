@@ -112,9 +112,9 @@ def moving(
     shares = np.full((len(flat), len(known), states), np.nan)
     good = np.flatnonzero(np.isfinite(flat).all(axis=-1))
     if len(good):
-        vectors = (part.reshape(-1, states, states)[good] for part in (left, right))
+        rows, vectors = (part.reshape(-1, states, states)[good] for part in (left, right))
         own = None if speed is None else speed[good]
-        shares[good] = name_shares(model.dofs, held, flat[good], *vectors, own)
+        shares[good] = name_shares(model.dofs, held, flat[good], rows, vectors, own)
         place[good] = assign_names(model.dofs, held, shares[good], flat[good])
     return Moving(known, place.reshape(values.shape), shares.reshape(*values.shape[:-1], *shares.shape[1:]))
 
@@ -275,7 +275,7 @@ def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: 
     slots = _slots(dofs, held)
     gain = np.swapaxes(shares, -1, -2) + _TIE * _by_rank(values, shares.shape[-2])
     upper = values.imag > 0
-    best = gain.argmax(axis=-1)
+    best: Array = gain.argmax(axis=-1)
     best[:, 1:] = np.where(upper[:, :-1], best[:, :-1], best[:, 1:])
     counts = (best[..., None] == np.arange(shares.shape[-2])).sum(axis=-2)
     for point in np.flatnonzero((counts != np.bincount(slots)).any(axis=-1)):

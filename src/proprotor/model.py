@@ -75,6 +75,9 @@ class LinearModel:
         The rotor alone of a rotor on a support, from which the hub loads follow.
     rotor_speed : array (...), optional
         rad/s; None for matrices from elsewhere that do not tell it.
+    shapes : array (..., m, k), optional
+        Of the first k coordinates, those of a support that other designs have in other shapes: see
+        `proprotor.support.NormalModes`.
     """
 
     M: Array
@@ -87,6 +90,7 @@ class LinearModel:
     hub: Array | None = None
     rotor: LinearModel | None = None
     rotor_speed: Array | None = None
+    shapes: Array | None = None
 
     def __repr__(self) -> str:
         from proprotor.summary import of_model
@@ -148,7 +152,9 @@ class LinearModel:
         parts = {name: getattr(self, name)[..., places, :][..., places] for name in "MCK"}
         inputs = None if self.B is None else self.B[..., places, :]
         hub = None if self.hub is None else self.hub[:, places]
-        return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, **parts)
+        whole = self.shapes is not None and places[: self.shapes.shape[-1]] == [*range(self.shapes.shape[-1])]
+        shapes = self.shapes if whole else None
+        return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts)
 
 
 def rotor_quantities(
@@ -239,7 +245,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    per_point = {
+    per_point: dict[str, Any] = {
         name: np.broadcast_to(value, shape)
         for name, value in (("airspeed", speed), ("rotor_speed", np.real(operation.rotor_speed)))
     }

@@ -92,18 +92,18 @@ def decomposition(model: LinearModel) -> Spectrum:
     """Eigenvalues and right vectors in the state space; of a complex model, those of its real part."""
     good, model = have_modes(model), _real(model)
     if good.all():
-        return _solved(first_order(model))
+        return Spectrum(*_solved(first_order(model)), model.shapes)
     states = len(held_coordinates(model)) + len(model.dofs)
     values = np.full((*good.shape, states), complex(np.nan, np.nan))
     right = np.full((*good.shape, states, states), np.nan, dtype=complex)
     if good.any():
         values[good], right[good] = _solved(first_order(some_points(model, good)))
-    return Spectrum(values, right)
+    return Spectrum(values, right, model.shapes)
 
 
-def _solved(matrix: Array) -> Spectrum:
+def _solved(matrix: Array) -> tuple[Array, Array]:
     values, right = np.linalg.eig(matrix)
-    return Spectrum(values.astype(complex, copy=False), right.astype(complex, copy=False))
+    return values.astype(complex, copy=False), right.astype(complex, copy=False)
 
 
 def _real(model: LinearModel) -> LinearModel:
@@ -115,8 +115,10 @@ def _real(model: LinearModel) -> LinearModel:
 def some_points(model: LinearModel, points: Array) -> LinearModel:
     """M, C and K of a model at some of its points."""
     parts = {name: getattr(model, name)[points] for name in "MCK"}
-    speed = None if model.rotor_speed is None else model.rotor_speed[points]
-    return replace(model, **parts, B=None, hub=None, rotor=None, rotor_speed=speed)
+    for name in ("rotor_speed", "shapes"):
+        whole = getattr(model, name)
+        parts[name] = None if whole is None else whole[points]
+    return replace(model, **parts, B=None, hub=None, rotor=None)
 
 
 def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:

@@ -100,7 +100,7 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         matrices[kind] = whole
     (first, hub, _), *_ = placed.values()
     motion = np.pad(hub, ((0, 0), (0, len(names) - n)))
-    return replace(first.model, **matrices, B=None, dofs=tuple(names), hub=motion, rotor=None)
+    return replace(first.model, **matrices, B=None, dofs=tuple(names), hub=motion, rotor=None, shapes=None)
 
 
 def _hub_of(name: str, rotor: MountedRotor, n: int) -> Array:

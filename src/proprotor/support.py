@@ -35,6 +35,11 @@ class NormalModes:
     includes_rotor : bool
         True when `mass` was measured or computed with the rotor on, so that it already holds the
         rotor's rigid-body share Φᵀ M_hub Φ, which must then not be counted a second time.
+    shapes : array, shape (..., m, n), optional
+        The coordinates as motions of the structure that they stand for, where designs differ in them: what tells the
+        coordinates of one design in those of the next.
+    warning : array (...) of str, optional
+        What makes a design doubtful.
 
     Raises
     ------
@@ -48,6 +53,8 @@ class NormalModes:
     stiffness: Array
     hub: Array
     includes_rotor: bool
+    shapes: Array | None = None
+    warning: Array | None = None
 
     symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
 

@@ -29,7 +29,12 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
-ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where branches get their labels, the first that has a trim
+ANCHORS = (
+    0.7,
+    0.5,
+    0.35,
+    0.2,
+)  # of the tip speed: where branches get their labels, the first that has a trim
 _STRIDE = 0.02  # of the tip speed, between the first points of the way there
 
 

@@ -13,7 +13,10 @@ from proprotor.arrays import Array
 if TYPE_CHECKING:
     import xarray
 
-_BRIDGED, _NEARLY = 2.0, 0.02  # of the way that both roots go, and of a root: a name that passes no farther goes on
+_BRIDGED, _NEARLY = (
+    2.0,
+    0.02,
+)  # of the way that both roots go, and of a root: a name that passes no farther goes on
 _ROUNDING = 1e-9  # of the largest eigenvalue: a real part within this of zero says nothing
 
 
@@ -62,7 +65,7 @@ def damping_percent(sweep: xarray.Dataset) -> Array:
 def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
     """Ranges of airspeed in which a root is unstable, by mode in the order of the sweep, then by airspeed.
 
-    Roots are followed, whatever their names: where a name passes from a stable root to an unstable one, nothing crosses.
+    Roots are followed, whatever their names: where a name passes from a stable root to an unstable one nothing crosses.
     Boundaries are interpolated, so they are as good as the sweep is fine; failed points are passed over.
     """
     airspeed, names = sweep.airspeed.values, sweep.mode.values.tolist()
@@ -70,9 +73,9 @@ def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
     ranges = []
     for label in dict.fromkeys(branch[growth > 0].tolist()):
         points, places = np.nonzero((branch == label) & np.isfinite(growth))
-        for first, *found in _ranges(airspeed[points], growth[points, places]):
-            ranges.append((int(places[first]), UnstableRange(names[places[first]], *found, label)))
-    return [found for _, found in sorted(ranges, key=lambda pair: (pair[0], pair[1].start))]
+        for first, start, stop, before, beyond in _ranges(airspeed[points], growth[points, places]):
+            ranges.append(UnstableRange(names[places[first]], start, stop, before, beyond, label))
+    return sorted(ranges, key=lambda found: (names.index(found.mode), found.start))
 
 
 def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[int, float, float, bool, bool]]:

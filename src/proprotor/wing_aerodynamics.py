@@ -114,6 +114,8 @@ class WingInAirstream(NormalModes):
             stiffness=self.stiffness + density * speed**2 * np.asarray(self.airload_stiffness),
             hub=self.hub,
             includes_rotor=self.includes_rotor,
+            shapes=self.shapes,
+            warning=self.warning,
         )
 
 

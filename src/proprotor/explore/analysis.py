@@ -92,10 +92,10 @@ def live_modes(
     model = varied.linearize(positions, **options)
     path = follow(model, Line(positions, _between(model)))
     followed = branches(path, _named(model, path, within), len(positions))
-    values, right, left = path.spectrum.at(shown).all_modes
-    columns, names = mode_columns(moving(some_points(model, shown), values, left, right), values)
+    roots, right, left = path.spectrum.at(shown).all_modes
+    columns, names = mode_columns(moving(some_points(model, shown), roots, left, right), roots)
     places = np.maximum(columns, 0)
-    found = np.where(columns >= 0, np.take_along_axis(values, places, 1), np.nan)
+    found = np.where(columns >= 0, np.take_along_axis(roots, places, 1), np.nan)
     labels = np.where(columns >= 0, np.take_along_axis(followed.label[shown], places, 1), "")
     reason, warning = model.trim.reason[shown], model.trim.warning[shown]
     unstable = _unstable(airspeeds, names, found, labels)
@@ -114,7 +114,8 @@ def _between(model: LinearModel) -> Any:
 
     def linearize(positions: Array) -> LinearModel:
         M, C, K = np.moveaxis(spline(positions), 1, 0)
-        return replace(model, airspeed=positions, M=M, C=C, K=K, B=None, rotor=None, rotor_speed=None)
+        parts: dict[str, Any] = dict.fromkeys(("B", "rotor", "rotor_speed", "shapes"))
+        return replace(model, airspeed=positions, M=M, C=C, K=K, **parts)
 
     return linearize
 

@@ -138,7 +138,10 @@ def plot_sweep(
 
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 9))
     figure.subplots_adjust(left=0.09, right=RIGHT, top=0.94, bottom=0.06, hspace=0.14)
-    add_footer(figure, f"Broad lines: modes of the support, and modes that become unstable. {_gaps_told(sweep)}{footer}".strip())
+    add_footer(
+        figure,
+        f"Broad lines: modes of the support, and modes that become unstable. {_gaps_told(sweep)}{footer}".strip(),
+    )
     plot_frequency(sweep, above, rotor_speed=rotor_speed, unit=unit)
     plot_damping(sweep, below, unit=unit, limits=damping_limits)
     above.set_xlabel("")
