@@ -14,6 +14,7 @@ from proprotor.massless import with_reasons
 from proprotor.model import HUB, LinearModel
 from proprotor.rotor_share import refuse, without_rotors
 from proprotor.support import NormalModes
+from proprotor.trim import Trim
 
 
 def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
@@ -69,6 +70,8 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
         hub=np.concatenate([support.hub, still], axis=-1),
         rotor=rotor_alone,
         mass_at_rest=None,
+        shapes=_at_points(support.shapes, shape, 2),
+        trim=_with_warning(rotor_alone.trim, _at_points(support.warning, shape, 0)),
     )
     return refused_where(refusal, with_reasons(coupled), support)
 
@@ -95,6 +98,21 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
         if getattr(model, name) is not None
     }
     return replace(model, **matrices, trim=trim)
+
+
+def _at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
+    """An array of many designs, with some axes of its own, at each point of a batch."""
+    if values is None:
+        return None
+    return np.broadcast_to(values, (*shape, *values.shape[values.ndim - own :]))
+
+
+def _with_warning(trim: Trim, warning: Array | None) -> Trim:
+    if warning is None:
+        return trim
+    pairs = zip(trim.warning.ravel(), warning.ravel(), strict=True)
+    joined = np.array(["; ".join(filter(None, texts)) for texts in pairs], dtype=object)
+    return replace(trim, warning=joined.reshape(trim.warning.shape))
 
 
 def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
@@ -128,6 +146,8 @@ def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
         name: None if matrix is None else np.broadcast_to(matrix, (*shape, *matrix.shape[-2:]))
         for name, matrix in matrices.items()
     }
-    return replace(
-        model, **matrices, trim=model.trim.broadcast(shape), airspeed=np.broadcast_to(model.airspeed, shape)
-    )
+    speeds: dict[str, Any] = {
+        name: None if speed is None else np.broadcast_to(speed, shape)
+        for name, speed in (("airspeed", model.airspeed), ("rotor_speed", model.rotor_speed))
+    }
+    return replace(model, **matrices, **speeds, trim=model.trim.broadcast(shape))

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.mode_names import moving
+from proprotor.modes import decomposition
 from proprotor.options import parse_options
 from proprotor.stability_map import AIRSPEED, largest_growth
 
@@ -26,7 +28,7 @@ class BoundaryLine(NamedTuple):
     Parameters
     ----------
     mode : str
-        Its name.
+        What moves in it at the middle of the line.
     x, y : array (vertices,)
         In SI, as the axes of the map.
     frequency : array (vertices,)
@@ -117,11 +119,9 @@ def _same_mode(frequency: Array, rotor_speed: float) -> Iterator[slice]:
 def _mode_at(
     case: Case, names: list[str], point: Array, frequency: float, airspeed: Any, options: dict[str, Any]
 ) -> str:
-    from proprotor.speed import in_metres_per_second
-
     varied, speed = _at(case, names, point, airspeed)
-    modes = varied.sweep(in_metres_per_second(speed).reshape(-1), **options).isel(airspeed=0)
-    values = modes.eigenvalue.values
+    model = varied.linearize(speed, **options)
+    values, right, left = decomposition(model).all_modes
     # Neutral at this point: the least growth in size of those with this frequency.
-    distance = np.hypot(values.real, np.abs(values.imag) - frequency)
-    return str(modes.mode.values[np.nanargmin(distance)])
+    nearest = np.argmin(np.hypot(values.real, np.abs(values.imag) - frequency))
+    return str(moving(model, values, left, right).names[nearest])

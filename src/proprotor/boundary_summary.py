@@ -22,6 +22,7 @@ COLUMNS = (
     "onset",
     "mechanism",
     "growth per airspeed (1/m)",
+    "branch",
 )
 
 
@@ -37,6 +38,7 @@ def boundary_record(boundary: Boundary, case: Case) -> dict[str, Any]:
         boundary.onset,
         dict(boundary.mechanism),
         boundary.rate,
+        boundary.branch,
     )
     return dict(zip(COLUMNS, values, strict=True))
 

@@ -19,12 +19,12 @@ from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
 from proprotor.least_damping import NOWHERE, LeastDamping, least_damping
-from proprotor.mode_names import name_list, name_shares
+from proprotor.mode_names import Moving, moving, name_list
 from proprotor.model import LinearModel
-from proprotor.modes import held_coordinates
-from proprotor.path import Line, follow
+from proprotor.path import Line, Path, follow
 from proprotor.speed import in_metres_per_second
-from proprotor.sweep import approach_to, line_of_case, rotor_speed_of, state_names, tip_speed
+from proprotor.sweep import approach_to, line_of_case, names_at, state_names, tip_speed
+from proprotor.tracking import Spectrum
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -43,7 +43,7 @@ class Boundary:
     position : float
         Airspeed in m/s, or another input in SI.
     mode : str
-        Name of the mode that crosses, which it has wherever it is followed.
+        What moves most in the mode that crosses, by `proprotor.mode_names`: its name at the boundary itself.
     kind : "flutter" or "divergence"
         A pair, or a real root.
     onset : bool
@@ -61,6 +61,8 @@ class Boundary:
         (`proprotor.eigenvalue_derivatives.defect`).
     eigen_solves : int
         Spent on this crossing beyond those that bracketed it.
+    branch : str
+        The exact root that crosses, by what moves in it where branches are named (`proprotor.branches`).
     """
 
     position: float
@@ -73,6 +75,7 @@ class Boundary:
     mechanism: Mapping[str, float]
     defect: float
     eigen_solves: int
+    branch: str = ""
 
     def __repr__(self) -> str:
         return summary.of_boundary(self)
@@ -97,7 +100,7 @@ class FlutterPoint:
     boundaries : tuple of Boundary
         By airspeed.
     unstable_at_start : tuple of str
-        Modes that are beyond the level at the lowest airspeed already.
+        What moves in the modes that are beyond the level at the lowest airspeed already.
     searched : tuple of float
         Lowest and highest airspeed that could be analysed, m/s.
     eigen_solves : int
@@ -184,7 +187,7 @@ def find_crossings(
     level : float
         Damping ratio that counts as the boundary.
     rotor_speed : float, optional
-        rad/s, for the names of modes.
+        rad/s, for the names of modes; that of the models by default.
     approach : Line, optional
         From where modes get their names: see `proprotor.sweep.sweep`.
 
@@ -211,13 +214,15 @@ def find_crossings(
     boundaries = []
     if crossing is not None:
         crossing.close()
-        for place in crossing.found:
-            boundaries.append(_boundary(crossing, place, names, model, rotor_speed))
+    if crossing is not None and crossing.found:
+        moves = _moving_at_crossings(crossing, rotor_speed)
+        for row, place in enumerate(crossing.found):
+            boundaries.append(_boundary(crossing, place, names, moves, row))
     boundaries = _distinct(sorted(boundaries, key=lambda found: found.position))
     scan_solves = len(path.points) + named.eigen_solves
     return Crossings(
         tuple(boundaries),
-        _beyond(path.values[0], names, level),
+        _beyond(model, path, level, rotor_speed),
         (float(scan.positions[0]), float(scan.positions[-1])),
         scan_solves,
         scan_solves + (0 if crossing is None else int(crossing.solves.sum())),
@@ -225,35 +230,42 @@ def find_crossings(
     )
 
 
-def _beyond(values: Array, names: list[str], level: float) -> tuple[str, ...]:
-    """Modes beyond the level."""
+def _beyond(model: LinearModel, path: Path, level: float, rotor_speed: float | None) -> tuple[str, ...]:
+    """What moves in the modes that are beyond the level at the first point."""
+    first = int(path.points[0])
+    values = path.spectrum.values[first]
     above = growth(values, level) > NEUTRAL * np.nanmax(np.abs(values))
-    return tuple(dict.fromkeys(names[state] for state in np.flatnonzero(above & (values.imag >= 0))))
+    names = np.array(name_list(model.dofs))[names_at(model, path.spectrum, first, rotor_speed)]
+    return tuple(dict.fromkeys(names[above & (values.imag >= 0)].tolist()))
 
 
-def _boundary(
-    crossing: Brackets, place: int, names: list[str], model: LinearModel, rotor_speed: float | None
-) -> Boundary:
+def _moving_at_crossings(crossing: Brackets, rotor_speed: float | None) -> Moving:
+    """What moves in all modes of every crossing."""
+    positions = np.array([position for position, *_ in crossing.found.values()])
+    spectra = [spectrum for _, spectrum, *_ in crossing.found.values()]
+    stacked = (np.stack([getattr(spectrum, part) for spectrum in spectra]) for part in ("values", "right"))
+    values, right, left = Spectrum(*stacked).all_modes
+    return moving(crossing.scan.line.models(positions), values, left, right, rotor_speed)
+
+
+def _boundary(crossing: Brackets, place: int, names: list[str], moves: Moving, row: int) -> Boundary:
     position, spectrum, state, change, slope = crossing.found[place]
     value = complex(spectrum.values[state])
     real = abs(value.imag) <= _REAL * np.nanmax(np.abs(spectrum.values))
-    mode = spectrum.modes(np.array([state]))
-    shares = name_shares(
-        model.dofs, held_coordinates(model), mode.values, mode.left, mode.right, rotor_speed
-    )[:, 0]
-    told = name_list(model.dofs)
+    shares = moves.shares[row, :, state]
     largest = [k for k in np.argsort(-shares) if shares[k] >= _TOLD]
     return Boundary(
         position=float(position),
-        mode=names[crossing.states[place]],
+        mode=str(moves.names[row, state]),
         kind="divergence" if real else "flutter",
         onset=bool(crossing.onset[place]) == bool(crossing.x[1, place] >= crossing.x[0, place]),
         eigenvalue=value if value.imag >= 0 else value.conjugate(),
         rate=float(slope),
         eigenvalue_rate=complex(change if value.imag >= 0 else np.conj(change)),
-        mechanism={told[k]: float(shares[k]) for k in largest},
-        defect=float(defect(mode)[0]),
+        mechanism={moves.known[k]: float(shares[k]) for k in largest},
+        defect=float(defect(spectrum.modes(np.array([state])))[0]),
         eigen_solves=int(crossing.solves[place]),
+        branch=names[crossing.states[place]],
     )
 
 
@@ -312,7 +324,7 @@ def boundaries(
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
     near = approach_to(case, line, line.models(line.positions), options)
-    return find_crossings(line, level=level, rotor_speed=rotor_speed_of(case), approach=near)
+    return find_crossings(line, level=level, approach=near)
 
 
 def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:

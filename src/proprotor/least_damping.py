@@ -46,4 +46,5 @@ def least_damping(path: Path, names: Sequence[str]) -> LeastDamping:
         return NOWHERE
     ratio = np.where(moves, -values.real, np.inf) / np.where(moves, size, 1)
     point, state = np.unravel_index(np.argmin(ratio), ratio.shape)
-    return LeastDamping(float(ratio[point, state]), names[state], float(path.positions[path.points[point]]))
+    position = float(path.positions[path.points[point]])
+    return LeastDamping(float(ratio[point, state]), names[int(state)], position)

@@ -132,11 +132,11 @@ def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum
     values = np.full((*model.M.shape[:-2], states), complex(np.nan, np.nan))
     right = np.full((*values.shape, states), np.nan, dtype=complex)
     for points, part in _alike(model):
-        found = with_azimuth(_solved(first_order(part)), model.dofs, states)
+        found = with_azimuth(Spectrum(*_solved(first_order(part)), part.shapes), model.dofs, states)
         if points is ...:
             return found
-        values[points], right[points] = found
-    return Spectrum(values, right)
+        values[points], right[points] = found.values, found.right
+    return Spectrum(values, right, model.shapes)
 
 
 def eigenvalues(model: LinearModel) -> Array:
@@ -166,7 +166,7 @@ def with_azimuth(spectrum: Spectrum, dofs: tuple[str, ...], states: int) -> Spec
     The azimuth moves by its rate over the eigenvalue. The state more has no eigenvalue, as the azimuth alone moves
     nothing else: with a vanishing shaft stiffness it is what the root at zero comes to.
     """
-    values, right = spectrum
+    values, right, shapes = spectrum
     if values.shape[-1] == states:
         return spectrum
     place = dofs.index(ROTOR_SPEED)
@@ -176,12 +176,12 @@ def with_azimuth(spectrum: Spectrum, dofs: tuple[str, ...], states: int) -> Spec
     whole[..., place, :-1] = np.where(zero, 0, rate / np.where(zero, 1, values))
     whole[..., place, -1] = 1
     none = np.full((*values.shape[:-1], 1), complex(np.nan, np.nan))
-    return Spectrum(np.concatenate([values, none], axis=-1), whole)
+    return Spectrum(np.concatenate([values, none], axis=-1), whole, shapes)
 
 
-def _solved(matrix: Array) -> Spectrum:
+def _solved(matrix: Array) -> tuple[Array, Array]:
     values, right = np.linalg.eig(matrix)
-    return Spectrum(values.astype(complex, copy=False), right.astype(complex, copy=False))
+    return values.astype(complex, copy=False), right.astype(complex, copy=False)
 
 
 def _real(model: LinearModel) -> LinearModel:
@@ -192,9 +192,11 @@ def _real(model: LinearModel) -> LinearModel:
 
 def some_points(model: LinearModel, points: Array) -> LinearModel:
     """M, C and K of a model at some of its points."""
-    return replace(
-        model, M=model.M[points], C=model.C[points], K=model.K[points], B=None, hub=None, rotor=None
-    )
+    parts = {name: getattr(model, name)[points] for name in "MCK"}
+    for name in ("rotor_speed", "shapes"):
+        whole = getattr(model, name)
+        parts[name] = None if whole is None else whole[points]
+    return replace(model, **parts, B=None, hub=None, rotor=None)
 
 
 def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:
@@ -237,28 +239,37 @@ def modes(model: LinearModel) -> xarray.Dataset:
     -------
     xarray.Dataset
         eigenvalue (rad/s), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
-        largest component 1), dominant (name of the coordinate with the largest participation); dimensions (..., mode)
-        and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN; where a batch
-        has points with fewer eigenvalues than others, missing tells why.
+        largest component 1), dominant (name of the coordinate with the largest participation), name (what moves, see
+        `proprotor.mode_names`) and share (how much of the mode that is, 0 to 1); dimensions (..., mode) and dof. A real
+        root is a mode of its own, with frequency 0. Points with fewer modes end in NaN; where a batch has points with
+        fewer eigenvalues than others, missing tells why.
 
     Raises
     ------
     InputError
         When the mass matrix has no inverse, as that of a rotor alone may not.
     """
+    from proprotor.mode_names import moving  # which needs the vectors of this module
+
     system = eigensystem(model)
     model = with_reasons(model) if model.hub is None else model
     values = system.values
+    moves = moving(model, values, system.left, system.right)
     kept = np.where(values.imag >= 0, np.abs(values.imag), np.inf)
     order = np.argsort(kept, axis=-1, kind="stable")
     count = int(np.isfinite(kept).sum(axis=-1).max(initial=0))
     order = order[..., :count]
-    values = np.where(
-        np.isfinite(np.take_along_axis(kept, order, -1)), np.take_along_axis(values, order, -1), np.nan
-    )
+    there = np.isfinite(np.take_along_axis(kept, order, -1))
+    values = np.where(there, np.take_along_axis(values, order, -1), np.nan)
     shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
     shares = np.take_along_axis(participation(model, system), order[..., None, :], -1)
-    return mode_dataset(model, values, shapes, shares)
+    data = mode_dataset(model, values, shapes, shares)
+    by_mode = data.eigenvalue.dims
+    names = np.where(there, np.take_along_axis(moves.names, order, -1), "").astype(str)
+    data["name"] = by_mode, names, {"long_name": "what moves"}
+    share = np.where(there, np.take_along_axis(moves.share, order, -1), np.nan)
+    data["share"] = by_mode, share, {"units": "1", "long_name": "participation of what the name says"}
+    return data
 
 
 def mode_dataset(

@@ -16,7 +16,7 @@ from proprotor.tracking import POOR, Spectrum, Steps, chain, keep_upper, link
 
 Linearize = Callable[[Array], LinearModel]  # positions (k,) along a line to the models there
 
-_HALVINGS = 7  # of a step whose modes cannot be told apart: of 5 kt, to 0.04 kt
+_HALVINGS = 24  # of a step whose modes cannot be told apart: of 20 kt, to 1e-6 kt
 
 
 @dataclass(frozen=True, eq=False)

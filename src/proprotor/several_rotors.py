@@ -104,7 +104,14 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     (first, hub, _), *_ = placed.values()
     motion = np.pad(hub, ((0, 0), (0, len(names) - n)))
     coupled = replace(
-        first.model, **matrices, B=None, dofs=tuple(names), hub=motion, rotor=None, mass_at_rest=None
+        first.model,
+        **matrices,
+        B=None,
+        dofs=tuple(names),
+        hub=motion,
+        rotor=None,
+        mass_at_rest=None,
+        shapes=None,
     )
     return refused_where(refusal, coupled, support)
 

@@ -14,6 +14,7 @@ import numpy as np
 from proprotor import flutter_scan
 from proprotor.arrays import Array
 from proprotor.errors import InputError
+from proprotor.mode_names import moving
 from proprotor.modes import (
     coordinate_motion,
     coordinate_shares,
@@ -80,6 +81,7 @@ VARIABLES: dict[str, dict[str, Variable]] = {
         "flutter_frequency": Variable(
             DESIGN, (), float, "rad/s", "|Im s| of the mode that loses it; 0: divergence"
         ),
+        "flutter_mode": Variable(DESIGN, (), str, "", "what moves in it at that airspeed"),
         "flutter_coordinate": Variable(DESIGN, (), str, "", "coordinate that takes part in it most"),
         "flutter_note": Variable(DESIGN, (), str, "", "why there is no flutter speed"),
     },
@@ -95,6 +97,8 @@ VARIABLES: dict[str, dict[str, Variable]] = {
         "mode_quality": Variable(
             POINT, ("state",), float, "1", "trust in the step from the airspeed before, 0 to 1"
         ),
+        "mode_name": Variable(POINT, ("state",), str, "", "what moves in it at the point"),
+        "mode_share": Variable(POINT, ("state",), float, "1", "participation of what its name says, 0 to 1"),
         "mode_coordinate": Variable(DESIGN, ("state",), str, "", "coordinate that takes part most at first"),
     },
 }
@@ -347,13 +351,15 @@ class Analysis:
 
     @staticmethod
     def _mode_at_boundary(model: LinearModel) -> dict[str, Array]:
-        """Frequency and main coordinate of the mode with the largest real part."""
+        """Frequency, name and main coordinate of the mode with the largest real part."""
         system = eigensystem(model)
         place = np.nan_to_num(_growth(system.values), nan=-np.inf).argmax(axis=-1)[..., None]
         shares = np.take_along_axis(participation(model, system), place[..., None], -1)[..., 0]
         frequency = np.abs(np.take_along_axis(system.values, place, -1)[..., 0].imag)
         main = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-1)]
-        return {"flutter_frequency": frequency, "flutter_coordinate": main}
+        names = moving(model, system.values, system.left, system.right).names
+        name = np.take_along_axis(names, place, -1)[..., 0]
+        return {"flutter_frequency": frequency, "flutter_mode": name, "flutter_coordinate": main}
 
 
 def _eigenvalues(model: LinearModel) -> Array:
@@ -368,10 +374,9 @@ def _by_frequency(values: Array) -> Array:
 
 def _eigenvalues_and_vectors(model: LinearModel) -> dict[str, Array]:
     """The same with the motion of the coordinates (..., n, states), its largest component 1."""
-    values, right = decomposition(model)
-    return {"eigenvalue": np.take_along_axis(values, _by_frequency(values), -1)} | _vectors(
-        model, values, right
-    )
+    spectrum = decomposition(model)
+    ordered = np.take_along_axis(spectrum.values, _by_frequency(spectrum.values), -1)
+    return {"eigenvalue": ordered} | _vectors(model, spectrum.values, spectrum.right)
 
 
 def _vectors(model: LinearModel, values: Array, right: Array) -> dict[str, Array]:
@@ -391,12 +396,14 @@ def _vectors(model: LinearModel, values: Array, right: Array) -> dict[str, Array
 def _followed(model: LinearModel, with_vectors: bool) -> dict[str, Array]:
     """Eigenvalues by frequency and followed along the airspeeds, and the motion of the coordinates if asked for."""
     spectrum = decomposition(model)
-    values, right = spectrum
+    values, right, left = spectrum.all_modes
     order = _by_frequency(values)
     places, quality, first = follow_designs(spectrum, order)
     designs = np.arange(len(values))
-    _, columns, rows = spectrum.at((designs, first)).all_modes
-    shares = coordinate_shares(held_coordinates(model), len(model.dofs), rows, columns)
+    moves = moving(model, values, left, right)
+    shares = coordinate_shares(
+        held_coordinates(model), len(model.dofs), left[designs, first], right[designs, first]
+    )
     main = np.take_along_axis(np.nan_to_num(shares).argmax(axis=-2), places[designs, first], -1)
     followed = np.take_along_axis(values, places, -1)
     none = np.isnan(followed[designs, first])
@@ -404,6 +411,8 @@ def _followed(model: LinearModel, with_vectors: bool) -> dict[str, Array]:
         "eigenvalue": np.take_along_axis(values, order, -1),
         "mode_eigenvalue": followed,
         "mode_quality": np.where(np.isnan(followed), np.nan, quality),
+        "mode_name": np.take_along_axis(moves.names, places, -1),
+        "mode_share": np.take_along_axis(moves.share, places, -1),
         "mode_coordinate": np.where(none, "", np.array(model.dofs, dtype=object)[main]),
     }
     return found | (_vectors(model, values, right) if with_vectors else {})

@@ -42,6 +42,11 @@ class NormalModes:
         with a gimbal, "rigid" for one without.
     shaft : "held" or "free"
         Whether the rotor could turn about its shaft then; a point mass does not ask.
+    shapes : array, shape (..., m, n), optional
+        The coordinates as motions of the structure that they stand for, where designs differ in them: what tells the
+        coordinates of one design in those of the next.
+    warning : array (...) of str, optional
+        What makes a design doubtful.
 
     Raises
     ------
@@ -56,6 +61,8 @@ class NormalModes:
     hub: Array
     includes_rotor: bool | str
     shaft: str = "held"
+    shapes: Array | None = None
+    warning: Array | None = None
 
     symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
 

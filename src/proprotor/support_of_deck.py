@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
@@ -120,7 +120,8 @@ def _one_beam_wing(given: dict[str, Any], downstop: bool) -> tuple[NormalModes, 
     every = given["damping_ratio"] if "damping_ratio" in given else given["loss_factor"] / 2
     ratios = {kind: given.get(f"{kind}_damping_ratio", every) for kind in _KINDS_OF_STRAIN} | {"axial": every}
     found = on_coordinates(structure, given.get("modes"), ratios, given["rotor_mass"])
-    return found.support, beam_strips(structure, found.shapes)
+    shapes = None if given.get("modes") is None else found.shapes
+    return replace(found.support, shapes=shapes), beam_strips(structure, found.shapes)
 
 
 def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[str, Datum]) -> NormalModes:
@@ -155,22 +156,51 @@ def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any
 
 
 def _stacked(made: Array) -> tuple[NormalModes, Strips]:
-    """One support and its strips, with the axes of the batch in front."""
+    """One support and its strips, with the axes of the batch in front.
+
+    Coordinates are in the order of the first design; each other design's are put there by their own names.
+    """
     from proprotor.wing_aerodynamics import Strips
 
     first, strips = made.flat[0]
     if not made.shape:
         return first, strips
 
-    def stack(parts: list[Array]) -> Array:
+    def stack(parts: list[Any]) -> Array:
         return np.stack(parts).reshape(*made.shape, *parts[0].shape)
 
+    ordered = [_in_order(support, own, first.names) for support, own in made.flat]
     matrices: dict[str, Any] = {
-        name: stack([getattr(support, name) for support, _ in made.flat])
+        name: stack([getattr(support, name) for support, _ in ordered])
         for name in ("mass", "damping", "stiffness", "hub")
     }
-    together = zip(*(strips for _, strips in made.flat), strict=True)
+    if first.shapes is not None:
+        matrices["shapes"] = stack([support.shapes for support, _ in ordered])
+        told = [_named_otherwise(support.names, first.names) for support, _ in made.flat]
+        matrices["warning"] = np.array(told, dtype=object).reshape(made.shape)
+    together = zip(*(own for _, own in ordered), strict=True)
     return replace(first, **matrices), Strips(*(stack(list(parts)) for parts in together))
+
+
+def _in_order(support: NormalModes, strips: Strips, names: Sequence[str]) -> tuple[NormalModes, Strips]:
+    """A support and its strips with coordinates in the order of names; those with other names fill what is left."""
+    if support.names == names:
+        return support, strips
+    own = list(support.names)
+    others = iter([place for place, name in enumerate(own) if name not in names])
+    places = [own.index(name) if name in own else next(others) for name in names]
+    square = {name: getattr(support, name)[np.ix_(places, places)] for name in support.symmetric}
+    along = {name: getattr(support, name)[:, places] for name in ("hub", "shapes")}
+    turned = strips._replace(rise=strips.rise[..., places], pitch=strips.pitch[..., places])
+    return replace(support, names=names, **square, **along), turned
+
+
+def _named_otherwise(own: Sequence[str], names: Sequence[str]) -> str:
+    """What to say of a design that has modes of other kinds than the first one."""
+    others = [name for name in own if name not in names]
+    missing = [name for name in names if name not in own]
+    told = [f"{name} is told as {place}" for name, place in zip(others, missing, strict=True)]
+    return f"the wing has other modes than in the first design: {', '.join(told)}" if told else ""
 
 
 def _must_be_real(given: Mapping[str, Any]) -> None:

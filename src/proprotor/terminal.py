@@ -45,6 +45,8 @@ def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_mode
         console.print(row, soft_wrap=True)
     for line in table.doubts():
         console.print(f"? {line}", style="yellow")
+    if mixed := table.mixed():
+        console.print(mixed)
     for line in table.verdict():
         console.print(line, style="bold")
 

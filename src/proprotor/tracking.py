@@ -21,7 +21,9 @@ import numpy as np
 from proprotor.arrays import Array
 
 _BLOCK = 64  # steps whose matrices stay in the cache
-_COUPLED = 0.01  # likeness of different modes below which they pass each other as strangers
+_COUPLED = (
+    1e-6  # likeness of different modes below which it is rounding, and they pass each other as strangers
+)
 POOR = 0.5  # quality of a step below which it is divided
 
 
@@ -55,18 +57,27 @@ class Spectrum(NamedTuple):
     """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side.
 
     A state that a point does not have, though others do, has a vector and no eigenvalue, NaN; a failed point has none.
+    shapes (..., m, k) are those of the first k coordinates where they differ from point to point, else None.
     """
 
     values: Array
     right: Array
+    shapes: Array | None = None
 
     def at(self, points: Any) -> Spectrum:
         """Some of the points, by what an array is indexed with."""
-        return Spectrum(self.values[points], self.right[points])
+        shapes = None if self.shapes is None else self.shapes[points]
+        return Spectrum(self.values[points], self.right[points], shapes)
 
     def joined(self, other: Spectrum) -> Spectrum:
         """The points of both."""
-        return Spectrum(*(np.concatenate(parts) for parts in zip(self, other, strict=True)))
+        values, right = (
+            np.concatenate([getattr(part, of) for part in (self, other)]) for of in ("values", "right")
+        )
+        shapes = None
+        if self.shapes is not None and other.shapes is not None:
+            shapes = np.concatenate([self.shapes, other.shapes])
+        return Spectrum(values, right, shapes)
 
     @property
     def works(self) -> Array:
@@ -139,6 +150,8 @@ def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
     A state that a point does not have is at no distance from any other: its likeness alone tells which it becomes
     where the next point has it, and from there on it has an eigenvalue.
     """
+    if spectrum.shapes is not None:
+        return _link_in_common(spectrum, spectrum.shapes, before, after)
     states = spectrum.values.shape[-1]
     successor = np.full((len(before), states), -1)
     quality = np.empty((len(before), states))
@@ -152,6 +165,22 @@ def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
     for step in np.flatnonzero(successor[:, 0] < 0):
         successor[step], quality[step] = _link_alone(spectrum.at(before[step]), spectrum.at(after[step]))
     return Steps(successor, quality)
+
+
+def _link_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Array) -> Steps:
+    """Steps between points whose coordinates have different shapes, each in the coordinates of its earlier point."""
+    turn = np.linalg.pinv(shapes[before]) @ shapes[after]
+    states, count = spectrum.values.shape[-1], turn.shape[-1]
+    rates = (
+        states - (states + 1) // 2
+    )  # where they begin: all displacements, or all but the azimuth, stand before
+    right = spectrum.right[after]
+    for start in (0, rates):
+        places = slice(start, start + count)
+        right[:, places] = turn @ right[:, places]
+    first, last = spectrum.at(before), Spectrum(spectrum.values[after], right)
+    rows = np.arange(len(before))
+    return link(Spectrum(first.values, first.right).joined(last), rows, len(rows) + rows)
 
 
 class _Packed(NamedTuple):
@@ -169,7 +198,7 @@ class _Packed(NamedTuple):
 
     @classmethod
     def of(cls, spectrum: Spectrum, pairs: int) -> _Packed:
-        values, right = spectrum
+        values, right, _ = spectrum
         n, states = values.shape
         above = np.nonzero(values.imag > 0)[1].reshape(n, pairs)
         real = np.nonzero(~((values.imag > 0) | (values.imag < 0)))[1].reshape(n, states - 2 * pairs)

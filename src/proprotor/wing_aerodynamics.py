@@ -115,6 +115,8 @@ class WingInAirstream(NormalModes):
             hub=self.hub,
             includes_rotor=self.includes_rotor,
             shaft=self.shaft,
+            shapes=self.shapes,
+            warning=self.warning,
         )
 
 

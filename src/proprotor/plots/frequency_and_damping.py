@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 from proprotor.arrays import Array
 from proprotor.plots.canvas import RIGHT, add_footer, axes_or_new, grid
 from proprotor.plots.end_labels import label_ends, name_those_outside
-from proprotor.plots.line_of_sweep import Positions, positions
+from proprotor.plots.line_of_sweep import Positions, positions, with_gaps
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, along_airspeed, mode_styles
-from proprotor.sweep_summary import damped_frequency, damping_percent, unstable_ranges
+from proprotor.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
 
 if TYPE_CHECKING:
     import xarray
@@ -138,7 +138,10 @@ def plot_sweep(
 
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 9))
     figure.subplots_adjust(left=0.09, right=RIGHT, top=0.94, bottom=0.06, hspace=0.14)
-    add_footer(figure, f"Broad lines: modes of the support, and modes that become unstable. {footer}".strip())
+    add_footer(
+        figure,
+        f"Broad lines: modes of the support, and modes that become unstable. {_gaps_told(sweep)}{footer}".strip(),
+    )
     plot_frequency(sweep, above, rotor_speed=rotor_speed, unit=unit)
     plot_damping(sweep, below, unit=unit, limits=damping_limits)
     above.set_xlabel("")
@@ -147,11 +150,12 @@ def plot_sweep(
 
 
 def _draw_modes(ax: Axes, sweep: xarray.Dataset, values: Array, line: Positions) -> list[Line2D]:
-    spacing = max(1, len(line.values) // 7)
+    spacing, gaps = max(1, len(line.values) // 7), leaps(sweep)
     lines: list[Line2D] = []
     for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
         more: dict[str, Any] = {"markevery": (3 * place % spacing, spacing), "markersize": 5}
-        lines += ax.plot(line.values, values[:, place], label=mode, **more, **style._asdict())
+        x, y = with_gaps(gaps[:, place], line.values, values[:, place])
+        lines += ax.plot(x, y, label=mode, **more, **style._asdict())
     mark_failed(ax, line.values[sweep.reason.values != ""], line.label)
     ax.margins(x=0)
     grid(ax)
@@ -177,6 +181,10 @@ def _mark_instability(ax: Axes, sweep: xarray.Dataset, line: Positions) -> None:
     ax.plot(np.array(places) / line.factor, np.zeros(len(places)), "o", **style)
     told = "unstable" + ("; circles: boundaries, interpolated" if places else "")
     ax.text(0.01, 0.015, told, transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3")
+
+
+def _gaps_told(sweep: xarray.Dataset) -> str:
+    return "Where a line is broken its motion passes to another root. " if leaps(sweep).any() else ""
 
 
 def _where(line: Positions) -> str:

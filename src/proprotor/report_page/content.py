@@ -215,7 +215,7 @@ def _some(working: Array) -> list[int]:
     return places[chosen].tolist() if len(places) else []
 
 
-def _modes(table: SweepTable) -> Iterator[Table]:
+def _modes(table: SweepTable) -> Iterator[Table | Text]:
     at = _some(~table.failed)
     if not at:
         return
@@ -230,6 +230,8 @@ def _modes(table: SweepTable) -> Iterator[Table]:
             for place, mode in enumerate(table.sweep.mode.values)
         )
         yield Table(caption, ("mode", *speeds), rows, frozenset(speeds))
+    if mixed := table.mixed():
+        yield Text((mixed,))
 
 
 def _cell(value: float, form: str, marked: bool = False) -> str:
