@@ -62,7 +62,9 @@ def test_modes_are_those_of_sweep_under_the_same_names(case, speeds):
         live, exact = live_modes(case, speeds, values), case.vary(values).sweep(speeds)
         assert live.names == exact.mode.values.tolist(), values
         found = np.stack([live.eigenvalue, exact.eigenvalue.values])
-        if exact.tracking_quality.min() == 0:  # two roots meet, of which the sweep looks between the airspeeds too
+        if (
+            exact.tracking_quality.min() == 0
+        ):  # two roots meet, of which the sweep looks between the airspeeds too
             found = np.sort(found, axis=2)
         else:
             told_apart += 1

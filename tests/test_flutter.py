@@ -47,7 +47,7 @@ def test_any_damping_level(level):
 
 
 def test_the_least_damping_of_a_search_is_told_with_its_mode_and_position():
-    """ζ = c/20 with c = 1 + (p - 6)², which is least at p = 6: a twentieth; beside it a mode of 30 % and a neutral one."""
+    """ζ = c/20 with c = 1 + (p - 6)²: a twentieth at p = 6; beside it a mode of 30 % and a neutral one."""
 
     def three(x):
         damping = np.diag([6.0, 1.0, 0.0]) + (x - 6) ** 2 * np.diag([0.0, 1.0, 0.0])
@@ -223,7 +223,9 @@ def test_a_boundary_costs_few_eigen_solves_and_does_not_depend_on_the_scan(case,
 def test_what_a_flutter_point_tells(case, point):
     assert point.mode == "chord" and point.kind == "flutter"
     assert point.unstable_at_start == ()
-    assert case.flutter_point("50:100:10kt", section_damping=False).unstable_at_start == ("progressive pitch",)
+    assert case.flutter_point("50:100:10kt", section_damping=False).unstable_at_start == (
+        "progressive pitch",
+    )
     first = next(boundary for boundary in point.boundaries if boundary.onset)
     assert first.position == point.speed and max(first.mechanism, key=first.mechanism.get) == "chord"
     assert point.margin(point.speed / 1.2) == pytest.approx(0.2)

@@ -124,7 +124,9 @@ def trimmed(rotor, operation, airspeed):
     """
     model = pp.rotor_model(rotor, operation, airspeed)
     assume(model.trim.converged.all())
-    assume(max(abs(getattr(model.trim, name)) for name in ("coning", "lag", "elastic_pitch")) < np.radians(20))
+    assume(
+        max(abs(getattr(model.trim, name)) for name in ("coning", "lag", "elastic_pitch")) < np.radians(20)
+    )
     return model
 
 
