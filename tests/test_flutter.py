@@ -47,7 +47,7 @@ def test_any_damping_level(level):
 
 
 def test_the_least_damping_of_a_search_is_told_with_its_mode_and_position():
-    """ζ = c/20 with c = 1 + (p - 6)², which is least at p = 6: a twentieth; beside it a mode of 30 % and a neutral one."""
+    """ζ = c/20 with c = 1 + (p - 6)²: a twentieth at p = 6; beside it a mode of 30 % and a neutral one."""
 
     def three(x):
         damping = np.diag([6.0, 1.0, 0.0]) + (x - 6) ** 2 * np.diag([0.0, 1.0, 0.0])

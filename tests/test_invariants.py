@@ -27,6 +27,7 @@ OPTIONS = st.fixed_dictionaries(
     optional={
         "pitch": st.sampled_from(["dynamic", "coupling", "rigid"]),
         "compressibility": st.booleans(),
+        "section_damping": st.booleans(),
         "rotor_speed": st.sampled_from(["windmilling", "constant"]),
         "locked": st.lists(st.sampled_from(["flap", "lag", "pitch", "gimbal"]), unique=True),
     },

@@ -36,7 +36,7 @@ def fan(case):
 @pytest.fixture(scope="module")
 def along_stiffness(case):
     stiffness = np.linspace(5000, 12000, 15) * FOOT_POUND
-    return case.sweep("350 kt", vary={"rotor.control_stiffness": stiffness})
+    return case.sweep("370 kt", vary={"rotor.control_stiffness": stiffness})
 
 
 @pytest.fixture(autouse=True)

@@ -8,6 +8,8 @@ import pytest
 from proprotor_equations import FIXED_COORDINATES, section
 
 import proprotor as pp
+from proprotor.airfoil import SectionCoefficients
+from proprotor.model import INPUTS
 from proprotor.options import Options
 from tests.oracles.random_rotors import random_rotor
 
@@ -201,6 +203,61 @@ def test_a_coned_blade_turns_about_its_span_in_steady_flight():
     expected_thrust = rotor.n_blades * stations(rotor)[1] @ along_shaft
     assert expected_thrust > 50
     assert with_it - without == pytest.approx(expected_thrust, rel=1e-8)
+
+
+class CurvedLift:
+    """An airfoil whose lift bends with angle of attack, whose drag and moment change with it."""
+
+    contains_compressibility = True
+
+    def coefficients(self, alpha, mach):
+        zero = 0 * alpha
+        lift = (0.2 + 5.7 * alpha - 4 * alpha**2, 5.7 - 8 * alpha, zero)
+        drag = (0.02 + 0.4 * alpha**2, 0.8 * alpha, zero)
+        moment = (-0.03 + 0.1 * alpha, 0.1 + zero, zero)
+        return SectionCoefficients(*lift, *drag, *moment)
+
+
+def curved_rotor(**options):
+    """Thrust and torque of a coned rigid rotor with such sections by collective and airspeed, and its model."""
+    rotor, operation = flat_rotor()
+    rotor = dataclasses.replace(rotor, precone=0.12, airfoil=CurvedLift(), twist=-0.6)
+    options |= {"locked": ("flap", "lag"), "pitch": "rigid"}
+
+    def loads(collective, speed):
+        given = dataclasses.replace(operation, trim={"collective": collective})
+        trim = pp.rotor_model(rotor, given, speed, **options).trim
+        return np.array([trim.thrust, trim.torque])
+
+    return rotor, operation, loads, pp.rotor_model(rotor, operation, SPEED, **options)
+
+
+def test_the_lift_of_a_steady_turn_is_that_of_the_bent_curve_at_three_quarters_of_the_chord():
+    """Thrust written out, section by section; drag has the angle of attack of the quarter chord."""
+    rotor, operation, loads, _ = curved_rotor()
+    r, weight, chord = stations(rotor)
+    cone, omega = rotor.precone, operation.rotor_speed
+    u_t, u_p = omega * r * np.cos(cone), SPEED * np.cos(cone)
+    speed, inflow = np.hypot(u_t, u_p), np.arctan2(u_p, u_t)
+    alpha = 0.7 - 0.6 * (r / rotor.radius - 0.75) - inflow
+    turned = alpha + omega * np.sin(cone) * chord / 2 / speed
+    c_l, c_d = 0.2 + 5.7 * turned - 4 * turned**2, 0.02 + 0.4 * alpha**2
+    normal = operation.density / 2 * chord * speed**2 * (c_l * np.cos(inflow) - c_d * np.sin(inflow))
+    radial = (
+        -operation.density / 2 * chord * speed * c_d * SPEED * np.sin(cone)
+    )  # drag of the air along the blade
+    thrust = rotor.n_blades * weight @ (normal * np.cos(cone) + radial * np.sin(cone))
+    assert loads(0.7, SPEED)[0] == pytest.approx(thrust, rel=1e-9)
+
+
+def test_steady_loads_change_as_the_equations_say_where_the_lift_curve_bends():
+    """By collective, which is an input, and by airspeed, which is the hub's motion along the shaft."""
+    _, _, loads, model = curved_rotor()
+    rows, step = [model.dofs.index(name) for name in ("z", "azimuth")], 1e-4
+    by_collective = (loads(0.7 + step, SPEED) - loads(0.7 - step, SPEED)) / (2 * step)
+    np.testing.assert_allclose(by_collective, model.B[rows, INPUTS.index("collective")], rtol=1e-7)
+    by_speed = (loads(0.7, SPEED + step) - loads(0.7, SPEED - step)) / (2 * step)
+    np.testing.assert_allclose(by_speed, -model.C[rows, model.dofs.index("z")], rtol=1e-7)
 
 
 # The option ----------------------------------------------------------------------------------------

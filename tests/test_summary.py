@@ -71,6 +71,13 @@ def test_boundaries_are_looked_for_in_the_same_range_as_flutter():
     assert all(repr(boundary) in told for boundary in found.boundaries)
 
 
+def test_a_line_without_boundaries_tells_the_least_damping():
+    found = CASE.boundaries("200:240:20kt")
+    ratio, mode, position = found.least
+    told = f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
+    assert repr(found).startswith("0 boundaries from ") and repr(found).endswith(told)
+
+
 def test_one_input_that_varies_needs_an_airspeed():
     with pytest.raises(pp.InputError, match="airspeeds: must be one airspeed"):
         CASE.boundaries(vary={"rotor.precone": np.linspace(0.01, 0.06, 5)})

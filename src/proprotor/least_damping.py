@@ -45,6 +45,5 @@ def least_damping(path: Path, names: Sequence[str]) -> LeastDamping:
     if not moves.any():
         return NOWHERE
     ratio = np.where(moves, -values.real, np.inf) / np.where(moves, size, 1)
-    point, state = np.unravel_index(np.argmin(ratio), ratio.shape)
-    position = float(path.positions[path.points[point]])
-    return LeastDamping(float(ratio[point, state]), names[int(state)], position)
+    point, state = map(int, np.unravel_index(np.argmin(ratio), ratio.shape))
+    return LeastDamping(float(ratio[point, state]), names[state], float(path.positions[path.points[point]]))

@@ -42,6 +42,8 @@ def default_choice(name: str, options: Mapping[str, Any]) -> Any:
 class Options:
     """Choices of the model.
 
+    Section damping that is not given stands in the object as what it means, True or False.
+
     Parameters
     ----------
     equations : "consistent" or "published"
@@ -62,8 +64,8 @@ class Options:
         Prandtl-Glauert factor on lift and moment.
     section_damping : bool, optional
         Quasi-steady damping of turning sections (lift by the incidence at 3/4 chord, and the moment about the quarter
-        chord), in the trim too. Not given: on, and off with equations="published". After construction it is
-        True or False. Lift-slope airloads keep its lift alone; given with the published equations, it is added to them.
+        chord), in the trim too. Not given: on, and off with equations="published", to which True adds it. Lift-slope
+        airloads keep its lift alone.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional

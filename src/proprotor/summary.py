@@ -64,6 +64,9 @@ def of_crossings(found: Crossings) -> str:
     """All boundaries of a line, which need not be airspeeds: SI."""
     low, high = found.searched
     lines = [f"{len(found.boundaries)} boundaries from {low:.6g} to {high:.6g}"]
+    if not found.boundaries and found.least.mode:
+        ratio, mode, position = found.least
+        lines[0] += f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
     lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
     return "\n".join(lines + list(_at_start(found)))
 
