@@ -177,7 +177,8 @@ class RotorSection(Section):
         'beyond = "nothing" where it has no mass there.'
     )
     hub_mass: MassOrNone = optional(
-        "Of the whole rotor at the centre of rotation, for a mass_distribution that begins further out."
+        "Of the whole rotor at the centre of rotation, for a mass_distribution that begins further out, and not once "
+        "more in the masses of the support."
     )
     flap_stiffness: Stiffness = optional("Flap spring, hub and blade in series.")
     flap_frequency: Frequency = optional("Flap frequency without rotation, K = I ω².")

@@ -13,7 +13,7 @@ from proprotor_equations import inertia
 
 from proprotor.airfoil import SectionModel
 from proprotor.arrays import Array
-from proprotor.errors import InputError
+from proprotor.errors import InputError, check_number
 from proprotor.evaluation import evaluate
 from proprotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
 
@@ -376,6 +376,7 @@ class Rotor:
 
     def _with_hub(self, hub_mass: ArrayLike) -> Rotor:
         """The rotor with a mass at its centre, a share of it in every blade."""
+        check_number("hub_mass", hub_mass)
         if not np.all(np.isfinite(hub_mass)) or np.any(np.real(hub_mass) < 0):
             raise InputError("hub_mass", hub_mass, "must be finite and not negative")
         share: Any = hub_mass / np.asarray(self.n_blades)
