@@ -473,7 +473,9 @@ def _how_held(support: NormalModes, numbers: Mapping[str, Datum]) -> dict[str, D
     taken = {}
     given = numbers.get("support.includes_rotor")
     if given is not None and given.si is True:
-        source = f"{given.source}; " * bool(given.source) + "true, of a rotor with a gimbal"
+        source = (
+            f"{given.source}; " * bool(given.source) + 'true: taken as "gimballed", for there is a gimbal'
+        )
         taken["support.includes_rotor"] = replace(given, si=support.includes_rotor, source=source)
     if support.includes_rotor in ("gimballed", "rigid") and "support.shaft" not in numbers:
         taken["support.shaft"] = Datum("held", "held", "", source="left out")
