@@ -17,6 +17,7 @@ from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.rotor_share import rotor_share, spring_warnings, without_rotors
 from proprotor.several_rotors import MountedRotor, mount_rotors
 from proprotor.support import INCLUDES_ROTOR, SHAFT
+from proprotor.support_file import support_from_matrices
 from tests.test_beam_wing import xv15_wing
 from tests.test_nastran import to_aircraft, write_op2
 
@@ -221,7 +222,9 @@ def test_the_result_says_how_the_rotor_was_held(xv15):
     )
     plain = pp.load_case("xv15", {"support.includes_rotor": "true"})
     assert plain.support.includes_rotor == plain.sources["support.includes_rotor"].si == "gimballed"
-    assert plain.sources["support.includes_rotor"].source.endswith("true, of a rotor with a gimbal")
+    assert plain.sources["support.includes_rotor"].source.endswith(
+        'true: taken as "gimballed", for there is a gimbal'
+    )
     np.testing.assert_array_equal(plain.linearize(100.0).M, xv15.linearize(100.0).M)
     without = pp.load_case("xv15", {"support.includes_rotor": "false"})
     assert without.support.includes_rotor is False and "rotor on" not in repr(without)
@@ -417,6 +420,17 @@ def test_what_is_left_of_a_finite_element_wing_is_the_wing(tmp_path):
     left, refusal = without_rotors(support, [(support.hub, mass_at_rest(case.rotor))])
     assert refusal[()] == ""
     np.testing.assert_allclose(left, structure.mass, rtol=0, atol=1e-12 * np.abs(loaded).max())
+
+
+def test_a_rotor_is_not_on_twice():
+    """A rotor's mass for the modes, beside a matrix that has the rotor already, was passed over without a word."""
+    matrix = np.diag([900.0] * 3 + [400.0] * 3)
+    message = r"rotor_mass = 180\.0: must not be given where the mass includes the rotor"
+    dofs = [f"hub_{axis}" for axis in HUB]
+    for held in (held for held in INCLUDES_ROTOR if held):
+        with pytest.raises(InputError, match=message):
+            support_from_matrices(matrix, 1e4 * matrix, dofs=dofs, includes_rotor=held, rotor_mass=180.0)
+        support_from_matrices(matrix, 1e4 * matrix, dofs=dofs, includes_rotor=held, rotor_mass=0.0)
 
 
 def test_unknown_words_are_refused(xv15):

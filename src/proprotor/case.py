@@ -413,7 +413,7 @@ def _per_second(number: Datum, rotor_speed: float) -> Datum:
 
 
 def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
-    """The SI values of a section's own numbers by field; a distribution as (r in m, values)."""
+    """The SI values of a section's own numbers by field; a distribution as (r in m, values) and what lies beyond."""
     own = {
         path.removeprefix(f"{section}."): n for path, n in numbers.items() if path.startswith(f"{section}.")
     }
@@ -424,7 +424,8 @@ def _value(number: Datum, numbers: Mapping[str, Datum]) -> Any:
     if number.r_over_R is None:
         return number.si
     radius = np.asarray(numbers["rotor.radius"].si)
-    return np.array(number.r_over_R) * radius[..., None], np.array(number.si)
+    beyond = () if number.beyond is None else (number.beyond,)
+    return np.array(number.r_over_R) * radius[..., None], np.array(number.si), *beyond
 
 
 def _with_air(given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Datum]]:
@@ -456,7 +457,11 @@ def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datu
     lock_number = given.pop("lock_number", None)
     build: Callable[..., Rotor] = Rotor
     if "mass_distribution" in given:
-        build = partial(Rotor.from_mass_distribution, *given.pop("mass_distribution"))
+        build = partial(
+            Rotor.from_mass_distribution,
+            *given.pop("mass_distribution"),
+            hub_mass=given.pop("hub_mass", None),
+        )
     # Springs and chord may follow from inertias that only the rotor knows: hence the stand-ins.
     bare = build(**{"flap_stiffness": 0.0, "lag_stiffness": 0.0, "chord": 1.0} | given)
     derived = {f"{name}_stiffness": _spring(bare, name, frequency) for name, frequency in omega.items()}
@@ -471,7 +476,9 @@ def _how_held(support: NormalModes, numbers: Mapping[str, Datum]) -> dict[str, D
     taken = {}
     given = numbers.get("support.includes_rotor")
     if given is not None and given.si is True:
-        source = f"{given.source}; " * bool(given.source) + "true, of a rotor with a gimbal"
+        source = (
+            f"{given.source}; " * bool(given.source) + 'true: taken as "gimballed", for there is a gimbal'
+        )
         taken["support.includes_rotor"] = replace(given, si=support.includes_rotor, source=source)
     if support.includes_rotor in ("gimballed", "rigid") and "support.shaft" not in numbers:
         taken["support.shaft"] = Datum("held", "held", "", source="left out")

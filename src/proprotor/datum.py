@@ -39,6 +39,8 @@ class Datum:
         Stations of a distribution.
     rotor_speed : float or None
         rad/s, of a frequency written per revolution: what one per revolution is.
+    beyond : str or None
+        What a distribution says of the blade beyond its stations: "held" or "nothing"; None where it says nothing.
     """
 
     written: str
@@ -48,6 +50,7 @@ class Datum:
     source: str = ""
     r_over_R: tuple[float, ...] | None = None
     rotor_speed: float | None = None
+    beyond: str | None = None
 
 
 class FileName(str):
@@ -160,11 +163,17 @@ def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
     return replace(found, rotor_speed=value.rotor_speed) if isinstance(value, PerRevolution) else found
 
 
-def read_distribution(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
-    """A table ``{ r_over_R, value, unit, status, source }`` of two equally long lists."""
+def read_distribution(raw: Any, unit: str, bound: Bound = ANY, beyond: str = "") -> Datum:
+    """A table ``{ r_over_R, value, unit, status, source }`` of two equally long lists, perhaps with ``beyond``.
+
+    Parameters
+    ----------
+    beyond : str
+        The one word that the table may have for what lies beyond its stations; "" where it may have none.
+    """
     if not isinstance(raw, dict):
         raise InputError("", raw, "must be a table with r_over_R, value and unit")
-    table = _as_table(raw, ("r_over_R", "value", "unit"))
+    table = _as_table(raw, ("r_over_R", "value", "unit"), ("beyond",) if beyond else ())
     stations, values, written_unit = table["r_over_R"], table["value"], table["unit"]
     _check_stations(stations)
     _check_numbers("value", values)
@@ -173,7 +182,24 @@ def read_distribution(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
         raise InputError("value", f"{len(values)} values", rule)
     si = _converted(values, _factor_of_list(written_unit, unit), bound)
     written = f"{len(values)} values in {written_unit}"
-    return _datum(table, written, si, unit, tuple(float(station) for station in stations))
+    return _along_the_blade(table, written, si, unit, tuple(map(float, stations)), beyond)
+
+
+def _along_the_blade(
+    table: Mapping[str, Any],
+    written: str,
+    si: tuple[float, ...],
+    unit: str,
+    r_over_R: tuple[float, ...],
+    beyond: str,
+) -> Datum:
+    """A distribution with what its table says of the blade beyond it."""
+    said = table.get("beyond")
+    if said is None:
+        return _datum(table, written, si, unit, r_over_R)
+    if said != beyond:
+        raise InputError("beyond", said, f'must be "{beyond}", or left out')
+    return replace(_datum(table, f"{written}, {said} beyond", si, unit, r_over_R), beyond=beyond)
 
 
 def read_curve(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
@@ -203,10 +229,10 @@ def read_list(raw: Any, unit: str, bound: Bound = ANY, *, rising: bool = False) 
     return _datum(table, written, si, unit)
 
 
-def read_profile(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
+def read_profile(raw: Any, unit: str, bound: Bound = ANY, beyond: str = "") -> Datum:
     """One number for the whole blade, or a distribution along it."""
     is_distribution = isinstance(raw, dict) and ("r_over_R" in raw or isinstance(raw.get("value"), list))
-    return read_distribution(raw, unit, bound) if is_distribution else read_quantity(raw, unit, bound)
+    return read_distribution(raw, unit, bound, beyond) if is_distribution else read_quantity(raw, unit, bound)
 
 
 def _factor_of_list(written_unit: Any, unit: str) -> float:
@@ -228,11 +254,14 @@ def _converted(values: list[float], factor: float, bound: Bound) -> tuple[float,
     return si
 
 
-def read_column(raw: Any, unit: str, bound: Bound, radius: float) -> Datum:
-    """A table ``{ file, column, status, source }``: one column of a file of blade stations, see `stations_file`."""
+def read_column(raw: Any, unit: str, bound: Bound, radius: float, beyond: str) -> Datum:
+    """A table ``{ file, column, status, source }``: one column of a file of blade stations, see `stations_file`.
+
+    It may have ``beyond``, as for `read_distribution`.
+    """
     from proprotor.stations_file import read_stations  # here, because few decks have one
 
-    table = _as_table(raw, ("file", "column"))
+    table = _as_table(raw, ("file", "column"), ("beyond",))
     try:
         file = read_file(table["file"])
     except InputError as error:
@@ -245,7 +274,7 @@ def read_column(raw: Any, unit: str, bound: Bound, radius: float) -> Datum:
     except InputError as error:
         raise InputError(error.field, file.written, error.rule) from None
     written = f"{len(found.values)} values of {column} in {file.written}"
-    return _datum(table, written, found.values, unit, found.r_over_R)
+    return _along_the_blade(table, written, found.values, unit, found.r_over_R, beyond)
 
 
 def read_file(raw: Any) -> Datum:
@@ -273,9 +302,9 @@ def _datum(
     return Datum(written, si, unit, status, source, r_over_R)
 
 
-def _as_table(raw: Any, required: Collection[str]) -> dict[str, Any]:
+def _as_table(raw: Any, required: Collection[str], further: Collection[str] = ()) -> dict[str, Any]:
     table = raw if isinstance(raw, dict) else {"value": raw}
-    known = (*required, "status", "source")
+    known = (*required, *further, "status", "source")
     for key in table:
         if key not in known:
             raise InputError(key, table[key], unknown_name(key, known))

@@ -197,6 +197,9 @@ def altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     superseded += (
         [("support",)] if _is_section(changes.get("support")) and "kind" in changes["support"] else []
     )
+    rotor: Any = changes.get("rotor")
+    if _is_section(rotor) and not rotor.keys().isdisjoint(MASS_INTEGRALS):
+        superseded.append(("rotor", "hub_mass"))  # which stood beside a distribution; integrals hold it
     for place in superseded:
         base = _without(base, place)
     return _merged(base, changes)

@@ -125,7 +125,9 @@ def settled(support: NormalModes, mass_at_rest: Array) -> NormalModes:
     _, refusal = without_rotors(support, [(support.hub, mass_at_rest)])
     if not refusal.ndim:
         refuse(refusal, support)
-    return replace(support, includes_rotor=support.includes_rotor and how_held(support, mass_at_rest))
+    if support.includes_rotor is not True:
+        return support
+    return replace(support, includes_rotor=how_held(support, mass_at_rest))
 
 
 def refuse(refusal: Array, support: NormalModes) -> None:

@@ -141,8 +141,11 @@ def support_from_matrices(
     Raises
     ------
     InputError
-        When sizes differ, an entry is not finite, a matrix is not symmetric, or a coordinate of the hub is missing.
+        When sizes differ, an entry is not finite, a matrix is not symmetric, a coordinate of the hub is missing, or a
+        rotor's mass is given beside the one that the mass includes.
     """
+    if includes_rotor and np.any(rotor_mass):
+        raise InputError("rotor_mass", rotor_mass, "must not be given where the mass includes the rotor")
     names = _names(dofs)
     matrices = {"mass": mass, "stiffness": stiffness} | ({} if damping is None else {"damping": damping})
     matrices = {name: _checked(name, matrix, len(names)) for name, matrix in matrices.items()}
@@ -159,7 +162,7 @@ def support_from_matrices(
         hub=motion,
         count=modes,
         damping_ratio=damping_ratio,
-        rotor_mass=0.0 if includes_rotor else rotor_mass,
+        rotor_mass=rotor_mass,
         includes_rotor=includes_rotor,
         shaft=shaft,
         **matrices,

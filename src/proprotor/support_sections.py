@@ -205,7 +205,9 @@ class MatricesSection(Section):
     )
     includes_rotor: IncludesRotor = needed(_HELD)
     shaft: Shaft = optional(_SHAFT)
-    rotor_mass: MassOrNone = optional("What the rotor model has at the hub; modes are those with it.")
+    rotor_mass: MassOrNone = optional(
+        "What the rotor model has at the hub; modes are those with it. Not where the matrix includes the rotor."
+    )
     modes: Size = optional("How many of the lowest modes to keep; all coordinates where left out.")
     damping_ratio: DampingRatio = optional(
         "Of every mode, of critical, where no damping matrix is given; 0 where left out."
