@@ -104,7 +104,7 @@ class LinearModel:
 
     @property
     def shaft_holds_azimuth(self) -> Array:
-        """Points (...) where a shaft to a constant-speed end makes the azimuth a displacement; else it is a rate."""
+        """Points (...) where a shaft to a constant-speed end makes the azimuth a displacement (rad), no mere rate."""
         if ROTOR_SPEED not in self.dofs:
             return np.zeros(self.K.shape[:-2], dtype=bool)
         place = self.dofs.index(ROTOR_SPEED)
