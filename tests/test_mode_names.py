@@ -139,12 +139,14 @@ def shares_in_the_rotating_sense(model, point):
 def test_the_sum_of_shares_is_the_largest_possible(case):
     model = case.linearize(airspeeds(case, 25))
     values, found = named(model)
+    judged = 0
     for point in range(25):
         above, shares = shares_in_the_rotating_sense(model, point)
         if 2 * len(above) + 1 < len(values[point]):  # pairs that have parted: the judge knows pairs alone
             continue
         whole = [place for place, name in enumerate(name_list(model.dofs)) if name != "rotor speed"]
         rows, columns = linear_sum_assignment(shares[whole], maximize=True)
+        judged += 1
         own = found.share[point, values[point].imag > 0]
         assert own.sum() == pytest.approx(shares[whole][rows, columns].sum(), abs=2e-6)
         place = {
@@ -154,6 +156,7 @@ def test_the_sum_of_shares_is_the_largest_possible(case):
         for root, name in zip(values[point], found.names[point], strict=True):
             if root.imag > 0:
                 assert root == pytest.approx(place[name], rel=1e-8)
+    assert judged >= 10
 
 
 def test_the_names_of_the_xv15_at_50_knots_are_what_moves():
@@ -410,12 +413,15 @@ def test_a_sweep_over_the_chord_stiffness_follows_the_roots_where_beam_and_chord
     assert coarse.tracking_quality.min() > POOR and not coarse.warning.any()
     names = {wing.vary({CHORD: float(value)}).support.names[:2] for value in ends}
     assert len(names) == 2
+    judged = 0
     for branch in np.unique(coarse.branch.values):
         followed = coarse.eigenvalue.values[coarse.branch.values == branch]
         if "second root" in branch or not (followed.imag > 1.0).all():
             continue
         start = np.abs(every[0] - followed[0]).argmin()
         np.testing.assert_allclose(followed, every[::16, start], rtol=1e-8)
+        judged += 1
+    assert judged >= 12
 
 
 def test_a_beam_wing_with_modes_of_other_kinds_says_so(wing):
