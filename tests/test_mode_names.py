@@ -19,6 +19,7 @@ from proprotor.mode_names import DOUBTFUL, motions, moving, name_list
 from proprotor.modes import decomposition, state_matrix
 from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.tracking import POOR
+from tests.known_systems import continued, roots
 
 KNOT, RPM = 1852 / 3600, np.pi / 30
 DECKS = ("xv15", "xv15-wing", "wrats-770-on", "v22-fifth-scale")
@@ -96,8 +97,8 @@ def test_without_couplings_a_mode_is_named_after_the_only_thing_that_moves(seed)
                     root
                 )
     values, found = named(replace(model, **blocks))
-    for point, roots in enumerate(expected):
-        for name, wanted in roots.items():
+    for point, polynomial in enumerate(expected):
+        for name, wanted in polynomial.items():
             own = values[point, found.names[point] == name]
             for root in wanted:
                 nearest = np.abs(own[:, None] - [root, np.conj(root)]).min()
@@ -138,21 +139,24 @@ def shares_in_the_rotating_sense(model, point):
 def test_the_sum_of_shares_is_the_largest_possible(case):
     model = case.linearize(airspeeds(case, 25))
     values, found = named(model)
+    judged = 0
     for point in range(25):
-        roots, shares = shares_in_the_rotating_sense(model, point)
-        if 2 * len(roots) + 1 < len(values[point]):  # pairs that have parted: the judge knows pairs alone
+        above, shares = shares_in_the_rotating_sense(model, point)
+        if 2 * len(above) + 1 < len(values[point]):  # pairs that have parted: the judge knows pairs alone
             continue
         whole = [place for place, name in enumerate(name_list(model.dofs)) if name != "rotor speed"]
         rows, columns = linear_sum_assignment(shares[whole], maximize=True)
+        judged += 1
         own = found.share[point, values[point].imag > 0]
         assert own.sum() == pytest.approx(shares[whole][rows, columns].sum(), abs=2e-6)
         place = {
-            name: roots[column]
+            name: above[column]
             for name, column in zip(np.array(found.known)[whole][rows], columns, strict=False)
         }
         for root, name in zip(values[point], found.names[point], strict=True):
             if root.imag > 0:
                 assert root == pytest.approx(place[name], rel=1e-8)
+    assert judged >= 10
 
 
 def test_the_names_of_the_xv15_at_50_knots_are_what_moves():
@@ -364,3 +368,70 @@ def test_a_study_names_modes_as_a_sweep_does():
                 if value.imag > 0:
                     wanted = sweep.eigenvalue.sel(mode=name).values[point]
                     assert value == pytest.approx(wanted, rel=1e-9)
+
+
+# Beam wings ---------------------------------------------------------------------------------------------------------
+
+CHORD, AXIAL = "support.chord_stiffness", "support.axial_stiffness"
+
+
+@pytest.fixture(scope="module")
+def wing():
+    return pp.load_case("xv15-wing")
+
+
+def test_a_beam_wing_in_company_is_what_it_is_alone(wing):
+    """The wing's chord mode lies below its beam mode in some of the designs, above it in others."""
+    stiffness = np.array([1.0, 0.15, 2.0, 0.3]) * wing.given[CHORD].si
+    model = wing.vary({CHORD: stiffness}).linearize(120.0)
+    values, found = named(model)
+    orders = set()
+    for design, value in enumerate(stiffness):
+        alone = wing.vary({CHORD: float(value)})
+        own, names = named(alone.linearize(np.array([120.0])))
+        orders.add(alone.support.names[:2])
+        for name in names.known:
+            one, other = (
+                v[n == name] for v, n in ((own[0], names.names[0]), (values[design], found.names[design]))
+            )
+            np.testing.assert_allclose(np.sort_complex(one), np.sort_complex(other), rtol=1e-8, atol=1e-8)
+            place, own_place = found.known.index(name), names.known.index(name)
+            assert found.share[design, found.place[design] == place] == pytest.approx(
+                names.share[0, names.place[0] == own_place], abs=1e-8
+            )
+    assert orders == {("beam", "chord"), ("chord", "beam")}
+    assert not model.trim.warning.any()
+
+
+def test_a_sweep_over_the_chord_stiffness_follows_the_roots_where_beam_and_chord_swap(wing):
+    """The judge follows roots alone, without vectors, in steps small enough that the nearest is the next."""
+    ends = np.array([0.28, 0.5]) * wing.given[CHORD].si
+    dense = np.geomspace(*ends, 65)
+    options = {"rotor_speed": "constant"}
+    every = continued(roots(wing.vary({CHORD: dense}).linearize(120.0, **options)))
+    coarse = wing.sweep(120.0, {CHORD: dense[::16]}, **options)
+    assert coarse.tracking_quality.min() > POOR and not coarse.warning.any()
+    names = {wing.vary({CHORD: float(value)}).support.names[:2] for value in ends}
+    assert len(names) == 2
+    judged = 0
+    for branch in np.unique(coarse.branch.values):
+        followed = coarse.eigenvalue.values[coarse.branch.values == branch]
+        if "second root" in branch or not (followed.imag > 1.0).all():
+            continue
+        start = np.abs(every[0] - followed[0]).argmin()
+        np.testing.assert_allclose(followed, every[::16, start], rtol=1e-8)
+        judged += 1
+    assert judged >= 12
+
+
+def test_a_beam_wing_with_modes_of_other_kinds_says_so(wing):
+    """With a stiff axis the sixth mode is a third one of the beam: it stands under the name of the first design's."""
+    varied = wing.vary({AXIAL: np.array([1.0, 5.0]) * wing.given[AXIAL].si})
+    assert "beam_3" in wing.vary({AXIAL: 5.0 * float(wing.given[AXIAL].si)}).support.names
+    warning = varied.linearize(120.0).trim.warning
+    assert (
+        warning[0] == ""
+        and warning[1] == "the wing has other modes than in the first design: beam_3 is told as axial"
+    )
+    study = pp.study(wing, {AXIAL: np.array([1.0, 5.0]) * wing.given[AXIAL].si}, 120.0, workers=1)
+    assert "beam_3" in str(study.warning.values[1])

@@ -153,7 +153,7 @@ class Case:
         return vary(self, values)
 
     def sweep(self, airspeeds: Any, vary: Mapping[str, Any] | None = None, **options: Any) -> xarray.Dataset:
-        """Modes along airspeeds, or along one input, tracked and named: see `proprotor.sweep.sweep_case`.
+        """Modes along airspeeds, or along one input, named and followed: see `proprotor.sweep.sweep_case`.
 
         Parameters
         ----------
