@@ -249,7 +249,7 @@ def test_a_folder_of_something_else_is_refused(tmp_path):
 
 
 def test_two_studies_do_not_share_a_folder(tmp_path):
-    with Checkpoint(tmp_path).held(), pytest.raises(InputError, match="in use"):
+    with Checkpoint(tmp_path).open({}, {}), pytest.raises(InputError, match="in use"):
         run(tmp_path)
     study_workers.end_workers()
 

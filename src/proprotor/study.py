@@ -116,8 +116,7 @@ def study(
         kept = None
         if checkpoint is not None:
             kept = Checkpoint(checkpoint)
-            division = kept.open(work.identity, division)
-            held.enter_context(kept.held())
+            division = held.enter_context(kept.open(work.identity, division))
         _run(work, work.blocks(int(division["points"])), kept, workers, client, progress)
     return work.dataset()
 
