@@ -185,9 +185,11 @@ class _Study:
             "options": dict(analysis.options),
             "tolerance": analysis.tolerance,
             "code": analysis.code,
-            "versions": [version(package) for package in ("proprotor", "numpy", "scipy")],
+            "versions": [
+                version(package) for package in ("proprotor", "numpy", "scipy", "pystran", "fluids")
+            ],
         }
-        return {name: fingerprint(part) for name, part in parts.items()}
+        return {name: fingerprint(part, name) for name, part in parts.items()}
 
     def blocks(self, points: int) -> list[tuple[slice, slice]]:
         """Designs and airspeeds of each batch."""
