@@ -304,7 +304,7 @@ class _Walk:
 def _reduced(kind: type, it: Any) -> str | tuple[Any, ...]:
     """What pickle takes an object apart into."""
     own = copyreg.dispatch_table.get(kind)
-    return own(it) if own else it.__reduce_ex__(pickle.HIGHEST_PROTOCOL)  # type: ignore[no-any-return]
+    return own(it) if own else it.__reduce_ex__(pickle.HIGHEST_PROTOCOL)
 
 
 def _content(cell: Any) -> Any:
