@@ -66,7 +66,7 @@ def animate_mode(
         told = f"{frames} frames, {frames_per_second} per second, {dpi} dpi"
         raise InputError("frames", told, "must be at least 4, at a speed and a size above zero")
     picture = _SIZE[0] * _SIZE[1] * float(dpi) ** 2  # pixels
-    check_memory("frames", frames, picture * (frames + _CANVAS), "the pictures", "frames or dpi")
+    check_memory("frames", frames, picture * (frames + _CANVAS), "the pictures", "take fewer or smaller ones")
     first, *others = _frames(motion, frames, dpi)
     lasts = round(1000 / frames_per_second)
     given: dict[str, Any] = {"append_images": others, "duration": lasts, "loop": 0, "optimize": True}

@@ -19,7 +19,6 @@ from typing import Any
 from warnings import warn
 
 import numpy as np
-from filelock import FileLock, Timeout
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
@@ -75,6 +74,8 @@ class Checkpoint:
     @contextmanager
     def _held(self) -> Iterator[None]:
         """Keep all other threads and processes from the folder."""
+        from filelock import FileLock, Timeout  # here, because most studies keep nothing
+
         lock = FileLock(self.folder / _LOCK, timeout=0)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)

@@ -9,8 +9,6 @@ from __future__ import annotations
 import importlib
 from pathlib import Path
 
-import psutil
-
 from proprotor.errors import InputError
 
 _SMALL = 64e6  # bytes; not worth asking the system
@@ -23,7 +21,7 @@ def need(package: str, field: str, purpose: str, extra: str = "") -> None:
     Parameters
     ----------
     package : str
-        Name of its module.
+        Name of its module, or of one within it.
     field : str
         What the message names as the input that asked for it.
     purpose : str
@@ -39,13 +37,16 @@ def need(package: str, field: str, purpose: str, extra: str = "") -> None:
     try:
         importlib.import_module(package)
     except ImportError as error:
-        install = f'pip install "proprotor[{extra}]"' if extra else f"pip install {package}"
-        reason = "" if error.name == package else f" ({error})"
-        raise InputError(field, None, f"needs {package} for {purpose}: {install}{reason}") from None
+        name = package.partition(".")[0]
+        install = f'pip install "proprotor[{extra}]"' if extra else f"pip install {name}"
+        reason = "" if error.name == name else f" ({error})"  # one that is there, and cannot be imported
+        raise InputError(field, None, f"needs {name} for {purpose}: {install}{reason}") from None
 
 
 def free_memory() -> float:
     """Return the memory that this process may still take, bytes."""
+    import psutil  # here, because it is not needed for small things
+
     return min(float(psutil.virtual_memory().available), _free_of_group(), _free_address_space())
 
 
@@ -78,11 +79,13 @@ def _free_address_space() -> float:
     most, _ = resource.getrlimit(resource.RLIMIT_AS)
     if most == resource.RLIM_INFINITY:
         return float("inf")
+    import psutil
+
     return max(0.0, float(most - psutil.Process().memory_info().vms))
 
 
-def check_memory(field: str, value: object, size: float, what: str, reduce: str = "") -> None:
-    """Refuse what would not fit into the memory that is free.
+def check_memory(field: str, value: object, size: float, what: str, remedy: str = "") -> None:
+    """Refuse what would not fit into the memory that is free, before any of it is taken.
 
     Parameters
     ----------
@@ -92,8 +95,8 @@ def check_memory(field: str, value: object, size: float, what: str, reduce: str 
         Bytes that will be taken at once.
     what : str
         What takes them, such as "the results of 1e+12 designs".
-    reduce : str
-        What to reduce, where that is not the field.
+    remedy : str
+        What to do, where that is not to reduce the field.
 
     Raises
     ------
@@ -104,7 +107,7 @@ def check_memory(field: str, value: object, size: float, what: str, reduce: str 
     free = free_memory()
     if size > free:
         taken = f"{what} would take {_told(size)} of memory, and {_told(free)} are free"
-        raise InputError(field, value, f"{taken}: reduce {reduce or field}")
+        raise InputError(field, value, f"{taken}: {remedy or f'reduce {field}'}")
 
 
 def _told(size: float) -> str:

@@ -17,6 +17,7 @@ from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import HUB, INPUTS, LinearModel
 from proprotor.modes import held_coordinates, state_matrix
+from proprotor.needs import need
 
 if TYPE_CHECKING:
     import control
@@ -66,10 +67,9 @@ class StateSpace:
         Raises
         ------
         InputError
-            When the model is a batch of several points.
-        ImportError
-            When python-control is not installed.
+            When the model is a batch of several points, or python-control is not installed.
         """
+        need("control", "to_control", "state spaces", "control")
         import control
 
         if self.A.ndim != 2:
