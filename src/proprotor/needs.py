@@ -34,10 +34,11 @@ def need(package: str, field: str, purpose: str, extra: str = "") -> None:
     InputError
         With the command that installs the package.
     """
+    name = package.partition(".")[0]
     try:
+        importlib.import_module(name)
         importlib.import_module(package)
     except ImportError as error:
-        name = package.partition(".")[0]
         install = f'pip install "proprotor[{extra}]"' if extra else f"pip install {name}"
         reason = "" if error.name == name else f" ({error})"  # one that is there, and cannot be imported
         raise InputError(field, None, f"needs {name} for {purpose}: {install}{reason}") from None

@@ -65,8 +65,8 @@ def explore(
     from proprotor.flutter import scan_speeds
     from proprotor.units import speeds
 
-    for package in ("bokeh", "tornado"):
-        need(package, "explore", "the page", "explore")
+    need("bokeh", "explore", "the page", "explore")
+    need("tornado", "explore", "the page", "explore")
     options, given = in_order(options), settings_of(settings)
     airspeeds = None if speed is None else np.unique(speeds(speed, "--speed"))
     if airspeeds is not None and len(airspeeds) < 2:
