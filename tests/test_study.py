@@ -4,10 +4,7 @@ A batch must give the bits of single points, so comparisons with `case.vary(...)
 """
 
 import json
-import os
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +18,6 @@ import proprotor as pp
 from proprotor import flutter_scan, sampling, study_workers
 from proprotor.command_line import main
 from proprotor.errors import InputError
-from proprotor.fingerprint import fingerprint
 from proprotor.modes import state_matrix
 from proprotor.results_file import load_results, save_results
 from proprotor.study import study
@@ -498,63 +494,6 @@ def test_a_progress_bar_counts_points(capsys):
     assert "4/4" in told and "1 failed" in told
     study(CASE, {PRECONE: [0.04]}, 110.0)
     assert capsys.readouterr().err == ""
-
-
-# Fingerprints -------------------------------------------------------------------------------------
-
-
-def test_a_fingerprint_is_the_same_in_another_process():
-    imports = "import proprotor as pp; from proprotor.fingerprint import fingerprint"
-    command = f"{imports}; print(fingerprint(pp.load_case('xv15')))"
-    seed = {"PYTHONHASHSEED": "1" if os.environ.get("PYTHONHASHSEED") != "1" else "2"}
-    done = subprocess.run(
-        [sys.executable, "-c", command], env=os.environ | seed, capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == fingerprint(CASE)
-
-
-def test_a_fingerprint_tells_apart():
-    different = [
-        1,
-        1.0,
-        True,
-        "1",
-        b"1",
-        None,
-        (1,),
-        [1],
-        ["1"],
-        ("a", "bc"),
-        ("ab", "c"),
-        {"a": 1},
-        {"a": 2},
-        np.array([1.0]),
-        np.array([[1.0]]),
-        np.array([1]),
-        0.0,
-        -0.0,
-        lambda r: r,
-        lambda r: r + 1,
-        lambda r: r + 2,
-        lambda r: max(r, key=lambda x: x + 1),
-        lambda r: max(r, key=lambda x: x + 2),
-        {"a"},
-        {"a", "b"},
-        np.array(["a", None], dtype=object),
-        np.array(["b", None], dtype=object),
-        np.sin,
-        np.cos,
-        CASE,
-        replace(CASE, rotor=replace(CASE.rotor, precone=np.nextafter(CASE.rotor.precone, 1))),
-    ]
-    assert len({fingerprint(one) for one in different}) == len(different)
-    assert fingerprint({"a": 1, "b": 2}) == fingerprint({"b": 2, "a": 1})
-    assert fingerprint(set("abc")) == fingerprint(set("cab"))
-
-
-def test_what_cannot_be_told_has_no_fingerprint():
-    with pytest.raises(InputError, match=r"^checkpoint = builtins.object: stands among the inputs"):
-        fingerprint([1, object()])
 
 
 # Files --------------------------------------------------------------------------------------------

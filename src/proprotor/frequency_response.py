@@ -10,12 +10,14 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import HUB, SWASHPLATE, LinearModel
+from proprotor.needs import check_memory
 from proprotor.state_space import LOADS, StateSpace
 from proprotor.units import values_in_si
 
 if TYPE_CHECKING:
     import xarray
 
+_BYTES_PER_ENTRY = 48.0  # of a response: a complex number, its magnitude and phase, and a copy
 _BLOCK = 4096  # matrices solved at once
 
 
@@ -50,13 +52,18 @@ def frequency_response(
     Raises
     ------
     InputError
-        For an unknown name, a frequency that is negative or not finite, or a model without inputs.
+        For an unknown name, a frequency that is negative or not finite, a model without inputs, or a response that does
+        not fit into memory.
     """
     import xarray  # here, because it takes long to import
 
     omega = _frequencies(frequency)
     space = model.to_state_space()
     columns, rows = _places(inputs, space.inputs, "inputs"), _places(outputs, space.outputs, "outputs")
+    count = space.A[..., 0, 0].size * omega.size
+    told = f"{omega.size} frequencies"
+    size = _BYTES_PER_ENTRY * count * len(rows) * len(columns)
+    check_memory("frequency", told, size, "the response", "take fewer, or fewer inputs and outputs")
     response = _response(space, omega, rows, columns)
     leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
     leading = ("airspeed",) if len(leading) == 1 else leading

@@ -33,6 +33,7 @@ from proprotor.drive_train import DriveTrain
 from proprotor.equation_set import EquationSet
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
+from proprotor.needs import check_memory
 from proprotor.operation import Operation
 from proprotor.options import Options, parse_options
 from proprotor.rotor import Rotor
@@ -51,6 +52,7 @@ INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
 MASS_AT_REST = (*HUB, "gimbal_1c", "gimbal_1s")  # coordinates of a rotor at rest with locked blades
 COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
+_BYTES_PER_POINT, _BYTES_PER_ENTRY = 10_000.0, 80.0  # while a rotor is trimmed and its matrices are made
 _SOFTEST_SPRING = 1e-100  # of the other spring: a free hinge, without a division by zero in series
 
 
@@ -230,14 +232,15 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     Raises
     ------
     InputError
-        For an unknown option, or a rotor that the options do not allow.
+        For an unknown option, a rotor that the options do not allow, or more points than there is memory for.
     """
     choice = parse_options(options)
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed)
     shape = batch_shape(rotor, operation, speed, choice.drive_train)
-    quantities = model_quantities(rotor, operation, choice, speed, shape)
     points = int(np.prod(shape, dtype=int))
+    _check_memory(rotor, choice, points)
+    quantities = model_quantities(rotor, operation, choice, speed, shape)
     sections, coarse = (BladeSections.of(rotor, shape, coarse) for coarse in (False, True))
     target = _flat(trim_target(rotor, operation), shape)
     settled = solve_trim(sections, coarse, quantities, choice, target, points)
@@ -258,6 +261,16 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     }
     model = LinearModel(**parts, **per_point, dofs=coordinates, trim=shaped, mass_at_rest=mass_at_rest(rotor))
     return model if dofs == coordinates else model.submodel(dofs)
+
+
+def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
+    """Refuse a batch, or blades whose motions are all kept, that do not fit into memory."""
+    own = len(FIXED_COORDINATES)
+    count = own + 3 * (float(np.max(rotor.n_blades)) - 3) * options.reactionless
+    if count > own:
+        check_memory("n_blades", rotor.n_blades, _BYTES_PER_ENTRY * count**2, "the matrices")
+    size = points * (_BYTES_PER_POINT + _BYTES_PER_ENTRY * count**2)
+    check_memory("airspeed", f"{points} points", size, "their matrices", "take fewer points at once")
 
 
 def _flat(target: Target, shape: tuple[int, ...]) -> Target:

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.modal_reduction import per_mode
+from proprotor.needs import need
 from proprotor.support import HUB_AXES, NormalModes
 
 COMPONENTS = ("T1", "T2", "T3", "R1", "R2", "R3")
@@ -112,11 +113,9 @@ def _read(path: Path) -> Any:
     with warnings.catch_warnings():  # pyNastran uses names that NumPy has deprecated
         warnings.simplefilter("ignore")
         with _names_of_older_numpy():
-            try:
-                from pyNastran.op2.op2 import OP2
-            except ImportError as error:
-                rule = f'needs pyNastran: pip install "proprotor[nastran]" ({error})'
-                raise InputError("file", str(path), rule) from None
+            need("pyNastran.op2.op2", "file", "Nastran's results", "nastran")
+            from pyNastran.op2.op2 import OP2
+
             results = OP2(debug=False, log=_Silent())
             try:
                 with redirect_stdout(StringIO()):

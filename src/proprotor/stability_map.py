@@ -18,6 +18,7 @@ from proprotor.crossings import growth
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
 from proprotor.modes import eigenvalues
+from proprotor.needs import check_memory
 from proprotor.speed import in_metres_per_second
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 AIRSPEED = "airspeed"
 _AT_ONCE = 4096  # points of one batch
+_BYTES_PER_POINT = 100.0  # of the grid: where it is, what was found there, and the line between
 _HALVINGS = 60
 _CLOSE = 1e-10  # of an edge
 _NEUTRAL = 1e-9  # of the largest eigenvalue: growth that says nothing
@@ -87,13 +89,16 @@ def stability_map(
     Raises
     ------
     InputError
-        For axes that are not two, values that do not rise, an unknown input, or an airspeed that is missing.
+        For axes that are not two, values that do not rise, an unknown input, an airspeed that is missing, or a grid
+        that does not fit into memory.
     """
     from proprotor.design import design_inputs
 
     names, values = _axes(case, axes)
     plane = _plane(case, names, airspeed, options)
     x, y = values
+    points = len(x) * len(y)
+    check_memory("axes", f"{points:.4g} points", _BYTES_PER_POINT * points, "the map", "take larger steps")
     grid_x, grid_y = (part.reshape(-1) for part in np.meshgrid(x, y))
     parts = [
         _evaluated(plane, grid_x[start : start + _AT_ONCE], grid_y[start : start + _AT_ONCE], level)

@@ -17,6 +17,7 @@ from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import HUB, INPUTS, ROTOR_SPEED, LinearModel
 from proprotor.modes import held_coordinates, lack_azimuth, state_matrix, without_massless
+from proprotor.needs import need
 
 if TYPE_CHECKING:
     import control
@@ -69,10 +70,9 @@ class StateSpace:
         Raises
         ------
         InputError
-            When the model is a batch of several points.
-        ImportError
-            When python-control is not installed.
+            When the model is a batch of several points, or python-control is not installed.
         """
+        need("control", "to_control", "state spaces", "control")
         import control
 
         if self.A.ndim != 2:

@@ -21,6 +21,7 @@ from proprotor.modes import (
     mode_dataset,
     with_azimuth,
 )
+from proprotor.needs import check_memory
 from proprotor.path import Line, Path, follow, path_of
 from proprotor.speed import in_metres_per_second
 from proprotor.tracking import Modes, Spectrum, link, side_by_side
@@ -30,12 +31,8 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
-ANCHORS = (
-    0.7,
-    0.5,
-    0.35,
-    0.2,
-)  # of the tip speed: where branches get their labels, the first that has a trim
+ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where branches get labels, the first that has a trim
+_BYTES_PER_POINT = 120_000.0  # while modes are followed and boundaries found; measured with the XV-15
 _STRIDE = 0.02  # of the tip speed, between the first points of the way there
 
 
@@ -253,10 +250,12 @@ def line_of_case(
     Raises
     ------
     InputError
-        For airspeeds that do not form a line, more than one input, or an unknown one.
+        For airspeeds that do not form a line, more than one input, an unknown one, or points that do not fit into
+        memory.
     """
     speeds = in_metres_per_second(airspeeds)
     speeds = speeds if speeds.ndim else speeds.reshape(1)  # one speed is the shortest list
+    _check_points("airspeed", speeds.size)
     if vary is not None:
         return _line_of_input(case, speeds.reshape(-1), vary, options)
     if _is_batch(case, options):
@@ -264,6 +263,11 @@ def line_of_case(
     if speeds.ndim != 1:
         raise InputError("airspeed", f"array of shape {speeds.shape}", "must be a list of speeds to sweep")
     return Line(speeds, lambda speed: case.linearize(speed, **options))
+
+
+def _check_points(field: str, points: int) -> None:
+    size = _BYTES_PER_POINT * points
+    check_memory(field, f"{points} points", size, "following their modes", "take fewer points")
 
 
 def _line_of_input(
@@ -282,6 +286,7 @@ def _line_of_input(
     values = values_in_si(given, unit, path)
     if len(speed) != 1 or values.ndim != 1:
         raise InputError("vary", path, "needs a list of values, and one airspeed")
+    _check_points(path, values.size)
 
     def linearize(positions: Array) -> LinearModel:
         return case.vary({path: positions}).linearize(speed[0], **options)
