@@ -1,4 +1,7 @@
-"""Balance of one blade at many points: residual, slopes, and what is left of them at a share of the loads."""
+"""Balance of one blade at many points, with its slopes, at all of the loads or at a share of them.
+
+A share multiplies precone, and the airloads in the rows of flap, lag and pitch.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,7 @@ State = dict[str, Array]
 class Slopes(NamedTuple):
     """Change of the balances with the free unknowns, N m/rad, (n, k, k).
 
-    full : at all of the loads.
+    full : with all of the airloads.
     airloads : what the airloads have in it on the rows of flap, lag and pitch; zero on the row that closes the trim.
     """
 
@@ -56,7 +59,7 @@ class Linear(NamedTuple):
     """The balance near a state.
 
     residual : array (n, k)
-        At all of the loads, of the rows that close the free unknowns, N m; N for thrust.
+        With all of the airloads, of the rows that close the free unknowns, N m; N for thrust.
     slopes : Slopes
     work, work_slopes : array (n, 5), (n, 5, k)
         Virtual work of the airloads on all rows, and less their change with the free unknowns.
@@ -99,10 +102,13 @@ class Balance:
         )
         return np.broadcast_to(np.arctan2(airspeed, 0.75 * rotor_speed * radius), (points,))
 
-    def pool(self, state: State, rows: Array) -> dict[str, Any]:
-        """Quantities of the whole blade at a state."""
+    def pool(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
+        """Quantities of the whole blade at a state, and at a share of its precone."""
         there = {name: value[rows] for name, value in state.items()}
-        return with_trim(take(self.quantities, rows), self.options, there)
+        given = take(self.quantities, rows)
+        if share is not None:
+            given["precone"] = share * given["precone"]
+        return with_trim(given, self.options, there)
 
     def loads(self, pool: Mapping[str, Any], rows: Array, **wanted: Any) -> dict[str, Any]:
         """Quantities of each segment and the radial moments of its loads."""
@@ -126,9 +132,9 @@ class Balance:
         residual[..., self.target.row] += load[rows] if load.ndim else load
         return residual, work
 
-    def left(self, state: State, rows: Array) -> Array:
-        """Residual (n, k) at all of the loads, without slopes."""
-        pool = self.pool(state, rows)
+    def left(self, state: State, rows: Array, share: float | None = None) -> Array:
+        """Residual (n, k) with all of the airloads, without slopes."""
+        pool = self.pool(state, rows, share)
         residual, _ = self.residual(pool, self.loads(pool, rows, steady_only=True), rows)
         return residual[:, self.rows]
 
@@ -160,20 +166,31 @@ class Balance:
         change: Array = evaluate(equations.residual, pool)[..., 0].imag / _COMPLEX_STEP
         return change
 
-    def near(self, state: State, rows: Array, doubts: dict[str, Array] | None = None) -> Linear:
-        """Residual and slopes at a state, with all they are made of."""
-        pool = self.pool(state, rows)
+    def near(
+        self,
+        state: State,
+        rows: Array,
+        share: Array | float | None = None,
+        doubts: dict[str, Array] | None = None,
+    ) -> Linear:
+        """Residual and slopes at a state and a share of the precone, with all they are made of."""
+        pool = self.pool(state, rows, share)
         segments = self.loads(pool, rows, doubts=doubts)
         residual, work = self.residual(pool, segments, rows)
         slopes, work_slopes = self.slopes(state, rows, pool, segments)
         return Linear(residual[:, self.rows], slopes, work, work_slopes, pool, segments)
 
-    def scaled_loads(self, here: Linear) -> Array:
-        """What a share of the loads multiplies in the residual (n, k): precone's load less the airloads' work."""
-        precone = np.zeros_like(here.work)
-        precone[:, : _COLLECTIVE] = evaluate(equations.precone_load, here.pool)[..., 0]
-        scaled: Array = (precone - here.work)[:, self.rows] * self.hinged
-        return scaled
+    def relieved(self, here: Linear, share: Array) -> Array:
+        """Residual (n, k) at a share (n,) of the airloads."""
+        work = here.work[:, self.rows] * self.hinged
+        relieved: Array = here.residual + (1 - share[:, None]) * work
+        return relieved
+
+    def precone_load(self, rows: Array) -> Array:
+        """What precone adds to the residual (n, k) of the undeflected blade."""
+        load = np.zeros((len(rows), len(self.free)))
+        load[:, self.hinged] = evaluate(equations.precone_load, take(self.quantities, rows))[..., self.free[: sum(self.hinged)], 0]
+        return load
 
     def take_step(self, state: State, rows: Array, step: Array) -> None:
         """Take a step (n, k) off the free unknowns."""

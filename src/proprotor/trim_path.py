@@ -1,15 +1,15 @@
 """The path from the undeflected blade to the trim, which says which of several equilibria is meant.
 
-A share λ from 0 to 1 multiplies, in the rows of flap, lag and pitch, the airloads and the steady centrifugal load of
-precone. Springs, centrifugal stiffness and propeller moment stay whole, and so does the row that closes the collective
-(torque or thrust), which starts from the rigid blade's root nearest the direction of the air.
+A share λ from 0 to 1 multiplies precone, and in the rows of flap, lag and pitch the airloads. Springs, centrifugal
+stiffness and propeller moment stay whole, and so does the row that closes the collective (torque or thrust), which
+starts from the rigid blade's root nearest the direction of the air.
 
 Most trims need no path, for a bound tells that they are its end. With J_λ(x) the slopes at a share λ, P the inverse of
 their mean over a step in λ and x, and N the largest |P J_λ(x) - 1| in the step entry by entry, Newton's iteration with
 P contracts for every λ of the step where N has a spectral radius below one: then each λ has one equilibrium within reach,
-and these are one curve without a turn. J is linear in λ, so that the step's ends hold the extremes in λ. In x it is
-known at the step's ends; it is taken to change twice as much within reach of the path as between them, and the radius
-may be one half at most.
+and these are one curve without a turn. The share of the airloads makes J linear in λ, so that the step's ends hold the
+extremes. Where the blade is, its precone included, J is known at both ends; it is taken to change twice as much within
+reach of the path as between them, and the radius may be one half at most.
 
 The other points are followed in steps of λ, each of a length that the same bound allows.
 """
@@ -91,7 +91,7 @@ def at_end(
 ) -> Array:
     """Whether the bound tells that points (n,) with these slopes at the start and here are at the path's end."""
     smooth = isinstance(balance.sections.airfoil, Airfoil)
-    between = None if smooth else balance.near(_half_way(start, state), rows).slopes
+    between = None if smooth else balance.near(_half_way(start, state), rows, share=0.5).slopes
     found = np.zeros(len(rows), dtype=bool)
     left = np.arange(len(rows))
     for windows in _WINDOWS:
@@ -168,7 +168,7 @@ def _accept(
 def _correct(
     balance: Balance, state: State, rows: Array, share: Array, iterations: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Newton at a share of the loads: which points (n,) arrived, their slopes, full and of airloads, and scaled loads."""
+    """Newton at a share of the loads: which points (n,) arrived, their slopes, full and of airloads, and loads."""
     n, k = len(rows), len(balance.free)
     arrived, going = np.zeros(n, dtype=bool), np.arange(n)
     full, airloads, loads = np.zeros((n, k, k)), np.zeros((n, k, k)), np.zeros((n, k))
@@ -176,10 +176,10 @@ def _correct(
         if not len(going):
             break
         here, part = rows[going], share[going]
-        linear = balance.near(state, here)
+        linear = balance.near(state, here, share=part)
         full[going], airloads[going] = linear.slopes
-        loads[going] = balance.scaled_loads(linear)
-        step = newton_step(linear.slopes.at(part), linear.residual - (1 - part[:, None]) * loads[going])
+        loads[going] = balance.precone_load(here) - linear.work[:, balance.rows] * balance.hinged
+        step = newton_step(linear.slopes.at(part), balance.relieved(linear, part))
         balance.take_step(state, here, step)
         iterations[here] += 1
         size = np.abs(step).max(axis=1)
@@ -260,7 +260,7 @@ def _rigid_pitch(balance: Balance, state: State, rows: Array) -> tuple[Array, Ar
 def _closing(balance: Balance, state: State, rows: Array, pitch: Array) -> Array:
     """Residual (n,) of the row that closes the trim, at a pitch of the undeflected blade."""
     state["collective"][rows] = pitch
-    left: Array = balance.left(state, rows)[:, -1] if len(rows) else np.zeros(0)
+    left: Array = balance.left(state, rows, share=0.0)[:, -1] if len(rows) else np.zeros(0)
     return left
 
 

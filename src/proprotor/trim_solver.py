@@ -140,7 +140,7 @@ class _Search:
         for count in range(_ITERATIONS // 2):
             if not len(active):
                 break
-            step, here = _newton(few, self.state, active)
+            step, here = _newton(few, self.state, active) if count else _first_step(few, self.state, active)
             last.put(active, here.slopes)
             if count == 0:
                 first.put(active, here.slopes)
@@ -237,8 +237,14 @@ def _newton(
     balance: Balance, state: State, rows: Array, doubts: dict[str, Array] | None = None
 ) -> tuple[Array, Linear]:
     """Newton's step (n, k) at all of the loads, and the balance before it."""
-    here = balance.near(state, rows, doubts)
+    here = balance.near(state, rows, doubts=doubts)
     return newton_step(here.slopes.full, here.residual), here
+
+
+def _first_step(balance: Balance, state: State, rows: Array) -> tuple[Array, Linear]:
+    """Newton's step (n, k) from the undeflected blade to all of the loads, and the balance where the path begins."""
+    here = balance.near(state, rows, share=0.0)
+    return newton_step(here.slopes.full, here.residual + balance.precone_load(rows)), here
 
 
 def _after(here: Linear, step: Array) -> Array:
