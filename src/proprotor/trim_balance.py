@@ -50,6 +50,15 @@ class Slopes(NamedTuple):
         slopes: Array = self.full - (1 - share[:, None, None]) * self.airloads
         return slopes
 
+    def by_moments(self, sprung: Array) -> Slopes:
+        """The same per unit of the moments that springs and centrifugal force make of flap and lag, not of the angles.
+
+        So counted a spring as stiff as can be that turns with the pitch changes no slope.
+        """
+        structure = np.where(sprung[:, None], self.full - self.airloads, np.eye(len(sprung)))
+        angles = solve(structure, np.broadcast_to(np.eye(len(sprung)), structure.shape))
+        return Slopes(self.full @ angles, self.airloads @ angles)
+
     def of(self, rows: Array) -> Slopes:
         """Those of some of the points."""
         return Slopes(self.full[rows], self.airloads[rows])
@@ -101,6 +110,11 @@ class Balance:
             np.real(self.quantities[name]) for name in ("airspeed", "rotor_speed", "radius")
         )
         return np.broadcast_to(np.arctan2(airspeed, 0.75 * rotor_speed * radius), (points,))
+
+    @property
+    def sprung(self) -> Array:
+        """Which of these rows (k,) are the blade's flap and lag."""
+        return np.array([UNKNOWNS[place] in ("coning", "lag") for place in self.free], dtype=bool)
 
     def pool(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
         """Quantities of the whole blade at a state, and at a share of its precone."""

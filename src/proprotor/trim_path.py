@@ -16,6 +16,7 @@ The other points are followed in steps of λ, each of a length that the same bou
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,7 @@ _REACH = 2.0  # change of slopes within reach of the path, in that between the e
 _WINDOWS = (1, 2, 4)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
 _POWER_STEPS, _TINY, _FLOOR = 8, 1e-300, 1e-9
 _FIRST_STEP, _SHORTEST_STEP = 0.25, 1e-6  # of λ
+_CAUTION = 0.8  # of the largest radius, which a step is made for
 _STEPS = 400
 _CORRECTIONS = 8
 _ARRIVED = 1e-7  # rad, the last correction
@@ -39,13 +41,15 @@ _REFINEMENTS = 60
 _SHARP = 1e-12  # rad, of the rigid blade's root
 
 
-def connected(
-    before: Slopes, after: Slopes, share: Array, to: Array, windows: int = 1, between: Slopes | None = None
+def contraction(
+    sprung: Array, before: Slopes, after: Slopes, share: Array, to: Array, windows: int = 1, between: Slopes | None = None
 ) -> Array:
-    """Whether a bound tells that the path leads from one equilibrium (n,) to the other without a turn.
+    """Spectral radius (n,) of N in a step: up to one half the path leads from one equilibrium to the other, unturned.
 
     Parameters
     ----------
+    sprung : array (k,)
+        Which rows are flap and lag.
     before, after : Slopes
         At the two equilibria.
     share, to : array (n,)
@@ -55,25 +59,45 @@ def connected(
     between : Slopes, optional
         Half-way, for section models whose slopes may do there what they don't at the ends.
     """
-    mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
-    change = Slopes(*((b - a) / 2 for a, b in zip(before, after, strict=True)))
-    aside = None if between is None else Slopes(*(a - b for a, b in zip(between, mean, strict=True)))
-    half = (to - share) / (2 * windows)
-    found = np.ones(len(share), dtype=bool)
-    for window in range(windows):
-        middle = share + (2 * window + 1) * half
-        parts = [half[:, None, None] * mean.airloads, change.at(middle)]
-        parts += [] if aside is None else [aside.at(middle)]
-        k = mean.full.shape[-1]
-        moved = np.abs(solve(mean.at(middle), np.concatenate(parts, axis=-1)))
-        in_share, *in_place = (moved[..., start : start + k] for start in range(0, moved.shape[-1], k))
-        found &= _radius(in_share + _REACH * np.maximum.reduce(in_place)) <= _CONTRACTION
+
+    def radius(rows: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
+        start, half = share[rows], (to - share)[rows] / (2 * windows)
+        middles = (start + (2 * window + 1) * half for window in range(windows))
+        return np.maximum.reduce([_radius(_moved(before, after, between, half, middle)) for middle in middles])
+
+    return _by_moments_or_angles(sprung, radius, before, after, *(() if between is None else (between,)))
+
+
+def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
+    """Whether the slopes at all of the loads are so near those expected that one equilibrium has both."""
+
+    def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
+        return _radius(np.abs(solve(expected.full, found.full - expected.full)))
+
+    near: Array = _by_moments_or_angles(sprung, radius, found, expected) <= _CONTRACTION
+    return near
+
+
+def _by_moments_or_angles(sprung: Array, radius: Callable[..., Array], *slopes: Slopes) -> Array:
+    """The smaller spectral radius (n,) of those by moments and, where that is too large, by angles."""
+    rows = np.arange(len(slopes[0].full))
+    found = radius(rows, *(part.by_moments(sprung) for part in slopes))
+    rows = np.flatnonzero(~(found <= _CONTRACTION))
+    if len(rows):
+        found[rows] = np.fmin(found[rows], radius(rows, *(part.of(rows) for part in slopes)))
     return found
 
 
-def near_each_other(found: Array, expected: Array) -> Array:
-    """Whether the slopes (n, k, k) at all of the loads are so near those expected that one equilibrium has both."""
-    return _radius(np.abs(solve(expected, found - expected))) <= _CONTRACTION
+def _moved(before: Slopes, after: Slopes, between: tuple[Slopes, ...], half: Array, middle: Array) -> Array:
+    """N (n, k, k) of a window in λ about its middle, and half as long as it is."""
+    mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
+    change = Slopes(*((b - a) / 2 for a, b in zip(before, after, strict=True)))
+    aside = (Slopes(*(a - b for a, b in zip(part, mean, strict=True))) for part in between)
+    parts = [half[:, None, None] * mean.airloads, *(part.at(middle) for part in (change, *aside))]
+    moved = np.abs(solve(mean.at(middle), np.concatenate(parts, axis=-1)))
+    in_share, *in_place = np.split(moved, len(parts), axis=-1)
+    largest: Array = in_share + _REACH * np.maximum.reduce(in_place)
+    return largest
 
 
 def _radius(matrix: Array) -> Array:
@@ -97,7 +121,8 @@ def at_end(
     for windows in _WINDOWS:
         ends = np.zeros(len(left)), np.ones(len(left))
         middle = None if between is None else between.of(left)
-        found[left] = connected(before.of(left), after.of(left), *ends, windows, middle)
+        radius = contraction(balance.sprung, before.of(left), after.of(left), *ends, windows, middle)
+        found[left] = radius <= _CONTRACTION
         left = left[~found[left]]
         if not len(left):
             break
@@ -145,12 +170,15 @@ def follow(balance: Balance, state: State, rows: Array, iterations: Array) -> Fo
         trial = {name: value.copy() for name, value in state.items()}
         balance.take_step(trial, here, (share - to)[:, None] * tangent[active])
         good, *there = _correct(balance, trial, here, to, iterations)
-        good &= connected(followed.slopes.of(active), Slopes(*there[:2]), share, to)
+        ends = followed.slopes.of(active), Slopes(*there[:2])
+        radius = contraction(balance.sprung, *ends, share, to)
+        good &= radius <= _CONTRACTION
         gained = active[good]
         copy_state(trial, rows[gained], onto=state)
         followed.share[gained] = to[good]
         _accept(followed, tangent, gained, *(part[good] for part in there))
-        step[active] *= np.where(good, 2.0, 0.5)
+        longer = np.clip(_CAUTION * _CONTRACTION / radius, 0.25, 2.0)
+        step[active] *= np.where(good | (radius > _CONTRACTION), longer, 0.5)
         active = active[(followed.share[active] < 1) & (step[active] >= _SHORTEST_STEP)]
     return followed
 

@@ -83,12 +83,13 @@ def solve_trim(
         if sections.is_complex or any(map(np.iscomplexobj, (*quantities.values(), *_numbers(target)))):
             return _complex_trim(balance, coarse, points)
         search = _Search.of(balance, points)
-        if not free:
-            return _settle(balance, search)
-        search.come_near(replace(balance, sections=coarse))
-        search.come_close()
-        search.finish()
-        return _settle(balance, search)
+        if free:
+            search.come_near(replace(balance, sections=coarse))
+            search.come_close()
+            search.finish()
+        return _settle(
+            balance, search.state, search.before, search.reason, search.iterations, search.last
+        )
 
 
 @dataclass(eq=False)
@@ -106,7 +107,7 @@ class _Search:
     state: State
     before: State
     followed: Array
-    ends: Array
+    ends: Slopes
     reason: Array
     iterations: Array
     last: Found | None = None
@@ -117,7 +118,7 @@ class _Search:
         k = len(balance.free)
         start, state, before = (_start(balance, points) for _ in range(3))
         followed = ~_articulated(balance, points)
-        ends = np.full((points, k, k), np.nan)
+        ends = Slopes.unknown(points, k)
         reason, iterations = _before_trim(balance, points), np.zeros(points, dtype=int)
         return cls(balance, start, state, before, followed, ends, reason, iterations)
 
@@ -129,7 +130,7 @@ class _Search:
     @property
     def near(self) -> Array:
         """Of these, the points that have come to the end of their path on few stations."""
-        known = np.isfinite(self.ends).all(axis=(1, 2))
+        known = np.isfinite(self.ends.full).all(axis=(1, 2))
         return np.flatnonzero((self.reason == "") & known)
 
     def come_near(self, few: Balance) -> None:
@@ -153,14 +154,16 @@ class _Search:
         copy_state(self.start, np.setdiff1d(rows, arrived), onto=self.state)
         known = ~self.followed[arrived]
         known |= at_end(few, first.of(arrived), last.of(arrived), self.start, self.state, arrived)
-        self.ends[arrived[known]] = last.full[arrived[known]]
+        self.ends.put(arrived[known], last.of(arrived[known]))
         self._follow(few, np.setdiff1d(rows[self.followed[rows]], arrived[known]))
 
     def _follow(self, balance: Balance, rows: Array) -> Followed:
         """Lead points along their path; where it ends before all of the loads, they are at their start again."""
         copy_state(self.start, rows, onto=self.state)
         found = follow(balance, self.state, rows, self.iterations)
-        self.ends[rows] = np.where(found.arrived[:, None, None], found.slopes.full, np.nan)
+        arrived = np.flatnonzero(found.arrived)
+        self.ends.put(rows, Slopes.unknown(len(rows), len(balance.free)))
+        self.ends.put(rows[arrived], found.slopes.of(arrived))
         copy_state(self.start, rows[~found.arrived], onto=self.state)
         return found
 
@@ -170,7 +173,7 @@ class _Search:
         The slopes are those of few stations, and learn from each step what it showed (Broyden's rank-one update).
         """
         rows = self.near
-        slopes = self.ends[rows]
+        slopes = self.ends.full[rows]
         active, before = np.arange(len(rows)), np.full(slopes.shape[:2], np.nan)
         for count in range(_CLOSE_STEPS):
             if not len(active):
@@ -211,14 +214,14 @@ class _Search:
         """Newton with everything; which points converged, and those that have a path near its end."""
         active, done = rows, np.zeros(len(self.reason), dtype=bool)
         size_before = np.full(len(self.reason), np.inf)
-        found = self.ends.copy()
+        found = Slopes.unknown(len(self.reason), len(self.balance.free))
         for count in range(_ITERATIONS):
             if not len(active):
                 break
             doubts: dict[str, Array] = {}
             copy_state(self.state, active, onto=self.before)
             step, here = _newton(self.balance, self.state, active, doubts)
-            found[active] = here.slopes.full
+            found.put(active, here.slopes)
             finite, size = np.isfinite(step).all(axis=1), np.abs(step).max(axis=1)
             stalled = (size <= _STALLED) & (size >= size_before[active] / 2)
             small = finite & ((size <= _CONVERGED) | stalled)
@@ -229,7 +232,8 @@ class _Search:
             self.iterations[active] += 1
             done[active] = small
             active = active[finite & ~small]
-        done[rows] &= ~self.followed[rows] | near_each_other(found[rows], self.ends[rows])
+        near = near_each_other(self.balance.sprung, found.of(rows), self.ends.of(rows))
+        done[rows] &= ~self.followed[rows] | near
         return done
 
 
@@ -264,9 +268,10 @@ def _ended(found: Followed, target: Target) -> Array:
     return reason
 
 
-def _settle(balance: Balance, search: _Search) -> Settled:
+def _settle(
+    balance: Balance, state: State, before: State, reason: Array, iterations: Array, last: Found | None = None
+) -> Settled:
     """The trim, with loads at the points that have one: those of the last step, made again where points dropped out."""
-    state, reason = search.state, search.reason
     beyond = _beyond_reach(balance, state, reason)
     rows = np.flatnonzero(reason == "")
     kind = np.result_type(float, *state.values())
@@ -275,17 +280,18 @@ def _settle(balance: Balance, search: _Search) -> Settled:
     pool: dict[str, Any] = {}
     segments: dict[str, Any] = {}
     if len(rows):
-        work, here, doubts = search.last or (None, None, {})
-        if beyond.any() or here is None:
-            step, here = _newton(balance, search.before, rows, doubts := {})
-            work = _after(here, step)
+        if beyond.any() or last is None:
+            told: dict[str, Array] = {}
+            step, again = _newton(balance, before, rows, told)
+            last = _after(again, step), again, told
+        work, here, doubts = last
         pool, segments = here.pool, here.segments
         for name in UNKNOWNS:
             values[name][rows] = state[name][rows]
         loads = work * np.asarray(pool["n_blades"])[..., None]
         values["torque"][rows], values["thrust"][rows] = loads[:, TORQUE], loads[:, THRUST]
         warning[rows] = _warnings(balance, here, loads[:, THRUST], doubts)
-    trim = Trim(**values, converged=reason == "", reason=reason, warning=warning, iterations=search.iterations)
+    trim = Trim(**values, converged=reason == "", reason=reason, warning=warning, iterations=iterations)
     return Settled(trim, rows, pool, segments)
 
 
@@ -306,9 +312,7 @@ def _complex_trim(balance: Balance, coarse: BladeSections, points: int) -> Settl
     if balance.free and len(rows):
         step, _ = _newton(balance, state, rows)
         balance.take_step(state, rows, step)
-    search = _Search.of(balance, points)
-    search = replace(search, state=state, before=state, reason=trim.reason.copy(), iterations=trim.iterations)
-    return _settle(balance, search)
+    return _settle(balance, state, state, trim.reason.copy(), trim.iterations)
 
 
 def _numbers(target: Target) -> tuple[Any, Any]:
