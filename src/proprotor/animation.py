@@ -129,8 +129,9 @@ def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
         draw_still(ax, motion, view)
         ax.set_axis_off()
         ax.set_title(_TITLES[view], fontsize=8, color="0.3")
-    figure.text(0.02, 0.975, f"{motion.case}\n{title_of(motion)}", fontsize=9, va="top")
-    figure.text(0.02, 0.02, _small_print(motion), fontsize=6.5, color="0.35", va="bottom")
+    heading = f"{motion.case}\n{title_of(motion)}"
+    figure.text(0.02, 0.975, heading, fontsize=9, va="top", parse_math=False)
+    figure.text(0.02, 0.02, _small_print(motion), fontsize=6.5, color="0.35", va="bottom", parse_math=False)
     canvas.draw()
     return canvas, axes
 

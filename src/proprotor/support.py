@@ -25,7 +25,7 @@ class NormalModes:
     Parameters
     ----------
     names : sequence of str
-        One name per coordinate, all different and none of them a rotor's own.
+        One name per coordinate, all different and none of them that of a coordinate or mode of a rotor.
     mass, damping, stiffness : array_like, shape (..., n, n)
         Symmetric, SI (kg or kg m² and so on, as the coordinate is a length in m or an angle in rad).
         The mass must have no negative eigenvalue. Leading axes are many supports at once.
@@ -39,7 +39,7 @@ class NormalModes:
     Raises
     ------
     InputError
-        When sizes differ or a matrix is not finite, not symmetric, or (mass) negative.
+        When sizes differ, a name is taken, or a matrix is not finite, not symmetric, or (mass) negative.
     """
 
     names: Sequence[str]
@@ -55,6 +55,9 @@ class NormalModes:
         names = tuple(self.names)
         if len(set(names)) < len(names) or (not names and np.size(self.mass)):
             raise InputError("names", ", ".join(names), "must name each mode, all differently")
+        from proprotor.mode_names import check_support_names  # here, because it knows the rotor's coordinates
+
+        check_support_names("names", names)
         n = len(names)
         object.__setattr__(self, "names", names)
         object.__setattr__(self, "hub", _finite("hub", self.hub, (6, n)))

@@ -7,7 +7,9 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.text import Text
 
+from proprotor.printable import printable
 from proprotor.provenance import doubtful_inputs, reservations
 from proprotor.tables import CONVENTION, SweepTable
 
@@ -32,7 +34,7 @@ def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_mode
     all_modes : bool
         Every mode, in as many tables as it takes, or those of interest only.
     """
-    console = _console()
+    console = PlainConsole()
     chosen = ", ".join(
         f"{name.replace('_', ' ')} {option_told(value)}"
         for name, value in options.items()
@@ -51,7 +53,7 @@ def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_mode
 
 def print_case(case: Case) -> None:
     """Print what a case is, and each input that was not read in a source."""
-    console = _console()
+    console = PlainConsole()
     warnings = (f"Warning: {text}" for text in case.warnings)
     for paragraph in filter(None, (case.title, case.description, *reservations(case), *warnings)):
         console.print(f"{paragraph}\n")
@@ -60,8 +62,20 @@ def print_case(case: Case) -> None:
         console.print(f"{'':<11} {number.source}", soft_wrap=True)
 
 
-def _console() -> Console:
-    return Console(markup=False, highlight=False, emoji=False)
+class PlainConsole(Console):
+    """A console that prints text as it is, and nothing of it that is not printable (`proprotor.printable`)."""
+
+    def __init__(self, *, stderr: bool = False) -> None:
+        super().__init__(markup=False, highlight=False, emoji=False, stderr=stderr)
+
+    def print(self, *objects: Any, **more: Any) -> None:
+        super().print(*map(_shown, objects), **more)
+
+
+def _shown(it: Any) -> Any:
+    if isinstance(it, Text):
+        it.plain = printable(it.plain, keep="\n")
+    return printable(it, keep="\n") if isinstance(it, str) else it
 
 
 def _shortened(text: str, case: Case, width: int) -> str:

@@ -23,9 +23,9 @@ from proprotor.output_file import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from rich.console import Console
 
     from proprotor.case import Case
+    from proprotor.terminal import PlainConsole
 
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
 _NARROWEST = 30  # characters of a wrapped column
@@ -82,11 +82,11 @@ def told_options(case: Case, options: Mapping[str, Any]) -> dict[str, Any]:
     return {name: structure if name == "structure" else options.get(name) for name in (*CHOICES, *options)}
 
 
-def console() -> Console:
+def console() -> PlainConsole:
     """Of the standard output; text is printed as it is."""
-    from rich.console import Console
+    from proprotor.terminal import PlainConsole  # here, because rich takes long to import
 
-    return Console(markup=False, highlight=False, emoji=False)
+    return PlainConsole()
 
 
 def print_head(case: Case) -> None:

@@ -57,7 +57,8 @@ def note(ax: Axes, text: str) -> None:
     """A line in small print above the axes, on the left, after what stands there already."""
     before = ax.get_title(loc="left")
     told = textwrap.fill(text, 110)
-    ax.set_title("\n".join(filter(None, (before, told))), fontsize=LABEL_SIZE, loc="left", color="0.3")
+    style: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": "0.3", "parse_math": False}
+    ax.set_title("\n".join(filter(None, (before, told))), loc="left", **style)
 
 
 def rests_on(ax: Axes, case: Case, *more: str) -> Axes:
@@ -99,5 +100,5 @@ def add_footer(figure: Figure | None, text: str) -> None:
     else:
         figure.set_size_inches(width, height / (1 - share))
         engine.set(rect=(0, share, 1, 1 - share))
-    style: dict[str, Any] = {"fontsize": _NOTE_SIZE, "va": "bottom", "color": GREY}
+    style: dict[str, Any] = {"fontsize": _NOTE_SIZE, "va": "bottom", "color": GREY, "parse_math": False}
     figure.text(0.2 / width, 0.5 * _INCHES * (1 - share) / height, "\n".join(lines), **style)

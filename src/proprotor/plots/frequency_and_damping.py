@@ -142,7 +142,7 @@ def plot_sweep(
     plot_frequency(sweep, above, rotor_speed=rotor_speed, unit=unit)
     plot_damping(sweep, below, unit=unit, limits=damping_limits)
     above.set_xlabel("")
-    figure.suptitle(title, x=0.09, ha="left", fontsize=11)
+    figure.suptitle(title, x=0.09, ha="left", fontsize=11, parse_math=False)
     return figure
 
 
