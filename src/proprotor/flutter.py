@@ -6,16 +6,17 @@ Every crossing in a range is found, flutter and divergence, those between two po
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor import summary
+from proprotor import stamp, summary
 from proprotor.arrays import Array
 from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
+from proprotor.doubts import Doubt, doubts_along
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
 from proprotor.mode_names import name_list, name_shares
@@ -23,6 +24,7 @@ from proprotor.model import LinearModel
 from proprotor.modes import held_coordinates
 from proprotor.path import Line, follow
 from proprotor.speed import in_metres_per_second
+from proprotor.stamp import Stamp
 from proprotor.sweep import approach_to, line_of_case, rotor_speed_of, state_names, tip_speed
 
 if TYPE_CHECKING:
@@ -60,6 +62,12 @@ class Boundary:
         (`proprotor.eigenvalue_derivatives.defect`).
     eigen_solves : int
         Spent on this crossing beyond those that bracketed it.
+    warning : str
+        What makes the boundary doubtful, such as Mach numbers beyond what the airfoil knows; empty where nothing does.
+    level : float
+        Damping ratio that is crossed.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`; empty on a line that is of no case.
     """
 
     position: float
@@ -72,6 +80,9 @@ class Boundary:
     mechanism: Mapping[str, float]
     defect: float
     eigen_solves: int
+    warning: str = ""
+    level: float = 0.0
+    stamp: Stamp = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return summary.of_boundary(self)
@@ -104,6 +115,10 @@ class FlutterPoint:
     scan_solves : int
     level : float
         Damping ratio.
+    doubts : tuple of Doubt
+        What makes airspeeds of the search doubtful, and from where to where in m/s.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`.
     """
 
     speed: float
@@ -116,9 +131,16 @@ class FlutterPoint:
     eigen_solves: int
     scan_solves: int
     level: float = 0.0
+    doubts: tuple[Doubt, ...] = ()
+    stamp: Stamp = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return summary.of_flutter_point(self)
+
+    @property
+    def warning(self) -> str:
+        """What makes the flutter speed doubtful; empty where nothing does."""
+        return next((found.warning for found in self.boundaries if found.position == self.speed), "")
 
     def margin(self, airspeed: Any) -> float:
         """How far the flutter speed lies above an airspeed, as a part of it.
@@ -148,6 +170,10 @@ class Crossings(NamedTuple):
         First and last position that could be analysed, m/s or in SI units of the input.
     scan_solves, eigen_solves : int
         What it took to bracket every boundary, and in all.
+    doubts : tuple of Doubt
+        What makes positions of the scan doubtful, and from where to where.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`; empty on a line that is of no case.
     """
 
     boundaries: tuple[Boundary, ...]
@@ -155,6 +181,8 @@ class Crossings(NamedTuple):
     searched: tuple[float, float]
     scan_solves: int
     eigen_solves: int
+    doubts: tuple[Doubt, ...] = ()
+    stamp: Stamp = {}  # noqa: RUF012 - never changed
 
     def __repr__(self) -> str:
         return summary.of_crossings(self)
@@ -298,8 +326,23 @@ def boundaries(
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
-    near = approach_to(case, line, line.models(line.positions), options)
-    return find_crossings(line, level=level, rotor_speed=rotor_speed_of(case), approach=near)
+    model = line.models(line.positions)
+    near = approach_to(case, line, model, options)
+    found = find_crossings(line, level=level, rotor_speed=rotor_speed_of(case), approach=near)
+    doubts = doubts_along(np.asarray(line.positions), model.trim.warning)
+    own = stamp.of_case(case, options)
+    return found._replace(
+        boundaries=tuple(_carrying(found.boundaries, line, level, own)), doubts=doubts, stamp=own
+    )
+
+
+def _carrying(found: tuple[Boundary, ...], line: Line, level: float, own: Stamp) -> Iterator[Boundary]:
+    """The boundaries with what makes each doubtful, and where they come from."""
+    if not found:
+        return
+    warnings = line.models(np.array([boundary.position for boundary in found])).trim.warning
+    for boundary, warning in zip(found, warnings.tolist(), strict=True):
+        yield replace(boundary, warning=str(warning), level=level, stamp=own)
 
 
 def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:
@@ -355,4 +398,6 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
         eigen_solves=found.eigen_solves,
         scan_solves=found.scan_solves,
         level=level,
+        doubts=found.doubts,
+        stamp=found.stamp,
     )

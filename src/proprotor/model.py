@@ -37,6 +37,7 @@ from proprotor.operation import Operation
 from proprotor.options import Options, parse_options
 from proprotor.rotor import Rotor
 from proprotor.speed import in_metres_per_second
+from proprotor.stamp import Origin
 from proprotor.trim import UNKNOWNS, Target, Trim, trim_target
 from proprotor.trim_solver import Settled, solve_trim
 
@@ -73,6 +74,8 @@ class LinearModel:
         Hub motion in the coordinates; None for a model whose first six coordinates are the hub's own.
     rotor : LinearModel, optional
         The rotor alone of a rotor on a support, from which the hub loads follow.
+    origin : Origin, optional
+        The options in force, and the case where it is one's: see `proprotor.stamp`.
     """
 
     M: Array
@@ -84,6 +87,7 @@ class LinearModel:
     B: Array | None = None
     hub: Array | None = None
     rotor: LinearModel | None = None
+    origin: Origin | None = None
 
     def __repr__(self) -> str:
         from proprotor.summary import of_model
@@ -236,7 +240,8 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    model = LinearModel(**parts, dofs=coordinates, trim=shaped, airspeed=np.broadcast_to(speed, shape))
+    speeds = np.broadcast_to(speed, shape)
+    model = LinearModel(**parts, dofs=coordinates, trim=shaped, airspeed=speeds, origin=Origin(choice))
     return model if dofs == coordinates else model.submodel(dofs)
 
 

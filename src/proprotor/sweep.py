@@ -100,7 +100,7 @@ def sweep(
     trust = np.where(np.isnan(path.spectrum.values[:points, :1]), np.nan, path.trust(points)[:, columns])
     data["whirl"] = by_mode, sense, {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
     data["tracking_quality"] = by_mode, trust, {"units": "1", "long_name": "trust in the steps to a point"}
-    data.attrs = {"eigen_solves": len(path.points) + named.eigen_solves, "named_at": named.told}
+    data.attrs |= {"eigen_solves": len(path.points) + named.eigen_solves, "named_at": named.told}
     return data.assign_coords(mode=modes)
 
 
