@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor import stamp
+from proprotor.doubts import MARK, marked
 from proprotor.errors import InputError
 from proprotor.speed import KNOT
 
@@ -21,6 +24,7 @@ _SIZE = (8.0, 4.4)  # inches
 _PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "side": (0.82, 0.09, 0.17, 0.76)}
 _TITLES = {"3d": "", "front": "from ahead", "side": "from outboard"}
 _COLOURS = 32  # of the GIF
+_LETTERS = 170  # of a line of the small print
 
 
 def animate_mode(
@@ -84,7 +88,7 @@ def title_of(motion: ModeMotion) -> str:
     damping = -100 * value.real / abs(value)
     hertz = value.imag / (2 * np.pi)
     return (
-        f"{motion.mode} at {motion.airspeed / KNOT:.0f} kt: {hertz:.2f} Hz{per_rev}, "
+        f"{motion.mode} at {marked(f'{motion.airspeed / KNOT:.0f}', motion.warning)} kt: {hertz:.2f} Hz{per_rev}, "
         f"damping {damping:.2f} % of critical"
     )
 
@@ -138,4 +142,8 @@ def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
 
 def _small_print(motion: ModeMotion) -> str:
     told = "Blades are shown at azimuths that stand still. Amplitude enlarged and held; grey: trim."
-    return told + (" The wing is a sketch in the proportions of the XV-15." if motion.sketched else "")
+    sketch = " The wing is a sketch in the proportions of the XV-15." if motion.sketched else ""
+    doubt = f" {MARK} Doubtful: {motion.warning}." if motion.warning else ""
+    return "\n".join(
+        filter(None, (told + sketch, textwrap.fill(f"{stamp.told(motion.stamp)}{doubt}", _LETTERS)))
+    )

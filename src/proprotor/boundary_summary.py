@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from proprotor.doubts import marked
 from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ COLUMNS = (
     "onset",
     "mechanism",
     "growth per airspeed (1/m)",
+    "warning",
 )
 
 
@@ -37,6 +39,7 @@ def boundary_record(boundary: Boundary, case: Case) -> dict[str, Any]:
         boundary.onset,
         dict(boundary.mechanism),
         boundary.rate,
+        boundary.warning,
     )
     return dict(zip(COLUMNS, values, strict=True))
 
@@ -64,7 +67,8 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
     if math.isnan(found.speed):
         yield f"No mode becomes {beyond} between {low:.4g} and {high:.4g} {unit}."
     else:
-        yield f"Flutter speed {found.speed / factor:.2f} {unit} ({found.mode}, {found.kind})."
+        speed = marked(f"{found.speed / factor:.2f}", found.warning)
+        yield f"Flutter speed {speed} {unit} ({found.mode}, {found.kind})."
     if at is None:
         return
     count = modes_beyond(found, at)
@@ -73,4 +77,5 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
     elif count:
         yield f"At {at / factor:.4g} {unit} {count} mode{'s are' if count > 1 else ' is'} {beyond}."
     if not math.isnan(found.speed):
-        yield f"Margin at {at / factor:.4g} {unit}: {100 * found.margin(at):+.1f} % of that airspeed."
+        margin = marked(f"{100 * found.margin(at):+.1f}", found.warning)
+        yield f"Margin at {at / factor:.4g} {unit}: {margin} % of that airspeed."

@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from proprotor.arrays import Array
+
+if TYPE_CHECKING:
+    import xarray
 
 MARK = "?"
 _SHARE = re.compile(r"\d+(?=%)")  # which differs from point to point, for the same reason
@@ -49,13 +52,19 @@ def _largest(texts: list[str]) -> str:
     return _SHARE.sub(lambda share: f"up to {share[0]}", largest)
 
 
-def doubts_along(positions: Array, warnings: Array) -> tuple[Doubt, ...]:
-    """The doubts along a line of positions (points,) with warnings (points,)."""
-    at = np.asarray(positions, dtype=float)
-    found = reasons_for_doubt(warnings.tolist())
+def doubts_along(positions: Array | float, warnings: Array) -> tuple[Doubt, ...]:
+    """The doubts along a line of positions (points,) with warnings (points,), or at one."""
+    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    found = reasons_for_doubt(np.atleast_1d(warnings).tolist())
     return tuple(
         Doubt(text, float(at[places].min()), float(at[places].max())) for text, places in found.items()
     )
+
+
+def doubtful_near(positions: Array, warnings: Array, at: float) -> bool:
+    """Whether a point is doubtful of the two between which a position lies, or of which it is one."""
+    near = [positions[positions <= at].max(initial=-np.inf), positions[positions >= at].min(initial=np.inf)]
+    return bool((warnings[np.isin(positions, near)] != "").any())
 
 
 def marked(number: str, warning: object) -> str:
@@ -69,3 +78,11 @@ def footnotes(doubts: Iterable[Doubt], unit: str, factor: float = 1.0) -> Iterat
         low, high = (f"{float(f'{end / factor:.10g}'):g} {unit}".strip() for end in doubt[1:])
         where = f"at {low}" if low == high else f"from {low} to {high}"
         yield f"Doubtful {where}: {doubt.text}."
+
+
+def map_doubts(found: xarray.Dataset) -> Iterator[str]:
+    """A sentence on each doubt of a stability map, of its points and of the boundary between them."""
+    warnings = [*found.warning.values.ravel().tolist(), *found.boundary_warning.values.tolist()]
+    for text, places in reasons_for_doubt(warnings).items():
+        inside = sum(place < found.warning.size for place in places)
+        yield f"Doubtful at {inside} points and {len(places) - inside} of the boundary: {text}."

@@ -175,7 +175,9 @@ def options_of(found: Mapping[Any, Any], case: Case, given: Mapping[str, Any]) -
         does not say, and an option that cannot be read back and is not repeated.
     """
     own = check_options(found, case, given)
-    return {name: _keyword(case, name, value, given) for name, value in own.items() if not _follows(name, value)}
+    return {
+        name: _keyword(case, name, value, given) for name, value in own.items() if not _follows(name, value)
+    }
 
 
 def check_options(found: Mapping[Any, Any], case: Case, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -191,16 +193,20 @@ def check_options(found: Mapping[Any, Any], case: Case, given: Mapping[str, Any]
     if found.get("deck", deck_fingerprint(case)) != deck_fingerprint(case):
         rule = f"must be the case of the result, {found.get('case')}, with the same numbers in its deck"
         raise InputError("case", case.name, rule)
-    own: dict[str, Any] = json.loads(found["options"])
+    own = options_told(found)
     for name, value in given.items():
         if name not in own:
             parse_options({name: value})  # which tells that there is none
         repeated = [value] if name == "locked" and isinstance(value, str) else _plain(value)
         unset = value is None and in_force(Options()).get(name) is not None
         if not unset and repeated != own[name]:
-            rule = f"must be {option_told(own[name])}, with which the result was computed, or be left out"
+            rule = f"must be {_written(own[name])}, with which the result was computed, or be left out"
             raise InputError(name, value, rule)
     return own
+
+
+def _written(value: Any) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _follows(name: str, value: Any) -> bool:
@@ -216,7 +222,9 @@ def _keyword(case: Case, name: str, value: Any, given: Mapping[str, Any]) -> Any
         of_the_case = getattr(case, name)
         if _plain(of_the_case) == value:
             return of_the_case
-        if not any(isinstance(part, str) and part.startswith(("function", "array")) for part in value.values()):
+        if not any(
+            isinstance(part, str) and part.startswith(("function", "array")) for part in value.values()
+        ):
             return {"frequencies": BladeFrequencies, "drive_train": DriveTrain}[name](**value)
     elif name in ("equations", "pitch_flap_coupling", "pitch_lag_coupling"):
         if not isinstance(value, str) or value in EQUATION_SETS:
@@ -233,10 +241,28 @@ def told(found: Mapping[Any, Any]) -> str:
     """A line on the case and the options that are not defaults; empty where a result does not say."""
     if "options" not in found:
         return ""
-    own = chosen(json.loads(found["options"]))
-    choices = ", ".join(f"{name.replace('_', ' ')} {option_told(value)}" for name, value in own.items())
-    options = f"options: {choices}" if own else "default options"
-    return f"Case {found['case']} ({found['deck']}), {options}." if "case" in found else f"{options.capitalize()}."
+    own = chosen(options_told(found))
+    options = f"options: {in_words(own)}" if own else "default options"
+    return (
+        f"Case {found['case']} ({found['deck']}), {options}."
+        if "case" in found
+        else f"{options.capitalize()}."
+    )
+
+
+def options_told(found: Mapping[Any, Any]) -> dict[str, Any]:
+    """Every option in force of a result that says so, as plain data."""
+    told_options: dict[str, Any] = json.loads(found["options"])
+    return told_options
+
+
+def in_words(options: Mapping[str, Any]) -> str:
+    """Options as plain data in a line, without those that are not set."""
+    return ", ".join(
+        f"{name.replace('_', ' ')} {option_told(value)}"
+        for name, value in options.items()
+        if value is not None
+    )
 
 
 def option_told(value: Any) -> str:
@@ -244,7 +270,9 @@ def option_told(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, Mapping):
-        return ", ".join(f"{name.replace('_', ' ')} {option_told(part)}" for name, part in value.items() if part)
+        return ", ".join(
+            f"{name.replace('_', ' ')} {option_told(part)}" for name, part in value.items() if part
+        )
     if isinstance(value, list | tuple):
         return " and ".join(map(str, value)) or "nothing"
     return f"{value:g}" if isinstance(value, float) else str(value)

@@ -8,7 +8,7 @@ blade pitch.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +17,7 @@ from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import HUB, INPUTS, LinearModel
 from proprotor.modes import held_coordinates, state_matrix
+from proprotor.stamp import Stamp, of_model
 
 if TYPE_CHECKING:
     import control
@@ -46,6 +47,10 @@ class StateSpace:
         Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
         inertial axes)
         and the rotor's own coordinates; of an azimuth that no shaft holds, the rate.
+    warning, reason : array (...) of str
+        What makes a point doubtful, and why one failed; empty where nothing does.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`.
     """
 
     A: Array
@@ -55,6 +60,9 @@ class StateSpace:
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    warning: Array
+    reason: Array
+    stamp: Stamp = field(default_factory=dict)
 
     def to_control(self) -> control.StateSpace:
         """The same as a `control.StateSpace` of python-control; one point at a time.
@@ -113,7 +121,8 @@ def state_space(model: LinearModel) -> StateSpace:
     motion = (displacement, rate, system[..., rates, :])
     names, rows, feedthrough = _outputs(model, motion, acceleration_by_input)
     states = (*(model.dofs[place] for place in held), *(f"{name} rate" for name in model.dofs))
-    return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names)
+    doubt = model.trim.warning, model.trim.reason
+    return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names, *doubt, of_model(model))
 
 
 def _outputs(

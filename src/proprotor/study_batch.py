@@ -80,6 +80,7 @@ VARIABLES: dict[str, dict[str, Variable]] = {
             DESIGN, (), float, "rad/s", "|Im s| of the mode that loses it; 0: divergence"
         ),
         "flutter_coordinate": Variable(DESIGN, (), str, "", "coordinate that takes part in it most"),
+        "flutter_warning": Variable(DESIGN, (), str, "", "what makes the flutter speed doubtful"),
         "flutter_note": Variable(DESIGN, (), str, "", "why there is no flutter speed"),
     },
     "vectors": {
@@ -341,7 +342,11 @@ class Analysis:
         shares = np.take_along_axis(participation(model, system), place[..., None], -1)[..., 0]
         frequency = np.abs(np.take_along_axis(system.values, place, -1)[..., 0].imag)
         main = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-1)]
-        return {"flutter_frequency": frequency, "flutter_coordinate": main}
+        return {
+            "flutter_frequency": frequency,
+            "flutter_coordinate": main,
+            "flutter_warning": model.trim.warning,
+        }
 
 
 def _good_part(model: LinearModel) -> tuple[Array | None, LinearModel]:

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.text import Text
 
+from proprotor.doubts import MARK
 from proprotor.printable import printable
 from proprotor.provenance import doubtful_inputs, reservations
+from proprotor.stamp import in_words, options_told
 from proprotor.tables import CONVENTION, SweepTable
 
 if TYPE_CHECKING:
@@ -22,31 +24,31 @@ def heading(case: Case) -> str:
     return f"{case.title or case.name}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
 
 
-def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_modes: bool = False) -> None:
+def print_sweep(case: Case, table: SweepTable, all_modes: bool = False) -> None:
     """Print what was analysed, what it rests on, the table and where modes are unstable.
 
     Parameters
     ----------
     case : Case
     table : SweepTable
-    options : dict
-        Of the model, as in `proprotor.options.Options`.
     all_modes : bool
         Every mode, in as many tables as it takes, or those of interest only.
     """
     console = PlainConsole()
-    chosen = ", ".join(
-        f"{name.replace('_', ' ')} {option_told(value)}"
-        for name, value in options.items()
-        if value is not None
-    )
     warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
-    for line in (heading(case), f"Model: {chosen}.", CONVENTION, *reservations(case), *warnings, ""):
+    for line in (
+        heading(case),
+        f"Model: {in_words(options_told(table.sweep.attrs))}.",
+        CONVENTION,
+        *reservations(case),
+        *warnings,
+        "",
+    ):
         console.print(line)
     for row in table.lines(console.width, all_modes):
         console.print(row, soft_wrap=True)
     for line in table.doubts():
-        console.print(f"? {line}", style="yellow")
+        console.print(f"{MARK} {line}", style="yellow")
     for line in table.verdict():
         console.print(line, style="bold")
 
@@ -81,12 +83,3 @@ def _shown(it: Any) -> Any:
 def _shortened(text: str, case: Case, width: int) -> str:
     """About two lines of a warning, and where the whole of it stands."""
     return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")
-
-
-def option_told(value: Any) -> str:
-    """The choice of an option in words."""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, tuple):
-        return " and ".join(value) or "nothing"
-    return str(value)
