@@ -45,7 +45,8 @@ def frequency_response(
         response (..., frequency, output, input), complex, in the output's unit per unit of the input; magnitude and
         phase (rad) of it; stable (...), whether every mode is damped; warning and reason (...) of points that are
         doubtful, and of those that failed. Attributes: the case and its options (`proprotor.stamp`). Coordinates:
-        frequency, output_unit, input_unit, airspeed. NaN where a point failed, or where a frequency is that of an undamped mode.
+        frequency, output_unit, input_unit, airspeed. NaN where a point failed, or where a frequency is that of an
+        undamped mode.
 
     Raises
     ------

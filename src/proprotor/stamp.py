@@ -96,8 +96,16 @@ def deck_fingerprint(case: Case) -> str:
     if case.deck is None:
         parts = [case.rotor, case.operation, case.support, case.frequencies, case.drive_train]
         return _fingerprint(parts)
-    numbers = {path: [n.si, n.r_over_R] for path, n in case.given.items() if not isinstance(n.si, str)}
-    return _fingerprint([numbers, _choices(case.deck), case.rotor.airfoil])
+    numbers = {
+        path: [_number(n.si), n.r_over_R] for path, n in case.given.items() if not isinstance(n.si, str)
+    }
+    of_a_file = case.rotor.airfoil if "rotor.airfoil.table" in case.given else None
+    return _fingerprint([numbers, _choices(case.deck), of_a_file])
+
+
+def _number(si: Any) -> Any:
+    """One number as Python has it, whatever it was given as; lists and arrays as they are."""
+    return np.asarray(si).item() if np.ndim(si) == 0 else si
 
 
 def _choices(section: Any) -> dict[str, Any]:

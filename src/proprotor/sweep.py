@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.mode_names import SECOND, assign_names, name_list, name_shares, whirl
@@ -73,7 +74,8 @@ def sweep(
     xarray.Dataset
         As `LinearModel.modes`, with mode names (`proprotor.mode_names`) as coordinate and the same mode in the same
         place at every point; whirl (-1 against the rotor to 1 with it, in the fixed frame); tracking_quality, the
-        trust in the steps that led to a point, 0 to 1. Attributes: eigen_solves, and named_at, where names were given.
+        trust in the steps that led to a point, 0 to 1. Attributes: eigen_solves, and named_at, where names were given;
+        the case and its options (`proprotor.stamp`).
 
     Raises
     ------
@@ -207,6 +209,13 @@ def sweep_case(
     InputError
         For an unknown option or input, airspeeds that do not form a line, or more than one input.
     """
+    found = _sweep_of(case, airspeeds, vary, options)
+    return found.assign_attrs(stamp.of_case(case, options))  # of the case itself, not of one that is varied
+
+
+def _sweep_of(
+    case: Case, airspeeds: Any, vary: Mapping[str, ArrayLike] | None, options: Mapping[str, Any]
+) -> xarray.Dataset:
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:  # points differ in more than their airspeed
         return sweep(case.linearize(airspeeds, **options), rotor_speed=rotor_speed_of(case))
