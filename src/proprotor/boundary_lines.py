@@ -32,15 +32,15 @@ class BoundaryLine(NamedTuple):
         In SI, as the axes of the map.
     frequency : array (vertices,)
         Of the mode, rad/s.
-    warning : array (vertices,) of str
-        What makes a vertex doubtful; empty where nothing does.
+    warning : array of str
+        (vertices,): what makes a vertex doubtful; empty where nothing does.
     """
 
     mode: str
     x: Array
     y: Array
     frequency: Array
-    warning: Array
+    warning: Array = np.empty(0, dtype=str)
 
 
 def boundary_lines(

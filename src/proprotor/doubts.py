@@ -82,7 +82,10 @@ def footnotes(doubts: Iterable[Doubt], unit: str, factor: float = 1.0) -> Iterat
 
 def map_doubts(found: xarray.Dataset) -> Iterator[str]:
     """A sentence on each doubt of a stability map, of its points and of the boundary between them."""
-    warnings = [*found.warning.values.ravel().tolist(), *found.boundary_warning.values.tolist()]
-    for text, places in reasons_for_doubt(warnings).items():
-        inside = sum(place < found.warning.size for place in places)
+    points, vertices = (
+        found[name].values.ravel().tolist() if name in found else []
+        for name in ("warning", "boundary_warning")
+    )
+    for text, places in reasons_for_doubt([*points, *vertices]).items():
+        inside = sum(place < len(points) for place in places)
         yield f"Doubtful at {inside} points and {len(places) - inside} of the boundary: {text}."

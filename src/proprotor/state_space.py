@@ -47,8 +47,8 @@ class StateSpace:
         Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
         inertial axes)
         and the rotor's own coordinates; of an azimuth that no shaft holds, the rate.
-    warning, reason : array (...) of str
-        What makes a point doubtful, and why one failed; empty where nothing does.
+    warning, reason : array of str
+        (...): what makes a point doubtful, and why one failed; empty where nothing does.
     stamp : mapping of str to str
         The case and the options in force, see `proprotor.stamp`.
     """
