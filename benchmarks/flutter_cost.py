@@ -64,7 +64,7 @@ def derivatives(console: Console, case: pp.Case) -> None:
     boundary = next(b for b in found.boundaries if b.onset)
     inputs = design_inputs(case)
     solve = fastest(lambda: decomposition(case.linearize(boundary.position)).all_modes)
-    every = fastest(lambda: at_boundary(case, boundary, inputs, 0.0, {}))
+    every = fastest(lambda: at_boundary(case, boundary, inputs, {}))
     console.print(
         f"one eigen-solve {1e3 * solve:.2f} ms; all {len(inputs)} derivatives of the boundary {1e3 * every:.2f} ms: "
         f"{every / solve:.2f} eigen-solves"

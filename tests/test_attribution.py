@@ -142,4 +142,4 @@ def test_what_cannot_be_had_is_told(case):
     with pytest.raises(pp.InputError, match="Mach"):
         attribution(case, 1000.0)
     with pytest.raises(pp.InputError, match="not taken apart"):
-        model_parts(case, case.linearize(150.0), reactionless=True)
+        model_parts(case, case.linearize(150.0, reactionless=True))

@@ -16,6 +16,7 @@ import proprotor as pp
 from proprotor.command_line import main, sweep
 from proprotor.options import CHOICES, LOCKABLE
 from proprotor.output_file import write_whole
+from tests.csv_files import without_comments
 
 SWEEP = ("sweep", "xv15", "--speed", "300:400:20kt")
 
@@ -106,7 +107,7 @@ def test_nothing_but_failed_airspeeds_is_a_failure():
 def test_csv_is_the_sweep(tmp_path):
     file = tmp_path / "modes.csv"
     assert run("sweep", "xv15", "--speed", "0:200:100kt", "--csv", file).exit_code == 0
-    rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    rows = list(csv.DictReader(without_comments(file)))
     case = pp.load_case("xv15")
     modes = case.sweep("0:200:100kt")
     assert len(rows) == modes.damping_ratio.size

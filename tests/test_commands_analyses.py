@@ -11,6 +11,7 @@ from click.testing import CliRunner, Result
 
 import proprotor as pp
 from proprotor.command_line import main
+from tests.csv_files import without_comments
 
 KT = 1852 / 3600
 OMEGA = 458 * np.pi / 30  # of the XV-15
@@ -90,7 +91,7 @@ def test_the_table_of_boundaries(boundaries, tmp_path):
     assert f"Flutter speed {speed:.2f} kt (chord, flutter)." in result.stdout
     assert f"Margin at 350 kt: {100 * (speed / 350 - 1):+.1f} % of that airspeed." in result.stdout
     assert "not read in a source" in " ".join(result.stdout.split())
-    rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    rows = list(csv.DictReader(without_comments(file)))
     assert [float(r["airspeed (kt)"]) for r in rows] == [b["airspeed (kt)"] for b in boundaries["boundaries"]]
     assert rows[0]["mechanism"].startswith("chord ")
 
@@ -162,7 +163,7 @@ def test_the_damping_of_a_mode_moves_as_told(tmp_path):
     assert "more inputs (--top 0)" in result.stdout
     changes = [abs(r["for +1 % (% of critical)"] or 0) for r in found["sensitivities"]]
     assert changes == sorted(changes, reverse=True) and len(changes) > 40
-    rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    rows = list(csv.DictReader(without_comments(file)))
     assert [row["input"] for row in rows] == [record["input"] for record in found["sensitivities"]]
     record = next(
         r for r in found["sensitivities"] if r["input"] == CHORD.replace("frequency", "damping_ratio")
@@ -205,7 +206,7 @@ def test_attribution_sums_to_nothing_and_is_sorted(tmp_path):
     result = run(*arguments, "--csv", file)
     assert result.exit_code == 0
     assert "chord at 390 kt" in result.stdout and "drives" in result.stdout and "damps" in result.stdout
-    rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    rows = list(csv.DictReader(without_comments(file)))
     assert [r["origin"] for r in rows] == [origin["origin"] for origin in found["origins"]]
 
 
@@ -245,7 +246,7 @@ def test_a_map_says_where_it_is_stable(tmp_path):
             assert abs(np.nanmax(case.sweep(f"{speed!r} kt").eigenvalue.values.real)) < 1e-6
     result = run(*MAP, "--csv", file)
     assert result.exit_code == 0
-    rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    rows = list(csv.DictReader(without_comments(file)))
     assert [float(r["largest growth (1/s)"]) for r in rows] == [
         p["largest growth (1/s)"] for p in found["points"]
     ]

@@ -237,7 +237,7 @@ MISTAKES = [
     (
         'name = "torsion"',
         'name = "a\\nb"',
-        "support.modes[a b].name = a b: must be letters, digits, spaces, dots, dashes and underscores",
+        "support.modes[a b].name = a b: must be printable text, without U+000A",
     ),
     (
         'coordinate = "angle"',

@@ -260,12 +260,15 @@ def test_a_port_that_is_taken_is_one_message():
     assert result.exit_code == 1 and f"--port = {port}" in result.stderr
 
 
-def status(address, host):
-    request = urllib.request.Request(address, headers={"Host": host})
+def status(address, host, **headers):
+    headers = {name.replace("_", "-"): value for name, value in headers.items()}
+    request = urllib.request.Request(address, headers={"Host": host, **headers})
     try:
         with urllib.request.urlopen(request, timeout=30) as answer:
+            assert "Access-Control-Allow-Origin" not in answer.headers
             return answer.status
     except urllib.error.HTTPError as error:
+        assert "Access-Control-Allow-Origin" not in error.headers
         error.close()
         return error.code
 
@@ -290,3 +293,25 @@ def test_the_server_answers_this_machine_alone():
         assert status(address, f"evil.example:{port}") == status(address, "127.0.0.1:1") == 403
         assert asyncio.run(handshake(address, "http://evil.example")) == 403
         assert asyncio.run(handshake(address, f"http://{own}")) == 101
+        for place in ("", "metadata", "static/js/bokeh.min.js"):
+            for name in (own, f"localhost:{port}"):
+                assert status(address + place, name) == 200
+                assert status(address + place, name, Origin=f"http://{name}") == 200
+                assert status(address + place, name, Sec_Fetch_Site="same-origin") == 200
+        # Every place, to whoever is of another name, origin or site: another port of this machine is one too.
+        element = "?bokeh-autoload-element=x&bokeh-app-path=/&bokeh-absolute-url=" + address
+        for place in ("", "metadata", "static/js/bokeh.min.js", "ws", f"autoload.js{element}"):
+            assert status(address + place, f"evil.example:{port}") == 403
+            assert status(address + place, "localhost") == 403
+            for origin in (
+                "http://evil.example",
+                f"https://{own}",
+                f"http://localhost:{int(port) + 1}",
+                "null",
+            ):
+                assert status(address + place, own, Origin=origin) == 403
+            assert status(address + place, own, Sec_Fetch_Site="cross-site") == 403
+            assert status(address + place, own, Sec_Fetch_Site="same-site") == 403
+        # A foreign page's <script> sends no origin, and an old browser no site.
+        for place in (f"autoload.js{element}", f"autoloadXjs{element}"):
+            assert status(address + place, own) == 403

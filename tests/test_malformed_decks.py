@@ -73,6 +73,41 @@ MALFORMED = {
     ),
     "another encoding": Malformed(VARIANT.encode("utf-16"), "deck = deck.toml: must be text in UTF-8"),
     "binary": Malformed(bytes(range(256)) * 8, "deck = deck.toml: must be text in UTF-8"),
+    "a terminal sequence in the title": Malformed(
+        VARIANT + 'title = "my \\u001b[2J\\u001b[31mFlutter speed 999 kt"\n',
+        "case.title = my  [2J [31mFlutter speed 999 kt: must be printable text, without U+001B",
+    ),
+    "a line of its own in the title": Malformed(
+        VARIANT + 'title = "my\\nFlutter speed 999 kt"\n',
+        "case.title = my Flutter speed 999 kt: must be printable text",
+    ),
+    "text that turns round": Malformed(
+        VARIANT + 'title = "my \\u202e999 kt"\n', "case.title = my  999 kt: must be printable text"
+    ),
+    "a terminal sequence in a source": Malformed(
+        variant('[rotor]\nprecone = { value = "1 deg", status = "assumed", source = "x\\u009b2J" }'),
+        "rotor.precone.source = x 2J: must be printable text",
+    ),
+    "a terminal sequence in a warning": Malformed(
+        VARIANT + 'warnings = ["\\u0007"]\n', "case.warnings[0] =  : must be printable text"
+    ),
+    "a terminal sequence in the name of a file": Malformed(
+        variant('[rotor]\nairfoil.table = "a\\u001b.c81"'),
+        "rotor.airfoil.table = a .c81: must be printable text",
+    ),
+    "a terminal sequence in a unit": Malformed(
+        variant('[rotor]\nradius = "3 ft\\u001b[2J"'), "rotor.radius = 3 ft [2J: "
+    ),
+    "a terminal sequence in a name of a field": Malformed(
+        variant('[rotor]\n"a\\u001b[2J\\n" = 1'), "rotor.a [2J  = 1: unknown field"
+    ),
+    "a mode named like the rotor's": Malformed(
+        variant(
+            '[support]\nkind = "normal-modes"\nincludes_rotor = false\nmodes = [{ name = "coning", '
+            'coordinate = "length", generalized_mass = "9 kg", frequency = "9 Hz", damping_ratio = 0, x = 1 }]'
+        ),
+        "support.names = coning: must not be the name that a motion of a rotor has",
+    ),
     "too large": Malformed(b"#" * 1_000_001, "deck = deck.toml: must not be larger than 1000000 bytes"),
     "section missing": Malformed(XV15.partition("[support]")[0], "support: is missing"),
     "section unknown": Malformed(

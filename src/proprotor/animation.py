@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor import stamp
+from proprotor.doubts import MARK, marked
 from proprotor.errors import InputError
 from proprotor.needs import check_memory
 from proprotor.output_file import check_place, write_whole
@@ -24,6 +27,7 @@ _PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "si
 _TITLES = {"3d": "", "front": "from ahead", "side": "from outboard"}
 _COLOURS = 32  # of the GIF
 _CANVAS = 16  # bytes a pixel while one picture is drawn: the canvas, its background, the colours
+_LETTERS = 170  # of a line of the small print
 
 
 def animate_mode(
@@ -90,7 +94,7 @@ def title_of(motion: ModeMotion) -> str:
     damping = -100 * value.real / abs(value)
     hertz = value.imag / (2 * np.pi)
     return (
-        f"{motion.mode} at {motion.airspeed / KNOT:.0f} kt: {hertz:.2f} Hz{per_rev}, "
+        f"{motion.mode} at {marked(f'{motion.airspeed / KNOT:.0f}', motion.warning)} kt: {hertz:.2f} Hz{per_rev}, "
         f"damping {damping:.2f} % of critical"
     )
 
@@ -135,12 +139,17 @@ def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
         draw_still(ax, motion, view)
         ax.set_axis_off()
         ax.set_title(_TITLES[view], fontsize=8, color="0.3")
-    figure.text(0.02, 0.975, f"{motion.case}\n{title_of(motion)}", fontsize=9, va="top")
-    figure.text(0.02, 0.02, _small_print(motion), fontsize=6.5, color="0.35", va="bottom")
+    heading = f"{motion.case}\n{title_of(motion)}"
+    figure.text(0.02, 0.975, heading, fontsize=9, va="top", parse_math=False)
+    figure.text(0.02, 0.02, _small_print(motion), fontsize=6.5, color="0.35", va="bottom", parse_math=False)
     canvas.draw()
     return canvas, axes
 
 
 def _small_print(motion: ModeMotion) -> str:
     told = "Blades are shown at azimuths that stand still. Amplitude enlarged and held; grey: trim."
-    return told + (" The wing is a sketch in the proportions of the XV-15." if motion.sketched else "")
+    sketch = " The wing is a sketch in the proportions of the XV-15." if motion.sketched else ""
+    doubt = f" {MARK} Doubtful: {motion.warning}." if motion.warning else ""
+    return "\n".join(
+        filter(None, (told + sketch, textwrap.fill(f"{stamp.told(motion.stamp)}{doubt}", _LETTERS)))
+    )

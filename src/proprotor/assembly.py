@@ -11,6 +11,7 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.massless import with_reasons
+from proprotor.mode_names import check_distinct
 from proprotor.model import HUB, LinearModel
 from proprotor.rotor_share import refuse, without_rotors
 from proprotor.support import NormalModes
@@ -131,10 +132,11 @@ def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
 
 
 def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:
-    """Results tell coordinates by name: two of one name would be taken for each other."""
+    """Refuse a coordinate of the support that would be taken for one of the rotor, by its name or by its mode's."""
     if clashes := [name for name in support if name in own]:
         rule = f"must not be a name of the rotor's own coordinates, {', '.join(own)}"
         raise InputError("support.names", ", ".join(clashes), rule)
+    check_distinct("support.names", (*support, *own))
 
 
 def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.eigenvalue_derivatives import eigenvalue_change
 from proprotor.model import LinearModel
@@ -49,7 +50,8 @@ def attribution(case: Case, airspeed: Any, mode: str | None = None, **options: A
     -------
     xarray.Dataset
         contribution (origin, mode), rad/s: the change of the eigenvalue if all terms of an origin grew by 100 %, to
-        first order; growth, its real part, positive where the origin drives the mode; eigenvalue (mode,).
+        first order; growth, its real part, positive where the origin drives the mode; eigenvalue (mode,); warning, what
+        makes the numbers doubtful. Attributes: airspeed in m/s, and the case and its options (`proprotor.stamp`).
 
     Raises
     ------
@@ -59,7 +61,9 @@ def attribution(case: Case, airspeed: Any, mode: str | None = None, **options: A
     found = named_modes(case, airspeed, mode, options)
     parts = model_parts(case, found.model, **options)
     changes = contributions(found.model, parts, found.modes)
-    return _dataset(found.names, list(parts), found.modes.values, changes)
+    data = _dataset(found.names, list(parts), found.modes.values, changes)
+    data["warning"] = (), str(found.model.trim.warning), {"long_name": "what makes the numbers doubtful"}
+    return data.assign_attrs(stamp.of_model(found.model) | {"airspeed": found.speed})
 
 
 def _dataset(modes: list[str], origins: list[str], values: Array, found: Array) -> xarray.Dataset:

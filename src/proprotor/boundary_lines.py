@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.errors import InputError
 from proprotor.mode_names import moving
 from proprotor.modes import decomposition
-from proprotor.options import parse_options
 from proprotor.stability_map import AIRSPEED, largest_growth
+from proprotor.stamp import options_of
 
 if TYPE_CHECKING:
     import xarray
@@ -33,12 +34,15 @@ class BoundaryLine(NamedTuple):
         In SI, as the axes of the map.
     frequency : array (vertices,)
         Of the mode, rad/s.
+    warning : array of str
+        (vertices,): what makes a vertex doubtful; empty where nothing does.
     """
 
     mode: str
     x: Array
     y: Array
     frequency: Array
+    warning: Array = np.empty(0, dtype=str)
 
 
 def boundary_lines(
@@ -55,9 +59,10 @@ def boundary_lines(
     found : xarray.Dataset
         Of `Case.stability_map`.
     airspeed : float in m/s, text such as "300 kt", or pint quantity, optional
-        As it was given for the map.
+        That of the map, which need not be repeated.
     **options
-        As they were given for the map, see `proprotor.options.Options`.
+        Those of the map, see `proprotor.options.Options`. The map has its own, which need not be repeated but where
+        they hold functions.
 
     Returns
     -------
@@ -66,12 +71,13 @@ def boundary_lines(
     Raises
     ------
     InputError
-        For an unknown option.
+        For an unknown option, and another option, airspeed or case than the map's.
     """
-    parse_options(case.model_options(options))  # which tells an unknown one, also where there is no line
+    options = options_of(found.attrs, case, options)
+    airspeed = _airspeed_of(found, airspeed)
     names = [str(name) for name in found.axis.values]
     lines = []
-    for vertices in _parted(found.boundary.values):
+    for vertices, warning in _parted(found.boundary.values, found.boundary_warning.values):
         frequency = _frequencies(case, names, vertices, airspeed, float(found.attrs["level"]), options)
         for part in _same_mode(frequency, float(np.max(case.operation.rotor_speed))):
             middle = vertices[part][len(vertices[part]) // 2]
@@ -79,17 +85,29 @@ def boundary_lines(
                 case, names, middle, float(frequency[part][len(vertices[part]) // 2]), airspeed, options
             )
             drawn = slice(max(part.start - 1, 0), part.stop)
-            lines.append(BoundaryLine(mode, vertices[drawn, 0], vertices[drawn, 1], frequency[drawn]))
+            x, y = vertices[drawn].T
+            lines.append(BoundaryLine(mode, x, y, frequency[drawn], warning[drawn]))
     return lines
 
 
-def _parted(boundary: Array) -> Iterator[Array]:
-    """Lines (vertices, 2) of a boundary in which NaN parts them."""
+def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
+    """The airspeed of a map in m/s; None where it is one of its axes."""
+    from proprotor.speed import in_metres_per_second
+
+    own = found.attrs.get(AIRSPEED)
+    if given is not None and (own is None or not np.isclose(in_metres_per_second(given), own, rtol=1e-12)):
+        rule = "is one of the axes of the map" if own is None else f"must be {own:.6g} m/s, that of the map"
+        raise InputError(AIRSPEED, given, f"{rule}, or be left out" if own is not None else rule)
+    return None if own is None else float(own)
+
+
+def _parted(boundary: Array, warning: Array) -> Iterator[tuple[Array, Array]]:
+    """Lines (vertices, 2) of a boundary in which NaN parts them, with their warnings (vertices,)."""
     good: Array = np.asarray(np.isfinite(boundary).all(axis=1))
     for part in np.split(np.arange(len(boundary)), np.flatnonzero(~good)):
         chosen = part[good[part]]
         if len(chosen):
-            yield boundary[chosen]
+            yield boundary[chosen], warning[chosen]
 
 
 def _at(case: Case, names: list[str], point: Array, airspeed: Any) -> tuple[Case, Any]:

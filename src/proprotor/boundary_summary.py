@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from proprotor.doubts import marked
 from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ COLUMNS = (
     "mechanism",
     "growth per airspeed (1/m)",
     "branch",
+    "warning",
 )
 
 
@@ -39,6 +41,7 @@ def boundary_record(boundary: Boundary, case: Case) -> dict[str, Any]:
         dict(boundary.mechanism),
         boundary.rate,
         boundary.branch,
+        boundary.warning,
     )
     return dict(zip(COLUMNS, values, strict=True))
 
@@ -76,7 +79,8 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
         if told := least_told(found, unit, factor):
             yield f"The least damping there is {told}."
     else:
-        yield f"Flutter speed {found.speed / factor:.2f} {unit} ({found.mode}, {found.kind})."
+        speed = marked(f"{found.speed / factor:.2f}", found.warning)
+        yield f"Flutter speed {speed} {unit} ({found.mode}, {found.kind})."
     if at is None:
         return
     count = modes_beyond(found, at)
@@ -85,4 +89,5 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
     elif count:
         yield f"At {at / factor:.4g} {unit} {count} mode{'s are' if count > 1 else ' is'} {beyond}."
     if not math.isnan(found.speed):
-        yield f"Margin at {at / factor:.4g} {unit}: {100 * found.margin(at):+.1f} % of that airspeed."
+        margin = marked(f"{100 * found.margin(at):+.1f}", found.warning)
+        yield f"Margin at {at / factor:.4g} {unit}: {margin} % of that airspeed."

@@ -22,6 +22,8 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.coefficient_surface import broken_rules
 from proprotor.errors import InputError
+from proprotor.printable import printable
+from proprotor.text_file import read_text
 
 # In the order of the file, with what each must not be less than.
 COEFFICIENTS = {"lift": -np.inf, "drag": 0.0, "moment": -np.inf}
@@ -43,7 +45,8 @@ def read_c81(path: str | os.PathLike[str]) -> tuple[str, dict[str, Table]]:
         When the file cannot be read or is not C81: one line with the file, the line in it and the rule.
     """
     try:
-        return _read(_Lines(_content(Path(path))))
+        text = read_text(Path(path), "table", os.fspath(path), _LARGEST, encoding="latin-1")  # any title
+        return _read(_Lines(text))
     except _Fault as fault:
         raise InputError("table", os.fspath(path), str(fault)) from None
 
@@ -73,19 +76,6 @@ class _Lines:
         return _Fault(f"line {number or self.number}: {rule}")
 
 
-def _content(path: Path) -> str:
-    try:
-        if not path.is_file():
-            raise _Fault("no such file")
-        with path.open("rb") as stream:
-            content = stream.read(_LARGEST + 1)
-    except OSError as error:
-        raise _Fault(f"cannot be read ({error.strerror})") from None
-    if len(content) > _LARGEST:
-        raise _Fault(f"must not be larger than {_LARGEST} bytes")
-    return content.decode("latin-1")  # any title can be read
-
-
 def _read(lines: _Lines) -> tuple[str, dict[str, Table]]:
     header = lines.take("a title and six counts")
     counts = _counts(lines, header[_COUNTS])
@@ -95,7 +85,7 @@ def _read(lines: _Lines) -> tuple[str, dict[str, Table]]:
     if lines.number < len(lines.lines):
         lines.number += 1
         raise lines.fault("must not be there: the counts of line 1 end the moment table before it")
-    return header[: _COUNTS.start].strip(), tables
+    return printable(header[: _COUNTS.start]).strip(), tables
 
 
 def _counts(lines: _Lines, written: str) -> list[int]:

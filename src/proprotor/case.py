@@ -108,7 +108,8 @@ class Case:
         """
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
-        return mount(rotor_alone, support)
+        model = mount(rotor_alone, support)
+        return model if model.origin is None else replace(model, origin=model.origin._replace(case=self))
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options of the model with what the case has in place of those that are not given.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import io
 import os
 import sys
 from typing import IO, Any
@@ -71,8 +72,19 @@ def _let_go_of_standard_output() -> None:
         os.close(nowhere)
 
 
+def _write_any_character() -> None:
+    """Have characters that the terminal's encoding lacks, such as cp1252's Greek, written as their codes."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
 class _InOrder(_InputErrorsTold):
     """Commands listed as a newcomer meets them."""
+
+    def main(self, *args: Any, **more: Any) -> Any:
+        _write_any_character()
+        return super().main(*args, **more)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self.commands)

@@ -92,6 +92,7 @@ from proprotor.deck_fields import (
 )
 from proprotor.deck_file import AIR_ALTERNATIVES, AIRFOIL_ALTERNATIVES, ALTERNATIVES, TRIM_ALTERNATIVES
 from proprotor.deck_schema import TRIM_SCHEMA
+from proprotor.deck_text import plain_text
 from proprotor.errors import InputError, unknown_name
 from proprotor.support_sections import SUPPORT_KINDS, SUPPORT_TABLES, SupportSection
 
@@ -369,6 +370,7 @@ def validate(tables: dict[str, Any]) -> Deck:
     InputError
         With every problem found, one line each.
     """
+    tables = plain_text(tables, field_name)
     try:
         return Deck.model_validate(tables)
     except ValidationError as error:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from proprotor.datum import FileName, PerRevolution, read_quantity
 from proprotor.errors import InputError, unknown_name
 from proprotor.rotor import MASS_INTEGRALS
+from proprotor.text_file import read_text
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
@@ -162,17 +163,9 @@ def _find(name: str, folder: Path) -> Traversable:
 
 
 def _parse(file: Traversable, name: str) -> dict[str, Any]:
+    text = read_text(file, "deck", name, _LARGEST)
     try:
-        with file.open("rb") as stream:
-            content = stream.read(_LARGEST + 1)
-    except OSError as error:
-        raise InputError("deck", name, f"cannot be read ({error.strerror})") from None
-    if len(content) > _LARGEST:
-        raise InputError("deck", name, f"must not be larger than {_LARGEST} bytes")
-    try:
-        return tomllib.loads(content.decode("utf-8"))
-    except UnicodeDecodeError:
-        raise InputError("deck", name, "must be text in UTF-8") from None
+        return tomllib.loads(text)
     except ValueError as error:  # TOMLDecodeError, with the line; or an integer of thousands of digits
         raise InputError("deck", name, f"is not TOML: {error}") from None
     except RecursionError:

@@ -7,6 +7,8 @@ from collections.abc import Collection, Iterable
 
 import numpy as np
 
+from proprotor.printable import printable
+
 _WIDEST_VALUE = 60  # characters of a value worth repeating in a message
 
 
@@ -36,7 +38,8 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         shown = "" if self.value is None else f" = {_on_one_line(self.value)}"
-        return "\n".join([f"{_on_one_line(self.field)}{shown}: {self.rule}", *map(str, self.others)])
+        told = f"{_on_one_line(self.field)}{shown}: {printable(self.rule)}"
+        return "\n".join([told, *map(str, self.others)])
 
     def within(self, path: str) -> InputError:
         """The same error, with the field named from further outside.
@@ -83,5 +86,5 @@ def _on_one_line(value: object) -> str:
     if isinstance(value, dict):
         value = "{ … }"
     text = str(value) or '""'
-    text = "".join(c if c.isprintable() else " " for c in text)
+    text = printable(text)
     return text if len(text) <= _WIDEST_VALUE else f"{text[: _WIDEST_VALUE - 1]}…"

@@ -6,16 +6,17 @@ Every crossing in a range is found, flutter and divergence, those between two po
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor import summary
+from proprotor import stamp, summary
 from proprotor.arrays import Array
 from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
+from proprotor.doubts import Doubt, doubts_along
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
 from proprotor.least_damping import NOWHERE, LeastDamping, least_damping
@@ -23,6 +24,7 @@ from proprotor.mode_names import Moving, moving, name_list
 from proprotor.model import LinearModel
 from proprotor.path import Line, Path, follow
 from proprotor.speed import in_metres_per_second
+from proprotor.stamp import Stamp
 from proprotor.sweep import approach_to, line_of_case, names_at, state_names, tip_speed
 from proprotor.tracking import Spectrum
 
@@ -63,6 +65,12 @@ class Boundary:
         Spent on this crossing beyond those that bracketed it.
     branch : str
         The exact root that crosses, by what moves in it where branches are named (`proprotor.branches`).
+    warning : str
+        What makes the boundary doubtful, such as Mach numbers beyond what the airfoil knows; empty where nothing does.
+    level : float
+        Damping ratio that is crossed.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`; empty on a line that is of no case.
     """
 
     position: float
@@ -76,6 +84,9 @@ class Boundary:
     defect: float
     eigen_solves: int
     branch: str = ""
+    warning: str = ""
+    level: float = 0.0
+    stamp: Stamp = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return summary.of_boundary(self)
@@ -113,6 +124,10 @@ class FlutterPoint:
     least_damping_mode : str
     least_damping_speed : float
         Where that was, m/s.
+    doubts : tuple of Doubt
+        What makes airspeeds of the search doubtful, and from where to where in m/s.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`.
     """
 
     speed: float
@@ -128,9 +143,16 @@ class FlutterPoint:
     least_damping: float = np.nan
     least_damping_mode: str = ""
     least_damping_speed: float = np.nan
+    doubts: tuple[Doubt, ...] = ()
+    stamp: Stamp = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return summary.of_flutter_point(self)
+
+    @property
+    def warning(self) -> str:
+        """What makes the flutter speed doubtful; empty where nothing does."""
+        return next((found.warning for found in self.boundaries if found.position == self.speed), "")
 
     def margin(self, airspeed: Any) -> float:
         """How far the flutter speed lies above an airspeed, as a part of it.
@@ -162,6 +184,10 @@ class Crossings(NamedTuple):
         What it took to bracket every boundary, and in all.
     least : LeastDamping
         The smallest damping ratio of any mode at the points of the search, with the mode's name and the position.
+    doubts : tuple of Doubt
+        What makes positions of the scan doubtful, and from where to where.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`; empty on a line that is of no case.
     """
 
     boundaries: tuple[Boundary, ...]
@@ -170,6 +196,8 @@ class Crossings(NamedTuple):
     scan_solves: int
     eigen_solves: int
     least: LeastDamping = NOWHERE
+    doubts: tuple[Doubt, ...] = ()
+    stamp: Stamp = {}  # noqa: RUF012 - never changed
 
     def __repr__(self) -> str:
         return summary.of_crossings(self)
@@ -323,8 +351,23 @@ def boundaries(
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
-    near = approach_to(case, line, line.models(line.positions), options)
-    return find_crossings(line, level=level, approach=near)
+    model = line.models(line.positions)
+    near = approach_to(case, line, model, options)
+    found = find_crossings(line, level=level, approach=near)
+    doubts = doubts_along(np.asarray(line.positions), model.trim.warning)
+    own = stamp.of_case(case, options)
+    return found._replace(
+        boundaries=tuple(_carrying(found.boundaries, line, level, own)), doubts=doubts, stamp=own
+    )
+
+
+def _carrying(found: tuple[Boundary, ...], line: Line, level: float, own: Stamp) -> Iterator[Boundary]:
+    """The boundaries with what makes each doubtful, and where they come from."""
+    if not found:
+        return
+    warnings = line.models(np.array([boundary.position for boundary in found])).trim.warning
+    for boundary, warning in zip(found, warnings.tolist(), strict=True):
+        yield replace(boundary, warning=str(warning), level=level, stamp=own)
 
 
 def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:
@@ -383,4 +426,6 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
         least_damping=found.least.ratio,
         least_damping_mode=found.least.mode,
         least_damping_speed=found.least.position,
+        doubts=found.doubts,
+        stamp=found.stamp,
     )

@@ -46,8 +46,10 @@ def frequency_response(
     -------
     xarray.Dataset
         response (..., frequency, output, input), complex, in the output's unit per unit of the input; magnitude and
-        phase (rad) of it; stable (...), whether every mode is damped. Coordinates: frequency, output_unit, input_unit,
-        airspeed. NaN where a point failed, or where a frequency is that of an undamped mode.
+        phase (rad) of it; stable (...), whether every mode is damped; warning and reason (...) of points that are
+        doubtful, and of those that failed. Attributes: the case and its options (`proprotor.stamp`). Coordinates:
+        frequency, output_unit, input_unit, airspeed. NaN where a point failed, or where a frequency is that of an
+        undamped mode.
 
     Raises
     ------
@@ -76,6 +78,12 @@ def frequency_response(
             "magnitude": (dims, np.abs(response), unit),
             "phase": (dims, np.angle(response), {"units": "rad"}),
             "stable": (leading, _stable(space.A)),
+            "warning": (
+                leading,
+                model.trim.warning.astype(str),
+                {"long_name": "what makes a point doubtful"},
+            ),
+            "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
         },
         coords={
             "frequency": ("frequency", omega, {"units": "rad/s"}),
@@ -85,6 +93,7 @@ def frequency_response(
             "input_unit": ("input", ["rad" if name in SWASHPLATE else "m/s" for name in chosen[1]]),
             "airspeed": (leading, model.airspeed, {"units": "m/s"}),
         },
+        attrs=dict(space.stamp),
     )
 
 

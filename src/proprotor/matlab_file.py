@@ -19,6 +19,7 @@ import numpy as np
 from proprotor.errors import InputError
 from proprotor.model import INPUTS, LinearModel
 from proprotor.output_file import check_place, write_whole
+from proprotor.stamp import of_model
 
 if TYPE_CHECKING:
     import xarray
@@ -40,7 +41,8 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
 
     A model becomes M, C, K, B (inputs of the second-order equations), dofs, inputs, airspeed, trim, and, where it has
     inputs, state_space with A, B, C, D, states, inputs and outputs. A dataset becomes one variable for each of its
-    variables and coordinates, with dims, units and attributes as structs by the same names.
+    variables and coordinates, with dims, units and attributes as structs by the same names. The attributes of both say
+    the case and the options in force (`proprotor.stamp`).
 
     Parameters
     ----------
@@ -101,6 +103,8 @@ def _of_model(model: LinearModel) -> dict[str, Any]:
     content |= {"dofs": _cells(model.dofs), "airspeed": _plain(model.airspeed)}
     content["trim"] = {entry.name: _plain(getattr(model.trim, entry.name)) for entry in fields(model.trim)}
     content["units"] = {"airspeed": "m/s", "matrices": "SI units and radians"}
+    if own := of_model(model):
+        content["attributes"] = _attributes(own)
     if model.hub is not None:
         content["hub"] = _pages(model.hub)
     if model.B is not None:

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.text_file import open_text
 
 MOST_COORDINATES = 50_000  # of a file that leaves zeros out
 MOST_DENSE = 5_000  # of one that does not
@@ -51,7 +52,7 @@ def read_matrix(path: Path) -> Any:
     OSError
         When the file cannot be read.
     """
-    with path.open(encoding="latin-1", newline=None) as file:  # any comment can be read
+    with open_text(path, encoding="latin-1") as file:  # any comment can be read
         heading = _heading(file)
         found = _numbers(file.read(), heading)
     if heading.layout == "array":

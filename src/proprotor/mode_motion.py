@@ -12,13 +12,14 @@ as a cantilever that is loaded at its tip, and twists in proportion to the dista
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
+from proprotor.stamp import Stamp, of_model
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -89,6 +90,10 @@ class ModeMotion:
         Motions scaled so that they can be seen.
     sketched : bool
         Whether the wing's size is the sketch's and not the deck's.
+    warning : str
+        What makes the mode doubtful; empty where nothing does.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`.
     """
 
     mode: str
@@ -99,6 +104,8 @@ class ModeMotion:
     radius: float
     parts: tuple[Part, ...]
     sketched: bool
+    warning: str = ""
+    stamp: Stamp = field(default_factory=dict)
 
     def at(self, phase: float) -> dict[str, Array]:
         """Every part at a phase of the cycle; growth and decay are left out.
@@ -175,6 +182,8 @@ def mode_motion(
         radius=float(case.rotor.radius),
         parts=tuple(part._replace(motion=scale * part.motion) for part in parts),
         sketched=sketch.assumed,
+        warning=str(model.trim.warning),
+        stamp=of_model(model),
     )
 
 

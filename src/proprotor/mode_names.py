@@ -22,15 +22,21 @@ that grows with rotation (β = β_1c cos ψ + β_1s sin ψ).
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
+from functools import lru_cache
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.arrays import Array
-from proprotor.model import HUB, ROTOR_SPEED, LinearModel
+from proprotor.errors import InputError
+from proprotor.model import HUB, ROTOR_SPEED, LinearModel, reactionless_coordinates
 from proprotor.modes import coordinate_motion, held_coordinates
+from proprotor.printable import unprintable
 
 _COLLECTIVE = {"flap": "coning"}
 _AZIMUTH = "rotor speed"
@@ -159,6 +165,53 @@ def _single_name(dof: str) -> str:
 def name_list(dofs: tuple[str, ...]) -> list[str]:
     """All names of a model, in the order of its coordinates."""
     return [name for motion in motions(dofs) for name in motion.names]
+
+
+def check_support_names(field: str, names: Sequence[str]) -> None:
+    """Refuse names of a support's coordinates that a rotor's coordinate or mode has, or that make two modes alike.
+
+    Parameters
+    ----------
+    field : str
+        What a message calls the names.
+    names : sequence of str
+
+    Raises
+    ------
+    InputError
+        For a name that is no printable text, or one that is taken, with the first of them.
+    """
+    for name in names:
+        if unprintable(name) or not name.strip():
+            raise InputError(field, name, "must be printable text")
+        if re.sub(r"\d+", "2", name) in _names_of_rotors() or name.endswith(SECOND):
+            rule = "must not be the name that a motion of a rotor has, which results would take it for"
+            raise InputError(field, name, rule)
+    check_distinct(field, tuple(names))
+
+
+def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
+    """Refuse coordinates of a model where two modes would have one name.
+
+    Raises
+    ------
+    InputError
+        With the coordinates whose modes would.
+    """
+    by_name: dict[str, str] = {}
+    for motion in motions(dofs):
+        own = ", ".join(dofs[place] for place in motion.places)
+        for name in (other + ending for other in motion.names for ending in ("", SECOND)):
+            if name in by_name:
+                raise InputError(field, f"{by_name[name]}, {own}", f'must differ: both have a mode "{name}"')
+            by_name[name] = own
+
+
+@lru_cache(maxsize=1)
+def _names_of_rotors() -> frozenset[str]:
+    """Coordinates and modes of rotors with any number of blades, the number of a harmonic written as 2."""
+    dofs = (*FIXED_COORDINATES[len(HUB) :], *reactionless_coordinates(6))
+    return frozenset(re.sub(r"\d+", "2", name) for name in (*dofs, *name_list(dofs)))
 
 
 def whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:

@@ -38,6 +38,7 @@ from proprotor.operation import Operation
 from proprotor.options import Options, parse_options
 from proprotor.rotor import Rotor
 from proprotor.speed import in_metres_per_second
+from proprotor.stamp import Origin
 from proprotor.trim import UNKNOWNS, Target, Trim, trim_target
 from proprotor.trim_solver import Settled, solve_trim
 
@@ -84,6 +85,8 @@ class LinearModel:
     shapes : array (..., m, k), optional
         Of the first k coordinates, those of a support that other designs have in other shapes: see
         `proprotor.support.NormalModes`.
+    origin : Origin, optional
+        The options in force, and the case where it is one's: see `proprotor.stamp`.
     """
 
     M: Array
@@ -98,6 +101,7 @@ class LinearModel:
     mass_at_rest: Array | None = None
     rotor_speed: Array | None = None
     shapes: Array | None = None
+    origin: Origin | None = None
 
     def __repr__(self) -> str:
         from proprotor.summary import of_model
@@ -259,7 +263,14 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         name: np.broadcast_to(value, shape)
         for name, value in (("airspeed", speed), ("rotor_speed", np.real(operation.rotor_speed)))
     }
-    model = LinearModel(**parts, **per_point, dofs=coordinates, trim=shaped, mass_at_rest=mass_at_rest(rotor))
+    model = LinearModel(
+        **parts,
+        **per_point,
+        dofs=coordinates,
+        trim=shaped,
+        mass_at_rest=mass_at_rest(rotor),
+        origin=Origin(choice),
+    )
     return model if dofs == coordinates else model.submodel(dofs)
 
 

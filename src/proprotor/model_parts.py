@@ -37,6 +37,7 @@ from proprotor.model import (
 )
 from proprotor.options import Options, parse_options
 from proprotor.rotor_share import without_rotors
+from proprotor.stamp import check_options, of_model
 from proprotor.support import NormalModes
 from proprotor.trim import UNKNOWNS, with_trim
 
@@ -94,9 +95,9 @@ def model_parts(case: Case, model: LinearModel, **options: Any) -> dict[str, Par
     case : Case
         Of one design.
     model : LinearModel
-        Of this case with these options; its trim is held.
+        Of this case; its trim is held.
     **options
-        See `proprotor.options.Options`.
+        Those of the model, see `proprotor.options.Options`; they need not be repeated where it says its own.
 
     Returns
     -------
@@ -106,9 +107,13 @@ def model_parts(case: Case, model: LinearModel, **options: Any) -> dict[str, Par
     Raises
     ------
     InputError
-        With reactionless=True.
+        With reactionless=True, and for other options than the model's.
     """
-    choice = parse_options(case.model_options(options))
+    if model.origin is None:
+        choice = parse_options(case.model_options(options))
+    else:
+        check_options(of_model(model), case, options)
+        choice = model.origin.options
     if choice.reactionless:
         raise InputError("reactionless", True, "is not taken apart: leave it out")
     rotor = case.rotor

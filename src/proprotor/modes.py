@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.massless import massless, massless_coordinates, with_reasons
@@ -315,4 +316,4 @@ def mode_dataset(
     coordinates = {"dof": list(model.dofs), "airspeed": (leading, model.airspeed, {"units": "m/s"})}
     if line is not None and line.name != "airspeed":
         coordinates[line.name] = (leading, line.positions, {"units": line.units})
-    return xarray.Dataset(data, coords=coordinates)
+    return xarray.Dataset(data, coords=coordinates, attrs=stamp.of_model(model))

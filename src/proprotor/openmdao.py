@@ -255,7 +255,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         known = self._found is not None and self._found[0] == self._key(inputs)
         boundary = self._found[1] if known and self._found else self._boundary(case)
         numbers = {path: case.given[path] for path in self._paths.values()}
-        rates = at_boundary(case, boundary, numbers, self.options["level"], self._model_options)
+        rates = at_boundary(case, boundary, numbers, self._model_options)
         for name, path in self._paths.items():
             own = rates.sel(input=path)
             partials["flutter_speed", name] = own.derivative.item()

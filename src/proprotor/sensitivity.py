@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.crossings import growth_rate
 from proprotor.eigenvalue_derivatives import STEP, defect, differences, eigenvalue_change, matrix_derivatives
@@ -106,7 +107,8 @@ def sensitivity(
         its matrices were derived by a complex step, or, those of finite elements, by extrapolated differences; defect
         and nearly_defective of the modes (`proprotor.eigenvalue_derivatives.defect`): there derivatives hold in a small
         range only. For the flutter speed also frequency_derivative, of the frequency at the boundary as it moves.
-        Attributes: of, its value where there is one, eigen_solves.
+        warning is what makes the numbers doubtful. Attributes: of, its value where there is one, eigen_solves, and the
+        case and its options (`proprotor.stamp`).
 
     Raises
     ------
@@ -184,19 +186,27 @@ def _of_flutter_speed(
         rule = "has no boundary" if mode else "nothing becomes unstable"
         low, high = found.searched
         raise InputError("flutter_speed", mode, f"{rule} between {low:.6g} and {high:.6g} m/s")
-    return at_boundary(case, wanted[0], inputs, level, options, found.eigen_solves)
+    return at_boundary(case, wanted[0], inputs, options, found.eigen_solves)
 
 
 def at_boundary(
     case: Case,
     boundary: Boundary,
     inputs: Mapping[str, Datum],
-    level: float,
     options: Mapping[str, Any],
     eigen_solves: int = 0,
 ) -> xarray.Dataset:
-    """Derivatives of the airspeed of one boundary: see `sensitivity`. One more eigen-solve, for the vectors."""
-    speed = boundary.position
+    """Derivatives of the airspeed of one boundary: see `sensitivity`. One more eigen-solve, for the vectors.
+
+    The level and the options are the boundary's own; options may be repeated.
+
+    Raises
+    ------
+    InputError
+        For another case or another option than the boundary's.
+    """
+    options = stamp.options_of(boundary.stamp, case, options)
+    speed, level = boundary.position, boundary.level
     model = case.linearize(speed, **options)
     spectrum = decomposition(model)
     modes = spectrum.modes(np.array([np.argmin(np.abs(spectrum.values - boundary.eigenvalue))]))
@@ -208,7 +218,8 @@ def at_boundary(
     data["frequency_derivative"] = ("input", frequency, {"units": "rad/s per SI unit of the input"})
     data["defect"] = ((), float(defect(modes)[0]))
     data["nearly_defective"] = ((), bool(data.defect > NEARLY_DEFECTIVE))
-    data.attrs = {
+    data["warning"] = _doubt(boundary.warning)
+    data.attrs = dict(boundary.stamp) | {
         "of": "flutter_speed",
         "value": speed,
         "units": "m/s",
@@ -237,8 +248,13 @@ def _of_modes(
     data[of] = ("mode", value, {"units": units})
     data["defect"] = ("mode", defect(modes))
     data["nearly_defective"] = ("mode", data.defect.values > NEARLY_DEFECTIVE)
-    data.attrs = {"of": of, "airspeed": speed, "eigen_solves": eigen_solves}
+    data["warning"] = _doubt(model.trim.warning)
+    data.attrs = stamp.of_model(model) | {"of": of, "airspeed": speed, "eigen_solves": eigen_solves}
     return data
+
+
+def _doubt(warning: Any) -> tuple[tuple[()], str, dict[str, str]]:
+    return (), str(warning), {"long_name": "what makes the numbers doubtful"}
 
 
 def _dataset(

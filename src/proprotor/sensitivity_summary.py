@@ -35,6 +35,7 @@ def sensitivity_records(case: Case, found: xarray.Dataset, of: str) -> list[dict
                 "derivative (SI)": float(found.derivative.values[place]),
                 "exact": bool(found.exact.values[place]),
                 "status": numbers[path].status,
+                "warning": found.warning.item(),
             }
         )
     return sorted(records, key=lambda record: -abs(record[f"for +1 % ({read_in})"] or 0.0))

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from proprotor.arrays import Array
 from proprotor.assembly import refused_where
 from proprotor.errors import InputError
+from proprotor.mode_names import check_distinct
 from proprotor.model import HUB, LinearModel
 from proprotor.rotor_share import without_rotors
 from proprotor.support import NormalModes
@@ -80,6 +81,7 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         raise InputError(
             "support.names", ", ".join(support.names), "must differ from the rotors' coordinates"
         )
+    check_distinct("support.names", tuple(names))
     shape = np.broadcast_shapes(
         *(rotor.model.M.shape[:-2] for rotor in rotors.values()), support.mass.shape[:-2]
     )

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.crossings import growth
 from proprotor.errors import InputError, unknown_name
@@ -83,8 +84,9 @@ def stability_map(
     -------
     xarray.Dataset
         growth (y, x), the largest Re λ + ζ0 |λ| of all modes, 1/s, positive where a mode is beyond the level; frequency
-        of that mode, rad/s; reason of points that failed. boundary (vertex, axis): the line between, in lines parted
-        by NaN. Attributes: level, eigen_solves.
+        of that mode, rad/s; reason of points that failed, warning of those that are doubtful. boundary (vertex, axis):
+        the line between, in lines parted by NaN; boundary_warning (vertex,), what makes it doubtful there. Attributes:
+        level, airspeed in m/s where it is given, eigen_solves, and the case and its options (`proprotor.stamp`).
 
     Raises
     ------
@@ -105,11 +107,25 @@ def stability_map(
         for start in range(0, len(grid_x), _AT_ONCE)
     ]
     shape = (len(y), len(x))
-    largest, value, reason = (np.concatenate(part).reshape(shape) for part in zip(*parts, strict=True))
-    edges, solves = _crossings(plane, x, y, largest, level)
-    found = _dataset(names, values, largest, value, reason, _lines(edges, largest)).assign_attrs(
-        level=level, eigen_solves=int(np.isfinite(largest).sum()) + solves
+    largest, value, reason, warning = (
+        np.concatenate(part).reshape(shape) for part in zip(*parts, strict=True)
     )
+    edges, solves = _crossings(plane, x, y, largest, level)
+    found = _dataset(names, values, largest, value, _lines(edges, largest))
+    for name, texts, meaning in (
+        ("reason", reason, "why a point failed"),
+        ("warning", warning, "what makes a point doubtful"),
+    ):
+        found[name] = names[::-1], texts.astype(str), {"long_name": meaning}
+    found["boundary_warning"] = (
+        "vertex",
+        _warnings_at(plane, found.boundary.values),
+        {"long_name": "what makes the boundary doubtful"},
+    )
+    found.attrs = stamp.of_case(case, options) | {"level": level}
+    if airspeed is not None:
+        found.attrs[AIRSPEED] = float(in_metres_per_second(airspeed))
+    found.attrs["eigen_solves"] = int(np.isfinite(largest).sum()) + solves
     for name in names:
         found[name].attrs["units"] = "m/s" if name == AIRSPEED else design_inputs(case)[name].unit
     return found
@@ -151,9 +167,19 @@ def _plane(case: Case, names: tuple[str, str], airspeed: Any, options: Mapping[s
     return linearize
 
 
-def _evaluated(plane: Plane, x: Array, y: Array, level: float) -> tuple[Array, Array, Array]:
+def _evaluated(plane: Plane, x: Array, y: Array, level: float) -> tuple[Array, Array, Array, Array]:
     model = plane(x, y)
-    return *largest_growth(model, level), model.trim.reason
+    return *largest_growth(model, level), model.trim.reason, model.trim.warning
+
+
+def _warnings_at(plane: Plane, vertices: Array) -> Array:
+    """What makes each vertex (vertices, 2) doubtful; nothing between two lines."""
+    warnings = np.full(len(vertices), "", dtype=object)
+    there = np.flatnonzero(np.isfinite(vertices).all(axis=1))
+    for start in range(0, len(there), _AT_ONCE):
+        some = there[start : start + _AT_ONCE]
+        warnings[some] = plane(vertices[some, 0], vertices[some, 1]).trim.warning
+    return warnings.astype(str)
 
 
 def _crossings(plane: Plane, x: Array, y: Array, largest: Array, level: float) -> tuple[Edges, int]:
@@ -257,7 +283,6 @@ def _dataset(
     values: tuple[Array, Array],
     largest: Array,
     value: Array,
-    reason: Array,
     boundary: Array,
 ) -> xarray.Dataset:
     import xarray  # here, because it takes long to import
@@ -268,7 +293,6 @@ def _dataset(
         {
             "growth": (dims, largest, {"units": "1/s", "long_name": "largest growth of all modes"}),
             "frequency": (dims, frequency, {"units": "rad/s", "long_name": "of the mode that grows most"}),
-            "reason": (dims, reason.astype(str), {"long_name": "why a point failed"}),
             "boundary": (("vertex", "axis"), boundary),
         },
         coords={names[0]: values[0], names[1]: values[1], "axis": list(names)},

@@ -8,7 +8,7 @@ blade pitch.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,7 @@ from proprotor.errors import InputError
 from proprotor.model import HUB, INPUTS, ROTOR_SPEED, LinearModel
 from proprotor.modes import held_coordinates, lack_azimuth, state_matrix, without_massless
 from proprotor.needs import need
+from proprotor.stamp import Stamp, of_model
 
 if TYPE_CHECKING:
     import control
@@ -50,6 +51,10 @@ class StateSpace:
         Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
         inertial axes)
         and the rotor's own coordinates; of an azimuth that no shaft holds, the rate.
+    warning, reason : array of str
+        (...): what makes a point doubtful, and why one failed; empty where nothing does.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.stamp`.
     """
 
     A: Array
@@ -59,6 +64,9 @@ class StateSpace:
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    warning: Array
+    reason: Array
+    stamp: Stamp = field(default_factory=dict)
 
     def to_control(self) -> control.StateSpace:
         """The same as a `control.StateSpace` of python-control; one point at a time.
@@ -123,7 +131,8 @@ def state_space(model: LinearModel) -> StateSpace:
     for part in (inputs, rows, feedthrough):
         part[failed] = np.nan
     states = (*(model.dofs[place] for place in held), *(f"{name} rate" for name in model.dofs))
-    return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names)
+    doubt = model.trim.warning, model.trim.reason
+    return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names, *doubt, of_model(model))
 
 
 def _outputs(

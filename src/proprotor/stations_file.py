@@ -22,6 +22,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from proprotor.errors import InputError, unknown_name
+from proprotor.printable import printable
+from proprotor.text_file import read_text
 from proprotor.units import factor_to_si
 
 STATIONS = ("r_over_R", "r")
@@ -87,31 +89,13 @@ def read_stations(
         When the file cannot be read or is malformed: one line with the file, the line and column in it and the rule.
     """
     try:
-        heads, rows = _table(_content(Path(path)))
+        heads, rows = _table(read_text(Path(path), "file", Path(path).name, _LARGEST))
         stations, values = _stations_head(heads), _head(heads, column)
         to_si = _factor(values, unit)
         scale = _scale(stations, radius)
         return _distribution(rows, stations, values, scale, to_si, holds, rule)
     except _Fault as fault:
         raise InputError("file", Path(path).name, str(fault)) from None
-
-
-def _content(path: Path) -> str:
-    try:
-        if not path.is_file():
-            raise _Fault("no such file")
-        with path.open("rb") as stream:
-            content = stream.read(_LARGEST + 1)
-    except OSError as error:
-        raise _Fault(f"cannot be read ({error.strerror})") from None
-    except ValueError:  # a name with a null character
-        raise _Fault("no such file") from None
-    if len(content) > _LARGEST:
-        raise _Fault(f"must not be larger than {_LARGEST} bytes")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise _Fault("must be text in UTF-8") from None
 
 
 def _table(text: str) -> tuple[list[_Head], Iterator[tuple[int, list[str]]]]:
@@ -232,8 +216,7 @@ def _number(number: int, cells: list[str], head: _Head) -> float:
     if not text.strip():
         raise _at(number, head, "is empty")
     if not _NUMBER.fullmatch(text):
-        shown = "".join(c if c.isprintable() else " " for c in text.strip())[:30]
-        raise _at(number, head, f'"{shown}" is no number')
+        raise _at(number, head, f'"{printable(text.strip())[:30]}" is no number')
     return float(text)
 
 

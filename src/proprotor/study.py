@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from proprotor_equations import FIXED_COORDINATES
 
-from proprotor import study_workers
+from proprotor import stamp, study_workers
 from proprotor.arrays import Array
 from proprotor.checkpoint import Checkpoint
 from proprotor.errors import InputError, unknown_name
@@ -276,18 +276,7 @@ class _Study:
         return xarray.Dataset(data, coords=coordinates, attrs=self._attributes())
 
     def _attributes(self) -> dict[str, str]:
-        from importlib.metadata import version
-
-        from proprotor.provenance import reservations
-
-        case = self.analysis.case
-        return {
-            "title": case.title or case.name,
-            "case": case.name,
-            "options": ", ".join(f"{name}={value}" for name, value in self.analysis.options.items()),
-            "reservations": " ".join(reservations(case)),
-            "made_by": f"proprotor {version('proprotor')}",
-        } | self.designs.attributes
+        return stamp.of_case(self.analysis.case, self.analysis.options) | self.designs.attributes
 
 
 def _run(

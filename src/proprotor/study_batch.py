@@ -83,6 +83,7 @@ VARIABLES: dict[str, dict[str, Variable]] = {
         ),
         "flutter_mode": Variable(DESIGN, (), str, "", "what moves in it at that airspeed"),
         "flutter_coordinate": Variable(DESIGN, (), str, "", "coordinate that takes part in it most"),
+        "flutter_warning": Variable(DESIGN, (), str, "", "what makes the flutter speed doubtful"),
         "flutter_note": Variable(DESIGN, (), str, "", "why there is no flutter speed"),
     },
     "vectors": {
@@ -358,8 +359,12 @@ class Analysis:
         frequency = np.abs(np.take_along_axis(system.values, place, -1)[..., 0].imag)
         main = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-1)]
         names = moving(model, system.values, system.left, system.right).names
-        name = np.take_along_axis(names, place, -1)[..., 0]
-        return {"flutter_frequency": frequency, "flutter_mode": name, "flutter_coordinate": main}
+        return {
+            "flutter_frequency": frequency,
+            "flutter_mode": np.take_along_axis(names, place, -1)[..., 0],
+            "flutter_coordinate": main,
+            "flutter_warning": model.trim.warning,
+        }
 
 
 def _eigenvalues(model: LinearModel) -> Array:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.doubts import reasons_for_doubt
+
 if TYPE_CHECKING:
     import xarray
 
@@ -22,9 +24,9 @@ def study_summary(results: xarray.Dataset) -> dict[str, Any]:
     Returns
     -------
     dict
-        title; points, how many failed and why, the most frequent reason first; reservations; of flutter speeds how many
-        were found, the lowest, median and highest in m/s; without them how many points are unstable, and the lowest
-        damping.
+        title; points, how many failed and why, the most frequent reason first, and how many are doubtful and why;
+        reservations; of flutter speeds how many were found and are doubtful, the lowest, median and highest in m/s;
+        without them how many points are unstable, and the lowest damping.
     """
     reasons = Counter(str(text) for text in results.reason.values.ravel() if text)
     summary: dict[str, Any] = {
@@ -32,6 +34,8 @@ def study_summary(results: xarray.Dataset) -> dict[str, Any]:
         "points": int(results.reason.size),
         "failed": sum(reasons.values()),
         "reasons": dict(reasons.most_common()),
+        "points doubtful": int((results.warning != "").sum()),
+        "doubts of points": _counted(results.warning.values),
         "reservations": results.attrs["reservations"],
     }
     if "flutter_speed" in results:
@@ -44,12 +48,18 @@ def study_summary(results: xarray.Dataset) -> dict[str, Any]:
     }
 
 
+def _counted(warnings: np.ndarray) -> dict[str, int]:
+    return {text: len(places) for text, places in reasons_for_doubt(warnings.ravel().tolist()).items()}
+
+
 def _of_flutter_speeds(results: xarray.Dataset) -> dict[str, Any]:
     found = np.asarray(results.flutter_speed.values, dtype=float).ravel()
     notes = Counter(str(text) for text in results.flutter_note.values.ravel() if text)
     speeds = np.sort(found[np.isfinite(found)])
     return {
         "flutter speeds found": len(speeds),
+        "flutter speeds doubtful": len([text for text in results.flutter_warning.values.ravel() if text]),
+        "doubts": _counted(results.flutter_warning.values),
         "lowest flutter speed (m/s)": float(speeds[0]) if len(speeds) else None,
         "median flutter speed (m/s)": float(np.median(speeds)) if len(speeds) else None,
         "highest flutter speed (m/s)": float(speeds[-1]) if len(speeds) else None,

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from proprotor import stamp
 from proprotor.boundary_summary import least_told
+from proprotor.doubts import MARK, footnotes, marked, reasons_for_doubt
 from proprotor.provenance import reservations
 from proprotor.speed import KNOT
 
@@ -49,15 +51,18 @@ def of_model(model: LinearModel) -> str:
         f"LinearModel: {len(model.dofs)} coordinates, {shape}, {_range(model.airspeed)} m/s",
         f"  {', '.join(model.dofs)}",
     ]
+    lines += [f"  {line}" for line in (stamp.told(stamp.of_model(model)),) if line]
     reasons = Counter(str(reason) for reason in np.ravel(model.trim.reason) if reason)
     lines += [f"  {count} of {converged.size} failed: {reason}" for reason, count in reasons.most_common(5)]
+    doubts = reasons_for_doubt(np.ravel(model.trim.warning).tolist())
+    lines += [f"  {len(at)} of {converged.size} doubtful: {text}" for text, at in doubts.items()]
     return "\n".join(lines)
 
 
 def of_boundary(boundary: Boundary) -> str:
     """Where which mode crosses the level, and how."""
     hertz = f", {boundary.frequency / math.tau:.4g} Hz" if boundary.kind == "flutter" else ""
-    return f"Boundary at {boundary.position:.6g}: {_event(boundary)}{hertz}"
+    return f"Boundary at {_position(boundary)}: {_event(boundary)}{hertz}{_reason(boundary.warning)}"
 
 
 def of_crossings(found: Crossings) -> str:
@@ -68,7 +73,8 @@ def of_crossings(found: Crossings) -> str:
         ratio, mode, position = found.least
         lines[0] += f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
     lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
-    return "\n".join(lines + list(_at_start(found)))
+    origin = [f"  {line}" for line in (stamp.told(found.stamp),) if line]
+    return "\n".join(lines + list(_at_start(found)) + origin)
 
 
 def of_flutter_point(found: FlutterPoint) -> str:
@@ -78,13 +84,26 @@ def of_flutter_point(found: FlutterPoint) -> str:
         first = f"FlutterPoint: nothing becomes unstable between {low} and {high} kt"
         first += f"; least damping {told}" if (told := least_told(found, "kt", KNOT)) else ""
     else:
-        where = f"{found.speed / KNOT:.2f} kt ({found.speed:.6g} m/s)"
+        where = f"{marked(f'{found.speed / KNOT:.2f}', found.warning)} kt ({found.speed:.6g} m/s)"
         first = f"FlutterPoint: {where}, {found.kind} of {found.mode}, {found.frequency / math.tau:.4g} Hz"
     if found.level:
         first += f"; damping of {100 * found.level:g} % counts as the boundary"
     others = [boundary for boundary in found.boundaries if boundary.position != found.speed]
-    lines = [f"  {boundary.position / KNOT:.2f} kt: {_event(boundary)}" for boundary in others]
-    return "\n".join([first, *lines, *_at_start(found)])
+    lines = [
+        f"  {marked(f'{boundary.position / KNOT:.2f}', boundary.warning)} kt: {_event(boundary)}"
+        for boundary in others
+    ]
+    doubts = [f"  {MARK} {line}" for line in footnotes(found.doubts, "kt", KNOT)]
+    origin = [f"  {line}" for line in (stamp.told(found.stamp),) if line]
+    return "\n".join([first, *lines, *_at_start(found), *doubts, *origin])
+
+
+def _position(boundary: Boundary) -> str:
+    return marked(f"{boundary.position:.6g}", boundary.warning)
+
+
+def _reason(warning: str) -> str:
+    return f" (doubtful: {warning})" if warning else ""
 
 
 def _event(boundary: Boundary) -> str:

@@ -28,7 +28,7 @@ class NormalModes:
     Parameters
     ----------
     names : sequence of str
-        One name per coordinate, all different and none of them a rotor's own.
+        One name per coordinate, all different and none of them that of a coordinate or mode of a rotor.
     mass, damping, stiffness : array_like, shape (..., n, n)
         Symmetric, SI (kg or kg m² and so on, as the coordinate is a length in m or an angle in rad).
         The mass must have no negative eigenvalue. Leading axes are many supports at once.
@@ -51,7 +51,8 @@ class NormalModes:
     Raises
     ------
     InputError
-        When sizes differ or a matrix is not finite, not symmetric, or (mass) negative, and for an unknown word.
+        When sizes differ, a name is taken, or a matrix is not finite, not symmetric, or (mass) negative, and for an
+        unknown word.
     """
 
     names: Sequence[str]
@@ -73,6 +74,9 @@ class NormalModes:
         for field, choices in (("includes_rotor", INCLUDES_ROTOR), ("shaft", SHAFT)):
             if not is_choice(getattr(self, field), choices):
                 raise InputError(field, getattr(self, field), f"must be {told_choices(choices)}")
+        from proprotor.mode_names import check_support_names  # here, because it knows the rotor's coordinates
+
+        check_support_names("names", names)
         n = len(names)
         object.__setattr__(self, "names", names)
         object.__setattr__(self, "hub", _finite("hub", self.hub, (6, n)))

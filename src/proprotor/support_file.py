@@ -24,6 +24,7 @@ from proprotor.errors import InputError, unknown_name
 from proprotor.matrix_market import MatrixMarketError, read_matrix
 from proprotor.modal_reduction import on_modes
 from proprotor.support import HUB_AXES, NormalModes
+from proprotor.text_file import read_text
 
 _LARGEST = 500_000_000  # bytes of a file, unpacked
 _LARGEST_UNIT = 1e12  # m or kg
@@ -95,8 +96,7 @@ def read_matrix_market(
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _matrix_market(name, path) for name, path in given.items() if path is not None}
     path = _existing("dofs", dofs)
-    with _readable("dofs", path):
-        names = path.read_text(encoding="utf-8").split()
+    names = read_text(path, "dofs", str(path), _LARGEST).split()
     return support_from_matrices(
         matrices["mass"], matrices["stiffness"], matrices.get("damping"), dofs=names, hub=hub, **options
     )

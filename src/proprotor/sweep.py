@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.branches import Named, branches
 from proprotor.errors import InputError, unknown_name
@@ -80,7 +81,8 @@ def sweep(
         mode is that motion, 0 to 1; branch, which exact root has the name at a point, by its label where branches are
         named (`proprotor.branches`); tracking_quality, the trust in that label, 0 to 1: the least of all steps from
         there; whirl (-1 against the rotor to 1 with it, in the fixed frame). A step that does not tell roots apart is a
-        warning. Attributes: eigen_solves, and named_at, where branches are named.
+        warning. Attributes: eigen_solves, named_at, where branches are named, and the case and its
+        options (`proprotor.stamp`).
 
     Raises
     ------
@@ -110,7 +112,7 @@ def sweep(
         data[name] = by_mode, _at_columns(values, columns), {"long_name": meaning}
     data["branch"] = data.branch.astype(str)
     data["warning"] = data.warning.dims, _joined(data.warning.values, followed.doubt), data.warning.attrs
-    data.attrs = {"eigen_solves": len(path.points) + named.eigen_solves, "named_at": named.told}
+    data.attrs |= {"eigen_solves": len(path.points) + named.eigen_solves, "named_at": named.told}
     return data.assign_coords(mode=modes)
 
 
@@ -235,6 +237,13 @@ def sweep_case(
     InputError
         For an unknown option or input, airspeeds that do not form a line, or more than one input.
     """
+    found = _sweep_of(case, airspeeds, vary, options)
+    return found.assign_attrs(stamp.of_case(case, options))  # of the case itself, not of one that is varied
+
+
+def _sweep_of(
+    case: Case, airspeeds: Any, vary: Mapping[str, ArrayLike] | None, options: Mapping[str, Any]
+) -> xarray.Dataset:
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:  # points differ in more than their airspeed
         return sweep(case.linearize(airspeeds, **options))

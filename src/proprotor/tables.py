@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import textwrap
 from collections.abc import Iterator, Sequence
@@ -15,6 +13,8 @@ import numpy as np
 
 from proprotor import units
 from proprotor.arrays import Array
+from proprotor.csv_text import csv_of
+from proprotor.doubts import doubtful_near, doubts_along, footnotes, marked
 from proprotor.mode_names import DOUBTFUL
 from proprotor.sweep_summary import (
     UnstableRange,
@@ -104,9 +104,7 @@ class SweepTable:
 
     def doubts(self) -> list[str]:
         """A sentence on each warning of single airspeeds; their rows have a question mark."""
-        texts = self.sweep.warning.values
-        found = {text: self.airspeed[texts == text] for text in dict.fromkeys(texts.tolist()) if text}
-        return [f"Doubtful {self._range(speeds)}: {text}." for text, speeds in found.items()]
+        return list(footnotes(doubts_along(self.airspeed, self.sweep.warning.values), self.unit))
 
     def mixed(self) -> str:
         """A sentence on modes in the name of which little moves at some airspeeds; empty where there are none."""
@@ -153,7 +151,7 @@ class SweepTable:
         row = Text(f"{self.airspeed[point]:>{_SPEED_WIDTH}g}")
         if self.failed[point]:
             return row.append(f"  {self.sweep.reason.values[point]}", "yellow")
-        row.append("?" if self.sweep.warning.values[point] else " ", "yellow")
+        row.append(marked("", self.sweep.warning.values[point]) or " ", "yellow")
         for mode in modes:
             frequency, damping = self.frequency[point, mode], self.damping[point, mode]
             mark, style = ("*", "bold red") if self.unstable[point, mode] else (" ", "")
@@ -168,7 +166,10 @@ class SweepTable:
         return [self._told(found) for found in ranges] or ["No mode is unstable at the airspeeds analysed."]
 
     def _told(self, found: UnstableRange) -> str:
-        start, stop = (self._rounded(speed) for speed in (found.start, found.stop))
+        along = self.sweep.airspeed.values, self.sweep.warning.values
+        start, stop = (
+            marked(self._rounded(at), doubtful_near(*along, at)) for at in (found.start, found.stop)
+        )
         since = f"from about {start} (interpolated)"
         if found.open_start:
             since = f"at {self.airspeed[~self.failed][0]:g} {self.unit}, the lowest airspeed analysed"
@@ -208,13 +209,9 @@ class SweepTable:
         }
 
     def csv(self) -> bytes:
-        """`records` as CSV in UTF-8, with all digits; empty cells at failed points."""
-        text = io.StringIO(newline="")
+        """`records` as CSV in UTF-8, see `proprotor.csv_text`; empty cells at failed points."""
         records = list(self.records())
-        writer = csv.DictWriter(text, fieldnames=list(records[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(records)
-        return text.getvalue().encode()
+        return csv_of(records, list(records[0]), self.sweep.attrs)
 
 
 def _finite(number: float) -> float | None:

@@ -7,8 +7,12 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.text import Text
 
+from proprotor.doubts import MARK
+from proprotor.printable import printable
 from proprotor.provenance import doubtful_inputs, reservations
+from proprotor.stamp import in_words, options_told
 from proprotor.tables import CONVENTION, SweepTable
 
 if TYPE_CHECKING:
@@ -20,31 +24,31 @@ def heading(case: Case) -> str:
     return f"{case.title or case.name}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
 
 
-def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_modes: bool = False) -> None:
+def print_sweep(case: Case, table: SweepTable, all_modes: bool = False) -> None:
     """Print what was analysed, what it rests on, the table and where modes are unstable.
 
     Parameters
     ----------
     case : Case
     table : SweepTable
-    options : dict
-        Of the model, as in `proprotor.options.Options`.
     all_modes : bool
         Every mode, in as many tables as it takes, or those of interest only.
     """
-    console = _console()
-    chosen = ", ".join(
-        f"{name.replace('_', ' ')} {option_told(value)}"
-        for name, value in options.items()
-        if value is not None
-    )
+    console = PlainConsole()
     warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
-    for line in (heading(case), f"Model: {chosen}.", CONVENTION, *reservations(case), *warnings, ""):
+    for line in (
+        heading(case),
+        f"Model: {in_words(options_told(table.sweep.attrs))}.",
+        CONVENTION,
+        *reservations(case),
+        *warnings,
+        "",
+    ):
         console.print(line)
     for row in table.lines(console.width, all_modes):
         console.print(row, soft_wrap=True)
     for line in table.doubts():
-        console.print(f"? {line}", style="yellow")
+        console.print(f"{MARK} {line}", style="yellow")
     if mixed := table.mixed():
         console.print(mixed)
     for line in table.verdict():
@@ -53,7 +57,7 @@ def print_sweep(case: Case, table: SweepTable, options: dict[str, Any], all_mode
 
 def print_case(case: Case) -> None:
     """Print what a case is, and each input that was not read in a source."""
-    console = _console()
+    console = PlainConsole()
     warnings = (f"Warning: {text}" for text in case.warnings)
     for paragraph in filter(None, (case.title, case.description, *reservations(case), *warnings)):
         console.print(f"{paragraph}\n")
@@ -62,19 +66,22 @@ def print_case(case: Case) -> None:
         console.print(f"{'':<11} {number.source}", soft_wrap=True)
 
 
-def _console() -> Console:
-    return Console(markup=False, highlight=False, emoji=False)
+class PlainConsole(Console):
+    """A console that prints text as it is, and nothing of it that is not printable (`proprotor.printable`)."""
+
+    def __init__(self, *, stderr: bool = False) -> None:
+        super().__init__(markup=False, highlight=False, emoji=False, stderr=stderr)
+
+    def print(self, *objects: Any, **more: Any) -> None:
+        super().print(*map(_shown, objects), **more)
+
+
+def _shown(it: Any) -> Any:
+    if isinstance(it, Text):
+        it.plain = printable(it.plain, keep="\n")
+    return printable(it, keep="\n") if isinstance(it, str) else it
 
 
 def _shortened(text: str, case: Case, width: int) -> str:
     """About two lines of a warning, and where the whole of it stands."""
     return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")
-
-
-def option_told(value: Any) -> str:
-    """The choice of an option in words."""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, tuple):
-        return " and ".join(value) or "nothing"
-    return str(value)

@@ -26,7 +26,9 @@ from proprotor.arrays import Array
 from proprotor.trim import UNKNOWNS
 from proprotor.trim_balance import Balance, Slopes, State, copy_state, newton_step, solve
 
-FARTHEST = np.radians(60)  # of the collective from the direction of the air: a blade turned farther is another branch
+FARTHEST = np.radians(
+    60
+)  # of the collective from the direction of the air: a blade turned farther is another branch
 _CONTRACTION = 0.5  # largest spectral radius of N
 _REACH = 2.0  # change of slopes within reach of the path, in that between the ends of a step
 _WINDOWS = (1, 2, 4)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
@@ -42,7 +44,13 @@ _SHARP = 1e-12  # rad, of the rigid blade's root
 
 
 def contraction(
-    sprung: Array, before: Slopes, after: Slopes, share: Array, to: Array, windows: int = 1, between: Slopes | None = None
+    sprung: Array,
+    before: Slopes,
+    after: Slopes,
+    share: Array,
+    to: Array,
+    windows: int = 1,
+    between: Slopes | None = None,
 ) -> Array:
     """Spectral radius (n,) of N in a step: up to one half the path leads from one equilibrium to the other, unturned.
 
@@ -63,7 +71,9 @@ def contraction(
     def radius(rows: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
         start, half = share[rows], (to - share)[rows] / (2 * windows)
         middles = (start + (2 * window + 1) * half for window in range(windows))
-        return np.maximum.reduce([_radius(_moved(before, after, between, half, middle)) for middle in middles])
+        return np.maximum.reduce(
+            [_radius(_moved(before, after, between, half, middle)) for middle in middles]
+        )
 
     return _by_moments_or_angles(sprung, radius, before, after, *(() if between is None else (between,)))
 
@@ -110,9 +120,7 @@ def _radius(matrix: Array) -> Array:
     return ratio.max(axis=1, initial=0.0)
 
 
-def at_end(
-    balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array
-) -> Array:
+def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
     """Whether the bound tells that points (n,) with these slopes at the start and here are at the path's end."""
     smooth = isinstance(balance.sections.airfoil, Airfoil)
     between = None if smooth else balance.near(_half_way(start, state), rows, share=0.5).slopes
@@ -293,7 +301,12 @@ def _closing(balance: Balance, state: State, rows: Array, pitch: Array) -> Array
 
 
 def _root_between(
-    balance: Balance, state: State, rows: Array, air: Array, ends: tuple[Array, Array], values: tuple[Array, Array]
+    balance: Balance,
+    state: State,
+    rows: Array,
+    air: Array,
+    ends: tuple[Array, Array],
+    values: tuple[Array, Array],
 ) -> Array:
     """Root (n,) of the closing row between two angles from the air's with values of different sign (Illinois)."""
     (a, b), (at_a, at_b) = ends, values

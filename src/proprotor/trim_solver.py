@@ -87,9 +87,7 @@ def solve_trim(
             search.come_near(replace(balance, sections=coarse))
             search.come_close()
             search.finish()
-        return _settle(
-            balance, search.state, search.before, search.reason, search.iterations, search.last
-        )
+        return _settle(balance, search.state, search.before, search.reason, search.iterations, search.last)
 
 
 @dataclass(eq=False)
@@ -264,7 +262,9 @@ def _ended(found: Followed, target: Target) -> Array:
         at = f"at {np.floor(1000 * found.share[place]) / 10:.1f} % of airloads and precone's load"
         turns = found.speed[place] > _TURNING
         told = f"turns back {at}: no trim belongs to it" if turns else f"was lost {at}"
-        reason[place] = f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
+        reason[place] = (
+            f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
+        )
     return reason
 
 

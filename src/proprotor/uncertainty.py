@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor import stamp
 from proprotor.arrays import Array
+from proprotor.doubts import reasons_for_doubt
 from proprotor.errors import InputError
 from proprotor.flutter_scan import STABLE, UNSTABLE
 from proprotor.needs import check_memory, need
@@ -41,7 +43,8 @@ def distribution(
     Returns
     -------
     xarray.Dataset
-        ``value`` over ``percentile``, and how many designs are ``known``, ``above`` or ``below`` the range, ``failed``.
+        ``value`` over ``percentile``, and how many designs are ``known``, ``above`` or ``below`` the range, ``failed``,
+        and of those known ``doubtful``; the attribute ``doubts`` says why. The case and its options stand there too.
 
     Raises
     ------
@@ -61,7 +64,8 @@ def distribution(
     ordered = np.where(above, np.inf, np.where(below, -np.inf, values))[~failed]
     # The value itself that a share of the designs does not exceed: between a number and infinity nothing lies.
     found = np.quantile(ordered, wanted / 100, method="inverted_cdf")
-    counts = {"known": known, "above": above, "below": below, "failed": failed}
+    warnings = _warnings(results, of)
+    counts = {"known": known, "above": above, "below": below, "failed": failed, "doubtful": warnings != ""}
     return xarray.Dataset(
         {
             "value": (
@@ -72,8 +76,22 @@ def distribution(
         }
         | {name: ((), int(mask.sum())) for name, mask in counts.items()},
         coords={"percentile": wanted},
-        attrs={"of": of} | {name: text for name, text in results.attrs.items() if name == "reservations"},
+        attrs=_attributes(results, of, warnings),
     )
+
+
+def _warnings(results: xarray.Dataset, of: str) -> Array:
+    """What makes the result of each design (designs,) doubtful."""
+    name = "flutter_warning" if of.startswith("flutter_") else "warning"
+    if name in results and results[name].dims == results[of].dims:
+        return np.asarray(results[name].values)
+    return np.full(results[of].shape, "")
+
+
+def _attributes(results: xarray.Dataset, of: str, warnings: Array) -> dict[str, Any]:
+    """Where a result over the designs comes from, and its doubts."""
+    doubts = {"doubts": "; ".join(reasons_for_doubt(warnings.tolist()))}
+    return stamp.of(results.attrs) | {"of": of} | doubts
 
 
 def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed") -> float:
@@ -131,7 +149,8 @@ def sobol_indices(
     -------
     xarray.Dataset
         Over ``input``: ``first``, the share of the input alone, ``total``, with all its interactions, and half the
-        width of their intervals; ``second`` over two inputs where the sample has what it needs.
+        width of their intervals; ``second`` over two inputs where the sample has what it needs. ``doubtful`` counts the
+        designs whose result is; the attribute ``doubts`` says why. The case and its options stand there too.
 
     Raises
     ------
@@ -172,10 +191,13 @@ def sobol_indices(
         "total_half_interval": ("input", found["ST_conf"]),
         "left_out": ((), int((~whole).sum()), {"long_name": "base samples with a design that has no value"}),
     }
+    warnings = _warnings(results, of)
+    table["doubtful"] = (), int((warnings != "").sum()), {"long_name": "designs whose result is doubtful"}
     if second_order:
         table["second"] = (("input", "other_input"), _both_ways(found["S2"]))
     coordinates = {"input": names} | ({"other_input": names} if second_order else {})
-    return xarray.Dataset(table, coordinates, {"of": of, "confidence": confidence})
+    attributes = _attributes(results, of, warnings) | {"confidence": confidence}
+    return xarray.Dataset(table, coordinates, attributes)
 
 
 def _check_count(field: str, count: int, designs: int) -> None:

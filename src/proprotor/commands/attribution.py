@@ -16,6 +16,8 @@ from proprotor.commands.arguments import (
     one_speed,
     settings_of,
 )
+from proprotor.csv_text import csv_of
+from proprotor.doubts import doubts_along, marked
 from proprotor.waiting import waiting
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
-_COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)")
+_COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)", "warning")
 
 
 @click.command(epilog=EXIT_CODES, short_help="What drives and what damps a mode, by physical origin.")
@@ -60,7 +62,7 @@ def attribution(
         found = _one_mode(loaded.attribution(airspeed, mode, **options))
     records = _records(found)
     if csv:
-        output.write("--csv", csv, output.csv_of(records, _COLUMNS))
+        output.write("--csv", csv, csv_of(records, _COLUMNS, found.attrs))
     if plot:
         output.write_plot(plot, loaded, lambda: _draw(found))
     if as_json:
@@ -83,7 +85,7 @@ def _records(found: xarray.Dataset) -> list[dict[str, Any]]:
         along = (value.conjugate() * change).real / abs(value) ** 2
         damping = -(change.real - value.real * along) / abs(value)
         numbers = (float(change.real), float(change.imag), 100 * float(damping))
-        records.append(dict(zip(_COLUMNS, (origin, *numbers), strict=True)))
+        records.append(dict(zip(_COLUMNS, (origin, *numbers, found.warning.item()), strict=True)))
     return sorted(records, key=lambda record: -abs(record["growth (1/s)"]))
 
 
@@ -95,6 +97,7 @@ def _document(found: xarray.Dataset, records: list[dict[str, Any]], airspeed: fl
         "Re s (rad/s)": value.real,
         "Im s (rad/s)": value.imag,
         "damping (% of critical)": -100 * value.real / abs(value),
+        "warning": found.warning.item(),
         "origins": records,
     }
 
@@ -106,22 +109,23 @@ def _draw(found: xarray.Dataset) -> Any:
 
 
 def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], speed: str) -> None:
-    output.print_head(case)
+    output.print_head(case, found.attrs)
     value = complex(found.eigenvalue.values[0])
     out = output.console()
-    damping = f"damping {-100 * value.real / abs(value):.3g} % of critical"
-    frequency = f"{abs(value.imag) / float(case.operation.rotor_speed):.3f} per rev"
+    doubt = found.warning.item()
+    damping = f"damping {marked(f'{-100 * value.real / abs(value):.3g}', doubt)} % of critical"
+    frequency = f"{marked(f'{abs(value.imag) / float(case.operation.rotor_speed):.3f}', doubt)} per rev"
     out.print(f"{found.mode.values[0]} at {speed.strip()}: {frequency}, {damping}", style="bold")
     columns = ("origin", "growth, 1/s", "frequency, rad/s", "damping, %", "")
     output.print_table(columns, (_row(record) for record in records), text=("origin", ""))
+    output.print_doubts(doubts_along(found.attrs["airspeed"], found.warning.values))
 
 
 def _row(record: dict[str, Any]) -> tuple[str, ...]:
-    origin, growth, frequency, damping = (record[name] for name in _COLUMNS)
+    origin, *numbers, doubt = (record[name] for name in _COLUMNS)
+    growth = numbers[0]
     return (
         origin,
-        f"{growth:+.4f}",
-        f"{frequency:+.4f}",
-        f"{damping:+.4f}",
+        *(marked(f"{number:+.4f}", doubt) for number in numbers),
         "drives" if growth > 0 else "damps",
     )

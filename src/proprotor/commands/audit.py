@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 import subprocess
 import sys
 from collections import Counter
@@ -35,7 +36,9 @@ def audit(check: bool, as_json: bool) -> None:
     if check:
         if as_json:
             raise InputError("--json", None, "goes without --check")
-        done = subprocess.run([sys.executable, "-m", "derive.audit", "--quick"], cwd=root)
+        encoding = f"{sys.stdout.encoding}:backslashreplace"  # the paper has letters that a terminal may lack
+        command = [sys.executable, "-m", "derive.audit", "--quick"]
+        done = subprocess.run(command, cwd=root, env=os.environ | {"PYTHONIOENCODING": encoding})
         raise click.exceptions.Exit(min(done.returncode, 1))
     with (root / _RECORD).open(encoding="utf-8", newline="") as file:
         terms = list(csv.DictReader(file))

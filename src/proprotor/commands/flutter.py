@@ -22,6 +22,8 @@ from proprotor.commands.arguments import (
     settings_of,
     unit_of,
 )
+from proprotor.csv_text import csv_of
+from proprotor.doubts import marked
 from proprotor.errors import InputError
 from proprotor.speed import KNOT
 from proprotor.waiting import waiting
@@ -78,7 +80,7 @@ def flutter(
     records = [boundary_record(boundary, loaded) for boundary in found.boundaries]
     if csv:
         rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
-        output.write("--csv", csv, output.csv_of(rows, COLUMNS))
+        output.write("--csv", csv, csv_of(rows, COLUMNS, found.stamp))
     if as_json:
         head = output.about(loaded, options, settings_of(settings))
         output.print_json(head | _document(found, records, at))
@@ -96,12 +98,14 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
         "flutter speed (m/s)": found.speed,
         "mode": found.mode or None,
         "kind": found.kind or None,
+        "warning": found.warning,
         "beyond the level at the lowest airspeed": list(found.unstable_at_start),
         "least damping (% of critical)": 100 * found.least_damping,
         "mode of the least damping": found.least_damping_mode or None,
         "airspeed of the least damping (kt)": found.least_damping_speed / KNOT,
         "airspeed of the least damping (m/s)": found.least_damping_speed,
         "boundaries": records,
+        "doubts": [doubt._asdict() for doubt in found.doubts],
         "eigen-solves": found.eigen_solves,
     }
     if at is None:
@@ -117,7 +121,7 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
 def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None:
     from proprotor.units import factor_to_si
 
-    output.print_head(case)
+    output.print_head(case, found.stamp)
     if not math.isfinite(found.searched[0]):
         output.console().print("No airspeed could be analysed.", style="bold")
         return
@@ -128,11 +132,12 @@ def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None
         output.print_table(columns, rows, text=columns[3:])
     for line in verdict(found, at, unit, factor):
         output.console().print(line, style="bold")
+    output.print_doubts(found.doubts, unit, factor)
 
 
 def _row(record: dict[str, Any], factor: float) -> tuple[str, ...]:
     return (
-        f"{record['airspeed (m/s)'] / factor:.2f}",
+        marked(f"{record['airspeed (m/s)'] / factor:.2f}", record["warning"]),
         f"{record['frequency (Hz)']:.3f}",
         f"{record['frequency (per rev)']:.3f}",
         record["mode"],

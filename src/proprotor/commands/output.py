@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import textwrap
@@ -14,16 +12,18 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from proprotor import output_file
+from proprotor import output_file, stamp
 from proprotor.commands.arguments import Command, Option
+from proprotor.doubts import MARK, Doubt, footnotes
 from proprotor.errors import InputError
-from proprotor.options import CHOICES
+from proprotor.options import CHOICES, parse_options
+from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from rich.console import Console
 
     from proprotor.case import Case
+    from proprotor.terminal import PlainConsole
 
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
 _NARROWEST = 30  # characters of a wrapped column
@@ -63,38 +63,49 @@ def about(case: Case, options: Mapping[str, Any], settings: Mapping[str, str]) -
     """What stands at the head of every JSON document of a case."""
     from proprotor.provenance import reservations
 
+    own = stamp.of_case(case, options)
     return {
         "case": case.name,
         "title": case.title,
         "set": dict(settings),
         "rotor speed (rad/s)": float(case.operation.rotor_speed),
-        "options": told_options(case, options),
+        "deck": own["deck"],
+        "options": json.loads(own["options"]),
         "reservations": reservations(case),
         "warnings": list(case.warnings),
+        "made by": own["made_by"],
     }
 
 
 def told_options(case: Case, options: Mapping[str, Any]) -> dict[str, Any]:
-    """The options as they hold for a case, in their order."""
-    structure = case.model_options(options).get("structure", CHOICES["structure"][0])
-    return {name: structure if name == "structure" else options.get(name) for name in (*CHOICES, *options)}
+    """The choices as they hold for a case, and the other options that are given, as keywords."""
+    choice = parse_options(case.model_options(options))
+    return {name: getattr(choice, name) for name in (*CHOICES, *options)}
 
 
-def console() -> Console:
+def console() -> PlainConsole:
     """Of the standard output; text is printed as it is."""
-    from rich.console import Console
+    from proprotor.terminal import PlainConsole  # here, because rich takes long to import
 
-    return Console(markup=False, highlight=False, emoji=False)
+    return PlainConsole()
 
 
-def print_head(case: Case) -> None:
-    """Print what was analysed and what it rests on."""
+def print_head(case: Case, found: Mapping[Any, Any]) -> None:
+    """Print what was analysed, with which options of those that are no defaults, and what it rests on."""
     from proprotor.provenance import reservations
     from proprotor.terminal import heading
 
     out = console()
-    for line in (heading(case), *reservations(case), ""):
+    chosen = stamp.in_words(stamp.chosen(stamp.options_told(found)))
+    options = [f"Options: {chosen}."] if chosen else []
+    for line in (heading(case), *options, *reservations(case), ""):
         out.print(line)
+
+
+def print_doubts(doubts: Iterable[Doubt], unit: str = "kt", factor: float = KNOT) -> None:
+    """Print what the question marks above mean, positions in a unit of so many SI units."""
+    for line in footnotes(doubts, unit, factor):
+        console().print(f"{MARK} {line}", style="yellow")
 
 
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: Sequence[str] = ()) -> None:
@@ -118,15 +129,6 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: 
         for line in lines:
             out.print(line.rstrip(), style="" if number else "dim", soft_wrap=True)
     out.print()
-
-
-def csv_of(records: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> bytes:
-    """Records as CSV in UTF-8, with all digits; an empty cell for None."""
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, fieldnames=columns, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(_finite(list(records)))
-    return text.getvalue().encode()
 
 
 @contextmanager

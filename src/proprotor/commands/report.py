@@ -81,7 +81,6 @@ def report(
         document = report_document(
             loaded,
             found,
-            options=options,
             settings=given,
             deck_hash=_deck_hash(case, given, loaded),
             date=date,
@@ -94,7 +93,7 @@ def report(
         head = output.about(loaded, options, given)
         output.print_json(head | _told(loaded, found, document, places))
     else:
-        output.print_head(loaded)
+        output.print_head(loaded, found.sweep.attrs)
         for sentence in document.verdict:
             output.console().print(sentence, style="bold")
     if not found.mode:
@@ -154,6 +153,8 @@ def _told(case: Case, found: Findings, document: Document, places: list[str]) ->
         "searched (m/s)": list(found.flutter.searched),
         "flutter speed (m/s)": found.flutter.speed,
         "mode": found.flutter.mode or None,
+        "warning": found.flutter.warning,
         "boundaries": [boundary_record(boundary, case) for boundary in found.flutter.boundaries],
+        "doubts": [doubt._asdict() for doubt in found.flutter.doubts],
         "failed airspeeds (m/s)": found.sweep.airspeed.values[found.sweep.reason.values != ""].tolist(),
     }

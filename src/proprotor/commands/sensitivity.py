@@ -21,6 +21,8 @@ from proprotor.commands.arguments import (
     scan_option,
     settings_of,
 )
+from proprotor.csv_text import csv_of
+from proprotor.doubts import doubts_along, marked
 from proprotor.errors import InputError
 from proprotor.sensitivity_summary import READ_IN, sensitivity_records
 from proprotor.speed import KNOT
@@ -92,7 +94,7 @@ def sensitivity(
     found = _one_mode(found)
     records = sensitivity_records(loaded, found, of)
     if csv:
-        output.write("--csv", csv, output.csv_of(records, list(records[0])))
+        output.write("--csv", csv, csv_of(records, list(records[0]), found.attrs))
     if plot:
         output.write_plot(plot, loaded, lambda: _draw(found, top))
     if as_json:
@@ -138,6 +140,7 @@ def _document(found: xarray.Dataset, records: list[dict[str, Any]], of: str) -> 
         "airspeed (m/s)": float(airspeed),
         f"value ({read_in})": _value(found, of) / factor,
         "nearly defective": bool(found.nearly_defective),
+        "warning": found.warning.item(),
         "sensitivities": records,
     }
 
@@ -153,17 +156,20 @@ def _draw(found: xarray.Dataset, top: int) -> Any:
 
 
 def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], of: str, top: int) -> None:
-    output.print_head(case)
+    output.print_head(case, found.attrs)
     out = output.console()
     read_in, factor = READ_IN[of]
     what = "Flutter speed" if of == "flutter_speed" else "Damping"
     at = "" if of == "flutter_speed" else f" at {found.attrs['airspeed'] / KNOT:.4g} kt"
-    out.print(f"{what} {_value(found, of) / factor:.4g} {read_in}{at} ({_mode(found)})", style="bold")
+    value = marked(f"{_value(found, of) / factor:.4g}", found.warning.item())
+    out.print(f"{what} {value} {read_in}{at} ({_mode(found)})", style="bold")
     shown = records[: top or None]
     columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %")
     output.print_table(columns, (_row(record, read_in) for record in shown), text=("input", "value", "unit"))
     if len(shown) < len(records):
         out.print(f"{len(records) - len(shown)} more inputs (--top 0).")
+    airspeed = found.attrs["value" if of == "flutter_speed" else "airspeed"]
+    output.print_doubts(doubts_along(airspeed, found.warning.values))
     if bool(found.nearly_defective):
         out.print("The mode nearly falls into one with another: derivatives hold in a small range only.")
 
@@ -173,7 +179,7 @@ def _row(record: dict[str, Any], read_in: str) -> tuple[str, ...]:
     return (
         record["input"],
         record["value"],
-        f"{record[f'derivative ({read_in} per unit)']:+.4g}",
+        marked(f"{record[f'derivative ({read_in} per unit)']:+.4g}", record["warning"]),
         record["unit"],
-        "" if change is None else f"{change:+.3g}",
+        "" if change is None else marked(f"{change:+.3g}", record["warning"]),
     )

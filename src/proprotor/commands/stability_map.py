@@ -23,6 +23,8 @@ from proprotor.commands.arguments import (
     settings_of,
     unit_of,
 )
+from proprotor.csv_text import csv_of
+from proprotor.doubts import MARK, map_doubts, marked
 from proprotor.errors import InputError
 from proprotor.waiting import waiting
 
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
 
 _AIRSPEED = "airspeed"
 _EXAMPLE = '"rotor.precone=0:5:0.25 deg"'
-_MARKS = {"stable": ".", "unstable": "#", "failed": "?"}
+_MARKS = {"stable": ".", "unstable": "#", "failed": "x"}
 
 
 class _Axis(NamedTuple):
@@ -97,7 +99,7 @@ def stability_map(
         found = loaded.stability_map(values, airspeed=airspeed, level=damping, **options)
     if csv:
         records = list(_records(found, axes))
-        output.write("--csv", csv, output.csv_of(records, list(records[0])))
+        output.write("--csv", csv, csv_of(records, list(records[0]), found.attrs))
     if plot:
         output.write_plot(plot, loaded, lambda: _draw(found, axes))
     if as_json:
@@ -139,7 +141,7 @@ def _records(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> Iterator[dict[
     x, y = axes
     of = {
         name: found[name].transpose(y.path, x.path).values.tolist()
-        for name in ("growth", "frequency", "reason")
+        for name in ("growth", "frequency", "warning", "reason")
     }
     for row, up in enumerate(_written(y)):
         for column, across in enumerate(_written(x)):
@@ -148,17 +150,21 @@ def _records(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> Iterator[dict[
                 _label(y): up,
                 "largest growth (1/s)": of["growth"][row][column],
                 "frequency (rad/s)": of["frequency"][row][column],
+                "warning": of["warning"][row][column],
                 "failure": of["reason"][row][column],
             }
 
 
-def _lines(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[list[list[float]]]:
-    """The boundary as lines of points (x, y) in the units of the axes."""
+def _lines(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[tuple[list[list[float]], list[str]]]:
+    """The boundary as lines of points (x, y) in the units of the axes, with the warnings of the points."""
     vertices = found.boundary.sel(axis=[axis.path for axis in axes]).values
     vertices = vertices / np.array([axis.factor for axis in axes])
-    gaps = np.flatnonzero(np.isnan(vertices).any(axis=1))
-    parts = np.split(vertices, gaps)
-    return [line for part in parts if (line := part[np.isfinite(part).all(axis=1)].tolist())]
+    warnings = found.boundary_warning.values
+    good = np.isfinite(vertices).all(axis=1)
+    parts = np.split(np.arange(len(vertices)), np.flatnonzero(~good))
+    return [
+        (vertices[line].tolist(), warnings[line].tolist()) for part in parts if len(line := part[good[part]])
+    ]
 
 
 def _document(found: xarray.Dataset, axes: tuple[_Axis, _Axis], airspeed: float | None) -> dict[str, Any]:
@@ -167,7 +173,8 @@ def _document(found: xarray.Dataset, axes: tuple[_Axis, _Axis], airspeed: float 
         "airspeed (m/s)": airspeed,
         "x": _label(axes[0]),
         "y": _label(axes[1]),
-        "boundary": _lines(found, axes),
+        "boundary": [line for line, _ in _lines(found, axes)],
+        "boundary warnings": [warnings for _, warnings in _lines(found, axes)],
         "points": list(_records(found, axes)),
         "eigen-solves": int(found.attrs["eigen_solves"]),
     }
@@ -180,24 +187,36 @@ def _draw(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> Any:
 
 
 def _print(case: Case, found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> None:
-    output.print_head(case)
+    output.print_head(case, found.attrs)
     x, y = axes
     growth = found.growth.transpose(y.path, x.path).values
     state = np.where(np.isnan(growth), "failed", np.where(growth > 0, "unstable", "stable"))
+    warnings = found.warning.transpose(y.path, x.path).values
+    doubtful = bool((warnings != "").any())
     out = output.console()
     up, across = _written(y), _written(x)
     width = max(len(f"{value:g}") for value in up)
     out.print(_label(y))
     for row in reversed(range(len(up))):
-        marks = "".join(_MARKS[str(entry)] for entry in state[row])
+        marks = "".join(
+            _MARKS[str(entry)] + (marked("", warning) or " ") * doubtful
+            for entry, warning in zip(state[row], warnings[row], strict=True)
+        )
         out.print(f"{up[row]:>{width}g} {marks}", soft_wrap=True)
     out.print(f"{'':>{width}} {_label(x)} from {across[0]:g} to {across[-1]:g}", soft_wrap=True)
     beyond = (
         f"below {100 * float(found.attrs['level']):g} % of critical" if found.attrs["level"] else "unstable"
     )
-    out.print(f"\n. stable   # {beyond}   ? could not be analysed\n")
+    told = f"   {MARK} doubtful" if doubtful else ""
+    out.print(f"\n. stable   # {beyond}   x could not be analysed{told}\n")
     counts = {name: int((state == name).sum()) for name in _MARKS}
     out.print(", ".join(f"{count} points {name}" for name, count in counts.items()), style="bold")
-    for number, line in enumerate(_lines(found, axes), start=1):
-        ends = " to ".join(f"({point[0]:.4g}, {point[1]:.4g})" for point in (line[0], line[-1]))
-        out.print(f"boundary {number}: {len(line)} points from {ends}")
+    lines = _lines(found, axes)
+    for number, (line, doubts) in enumerate(lines, start=1):
+        ends = " to ".join(
+            marked(f"({line[place][0]:.4g}, {line[place][1]:.4g})", doubts[place]) for place in (0, -1)
+        )
+        count = sum(map(bool, doubts))
+        out.print(f"boundary {number}: {len(line)} points from {ends}" + f", {count} doubtful" * bool(count))
+    for sentence in map_doubts(found):
+        out.print(f"{MARK} {sentence}", style="yellow")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from proprotor import stamp
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
@@ -18,6 +19,7 @@ from proprotor.commands.arguments import (
     model_options,
     settings_of,
 )
+from proprotor.doubts import MARK, marked
 from proprotor.errors import InputError
 
 if TYPE_CHECKING:
@@ -168,7 +170,11 @@ def _print(results: xarray.Dataset) -> None:
         _print_flutter(results)
     elif "points unstable" in found:
         lowest = found["lowest damping (% of critical)"]
-        out.print(f"{found['points unstable']} points unstable; lowest damping {lowest:.3g} %")
+        told = marked(f"{lowest:.3g}", found["points doubtful"])
+        out.print(f"{found['points unstable']} points unstable; lowest damping {told} %")
+    for text, count in found["doubts of points"].items():
+        out.print(f"{MARK} Doubtful at {count} of {found['points']} points: {text}.", style="yellow")
+    out.print(stamp.told(results.attrs))
     out.print(results.attrs["reservations"])
 
 
@@ -176,7 +182,7 @@ def _print_flutter(results: xarray.Dataset) -> None:
     from proprotor.speed import KNOT
     from proprotor.uncertainty import distribution
 
-    stacked = results[["flutter_speed", "flutter_note"]]
+    stacked = results[["flutter_speed", "flutter_note", "flutter_warning"]]
     if "design" not in stacked.dims:
         stacked = stacked.stack(design=stacked.flutter_speed.dims)
     notes = Counter(text for text in stacked.flutter_note.values if text)
@@ -186,7 +192,14 @@ def _print_flutter(results: xarray.Dataset) -> None:
         output.console().print("no flutter speed was found")
     else:
         shares = zip(found.percentile.values, found.value.values, strict=True)
-        rows = ((f"{share:g}", f"{speed:.2f}", f"{speed / KNOT:.1f}") for share, speed in shares)
+        doubts = found.attrs["doubts"]
+        rows = (
+            (f"{share:g}", marked(f"{speed:.2f}", doubts), marked(f"{speed / KNOT:.1f}", doubts))
+            for share, speed in shares
+        )
         output.print_table(("% of designs", "flutter speed at most, m/s", "kt"), rows)
+        if doubts:
+            counted = f"{int(found.doubtful)} of {int(found.known)} flutter speeds"
+            output.console().print(f"{MARK} Doubtful are {counted}: {doubts}.", style="yellow")
     for text, count in notes.most_common(_REASONS):
         output.console().print(f"  {count} × {text}", soft_wrap=True)

@@ -75,7 +75,7 @@ def sweep(
     else:
         from proprotor.terminal import print_sweep
 
-        print_sweep(loaded, table, output.told_options(loaded, options), all_modes)
+        print_sweep(loaded, table, all_modes)
     if table.failed.all():
         raise click.exceptions.Exit(1)
 
@@ -112,7 +112,7 @@ def _draw(case: Case, table: SweepTable, file: IO[bytes], suffix: str) -> None:
     from proprotor.provenance import reservations
     from proprotor.terminal import heading
 
-    footer = " ".join((*reservations(case), *table.doubts()))
+    footer = " ".join(reservations(case))
     figure = plot_sweep(
         table.sweep, rotor_speed=table.rotor_speed, unit=table.unit, title=heading(case), footer=footer
     )

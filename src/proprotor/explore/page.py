@@ -16,6 +16,7 @@ from bokeh.plotting import figure
 
 from proprotor.arrays import Array
 from proprotor.design import design_inputs
+from proprotor.doubts import MARK, doubtful_near, doubts_along, footnotes, marked
 from proprotor.errors import InputError
 from proprotor.explore.altered_deck import altered_deck
 from proprotor.explore.analysis import LiveModes, live_modes
@@ -336,7 +337,9 @@ def readout(found: LiveModes, values: Mapping[str, float], inputs: Mapping[str, 
     elif onset is None:
         told = f"No mode becomes unstable between {low} and {high} kt."
     else:
-        told = f"Flutter speed {onset.start / KNOT:.1f} kt ({escape(onset.mode)}), interpolated."
+        doubtful = doubtful_near(found.airspeed, found.warning, onset.start)
+        speed = marked(f"{onset.start / KNOT:.1f}", doubtful)
+        told = f"Flutter speed {speed} kt ({escape(onset.mode)}), interpolated."
     already = [one.mode for one in found.unstable if one.open_start]
     if already:
         told += f" Already unstable at {low} kt: {escape(', '.join(already))}."
@@ -352,8 +355,8 @@ def readout(found: LiveModes, values: Mapping[str, float], inputs: Mapping[str, 
 def messages(found: LiveModes) -> str:
     """Reasons of points that failed or are doubtful, as HTML."""
     lines = []
-    for told, texts in (("Not analysed", found.reason), ("Doubtful", found.warning)):
-        for text in dict.fromkeys(texts[texts != ""].tolist()):
-            at = found.airspeed[texts == text] / KNOT
-            lines.append(f"{told} at {len(at)} airspeeds, {at[0]:.4g} to {at[-1]:.4g} kt: {text}.")
+    for text in dict.fromkeys(found.reason[found.reason != ""].tolist()):
+        at = found.airspeed[found.reason == text] / KNOT
+        lines.append(f"Not analysed at {len(at)} airspeeds, {at[0]:.4g} to {at[-1]:.4g} kt: {text}.")
+    lines += [f"{MARK} {line}" for line in footnotes(doubts_along(found.airspeed, found.warning), "kt", KNOT)]
     return "".join(f"<p>{escape(line)}</p>" for line in lines)

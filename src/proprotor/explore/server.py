@@ -20,18 +20,31 @@ if TYPE_CHECKING:
 ADDRESS = "127.0.0.1"
 
 
-class _OwnNames(BokehTornado):
-    """Answers those who ask for this machine by its own names, and nobody else.
+class _OwnPages(BokehTornado):
+    """Answers pages of its own, asked for by the machine's own names, and nobody else.
 
-    A foreign page may have a name of its own point here; the browser then sends that name along.
+    A foreign page may have a name of its own point here; the browser then sends that name along. It may also ask here
+    by the right name, from which the browser sends an origin, or that the page is of another site.
     """
 
     names: frozenset[str] = frozenset()
 
     def find_handler(self, request: Any, **more: Any) -> Any:
-        if request.host not in self.names:
+        if not self._is_own(request):
             return self.get_handler_delegate(request, ErrorHandler, {"status_code": 403})
         return super().find_handler(request, **more)
+
+    def _is_own(self, request: Any) -> bool:
+        origin = request.headers.get("Origin")
+        return (
+            request.host in self.names
+            and (origin is None or origin in {f"http://{name}" for name in self.names})
+            # From another port of this machine is "same-site"; what a reader has typed is "none".
+            and request.headers.get("Sec-Fetch-Site", "none") in ("none", "same-origin")
+            and not request.path.startswith(
+                "/autoload"
+            )  # Bokeh's script for foreign pages, which has a session
+        )
 
 
 def listen(port: int) -> socket.socket:
@@ -69,7 +82,7 @@ def serve(page: Callable[[Document], None], opened: socket.socket, ready: Callab
     port = opened.getsockname()[1]
     names = frozenset(f"{name}:{port}" for name in (ADDRESS, "localhost"))
     loop = IOLoop()
-    application = _OwnNames(
+    application = _OwnPages(
         {"/": Application(FunctionHandler(page))}, extra_websocket_origins=sorted(names), use_index=False
     )
     application.names = names

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.doubts import marked
 from proprotor.errors import InputError, unknown_name
-from proprotor.plots.canvas import axes_or_new, grid, note, signed
+from proprotor.plots.canvas import axes_or_new, grid, note, say_origin, signed
 from proprotor.plots.style import DAMPS, DRIVES, LABEL_SIZE
+from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
     import xarray
@@ -68,7 +70,11 @@ def plot_attribution(
     _draw(ax, bars)
     ax.set_xlabel(f"Change of damping of {mode} per 100 % of the terms (% of critical)")
     ratio = 100 * float(-value.real / np.abs(value))
-    note(ax, f"{mode}: damping {ratio:.2f} % of critical; the bars sum to zero, to first order")
+    doubt = found.warning.item()
+    damping = marked(f"{ratio:.2f}", doubt)
+    note(ax, f"{mode}: damping {damping} % of critical; the bars sum to zero, to first order")
+    at = f"at {found.attrs['airspeed'] / KNOT:.4g} kt"
+    say_origin(ax, found.attrs, [f"Doubtful {at}: {doubt}."] if doubt else ())
     return ax
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
-from proprotor.plots.canvas import axes_or_new, grid
+from proprotor.plots.canvas import along, axes_or_new, grid, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
 from proprotor.plots.frequency_and_damping import mark_failed
 from proprotor.plots.line_of_sweep import positions, with_gaps
@@ -87,6 +87,7 @@ def plot_campbell(
     grid(ax)
     label_ends(ax, lines)
     name_those_outside(ax, lines, "at some rotor speeds or all")
+    say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
 

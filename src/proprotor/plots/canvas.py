@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from proprotor import stamp
+from proprotor.doubts import MARK, doubts_along, footnotes
+from proprotor.plots.line_of_sweep import Positions, written
 from proprotor.plots.style import GREY, LABEL_SIZE
+from proprotor.printable import printable
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -17,6 +23,8 @@ RIGHT = 0.75  # of the width, where labels stand beside the axes
 _NOTE_SIZE = 7  # points
 _INCHES = _NOTE_SIZE * 1.25 / 72  # between lines of the note
 _LETTERS_PER_INCH = 16.0
+_SMALL, _BELOW = 5.5, 36.0  # points: of the small print, and below the axes, under the label of theirs
+_SMALL_LETTERS_PER_INCH = 26.0
 
 
 def axes_or_new(ax: Axes | None, *, size: tuple[float, float] = (8, 5), labels_beside: bool = False) -> Axes:
@@ -57,7 +65,28 @@ def note(ax: Axes, text: str) -> None:
     """A line in small print above the axes, on the left, after what stands there already."""
     before = ax.get_title(loc="left")
     told = textwrap.fill(text, 110)
-    ax.set_title("\n".join(filter(None, (before, told))), fontsize=LABEL_SIZE, loc="left", color="0.3")
+    style: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": "0.3", "parse_math": False}
+    ax.set_title("\n".join(filter(None, (before, told))), loc="left", **style)
+
+
+def say_origin(ax: Axes, attributes: Mapping[Any, Any], doubts: Iterable[str] = ()) -> None:
+    """Write in small print beneath some axes the case and the options of what is drawn, and what is doubtful in it."""
+    text = " ".join((stamp.told(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
+    figure = ax.get_figure(root=True)
+    if not text or figure is None:
+        return
+    inches = ax.get_position().width * figure.get_size_inches()[0]
+    lines = textwrap.wrap(printable(text), max(40, int(_SMALL_LETTERS_PER_INCH * inches)))
+    style: dict[str, Any] = {"fontsize": _SMALL, "color": "0.5", "va": "top", "parse_math": False}
+    place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points"}
+    ax.annotate("\n".join(lines), (0, 0), xytext=(0, -_BELOW), annotation_clip=False, **place, **style)
+
+
+def along(results: xarray.Dataset, line: Positions) -> Iterator[str]:
+    """Sentences on the doubts along the line of a sweep, in the unit of its axis."""
+    if "warning" in results:
+        found = doubts_along(results[line.name].values, results.warning.values)
+        yield from footnotes(found, written(line.unit), line.factor)
 
 
 def rests_on(ax: Axes, case: Case, *more: str) -> Axes:
@@ -99,5 +128,5 @@ def add_footer(figure: Figure | None, text: str) -> None:
     else:
         figure.set_size_inches(width, height / (1 - share))
         engine.set(rect=(0, share, 1, 1 - share))
-    style: dict[str, Any] = {"fontsize": _NOTE_SIZE, "va": "bottom", "color": GREY}
+    style: dict[str, Any] = {"fontsize": _NOTE_SIZE, "va": "bottom", "color": GREY, "parse_math": False}
     figure.text(0.2 / width, 0.5 * _INCHES * (1 - share) / height, "\n".join(lines), **style)

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor import stamp
 from proprotor.arrays import Array
-from proprotor.plots.canvas import RIGHT, add_footer, axes_or_new, grid
+from proprotor.doubts import MARK
+from proprotor.plots.canvas import RIGHT, add_footer, along, axes_or_new, grid, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, along_airspeed, mode_styles
@@ -56,13 +58,24 @@ def plot_frequency(
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, labels_beside=True)
+    _draw_frequency(ax, sweep, line, rotor_speed, limits)
+    say_origin(ax, sweep.attrs, along(sweep, line))
+    return ax
+
+
+def _draw_frequency(
+    ax: Axes,
+    sweep: xarray.Dataset,
+    line: Positions,
+    rotor_speed: ArrayLike | None,
+    limits: tuple[float, float] | None = None,
+) -> None:
     per = 2 * np.pi if rotor_speed is None else np.asarray(rotor_speed)[..., None]
     lines = _draw_modes(ax, sweep, damped_frequency(sweep) / per, line)
     ax.set_ylim(*(limits or (0, None if rotor_speed is None else 5)))
     ax.set_ylabel(f"Frequency |Im s| ({'Hz' if rotor_speed is None else 'per rev'})")
     label_ends(ax, lines)
     name_those_outside(ax, lines, _where(line))
-    return ax
 
 
 def plot_damping(
@@ -97,13 +110,18 @@ def plot_damping(
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, labels_beside=True)
+    _draw_damping(ax, sweep, line, limits)
+    say_origin(ax, sweep.attrs, along(sweep, line))
+    return ax
+
+
+def _draw_damping(ax: Axes, sweep: xarray.Dataset, line: Positions, limits: tuple[float, float]) -> None:
     lines = _draw_modes(ax, sweep, damping_percent(sweep), line)
     ax.set_ylim(*limits)
     _mark_instability(ax, sweep, line)
     ax.set_ylabel("Damping −Re s/|s| (% of critical)")
     label_ends(ax, lines)
     name_those_outside(ax, lines, _where(line))
-    return ax
 
 
 def plot_sweep(
@@ -138,14 +156,14 @@ def plot_sweep(
 
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 9))
     figure.subplots_adjust(left=0.09, right=RIGHT, top=0.94, bottom=0.06, hspace=0.14)
-    add_footer(
-        figure,
-        f"Broad lines: modes of the support, and modes that become unstable. {_gaps_told(sweep)}{footer}".strip(),
-    )
-    plot_frequency(sweep, above, rotor_speed=rotor_speed, unit=unit)
-    plot_damping(sweep, below, unit=unit, limits=damping_limits)
+    line = positions(sweep, unit)
+    told = f"Broad lines: modes of the support, and modes that become unstable. {_gaps_told(sweep)}".strip()
+    origin = (stamp.told(sweep.attrs), *(f"{MARK} {doubt}" for doubt in along(sweep, line)))
+    add_footer(figure, " ".join(filter(None, (told, footer, *origin))))
+    _draw_frequency(above, sweep, line, rotor_speed)
+    _draw_damping(below, sweep, line, damping_limits)
     above.set_xlabel("")
-    figure.suptitle(title, x=0.09, ha="left", fontsize=11)
+    figure.suptitle(title, x=0.09, ha="left", fontsize=11, parse_math=False)
     return figure
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
+from proprotor.plots.canvas import say_origin
 from proprotor.plots.style import LABEL_SIZE
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ def plot_mode_shape(
     ax = _axes(ax, view)
     draw_still(ax, motion, view)
     draw_moving(ax, motion, view, phase)
+    say_origin(ax, motion.stamp, [f"Doubtful: {motion.warning}."] if motion.warning else ())
     return ax
 
 

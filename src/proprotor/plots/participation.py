@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
-from proprotor.plots.canvas import axes_or_new, grid
+from proprotor.plots.canvas import along, axes_or_new, grid, say_origin
 from proprotor.plots.line_of_sweep import positions, written
 from proprotor.plots.style import COLOURS, LABEL_SIZE
 
@@ -77,6 +77,7 @@ def plot_participation(
     ax.grid(visible=False, axis="y")
     title = "Airspeed" if line.name == "airspeed" else line.label.partition(" (")[0]
     ax.legend(title=title, fontsize=LABEL_SIZE, title_fontsize=LABEL_SIZE, loc="lower right")
+    say_origin(ax, sweep.attrs, along(sweep.isel({line.name: points}), line))
     return ax
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.arrays import Array
-from proprotor.plots.canvas import axes_or_new, grid, note, points_per_pixel
+from proprotor.plots.canvas import along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles
@@ -85,6 +85,7 @@ def plot_root_locus(
         )
     label_ends(ax, lines, tie=False)
     name_those_outside(ax, lines, "somewhere or throughout")
+    say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.arrays import Array
-from proprotor.plots.canvas import axes_or_new, grid, note
+from proprotor.doubts import map_doubts
+from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.line_of_sweep import Positions, axis_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE
 
@@ -74,6 +75,7 @@ def plot_stability_map(
     if told or crosses:
         note(ax, "; ".join(filter(None, (told, crosses))))
     grid(ax)
+    say_origin(ax, found.attrs, map_doubts(found))
     return ax
 
 

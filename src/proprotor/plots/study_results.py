@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.plots.canvas import axes_or_new, grid, note
+from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.input_names import short_names
 from proprotor.plots.line_of_sweep import axis_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE
@@ -82,7 +82,14 @@ def plot_distribution(
     grid(ax)
     others = [f"{int(found[name])} {told}" for name, told in _BEYOND.items() if int(found[name])]
     note(ax, f"{counted} designs" + (f", of them {', '.join(others)}" if others else "") + _failed(found))
+    say_origin(ax, found.attrs, _doubts(found))
     return ax
+
+
+def _doubts(found: xarray.Dataset) -> list[str]:
+    """What is doubtful in a distribution, or in shares of its variance."""
+    text = found.attrs.get("doubts")
+    return [f"Doubtful for {int(found.doubtful)} designs: {text}."] if text else []
 
 
 _BEYOND = {"above": "stable throughout the airspeeds", "below": "unstable from the lowest airspeed on"}
@@ -131,4 +138,5 @@ def plot_sobol(indices: xarray.Dataset, ax: Axes | None = None, *, count: int = 
     ax.legend(fontsize=LABEL_SIZE, loc="lower right")
     if len(order) < indices.sizes["input"]:
         note(ax, f"The {len(order)} of {indices.sizes['input']} inputs with the largest shares")
+    say_origin(ax, indices.attrs, _doubts(indices))
     return ax

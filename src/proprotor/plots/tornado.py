@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.doubts import marked
 from proprotor.errors import InputError, unknown_name
-from proprotor.plots.canvas import axes_or_new, grid, note, signed
+from proprotor.plots.canvas import axes_or_new, grid, note, say_origin, signed
 from proprotor.plots.input_names import short_names
 from proprotor.plots.style import DAMPS, DRIVES, LABEL_SIZE, STATUS_HATCHES
 from proprotor.units import factor_to_si
@@ -80,6 +81,8 @@ def plot_sensitivity(
     if len(shown) < len(bars):
         note(ax, f"The {len(shown)} of {len(bars)} inputs that move it most; to first order")
     _legend(ax, {status[bar.input] for bar in shown}, both=ranges is not None)
+    doubt = found.warning.item()
+    say_origin(ax, found.attrs, [f"Doubtful: {doubt}."] if doubt else ())
     return ax
 
 
@@ -93,10 +96,9 @@ def _scale(found: xarray.Dataset, unit: str) -> tuple[float, str]:
     if of == "damping":
         mode = str(found.mode.values.reshape(-1)[0])
         return 100.0, f"damping of {mode} (% of critical)"
-    value = found.attrs["value"] / factor_to_si(unit, unit, "m/s")
-    return 1 / factor_to_si(
-        unit, unit, "m/s"
-    ), f"flutter speed, {value:.0f} {unit} ({found.attrs['mode']}), in {unit}"
+    factor = factor_to_si(unit, unit, "m/s")
+    value = marked(f"{found.attrs['value'] / factor:.0f}", found.warning.item())
+    return 1 / factor, f"flutter speed, {value} {unit} ({found.attrs['mode']}), in {unit}"
 
 
 def _derivatives(found: xarray.Dataset) -> dict[str, float]:

@@ -51,6 +51,13 @@ class Findings:
         """Whether anything becomes unstable."""
         return bool(np.isfinite(self.flutter.speed))
 
+    @property
+    def warning(self) -> str:
+        """What makes the point at which causes are looked at doubtful; empty where nothing does."""
+        if self.flutters:
+            return self.flutter.warning
+        return str(self.causes.attribution.warning.item()) if self.causes else ""
+
 
 @dataclass(frozen=True, eq=False)
 class Causes:

@@ -12,14 +12,15 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.boundary_summary import boundary_record, mechanism_told, verdict
 from proprotor.datum import Datum, FilePath, as_toml
-from proprotor.options import CHOICES, default_choice
+from proprotor.doubts import MARK, footnotes, marked
 from proprotor.provenance import doubtful_inputs, reservations
 from proprotor.report_page import pictures
 from proprotor.report_page.analyses import Findings
 from proprotor.report_page.document import Document, Section, Table, Text
 from proprotor.sensitivity_summary import READ_IN, sensitivity_records
+from proprotor.stamp import chosen, deck_fingerprint, option_told, options_told
 from proprotor.tables import SweepTable
-from proprotor.terminal import heading, option_told
+from proprotor.terminal import heading
 from proprotor.units import factor_to_si
 
 if TYPE_CHECKING:
@@ -43,7 +44,6 @@ def report_document(
     case: Case,
     found: Findings,
     *,
-    options: Mapping[str, Any],
     settings: Mapping[str, str],
     deck_hash: str,
     date: str,
@@ -56,8 +56,8 @@ def report_document(
     case : Case
     found : Findings
         Of `proprotor.report_page.analyse`.
-    options, settings : mapping
-        Of the model, and the fields set for this run, as they were given.
+    settings : mapping
+        The fields set for this run, as they were given.
     deck_hash : str
         Of the deck as it was read.
     date : str
@@ -74,7 +74,7 @@ def report_document(
     table = SweepTable(found.sweep, float(case.operation.rotor_speed), unit)
     sections = (
         Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),
-        Section("What was analysed", tuple(_model(case, table, options, settings))),
+        Section("What was analysed", tuple(_model(case, table, settings))),
         Section("Conventions", (Text(CONVENTIONS),)),
         Section("Frequency and damping", tuple(_sweep(case, found, unit))),
         Section(f"Causes {_where(found, unit, factor)}".strip(), tuple(_causes(found, unit, factor))),
@@ -101,7 +101,8 @@ def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> It
     if found.flutters:
         omega = table.rotor_speed
         yield (
-            f"Flutter speed {found.flutter.speed / factor:.2f} {unit}: {found.flutter.mode}, {found.flutter.kind}, "
+            f"Flutter speed {marked(f'{found.flutter.speed / factor:.2f}', found.flutter.warning)} {unit}: "
+            f"{found.flutter.mode}, {found.flutter.kind}, "
             f"at {found.flutter.frequency / (2 * math.pi):.3f} Hz, {found.flutter.frequency / omega:.3f} per rev."
         )
     for sentence in verdict(found.flutter, None, unit, factor):
@@ -132,8 +133,12 @@ def _range(table: SweepTable, first: int, last: int) -> str:
 def _where(found: Findings, unit: str, factor: float) -> str:
     if not found.mode:
         return ""
-    at = f"at {found.speed / factor:.2f} {unit}"
+    at = _at(found, unit, factor)
     return f"at the flutter speed, {at[3:]}" if found.flutters else at
+
+
+def _at(found: Findings, unit: str, factor: float) -> str:
+    return f"at {marked(f'{found.speed / factor:.2f}', found.warning)} {unit}"
 
 
 # Boundaries and the model -------------------------------------------------------------------------------------------
@@ -154,8 +159,8 @@ def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterat
         record = boundary_record(boundary, case)
         rows.append(
             (
-                f"{boundary.position / factor:.2f}",
-                f"{boundary.position:.3f}",
+                marked(f"{boundary.position / factor:.2f}", boundary.warning),
+                marked(f"{boundary.position:.3f}", boundary.warning),
                 f"{record['frequency (Hz)']:.3f}",
                 f"{record['frequency (per rev)']:.3f}",
                 boundary.mode,
@@ -165,26 +170,23 @@ def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterat
             )
         )
     yield Table("Boundaries by airspeed", columns, tuple(rows), frozenset(columns[:4]))
+    if doubts := tuple(f"{MARK} {line}" for line in footnotes(found.flutter.doubts, unit, factor)):
+        yield Text(doubts, warning=True)
 
 
-def _model(
-    case: Case, table: SweepTable, options: Mapping[str, Any], settings: Mapping[str, str]
-) -> Iterator[Table | Text]:
+def _model(case: Case, table: SweepTable, settings: Mapping[str, str]) -> Iterator[Table | Text]:
     paragraphs = (case.description, f"{len(table.airspeed)} airspeeds, {_range(table, 0, -1)[5:]}.")
     yield Text(tuple(filter(None, paragraphs)))
+    every = options_told(table.sweep.attrs)
+    other = chosen(every)
     rows = [
-        (name.replace("_", " "), option_told(value), "default" if _is_default(name, options) else "chosen")
-        for name, value in options.items()
+        (name.replace("_", " "), option_told(value), "chosen" if name in other else "default")
+        for name, value in every.items()
         if value is not None
     ]
     yield Table("Options of the model", ("option", "choice", "chosen or default"), tuple(rows))
     if settings:
         yield Table("Fields set for this run", ("field", "value"), tuple(settings.items()))
-
-
-def _is_default(name: str, options: Mapping[str, Any]) -> bool:
-    value = options[name]
-    return bool(value == default_choice(name, options)) if name in CHOICES else not value
 
 
 def _sweep(case: Case, found: Findings, unit: str) -> Iterator[Any]:
@@ -196,7 +198,7 @@ def _causes(found: Findings, unit: str, factor: float) -> Iterator[Any]:
     if found.causes is None:
         yield Text((f"Causes could not be found: {found.no_causes}.",))
         return
-    at = f"at {found.speed / factor:.2f} {unit}"
+    at = _at(found, unit, factor)
     if not found.flutters:
         told = (
             f"{found.mode}, the mode that is damped least {at}, the highest airspeed that could be analysed"
@@ -219,7 +221,8 @@ def _modes(table: SweepTable) -> Iterator[Table | Text]:
     at = _some(~table.failed)
     if not at:
         return
-    speeds = tuple(f"{table.airspeed[point]:.4g} {table.unit}" for point in at)
+    warnings = table.sweep.warning.values
+    speeds = tuple(marked(f"{table.airspeed[point]:.4g} {table.unit}", warnings[point]) for point in at)
     for caption, values, form in (
         ("Frequency |Im s| per revolution", table.frequency, ".3f"),
         ("Damping −Re s/|s|, percent of critical; * where a mode is unstable", table.damping, ".2f"),
@@ -255,9 +258,11 @@ def _sensitivities(case: Case, found: Findings, unit: str, factor: float) -> Ite
         (
             record["input"],
             record["value"],
-            f"{record[f'derivative ({read_in} per unit)']:+.4g}",
+            marked(f"{record[f'derivative ({read_in} per unit)']:+.4g}", record["warning"]),
             record["unit"],
-            "–" if record[f"for +1 % ({read_in})"] is None else f"{record[f'for +1 % ({read_in})']:+.3g}",
+            "–"
+            if record[f"for +1 % ({read_in})"] is None
+            else marked(f"{record[f'for +1 % ({read_in})']:+.3g}", record["warning"]),
             record["status"],
         )
         for record in records
@@ -265,6 +270,8 @@ def _sensitivities(case: Case, found: Findings, unit: str, factor: float) -> Ite
     yield Table(
         f"Exact derivatives of the {what}, trim included", columns, rows, frozenset((columns[2], columns[4]))
     )
+    if doubt := rates.warning.item():
+        yield Text((f"{MARK} Doubtful: {doubt}.",), warning=True)
     if bool(rates.nearly_defective):
         yield Text(
             ("The mode nearly falls into one with another: derivatives hold in a small range only.",),
@@ -286,7 +293,7 @@ def _trim(found: Findings, table: SweepTable) -> Iterator[Table | Text]:
     )
     rows = [
         (
-            f"{table.airspeed[point]:.4g}",
+            marked(f"{table.airspeed[point]:.4g}", trim.warning[point]),
             *(f"{getattr(trim, name)[point] / degree:.3f}" for name in _ANGLES),
             f"{trim.thrust[point]:.0f}",
             f"{round(trim.torque[point]) + 0:d}",
@@ -360,6 +367,7 @@ def _reproduction(case: Case, deck_hash: str, date: str) -> Table:
     rows = (
         ("proprotor", version("proprotor")),
         ("case", case.name),
+        ("numbers of the deck", deck_fingerprint(case)),
         ("deck, SHA-256", deck_hash),
         ("date", date),
     )

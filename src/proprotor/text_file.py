@@ -1,0 +1,62 @@
+"""Text files that people bring: read without the byte order mark that some editors write first."""
+
+from __future__ import annotations
+
+import codecs
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from proprotor.errors import InputError
+
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
+
+
+def read_text(
+    file: Path | Traversable, field: str, told: str, largest: int, *, encoding: str = "utf-8"
+) -> str:
+    """Return the text of a file, line ends as they are.
+
+    Parameters
+    ----------
+    file : path
+    field, told : str
+        The input and the name of the file, as a message has them.
+    largest : int
+        Bytes.
+    encoding : str
+        "latin-1" takes any bytes.
+
+    Raises
+    ------
+    InputError
+        When the file does not exist, cannot be read, is larger or is not text of that encoding.
+    """
+    try:
+        found = file.is_file()
+    except ValueError:  # a name with a null character
+        found = False
+    except OSError as error:  # a name too long, a folder one may not enter
+        raise InputError(field, told, f"cannot be read ({error.strerror})") from None
+    if not found:
+        raise InputError(field, told, "no such file")
+    try:
+        with file.open("rb") as stream:
+            content = stream.read(largest + 1)
+    except OSError as error:
+        raise InputError(field, told, f"cannot be read ({error.strerror})") from None
+    if len(content) > largest:
+        raise InputError(field, told, f"must not be larger than {largest} bytes")
+    try:
+        return content.removeprefix(codecs.BOM_UTF8).decode(encoding)
+    except UnicodeDecodeError:
+        raise InputError(field, told, f"must be text in {encoding.upper()}") from None
+
+
+def open_text(path: Path, *, encoding: str = "utf-8") -> io.TextIOWrapper:
+    """Open a text file after its byte order mark, with all line ends as ``\\n``; see `read_text`."""
+    file = path.open("rb")
+    if file.read(len(codecs.BOM_UTF8)) != codecs.BOM_UTF8:
+        file.seek(0)
+    return io.TextIOWrapper(file, encoding=encoding, newline=None)

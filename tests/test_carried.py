@@ -1,0 +1,601 @@
+"""Case, options and doubts go with every result: into records, datasets, files, tables and pictures, and out again."""
+
+import inspect
+import json
+import pickle
+import re
+from dataclasses import fields
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray
+from click.testing import CliRunner
+from scipy.io import loadmat
+
+import proprotor as pp
+from proprotor import flutter, mode_motion, plots, sampling, stamp, study_summary
+from proprotor.animation import title_of
+from proprotor.attribution import attribution
+from proprotor.boundary_lines import boundary_lines
+from proprotor.case import Case
+from proprotor.command_line import main
+from proprotor.csv_text import csv_of
+from proprotor.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
+from proprotor.explore.analysis import live_modes
+from proprotor.explore.page import messages, readout
+from proprotor.matlab_file import matlab_names
+from proprotor.model_parts import model_parts
+from proprotor.options import CHOICES, Options, parse_options
+from proprotor.sensitivity import at_boundary, sensitivity
+from proprotor.stability_map import stability_map
+from proprotor.sweep import sweep_case
+from tests.csv_files import without_comments
+
+KNOT = 1852 / 3600
+# Air in which the blades of the XV-15 outrun what its linear sections know, from 340 kt on: its flutter speed is there.
+THIN = {"operation.speed_of_sound": "300 m/s"}
+CASE, DOUBTFUL = pp.load_case("xv15"), pp.load_case("xv15", THIN)
+UNDAMPED = {"section_damping": False}  # with which it flutters in the range of the search
+GIVEN = {"section_damping": True, "pitch": "coupling", "pitch_lag_coupling": -0.1, "locked": "gimbal"}
+MAP = {"airspeed": "340:440:50kt", "rotor.precone": "1:2:0.5 deg"}
+SPEEDS = "300:440:20kt"
+AT = "360 kt"
+
+# Everything that takes options of the model and returns a result.
+RESULTS = {
+    "Case.linearize": lambda case, **o: case.linearize(AT, **o),
+    "Case.sweep": lambda case, **o: case.sweep(SPEEDS, **o),
+    "Case.boundaries": lambda case, **o: case.boundaries(SPEEDS, **o),
+    "Case.flutter_point": lambda case, **o: case.flutter_point(SPEEDS, **o),
+    "Case.sensitivity": lambda case, **o: case.sensitivity("damping", ["rotor.precone"], airspeed=AT, **o),
+    "Case.attribution": lambda case, **o: case.attribution(AT, **o),
+    "Case.stability_map": lambda case, **o: case.stability_map(MAP, **o),
+    "flutter.boundaries": lambda case, **o: flutter.boundaries(case, SPEEDS, **o),
+    "flutter.flutter_point": lambda case, **o: flutter.flutter_point(case, SPEEDS, **o),
+    "sweep_case": lambda case, **o: sweep_case(case, [180.0], {"rotor.precone": [0.02, 0.03]}, **o),
+    "sensitivity": lambda case, **o: sensitivity(
+        case, "flutter_speed", ["rotor.precone"], airspeed="60:470:10kt", **o
+    ),
+    "attribution": lambda case, **o: attribution(case, AT, **o),
+    "stability_map": lambda case, **o: stability_map(case, MAP, **o),
+    "study": lambda case, **o: pp.study(
+        case,
+        sampling.points({"rotor.precone": [0.02, 0.03]}),
+        SPEEDS,
+        ["eigenvalue", "flutter"],
+        workers=1,
+        **o,
+    ),
+    "mode_motion.mode_motion": lambda case, **o: mode_motion.mode_motion(case, AT, "beam", **o),
+    # Without options of their own, from a result that has them.
+    "LinearModel.modes": lambda case, **o: case.linearize([180.0, 190.0], **o).modes(),
+    "LinearModel.to_state_space": lambda case, **o: case.linearize(AT, **o).to_state_space(),
+    "frequency_response": lambda case, **o: pp.frequency_response(case.linearize(AT, **o), "2 Hz"),
+    "distribution": lambda case, **o: pp.distribution(found("study", case, **o)),
+    "LinearModel.submodel": lambda case, **o: case.linearize(AT, **o).submodel(("beam", "chord")),
+}
+TAKING_A_RESULT = {"boundary_lines.boundary_lines"}
+OF_A_ROTOR = {"rotor_model"}  # alone: the options, and no case
+
+
+@cache
+def _found(name, case, options):
+    return RESULTS[name](case, **dict(options))
+
+
+def found(name, case, **options):
+    """A result, each made once."""
+    return _found(name, case, tuple(options.items()))
+
+
+def stamp_of(result):
+    if isinstance(result, xarray.Dataset):
+        return stamp.of(result.attrs)
+    return stamp.of_model(result) if isinstance(result, pp.LinearModel) else dict(result.stamp)
+
+
+def expected(case, **options):
+    """Options in force by the definition of the options alone."""
+    return stamp.in_force(parse_options(case.model_options(options)))
+
+
+def public():
+    named = {name: getattr(pp, name) for name in pp.__all__}
+    named |= {f"Case.{name}": entry for name, entry in vars(Case).items() if name[0] != "_"}
+    for module in (flutter, mode_motion, inspect.getmodule(boundary_lines)):
+        own = {
+            name: entry
+            for name, entry in vars(module).items()
+            if getattr(entry, "__module__", "") == module.__name__
+        }
+        named |= {
+            f"{module.__name__.removeprefix('proprotor.')}.{name}": entry for name, entry in own.items()
+        }
+    named |= {entry.__name__: entry for entry in (attribution, sensitivity, stability_map, sweep_case)}
+    return {name: entry for name, entry in named.items() if inspect.isfunction(entry)}
+
+
+def test_the_list_of_results_is_complete():
+    taking = {
+        name
+        for name, entry in public().items()
+        if any(
+            p.name == "options" and p.kind is p.VAR_KEYWORD
+            for p in inspect.signature(entry).parameters.values()
+        )
+    }
+    assert taking - set(RESULTS) == TAKING_A_RESULT | OF_A_ROTOR
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_result_says_its_case_and_all_options_in_force(name):
+    own = stamp_of(found(name, CASE, **GIVEN))
+    assert stamp.options_told(own) == expected(CASE, **GIVEN)
+    assert set(stamp.options_told(own)) == {entry.name for entry in fields(Options)}
+    assert own["case"] == "xv15" and own["title"] == CASE.title
+    assert own["deck"] == stamp.deck_fingerprint(CASE) != stamp.deck_fingerprint(DOUBTFUL)
+    assert "calibrated" in own["reservations"] and "Gram matrix" in own["case_warnings"]
+    told = stamp.told(own)
+    assert "case xv15" in told.lower() and "locked gimbal" in told and "pitch coupling" in told
+    assert "airloads" not in told  # which is as always
+
+
+def test_a_rotor_alone_says_its_options():
+    own = stamp.of_model(pp.rotor_model(CASE.rotor, CASE.operation, 100.0, locked=("gimbal",)))
+    assert stamp.options_told(own)["locked"] == ["gimbal"] and "case" not in own
+    model = CASE.linearize(100.0).submodel(("beam",))
+    assert (
+        stamp.of_model(pp.LinearModel(model.M, model.C, model.K, model.dofs, model.trim, model.airspeed))
+        == {}
+    )
+
+
+def in_matlab(path):
+    """The stamp in a .mat file; there `case` is a word of the language."""
+    inside = loadmat(path, simplify_cells=True)["attributes"]
+    return {name: inside[own] for name, own in matlab_names(stamp.NAMES).items()}
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in RESULTS if isinstance(found(name, CASE, **GIVEN), xarray.Dataset)]
+)
+def test_datasets_keep_it_all_in_files(name, tmp_path):
+    result = found(name, DOUBTFUL, **GIVEN)
+    pp.save_results(result, tmp_path / "a.nc")
+    again = pp.load_results(tmp_path / "a.nc")
+    assert stamp.of(again.attrs) == stamp.of(result.attrs) and set(stamp.of(again.attrs)) == set(stamp.NAMES)
+    warnings = [name for name in result.variables if str(name).endswith("warning")]
+    for warning in warnings:
+        assert again[warning].values.tolist() == result[warning].values.tolist()
+    assert warnings or "doubtful" in result
+    pp.save_matlab(result, tmp_path / "a.mat")
+    assert in_matlab(tmp_path / "a.mat") == stamp.of(result.attrs)
+
+
+def test_models_and_records_keep_it_all(tmp_path):
+    model = found("Case.linearize", CASE, **GIVEN)
+    pp.save_matlab(model, tmp_path / "a.mat")
+    assert in_matlab(tmp_path / "a.mat") == stamp.of_model(model)
+    for name in (
+        "Case.flutter_point",
+        "Case.boundaries",
+        "LinearModel.to_state_space",
+        "mode_motion.mode_motion",
+    ):
+        record = found(name, CASE, **GIVEN)
+        assert pickle.loads(pickle.dumps(record)).stamp == record.stamp
+    assert "locked gimbal" in repr(found("Case.flutter_point", CASE, **GIVEN)) and "locked gimbal" in repr(
+        model
+    )
+
+
+# What goes on from a result ------------------------------------------------------------------------------------------
+
+OTHERWISE = {
+    "equations": "published",
+    "pitch": "rigid",
+    "structure": "diagonal",
+    "airloads": "lift-slope",
+    "compressibility": False,
+    "section_damping": False,
+    "rotor_speed": "constant",
+    "reactionless": True,
+    "locked": ("gimbal", "lag"),
+    "pitch_flap_coupling": 0.1,
+    "pitch_lag_coupling": -0.2,
+    "frequencies": pp.BladeFrequencies(flap=1.9, lag=1.2),
+    "drive_train": pp.DriveTrain(drive_inertia=3.0),
+}
+
+
+def goes_on_from_a_map(**options):
+    (line, *_) = boundary_lines(CASE, carried_map(), **options)
+    return line.mode, line.frequency.tolist()
+
+
+@cache
+def carried_map():
+    axes = {"airspeed": "300:440:35kt", "rotor.precone": "0:3:1 deg"}
+    return CASE.stability_map(axes, section_damping=True, locked=("gimbal",))
+
+
+@cache
+def carried_boundary():
+    return CASE.flutter_point("60:470:10kt", section_damping=True, locked=("gimbal",), level=0.01).boundaries[
+        -1
+    ]
+
+
+def goes_on_from_a_boundary(**options):
+    inputs = {"rotor.precone": CASE.given["rotor.precone"]}
+    return at_boundary(CASE, carried_boundary(), inputs, options).derivative.item()
+
+
+@cache
+def carried_model():
+    return CASE.linearize(180.0, section_damping=True, locked=("gimbal",))
+
+
+def goes_on_from_a_model(**options):
+    return {name: part.K.tolist() for name, part in model_parts(CASE, carried_model(), **options).items()}
+
+
+TAKERS = (goes_on_from_a_map, goes_on_from_a_boundary, goes_on_from_a_model)
+
+
+@pytest.mark.parametrize("go_on", TAKERS)
+def test_who_takes_a_result_takes_its_options_from_it(go_on):
+    plain = go_on()
+    assert go_on(section_damping=True) == plain
+    assert go_on(locked="gimbal", section_damping=True) == go_on(locked=("gimbal",), pitch="dynamic") == plain
+    assert go_on(frequencies=None, structure="coupled") == plain
+
+
+@pytest.mark.parametrize("option", OTHERWISE)
+@pytest.mark.parametrize("go_on", TAKERS)
+def test_who_takes_a_result_refuses_other_options(go_on, option):
+    with pytest.raises(pp.InputError) as caught:
+        go_on(**{option: OTHERWISE[option]})
+    own = expected(CASE, section_damping=True, locked=("gimbal",))[option]
+    assert str(caught.value).startswith(f"{option} = ")
+    told = str(own).lower() if isinstance(own, bool) else str(own)
+    assert f"must be {told}, with which the result was computed" in str(caught.value)
+    assert set(OTHERWISE) == {entry.name for entry in fields(Options)}
+
+
+@pytest.mark.parametrize("go_on", TAKERS)
+def test_who_takes_a_result_refuses_what_is_no_option(go_on):
+    with pytest.raises(pp.InputError, match="did you mean section_damping"):
+        go_on(section_dampin=True)
+
+
+def test_the_options_of_a_map_are_those_that_name_its_lines():
+    """The fault that this is about: without its options a map's lines had modes and frequencies of another model."""
+    lines = boundary_lines(CASE, carried_map())
+    for line in lines:
+        middle = len(line.x) // 2
+        varied = CASE.vary({"rotor.precone": line.y[middle]})
+        values = (
+            varied.linearize(line.x[middle], section_damping=True, locked=("gimbal",))
+            .modes()
+            .eigenvalue.values
+        )
+        nearest = values[np.argmin(np.abs(values.real))]
+        assert abs(nearest.imag) == pytest.approx(line.frequency[middle], rel=1e-6, abs=1e-6)
+
+
+def test_another_case_or_airspeed_is_refused():
+    with pytest.raises(
+        pp.InputError, match=r"^case = xv15: must be the case of the result, xv15, with the same numbers"
+    ):
+        boundary_lines(DOUBTFUL, carried_map())
+    with pytest.raises(pp.InputError, match=r"^airspeed = 300 kt: is one of the axes of the map"):
+        boundary_lines(CASE, carried_map(), airspeed="300 kt")
+    axes = {"rotor.precone": "0:2:1 deg", "rotor.airfoil.lift_slope": [5.0, 6.0]}
+    found = CASE.stability_map(axes, airspeed="380 kt")
+    assert boundary_lines(CASE, found, airspeed="380 kt")[0].mode == boundary_lines(CASE, found)[0].mode
+    with pytest.raises(pp.InputError, match=r"^airspeed = 300 kt: must be 195.489 m/s, that of the map"):
+        boundary_lines(CASE, found, airspeed="300 kt")
+    with pytest.raises(pp.InputError, match="must say its options"):
+        boundary_lines(CASE, found.drop_attrs())
+
+
+def same(value):
+    return 1.9 + 0 * value
+
+
+@pytest.mark.parametrize(
+    ("given", "repeat"),
+    [
+        ({}, False),
+        ({"structure": "tabulated", "frequencies": pp.BladeFrequencies(flap=1.9, lag=1.2)}, False),
+        (
+            {
+                "structure": "tabulated",
+                "frequencies": pp.BladeFrequencies(
+                    flap=[1.9, 1.8], lag=1.2, at=[0.0, 1.0], against="collective"
+                ),
+            },
+            False,
+        ),
+        ({"structure": "tabulated", "frequencies": pp.BladeFrequencies(flap=same, lag=1.2)}, True),
+        ({"drive_train": pp.DriveTrain(drive_inertia=100.0, shaft_stiffness=1e4)}, False),
+        ({"pitch": "coupling", "pitch_lag_coupling": [-0.1, -0.2]}, False),
+        ({"pitch": "coupling", "pitch_lag_coupling": np.linspace(-0.1, -0.2, 40)}, True),
+        ({"equations": "published", "airloads": "lift-slope", "compressibility": False}, False),
+    ],
+)
+def test_options_come_back_from_what_is_written(given, repeat):
+    own = json.loads(json.dumps(stamp.of_case(CASE, given)))
+    if repeat:
+        with pytest.raises(pp.InputError, match="must be given again: the result was computed with"):
+            stamp.options_of(own, CASE, {})
+    back = stamp.options_of(own, CASE, given if repeat else {})
+    assert expected(CASE, **back) == expected(CASE, **given)
+    stamp.options_of(own, CASE, given)
+
+
+@pytest.mark.parametrize("name", pp.list_cases())
+def test_what_a_deck_brings_is_in_force_and_its_numbers_are_its_fingerprint(name):
+    case = pp.load_case(name)
+    own = stamp.of_case(case, {})
+    back = stamp.options_of(own, case, {})
+    assert expected(case, **back) == expected(case) and back["structure"] == expected(case)["structure"]
+    radius = case.given["rotor.radius"].si
+    assert stamp.deck_fingerprint(case.vary({"rotor.radius": radius})) == own["deck"]
+    assert stamp.deck_fingerprint(case.vary({"rotor.radius": radius * (1 + 1e-15)})) != own["deck"]
+    others = [stamp.deck_fingerprint(pp.load_case(other)) for other in pp.list_cases() if other != name]
+    assert own["deck"] not in others
+
+
+def test_frequencies_of_a_deck_are_options_in_force(tmp_path):
+    deck = tmp_path / "tabulated.toml"
+    deck.write_text(
+        'base = "xv15"\n[case]\nname = "tabulated"\ntitle = "T"\n[rotor.frequencies]\nflap = 1.9\nlag = 1.3\n'
+        '[drive_train]\ndrive_inertia = "100 kg*m**2"\n'
+    )
+    case = pp.load_case(deck)
+    own = case.sweep("200 kt").attrs
+    told = stamp.options_told(own)
+    assert told["structure"] == "tabulated" and told["frequencies"]["flap"] == 1.9
+    assert told["drive_train"]["drive_inertia"] == pytest.approx(100.0)
+    assert "structure tabulated" in stamp.told(own)
+    assert stamp.options_of(own, case, {})["frequencies"] is case.frequencies
+    with pytest.raises(pp.InputError, match=r"^structure = coupled: must be tabulated"):
+        stamp.options_of(own, case, {"structure": "coupled"})
+    without = stamp.of_case(case, {"drive_train": None})
+    assert expected(case, **stamp.options_of(without, case, {}))["drive_train"] is None
+
+
+def test_the_fingerprint_knows_what_is_no_number():
+    settings = ({"operation.trim": "{ collective = '40 deg' }"}, {"support.includes_rotor": "false"})
+    plain = stamp.deck_fingerprint(CASE)
+    assert stamp.deck_fingerprint(pp.load_case("xv15", {"case.title": "another"})) == plain
+    assert stamp.deck_fingerprint(pp.load_case("xv15", {"rotor.radius": "150 inch"})) == plain
+    assert stamp.deck_fingerprint(pp.load_case("xv15", settings[0])) != plain
+    own = pp.Case("mine", CASE.rotor, CASE.operation, CASE.support)
+    assert stamp.deck_fingerprint(own) == stamp.deck_fingerprint(
+        pp.Case("yours", CASE.rotor, CASE.operation, CASE.support)
+    )
+
+
+# Doubts ---------------------------------------------------------------------------------------------------------------
+
+MACH = "Mach number beyond 0.85"
+
+
+@pytest.mark.parametrize("name", [name for name in RESULTS if name != "LinearModel.submodel"])
+def test_every_result_carries_its_doubts(name):
+    result = found(name, DOUBTFUL, **UNDAMPED)
+    if isinstance(result, pp.LinearModel):
+        texts = result.trim.warning
+    elif isinstance(result, xarray.Dataset):
+        texts = [
+            result.attrs.get("doubts", ""),
+            *(v.values for n, v in result.items() if str(n).endswith("warning")),
+        ]
+    else:
+        texts = [getattr(result, "warning", ""), getattr(result, "doubts", "")]
+    assert MACH in str(texts)
+
+
+def test_boundaries_are_as_doubtful_as_the_airspeeds_they_lie_at():
+    point = DOUBTFUL.flutter_point(**UNDAMPED)
+    assert point.warning and len({bool(boundary.warning) for boundary in point.boundaries}) == 2
+    for boundary in point.boundaries:
+        assert boundary.warning == DOUBTFUL.linearize(boundary.position).trim.warning
+    (doubt,) = point.doubts
+    scan = DOUBTFUL.linearize(flutter.scan_speeds(DOUBTFUL))
+    assert (doubt.low, doubt.high) == tuple(scan.airspeed[scan.trim.warning != ""][[0, -1]])
+    vertices = found("stability_map", DOUBTFUL, **UNDAMPED)
+    for at, warning in zip(vertices.boundary.values, vertices.boundary_warning.values, strict=True):
+        if np.isfinite(at).all():
+            varied = DOUBTFUL.vary({"rotor.precone": at[1]})
+            assert warning == varied.linearize(at[0]).trim.warning.item()
+        else:
+            assert warning == ""
+    results = found("study", DOUBTFUL, **UNDAMPED)
+    for design in range(2):
+        varied = DOUBTFUL.vary({"rotor.precone": float(results["rotor.precone"][design])})
+        speed = float(results.flutter_speed[design])
+        assert results.flutter_warning.values[design] == varied.linearize(speed).trim.warning.item()
+
+
+SHOWN = {
+    "sweep": (("--speed", SPEEDS), r"\n +360\? "),
+    "flutter": ((), r"\n{speed}\? .*Flutter speed {speed}\? kt"),
+    "map": (
+        ("--x", "airspeed=300:400:50kt", "--y", "rotor.precone=1:2:1deg"),
+        r"\n1 \. +[.#]\?.*boundary 1: .*\)\?",
+    ),
+    "sensitivity": (("--wrt", "rotor.precone"), r"Flutter speed \d+(\.\d)?\? kt.*\d\? "),
+    "attribution": (("--speed", AT, "--mode", "beam"), r"damping -?\d.*\? % of critical.*\d\? "),
+    "study": (
+        ("--vary", "rotor.precone=1:2:1 deg", "--speed", SPEEDS, "--flutter", "--workers", "1"),
+        r"50 +\d+\.\d+\? +",
+    ),
+    "report": (("--speed", "340:400:30kt"), r"Flutter speed {speed}\? kt"),
+}
+SET = ("--set", "operation.speed_of_sound=300 m/s", "--no-section-damping")
+
+
+@pytest.mark.parametrize("command", SHOWN)
+def test_every_command_shows_doubts_and_options(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    arguments, pattern = SHOWN[command]
+    speed = DOUBTFUL.flutter_point(**UNDAMPED).speed / KNOT
+    pattern = pattern.replace("{speed}", re.escape(f"{speed:.2f}"))
+    run = CliRunner()
+    plain = run.invoke(main, [command, "xv15", *SET, *arguments], env={"COLUMNS": "200"})
+    assert plain.exit_code == 0, plain.output
+
+    assert re.search(pattern, plain.stdout, re.DOTALL), plain.stdout
+    assert command == "report" or ("? Doubtful" in plain.stdout and MACH in plain.stdout)
+    arguments = [command, "xv15", *SET, *arguments, "--locked", "lag", "--json"]
+    result = run.invoke(
+        main, [*arguments, *(("--csv", "a.csv") if command not in ("study", "report") else ())]
+    )
+    assert result.exit_code == 0, result.output
+    document = json.loads(result.stdout)
+    case = pp.load_case("xv15", {"operation.speed_of_sound": "300 m/s"})
+    assert document["options"] == expected(case, locked=("lag",), **UNDAMPED)
+    assert document["deck"] == stamp.deck_fingerprint(case) and document["case"] == "xv15"
+    assert MACH in result.stdout
+    if "--csv" in arguments or (tmp_path / "a.csv").exists():
+        head = [line for line in (tmp_path / "a.csv").read_text().splitlines() if line.startswith("# ")]
+        assert any('"locked": ["lag"]' in line for line in head) and "calibrated" in " ".join(head)
+        assert "warning" in without_comments(tmp_path / "a.csv")[0] and MACH in "\n".join(
+            without_comments(tmp_path / "a.csv")
+        )
+
+
+def test_the_tables_without_a_doubt_have_no_question_mark():
+    for command in ("flutter", "sensitivity"):
+        result = CliRunner().invoke(main, [command, "xv15", "--no-section-damping"], env={"COLUMNS": "200"})
+        assert "?" not in result.stdout, result.stdout
+
+
+def test_pictures_say_case_options_and_doubts():
+    options = {"section_damping": True}
+    sweep, at = DOUBTFUL.sweep("340:400:20kt", **options), "380 kt"
+    drawn = {
+        "frequency": plots.plot_frequency(sweep),
+        "damping": plots.plot_damping(sweep),
+        "locus": plots.plot_root_locus(sweep),
+        "participation": plots.plot_participation(sweep, "beam"),
+        "map": plots.plot_stability_map(DOUBTFUL.stability_map(MAP, **options)),
+        "attribution": plots.plot_attribution(DOUBTFUL.attribution(at, "beam", **options)),
+        "sensitivity": plots.plot_sensitivity(
+            DOUBTFUL.sensitivity("damping", airspeed=at, mode="beam", **options)
+        ),
+        "shape": plots.plot_mode_shape(mode_motion.mode_motion(DOUBTFUL, at, "beam", **options)),
+        "distribution": plots.plot_distribution(found("study", DOUBTFUL, **UNDAMPED)),
+        "campbell": plots.plot_campbell(
+            DOUBTFUL.sweep(at, {"operation.rotor_speed": [46.0, 48.0]}, **options), n_blades=3
+        ),
+    }
+    for name, ax in drawn.items():
+        text = " ".join(text.get_text().replace("\n", " ") for text in ax.texts)
+        assert "Case xv15" in text, name
+        assert name == "distribution" or "options: " in text or "default options" in text, name
+        assert MACH in text or name == "distribution", name
+    figure = plots.plot_sweep(sweep)
+    text = " ".join(text.get_text().replace("\n", " ") for text in figure.texts)
+    assert "Case xv15" in text and MACH in text
+    motion = mode_motion.mode_motion(DOUBTFUL, at, "beam")
+    assert "at 380? kt" in title_of(motion)
+
+
+def test_report_and_explorer_say_it(tmp_path):
+    page = tmp_path / "a.html"
+    arguments = ["report", "xv15", *SET, "--locked", "lag", "--out", str(page), "--speed", "100:440:20kt"]
+    assert CliRunner().invoke(main, arguments).exit_code == 0
+    text = page.read_text(encoding="utf-8")
+    assert "?" in text and MACH in text
+    row = text.partition("locked")[2][:200]
+    assert "lag" in row and "chosen" in row
+    speeds = np.linspace(100, 440, 35) * KNOT
+    live = live_modes(DOUBTFUL, speeds, **UNDAMPED)
+    assert re.search(r"Flutter speed 35\d\.\d\? kt", readout(live, {}, {}))
+    assert "? Doubtful from" in messages(live)
+    assert "?" not in readout(live_modes(CASE, speeds, **UNDAMPED), {}, {})
+
+
+def test_summaries_of_studies_count_doubts():
+    summary = study_summary.study_summary(found("study", DOUBTFUL, **UNDAMPED))
+    assert summary["flutter speeds doubtful"] == summary["flutter speeds found"] == 2
+    assert MACH in str(summary["doubts"]) and summary["points doubtful"] > 0
+    assert int(found("distribution", DOUBTFUL, **UNDAMPED).doubtful) == 2
+
+
+def test_sobol_indices_carry_them():
+    inputs = {"rotor.precone": (0.02, 0.04), "rotor.control_stiffness": pp.sampling.Relative(0.9, 1.1)}
+    results = pp.study(
+        DOUBTFUL, sampling.saltelli(inputs, 8), "300:440:20kt", "flutter", workers=1, **UNDAMPED
+    )
+    indices = pp.sobol_indices(results)
+    assert int(indices.doubtful) == int((results.flutter_warning != "").sum()) > 0
+    assert stamp.of(indices.attrs) == stamp.of(results.attrs) and MACH in indices.attrs["doubts"]
+    text = " ".join(text.get_text().replace("\n", " ") for text in plots.plot_sobol(indices).texts)
+    assert "Case xv15" in text and MACH in text
+
+
+def test_doubts_are_grouped_by_their_reason():
+    induced = "induced velocity, neglected, would be {}% of the airspeed"
+    warnings = np.array(
+        [induced.format(30), induced.format(12), "", f"{induced.format(11)}; Mach"], dtype=object
+    )
+    assert reasons_for_doubt(warnings.tolist()) == {
+        "induced velocity, neglected, would be up to 30% of the airspeed": [0, 1, 3],
+        "Mach": [3],
+    }
+    positions = np.array([10.0, 20.0, 30.0, 40.0])
+    told = list(footnotes(doubts_along(positions, warnings), "kt", 2.0))
+    assert told == [
+        "Doubtful from 5 kt to 20 kt: induced velocity, neglected, would be up to 30% of the airspeed.",
+        "Doubtful at 20 kt: Mach.",
+    ]
+    assert [doubtful_near(positions, warnings, at) for at in (15.0, 25.0, 30.0, 35.0)] == [
+        True,
+        True,
+        False,
+        True,
+    ]
+    assert (marked("1.0", ""), marked("1.0", "why")) == ("1.0", "1.0?")
+
+
+def test_cells_of_csv_are_text_or_numbers_and_never_formulas():
+    texts = (
+        "=1+1",
+        "+1+cmd|' /C calc'!A0",
+        "-2+3+cmd",
+        "@SUM(A1)",
+        "-1.5 deg",
+        "+3 kt",
+        "plain",
+        "a\n# case: forged",
+    )
+    head = {"options": json.dumps(stamp.in_force(Options())), "case": "x\ny", "deck": "0", "made_by": "p"}
+    written = csv_of(
+        [{"text": text, "=number": np.nan} for text in texts], ["text", "=number"], head
+    ).decode()
+    comments = [line for line in written.splitlines() if line.startswith("#")]
+    assert len(comments) == 2 and "x y" in comments[0]
+    cells = [line.rpartition(",")[0].strip('"') for line in written.splitlines()[2:]]
+    assert cells == [
+        "text",
+        "'=1+1",
+        "'+1+cmd|' /C calc'!A0",
+        "'-2+3+cmd",
+        "'@SUM(A1)",
+        *texts[4:7],
+        "a # case: forged",
+    ]
+    assert "'=number" in written
+
+
+def test_choices_have_other_values_to_be_told():
+    assert set(CHOICES) < set(OTHERWISE)
+    own = expected(CASE, section_damping=True, locked=("gimbal",))
+    assert all(stamp._plain(value) != own[name] for name, value in OTHERWISE.items())
