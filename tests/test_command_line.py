@@ -40,7 +40,7 @@ def expected():
 def test_table_has_a_row_for_each_airspeed_and_the_support_modes(table, expected):
     rows = [line.split() for line in table.splitlines() if line.strip()[:3].isdigit()]
     assert [float(row[0]) for row in rows] == [300, 320, 340, 360, 380, 400]
-    header = next(line for line in table.splitlines() if "torsion" in line)
+    header = next(line for line in table.splitlines() if line.strip().startswith("beam"))
     assert {"beam", "chord", "torsion"} <= set(header.split())
     per_rev = expected.frequency.sel(mode="beam").values[0] / pp.load_case("xv15").operation.rotor_speed
     percent = 100 * expected.damping_ratio.sel(mode="beam").values[0]

@@ -193,8 +193,8 @@ def spring_warnings(
     if not changes:
         return ()
     return (
-        "The rotor's share is taken off the support's modes as if its gimbal had no spring, for a spring is no mass. "
-        f"At rest the hub spring moves them from the frequencies given: {', '.join(changes)}.",
+        f"At rest the hub spring moves {', '.join(changes)} from the frequency given: the rotor's share taken off the "
+        "support's modes is that of a gimbal without spring, for a spring is no mass.",
     )
 
 
