@@ -455,3 +455,15 @@ def test_a_sweep_by_branch_has_the_same_roots_each_in_one_place():
     steps = np.abs(np.diff(by_branch(fine).eigenvalue.values, axis=0))
     leap = np.nanmax(np.abs(np.diff(fine.eigenvalue.values, axis=0)))
     assert np.nanmax(steps) < 0.1 * leap
+
+
+def test_a_step_of_no_quality_is_a_warning_of_a_study():
+    """Steps of 60 kt leave out where roots meet."""
+    case, speeds = pp.load_case("xv15"), np.array([60.0, 91.0, 122.0, 153.0, 184.0])
+    found = pp.study(case, {"rotor.precone": [0.03, 0.05]}, speeds, "modes", workers=1)
+    lost = (found.mode_quality <= 0).any("state")
+    assert lost.any() and not lost.all()
+    for design, point in np.ndindex(lost.shape):
+        assert ("which root is which" in str(found.warning.values[design, point])) == lost.values[
+            design, point
+        ]

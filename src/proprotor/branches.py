@@ -16,7 +16,7 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.mode_names import SECOND
 from proprotor.path import Path
-from proprotor.tracking import POOR, conjugate
+from proprotor.tracking import NOT_TOLD, POOR, conjugate
 
 if TYPE_CHECKING:
     import xarray
@@ -115,7 +115,7 @@ def _tell(doubt: Array, path: Path, label: Array, points: int) -> None:
     np.put_along_axis(by_place, path.order(points), path.trust(points), 1)
     for point in np.flatnonzero((by_place < POOR).any(axis=1) & (label != "").all(axis=1)):
         names = dict.fromkeys(label[point, by_place[point] < POOR])
-        doubt[point] = f"the step to here does not tell which root is which: {', '.join(names)}"
+        doubt[point] = f"{NOT_TOLD}: {', '.join(names)}"
 
 
 def by_branch(sweep: xarray.Dataset) -> xarray.Dataset:
