@@ -92,8 +92,8 @@ def sensitivity(
     airspeed : float in m/s, text such as "300 kt", or pint quantity
         Where damping or eigenvalues are; for the flutter speed optionally the airspeeds of the scan.
     mode : str, optional
-        One mode by name; all by default. For the flutter speed the first boundary of this mode, onset or not, instead
-        of the lowest onset of any.
+        One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary at which this
+        moves, onset or not, instead of the lowest onset of any.
     level : float
         Damping ratio that counts as the boundary of the flutter speed.
     **options
@@ -224,6 +224,7 @@ def at_boundary(
         "value": speed,
         "units": "m/s",
         "mode": boundary.mode,
+        "branch": boundary.branch,
         "level": level,
         "eigen_solves": eigen_solves + 1,
     }

@@ -28,6 +28,7 @@ from proprotor.modes import (
 from proprotor.sampling import AIRSPEED
 from proprotor.source_code import check_code
 from proprotor.study_modes import follow_designs
+from proprotor.tracking import NOT_TOLD
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -289,6 +290,7 @@ class Analysis:
             found |= {name: getattr(model.trim, name) for name in VARIABLES["trim"]}
         if "modes" in self.quantities:
             found |= _followed(model, "vectors" in self.quantities)
+            found["warning"] = _with_doubt(found["warning"], found["mode_quality"])
         elif "vectors" in self.quantities:
             found |= _eigenvalues_and_vectors(model)
         else:
@@ -421,6 +423,14 @@ def _followed(model: LinearModel, with_vectors: bool) -> dict[str, Array]:
         "mode_coordinate": np.where(none, "", np.array(model.dofs, dtype=object)[main]),
     }
     return found | (_vectors(model, values, right) if with_vectors else {})
+
+
+def _with_doubt(warning: Array, quality: Array) -> Array:
+    """Warnings (designs, speeds) with one more at points to which a step of no quality leads."""
+    joined = np.array(warning, dtype=object)
+    lost = (quality <= 0).any(axis=-1)
+    joined[lost] = [f"{text}; {NOT_TOLD}" if text else NOT_TOLD for text in joined[lost]]
+    return joined
 
 
 def _largest_one(shapes: Array) -> Array:

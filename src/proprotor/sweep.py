@@ -349,11 +349,6 @@ def anchor_speed(case: Case, **options: Any) -> float | None:
     return float(speeds[works[0]]) if len(works) else None
 
 
-def rotor_speed_of(case: Case) -> float | None:
-    """rad/s of a case that has one rotor speed."""
-    return float(case.operation.rotor_speed) if np.ndim(case.operation.rotor_speed) == 0 else None
-
-
 def _is_batch(case: Case, options: Mapping[str, Any]) -> bool:
     train = case.model_options(options).get("drive_train")
     return batch_shape(case.rotor, case.operation, np.zeros(()), train) != () or any(

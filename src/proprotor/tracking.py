@@ -24,6 +24,7 @@ _BLOCK = 64  # steps whose matrices stay in the cache
 _COUPLED = (
     1e-6  # likeness of different modes below which it is rounding, and they pass each other as strangers
 )
+NOT_TOLD = "the step to here does not tell which root is which"
 POOR = 0.5  # quality of a step below which it is divided
 
 
