@@ -68,7 +68,7 @@ def flutter(
     """
     from proprotor.units import speeds
 
-    output.check_outputs(csv)
+    output.check_outputs(csv, as_json=as_json)
     options, damping = in_order(options), level_of(level)
     airspeeds = None if scan is None else speeds(scan, "--scan")
     at = None if speed is None else one_speed(speed)
@@ -80,11 +80,11 @@ def flutter(
     records = [boundary_record(boundary, loaded) for boundary in found.boundaries]
     if csv:
         rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
-        output.write("--csv", csv, csv_of(rows, COLUMNS, found.stamp))
+        output.write_csv(csv, csv_of(rows, COLUMNS, found.stamp))
     if as_json:
         head = output.about(loaded, options, settings_of(settings))
         output.print_json(head | _document(found, records, at))
-    else:
+    elif csv != output.STANDARD_OUTPUT:
         _print(loaded, found, at, unit_of(scan or speed or "kt"))
     if not math.isfinite(found.searched[0]):
         raise click.exceptions.Exit(1)
