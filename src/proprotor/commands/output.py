@@ -99,9 +99,7 @@ def print_head(case: Case, found: Mapping[Any, Any]) -> None:
     from proprotor.terminal import heading
 
     out = console()
-    chosen = stamp.in_words(stamp.chosen(stamp.options_told(found)))
-    options = [f"Options: {chosen}."] if chosen else []
-    for line in (heading(case), *options, *reservations(case), ""):
+    for line in (heading(case), *stamp.told_if_unusual(found), *reservations(case), ""):
         out.print(line)
 
 
