@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.mode_names import check_distinct
@@ -102,7 +103,11 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         matrices[kind] = whole
     (first, hub, _), *_ = placed.values()
     motion = np.pad(hub, ((0, 0), (0, len(names) - n)))
-    return replace(first.model, **matrices, B=None, dofs=tuple(names), hub=motion, rotor=None)
+    told = {stamp.of_model(rotor.model).get("options") for rotor in rotors.values()}
+    origin = (
+        first.model.origin if len(told) == 1 else None
+    )  # of rotors with different options there is no one stamp
+    return replace(first.model, **matrices, B=None, dofs=tuple(names), hub=motion, rotor=None, origin=origin)
 
 
 def _hub_of(name: str, rotor: MountedRotor, n: int) -> Array:

@@ -100,7 +100,7 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
         "warning": found.warning,
         "beyond the level at the lowest airspeed": list(found.unstable_at_start),
         "boundaries": records,
-        "doubts": [doubt._asdict() for doubt in found.doubts],
+        "doubts": output.doubts_as_data(found.doubts),
         "eigen-solves": found.eigen_solves,
     }
     if at is None:

@@ -109,6 +109,11 @@ def print_doubts(doubts: Iterable[Doubt], unit: str = "kt", factor: float = KNOT
         console().print(f"{MARK} {line}", style="yellow")
 
 
+def doubts_as_data(doubts: Iterable[Doubt]) -> list[dict[str, Any]]:
+    """Doubts along airspeeds, as JSON has them."""
+    return [{"doubt": doubt.text, "from (m/s)": doubt.low, "to (m/s)": doubt.high} for doubt in doubts]
+
+
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: Sequence[str] = ()) -> None:
     """Print a table: numbers to the right, columns named in `text` to the left.
 
