@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 import xarray
+from bokeh.document import Document
 from click.testing import CliRunner
 from scipy.io import loadmat
 
@@ -23,11 +24,12 @@ from proprotor.command_line import main
 from proprotor.csv_text import csv_of
 from proprotor.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
 from proprotor.explore.analysis import live_modes
-from proprotor.explore.page import messages, readout
+from proprotor.explore.page import ExplorePage, messages, readout
 from proprotor.matlab_file import matlab_names
 from proprotor.model_parts import model_parts
 from proprotor.options import CHOICES, Options, parse_options
 from proprotor.sensitivity import at_boundary, sensitivity
+from proprotor.several_rotors import MountedRotor
 from proprotor.stability_map import stability_map
 from proprotor.sweep import sweep_case
 from tests.csv_files import without_comments
@@ -599,3 +601,30 @@ def test_choices_have_other_values_to_be_told():
     assert set(CHOICES) < set(OTHERWISE)
     own = expected(CASE, section_damping=True, locked=("gimbal",))
     assert all(stamp._plain(value) != own[name] for name, value in OTHERWISE.items())
+
+
+def test_several_rotors_say_their_options_where_they_are_the_same():
+    def mounted(*locked):
+        rotors = {
+            name: MountedRotor(pp.rotor_model(CASE.rotor, CASE.operation, 100.0, locked=own), np.eye(6))
+            for name, own in zip(("left", "right"), locked, strict=True)
+        }
+        return pp.mount_rotors(rotors, CASE_SUPPORT)
+
+    assert stamp.options_told(stamp.of_model(mounted("lag", "lag")))["locked"] == ["lag"]
+    assert stamp.of_model(mounted("lag", "gimbal")) == {}
+
+
+CASE_SUPPORT = pp.NormalModes(
+    ("a", "b", "c", "d", "e", "f"), 1e4 * np.eye(6), np.zeros((6, 6)), 1e6 * np.eye(6), np.eye(6), False
+)
+
+
+def test_the_page_of_the_explorer_tells_the_options_as_they_are_switched():
+    options = {name: getattr(Options(), name) for name in CHOICES} | {"locked": ("gimbal",)}
+    page = ExplorePage(CASE, "xv15", np.linspace(100, 300, 8) * KNOT, {}, options)
+    page.put_on(Document())
+    assert "Options: locked gimbal." in page.foot.text and "calibrated" in page.foot.text
+    page.options["pitch"] = "rigid"
+    page.update()
+    assert "Options: pitch rigid, locked gimbal." in page.foot.text

@@ -41,7 +41,8 @@ def run(*arguments):
 
 
 def rows_of(text):
-    head, *rows = csv.reader(text.splitlines())
+    lines = [line for line in text.splitlines() if not line.startswith("# ")]
+    head, *rows = csv.reader(lines)
     return head, [[float(cell) if cell else np.nan for cell in row] for row in rows]
 
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.assembly import refused_where
 from proprotor.errors import InputError
@@ -105,6 +106,9 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         matrices[kind] = whole
     (first, hub, _), *_ = placed.values()
     motion = np.pad(hub, ((0, 0), (0, len(names) - n)))
+    told = {stamp.of_model(rotor.model).get("options") for rotor in rotors.values()}
+    # Of rotors with different options there is no one stamp.
+    origin = first.model.origin if len(told) == 1 else None
     coupled = replace(
         first.model,
         **matrices,
@@ -114,6 +118,7 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         rotor=None,
         mass_at_rest=None,
         shapes=None,
+        origin=origin,
     )
     return refused_where(refusal, coupled, support)
 

@@ -258,6 +258,12 @@ def told(found: Mapping[Any, Any]) -> str:
     )
 
 
+def told_if_unusual(found: Mapping[Any, Any]) -> list[str]:
+    """A sentence on the options that are not defaults; none where all are, or a result does not say."""
+    own = chosen(options_told(found)) if "options" in found else {}
+    return [f"Options: {in_words(own)}."] if own else []
+
+
 def options_told(found: Mapping[Any, Any]) -> dict[str, Any]:
     """Every option in force of a result that says so, as plain data."""
     told_options: dict[str, Any] = json.loads(found["options"])

@@ -51,7 +51,7 @@ def of_model(model: LinearModel) -> str:
         f"LinearModel: {len(model.dofs)} coordinates, {shape}, {_range(model.airspeed)} m/s",
         f"  {', '.join(model.dofs)}",
     ]
-    lines += [f"  {line}" for line in (stamp.told(stamp.of_model(model)),) if line]
+    lines += [f"  {line}" for line in stamp.told_if_unusual(stamp.of_model(model))]
     reasons = Counter(str(reason) for reason in np.ravel(model.trim.reason) if reason)
     lines += [f"  {count} of {converged.size} failed: {reason}" for reason, count in reasons.most_common(5)]
     doubts = reasons_for_doubt(np.ravel(model.trim.warning).tolist())
@@ -73,8 +73,8 @@ def of_crossings(found: Crossings) -> str:
         ratio, mode, position = found.least
         lines[0] += f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
     lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
-    origin = [f"  {line}" for line in (stamp.told(found.stamp),) if line]
-    return "\n".join(lines + list(_at_start(found)) + origin)
+    options = [f"  {line}" for line in stamp.told_if_unusual(found.stamp)]
+    return "\n".join(lines + list(_at_start(found)) + options)
 
 
 def of_flutter_point(found: FlutterPoint) -> str:
@@ -94,8 +94,8 @@ def of_flutter_point(found: FlutterPoint) -> str:
         for boundary in others
     ]
     doubts = [f"  {MARK} {line}" for line in footnotes(found.doubts, "kt", KNOT)]
-    origin = [f"  {line}" for line in (stamp.told(found.stamp),) if line]
-    return "\n".join([first, *lines, *_at_start(found), *doubts, *origin])
+    options = [f"  {line}" for line in stamp.told_if_unusual(found.stamp)]
+    return "\n".join([first, *lines, *_at_start(found), *doubts, *options])
 
 
 def _position(boundary: Boundary) -> str:

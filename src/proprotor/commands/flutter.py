@@ -105,7 +105,7 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
         "airspeed of the least damping (kt)": found.least_damping_speed / KNOT,
         "airspeed of the least damping (m/s)": found.least_damping_speed,
         "boundaries": records,
-        "doubts": [doubt._asdict() for doubt in found.doubts],
+        "doubts": output.doubts_as_data(found.doubts),
         "eigen-solves": found.eigen_solves,
     }
     if at is None:

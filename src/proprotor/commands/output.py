@@ -98,9 +98,7 @@ def print_head(case: Case, found: Mapping[Any, Any]) -> None:
     from proprotor.terminal import heading
 
     out = console()
-    chosen = stamp.in_words(stamp.chosen(stamp.options_told(found)))
-    options = [f"Options: {chosen}."] if chosen else []
-    for line in (heading(case), *options, *reservations(case), ""):
+    for line in (heading(case), *stamp.told_if_unusual(found), *reservations(case), ""):
         out.print(line)
 
 
@@ -108,6 +106,11 @@ def print_doubts(doubts: Iterable[Doubt], unit: str = "kt", factor: float = KNOT
     """Print what the question marks above mean, positions in a unit of so many SI units."""
     for line in footnotes(doubts, unit, factor):
         console().print(f"{MARK} {line}", style="yellow")
+
+
+def doubts_as_data(doubts: Iterable[Doubt]) -> list[dict[str, Any]]:
+    """Doubts along airspeeds, as JSON has them."""
+    return [{"doubt": doubt.text, "from (m/s)": doubt.low, "to (m/s)": doubt.high} for doubt in doubts]
 
 
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: Sequence[str] = ()) -> None:

@@ -155,6 +155,6 @@ def _told(case: Case, found: Findings, document: Document, places: list[str]) ->
         "mode": found.flutter.mode or None,
         "warning": found.flutter.warning,
         "boundaries": [boundary_record(boundary, case) for boundary in found.flutter.boundaries],
-        "doubts": [doubt._asdict() for doubt in found.flutter.doubts],
+        "doubts": output.doubts_as_data(found.flutter.doubts),
         "failed airspeeds (m/s)": found.sweep.airspeed.values[found.sweep.reason.values != ""].tolist(),
     }

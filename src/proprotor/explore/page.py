@@ -26,6 +26,7 @@ from proprotor.options import CHOICES
 from proprotor.plots.style import UNSTABLE
 from proprotor.provenance import reservations
 from proprotor.speed import KNOT
+from proprotor.stamp import of_case, told_if_unusual
 from proprotor.units import to_si
 
 if TYPE_CHECKING:
@@ -94,6 +95,7 @@ class ExplorePage:
         self.lines, self.dots = ColumnDataSource(name="lines"), ColumnDataSource(name="dots")
         self.readout = Div(name="readout", width=850)
         self.message = Div(name="message", width=850)
+        self.foot = Div(name="reservations", width=850)
         self.side = column(name="sliders", width=_SIDE)
         self.guide = Div(name="help", width=_SIDE)
         self.deck = ColumnDataSource(name="deck")  # whose text goes to the browser when it is asked for
@@ -135,6 +137,8 @@ class ExplorePage:
         self.dots.data = ends(columns)
         self.readout.text = readout(found, self.values, self.inputs)
         self.message.text = messages(found)
+        told = (*told_if_unusual(of_case(self.case, self.options)), *reservations(self.case))
+        self.foot.text = f"<small>{escape(' '.join(told))}</small>"
 
     # What is moved ----------------------------------------------------------------------------------------------
 
@@ -244,11 +248,8 @@ class ExplorePage:
             text=f"<h1 style='font-size:18px;margin:4px 0'>{escape(self.case.title or self.case.name)}</h1>",
             width=850,
         )
-        foot = Div(
-            text=f"<small>{escape(' '.join(reservations(self.case)))}</small>", width=850, name="reservations"
-        )
         plots = row(self._damping(), self._root_locus())
-        return row(side, column(title, self.readout, plots, self.message, foot), spacing=8)
+        return row(side, column(title, self.readout, plots, self.message, self.foot), spacing=8)
 
     def _damping(self) -> Any:
         first, last = (float(speed) / KNOT for speed in self.airspeeds[[0, -1]])

@@ -10,6 +10,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.case import load_case
+from proprotor.doubts import MARK, doubts_along, footnotes
 from proprotor.figures.blade_state import AS_THE_PAPER, BladeState, blade_state, on_rigid_hub
 from proprotor.figures.published import PAPER_FREQUENCIES
 from proprotor.frequencies import BladeFrequencies
@@ -69,11 +70,15 @@ class Analyses:
         values = self._followed(deck, variant)[:, self.case(deck).support.names.index(mode)]
         return -100 * values.real / np.abs(values)
 
-    def doubts(self, deck: str) -> str:
-        """From where on sections are outside the reach of the model; empty where they never are."""
-        warning = self.model(deck, "couplings").trim.warning[0]
-        high = [speed for speed, text in zip(self.knots(deck), warning, strict=True) if "Mach" in text]
-        return f"Doubtful from {high[0]:.0f} kt: Mach number beyond 0.85 outboard of 0.5 R." if high else ""
+    def doubts(self, deck: str) -> list[str]:
+        """Sentences on where the model is doubtful, and why."""
+        doubts = doubts_along(self.knots(deck), self.warnings(deck))
+        return [f"{MARK} {line}" for line in footnotes(doubts, "kt")]
+
+    def warnings(self, deck: str) -> Array:
+        """What makes the airspeeds (points,) of a deck doubtful."""
+        warnings: Array = self.model(deck, "couplings").trim.warning[0]
+        return warnings
 
     def boundary(self, deck: str, variant: str) -> float:
         """Lowest boundary of a mode that moves the wing, kt; infinite beyond the last airspeed."""

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.doubts import doubtful_near, marked
 from proprotor.errors import InputError
 from proprotor.figures.analyses import XV15, Analyses
 from proprotor.figures.content import BandCurves, Content, Curve
@@ -21,6 +22,7 @@ from proprotor.figures.published import (
     XV15_MARK,
 )
 from proprotor.provenance import reservations
+from proprotor.stamp import deck_fingerprint
 from proprotor.uncertainty_band import boundary
 
 _DAMPING = "Modal damping"
@@ -117,7 +119,7 @@ def _damping_figure(number: int, figure: _Damping, analyses: Analyses) -> Conten
     curves = []
     for variant, label in figure.curves.items():
         damping = analyses.damping(figure.deck, figure.mode, variant)
-        told = _boundary_told(knots, damping, figure.x_limits[1])
+        told = _boundary_told(knots, damping, figure.x_limits[1], analyses.warnings(figure.deck))
         curves.append(Curve(variant, knots, damping, f"{label}: {told}"))
     return Content(
         number=number,
@@ -148,17 +150,18 @@ def _band(figure: _Damping, analyses: Analyses) -> BandCurves | None:
     return BandCurves(analyses.knots(figure.deck), low, median, high, label)
 
 
-def _boundary_told(knots: Array, damping: Array, end: float) -> str:
+def _boundary_told(knots: Array, damping: Array, end: float, warnings: Array) -> str:
     shown = knots <= end
     speed = float(boundary(knots[shown], damping[None, shown])[0])
     if np.isinf(speed):
         return f"stable to {knots[shown][-1]:.0f} kt"
-    return f"unstable at {speed:.0f} kt" if speed <= knots[0] else f"boundary {speed:.0f} kt"
+    told = marked(f"{speed:.0f}", doubtful_near(knots, warnings, speed))
+    return f"unstable at {told} kt" if speed <= knots[0] else f"boundary {told} kt"
 
 
 def _reservations(analyses: Analyses, deck: str) -> dict[str, Any]:
     case = analyses.case(deck)
-    notes = [*reservations(case), analyses.doubts(deck)]
+    notes = [*reservations(case), *analyses.doubts(deck), f"Case {case.name} ({deck_fingerprint(case)})."]
     if deck != XV15:  # the XV-15's warning is on its mass integrals, which do not move the boundary
         notes.insert(0, case.warnings[0])
     statuses = {number.status for number in case.sources.values()}

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.printable import printable
 
 AIRSPEED = "airspeed (kt)"
 
@@ -92,7 +93,10 @@ class Content:
 
 
 def csv_of(content: Content) -> bytes:
-    """The curves as CSV in UTF-8: a row for each airspeed, units in the heads, cells empty where there is nothing."""
+    """The curves as CSV in UTF-8: a row for each airspeed, units in the heads, cells empty where there is nothing.
+
+    What the figure shows and rests on stands above in lines that begin with #.
+    """
     columns = {curve.name: (curve.airspeed, curve.values) for curve in content.curves}
     if band := content.band:
         columns |= {
@@ -108,6 +112,8 @@ def csv_of(content: Content) -> bytes:
     for place, (airspeed, values) in enumerate(columns.values()):
         rows[np.searchsorted(airspeeds, np.round(airspeed, 9)), place] = values
     text = io.StringIO(newline="")
+    for note in (f"Fig. {content.number} of AIAA-2002-1604: {content.title}", *content.notes):
+        text.write(f"# {printable(note)}\n")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([AIRSPEED, *(f"{name} ({content.unit})" for name in columns)])
     for airspeed, row in zip(airspeeds, rows, strict=True):
