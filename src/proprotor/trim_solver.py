@@ -35,7 +35,6 @@ _INDUCED_SHARE = 0.05  # of the airspeed: above it the neglected induced velocit
 _NO_SPRING = 1e-90  # of the other spring, or N m/rad
 _LARGEST_ANGLE = np.radians(20)  # of a blade that rigid hinges stand for
 _QUADRATURE = 1e-10  # error of the loads and their slopes, in themselves
-_TURNING = 10.0  # rad per unit of λ: faster than this the path turns back
 
 Found = tuple[Array, Linear, dict[str, Array]]  # work after a step, balance before it, doubts of the airfoil
 
@@ -262,8 +261,7 @@ def _ended(found: Followed, target: Target) -> Array:
     reason = np.full(len(found.share), "", dtype=object)
     for place in np.flatnonzero(~found.arrived):
         at = f"at {np.floor(1000 * found.share[place]) / 10:.1f} % of airloads and precone's load"
-        turns = found.speed[place] > _TURNING
-        told = f"turns back {at}: no trim belongs to it" if turns else f"was lost {at}"
+        told = f"turns back {at}: no trim belongs to it" if found.turned[place] else f"was lost {at}"
         reason[place] = f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
     return reason
 
