@@ -1,13 +1,13 @@
 """Stability boundaries of a case: where the damping of a mode passes a level, to rounding.
 
-Every crossing in a range is found, flutter and divergence, those between two points of the scan included:
+Every crossing in a range is looked for, flutter and divergence, those between two points of the scan included:
 `proprotor.crossings` says how.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -15,20 +15,20 @@ from numpy.typing import ArrayLike
 
 from proprotor import summary
 from proprotor.arrays import Array
-from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
+from proprotor.crossings import Crossing, Search, crossings
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
 from proprotor.mode_names import name_list, name_shares
 from proprotor.model import LinearModel
 from proprotor.modes import held_coordinates
-from proprotor.path import Line, follow
+from proprotor.path import Line, Path
 from proprotor.speed import in_metres_per_second
-from proprotor.sweep import approach_to, line_of_case, rotor_speed_of, state_names, tip_speed
+from proprotor.sweep import approach_to, line_of_case, names_at, rotor_speed_of, state_names, tip_speed
+from proprotor.tracking import Spectrum, Steps
 
 if TYPE_CHECKING:
     from proprotor.case import Case
 
-_REAL = 1e-9  # of the largest eigenvalue: a root with less imaginary part is real
 _TOLD = 0.05  # of a mode: the least participation that its mechanism names
 _RANGE = (0.2, 1.2, 51)  # of the tip speed: where boundaries are looked for, and at how many points
 
@@ -42,7 +42,9 @@ class Boundary:
     position : float
         Airspeed in m/s, or another input in SI.
     mode : str
-        Name of the mode that crosses, which it has wherever it is followed.
+        Name of what moves at the crossing, by participation there.
+    branch : str
+        Name of the root that crosses, followed from where modes get their names.
     kind : "flutter" or "divergence"
         A pair, or a real root.
     onset : bool
@@ -72,6 +74,7 @@ class Boundary:
     mechanism: Mapping[str, float]
     defect: float
     eigen_solves: int
+    branch: str = ""
 
     def __repr__(self) -> str:
         return summary.of_boundary(self)
@@ -99,6 +102,8 @@ class FlutterPoint:
         Modes that are beyond the level at the lowest airspeed already.
     searched : tuple of float
         Lowest and highest airspeed that could be analysed, m/s.
+    failed : tuple of Failed
+        Airspeeds of the scan that could not be analysed, with the reason.
     eigen_solves : int
         All of them; `scan_solves` is what it took to bracket every boundary.
     scan_solves : int
@@ -116,6 +121,7 @@ class FlutterPoint:
     eigen_solves: int
     scan_solves: int
     level: float = 0.0
+    failed: tuple[Failed, ...] = ()
 
     def __repr__(self) -> str:
         return summary.of_flutter_point(self)
@@ -135,6 +141,22 @@ class FlutterPoint:
         return self.speed / float(in_metres_per_second(airspeed)) - 1
 
 
+class Failed(NamedTuple):
+    """Neighbouring positions of a scan that could not be analysed.
+
+    Parameters
+    ----------
+    first, last : float
+        m/s or in SI units of the input.
+    reason : str
+        Why, at the first of them.
+    """
+
+    first: float
+    last: float
+    reason: str
+
+
 class Crossings(NamedTuple):
     """Boundaries along a line, with the modes beyond the level at its start.
 
@@ -143,11 +165,14 @@ class Crossings(NamedTuple):
     boundaries : tuple of Boundary
         By position.
     unstable_at_start : tuple of str
-        Modes beyond the level at the first position that could be analysed.
+        Modes beyond the level at the lowest position that could be analysed.
     searched : tuple of float
-        First and last position that could be analysed, m/s or in SI units of the input.
+        Lowest and highest position that could be analysed, m/s or in SI units of the input.
     scan_solves, eigen_solves : int
         What it took to bracket every boundary, and in all.
+    failed : tuple of Failed
+        Positions of the scan that could not be analysed, with the reason: why the range searched ends where it does, or
+        has gaps.
     """
 
     boundaries: tuple[Boundary, ...]
@@ -155,6 +180,7 @@ class Crossings(NamedTuple):
     searched: tuple[float, float]
     scan_solves: int
     eigen_solves: int
+    failed: tuple[Failed, ...] = ()
 
     def __repr__(self) -> str:
         return summary.of_crossings(self)
@@ -168,7 +194,7 @@ def find_crossings(
     Parameters
     ----------
     line : Line
-        With a `linearize` that takes complex positions and is analytic in them.
+        With a `linearize` that takes complex positions and is analytic in them; positions in any order.
     level : float
         Damping ratio that counts as the boundary.
     rotor_speed : float, optional
@@ -187,75 +213,103 @@ def find_crossings(
     """
     if not -1 < level < 1:
         raise InputError("level", level, "must be a damping ratio, between -1 and 1")
-    model = line.models(np.asarray(line.positions, dtype=float))
-    scan = Scan(line, follow(model, line), level)
-    settle(scan)
-    path = scan.path
+    line = rising(line)
+    positions = line.positions
+    search = Search(
+        lambda _, x: line.models(x), np.zeros(len(positions), dtype=int), positions, level, names=True
+    )
+    failed = _failed(positions, search.model.trim.reason, search.scanned.spectrum.works)
+    path = _path(search)
     if not len(path.points):
-        return Crossings((), (), (np.nan, np.nan), 0, 0)
-    named = state_names(model, line, path, rotor_speed, approach)
-    names = [named.names[state] for state in path.places[named.point]]
-    crossing = Brackets(scan) if len(path.points) > 1 else None
-    boundaries = []
-    if crossing is not None:
-        crossing.close()
-        for place in crossing.found:
-            boundaries.append(_boundary(crossing, place, names, model, rotor_speed))
-    boundaries = _distinct(sorted(boundaries, key=lambda found: found.position))
-    scan_solves = len(path.points) + named.eigen_solves
+        return Crossings((), (), (np.nan, np.nan), 0, 0, failed)
+    named = state_names(search.model, line, path, rotor_speed, approach)
+    branches = [named.names[state] for state in path.places[named.point]]
+    found = crossings(search)
+    first = int(search.points.position.argmin())
+    names = _names(search.model, search.points.spectrum, first, rotor_speed)
+    growth, error = search.points.growth[first], search.points.error[first]
+    beyond = np.flatnonzero((growth > error) & (search.points.spectrum.values[first].imag >= 0))
+    scan_solves = int(search.solves.sum()) + named.eigen_solves
+    ends = search.points.position.min(), search.points.position.max()
     return Crossings(
-        tuple(boundaries),
-        _beyond(path.values[0], names, level),
-        (float(scan.positions[0]), float(scan.positions[-1])),
+        tuple(_boundary(one, _branch(one, search, path, branches), search.model, rotor_speed) for one in found),
+        tuple(dict.fromkeys(names[state] for state in beyond)),
+        (float(ends[0]), float(ends[1])),
         scan_solves,
-        scan_solves + (0 if crossing is None else int(crossing.solves.sum())),
+        scan_solves + sum(one.solves for one in found),
+        failed,
     )
 
 
-def _beyond(values: Array, names: list[str], level: float) -> tuple[str, ...]:
-    """Modes beyond the level."""
-    above = growth(values, level) > NEUTRAL * np.abs(values).max()
-    return tuple(dict.fromkeys(names[state] for state in np.flatnonzero(above & (values.imag >= 0))))
+def rising(line: Line) -> Line:
+    """The line with each of its positions once, from the lowest to the highest."""
+    return replace(line, positions=np.unique(np.asarray(line.positions, dtype=float)), end=None)
 
 
-def _boundary(
-    crossing: Brackets, place: int, names: list[str], model: LinearModel, rotor_speed: float | None
-) -> Boundary:
-    position, spectrum, state, change, slope = crossing.found[place]
-    value = complex(spectrum.values[state])
-    real = abs(value.imag) <= _REAL * np.abs(spectrum.values).max()
-    mode = spectrum.modes(np.array([state]))
+def _failed(positions: Array, reason: Array, works: Array) -> tuple[Failed, ...]:
+    """Stretches of positions that failed for one reason."""
+    found: list[Failed] = []
+    before = -2
+    for place in np.flatnonzero(~works):
+        told = str(reason[place])
+        if place == before + 1 and found[-1].reason.split(":")[0] == told.split(":")[0]:
+            found[-1] = found[-1]._replace(last=float(positions[place]))
+        else:
+            found.append(Failed(float(positions[place]), float(positions[place]), told))
+        before = int(place)
+    return tuple(found)
+
+
+def _path(search: Search) -> Path:
+    """The points of a search of one line as a path: those of the scan, failed ones too, then those between them."""
+    scanned, points = search.scanned, search.points
+    works = np.flatnonzero(scanned.spectrum.works)
+    between = np.arange(len(works), len(points.position))
+    spectrum = scanned.spectrum.joined(points.spectrum.at(between))
+    place = np.concatenate([works, len(scanned.position) + np.arange(len(between))])
+    order = np.argsort(points.position, kind="stable")
+    return Path(
+        Spectrum(*spectrum),
+        place[order].astype(int),
+        Steps(search.steps.successor, search.steps.quality),
+        np.concatenate([scanned.position, points.position[between]]),
+    )
+
+
+def _names(model: LinearModel, spectrum: Spectrum, point: int, rotor_speed: float | None) -> list[str]:
+    """What moves in each state of a point."""
+    return names_at(model.dofs, held_coordinates(model), spectrum, point, rotor_speed)
+
+
+def _branch(found: Crossing, search: Search, path: Path, branches: list[str]) -> str:
+    """Name of the root that crosses, as it is followed along the path."""
+    order = np.argsort(search.points.position, kind="stable")
+    point = int(np.flatnonzero(order == found.start)[0])
+    return branches[int(np.flatnonzero(path.places[point] == found.from_state)[0])]
+
+
+def _boundary(found: Crossing, branch: str, model: LinearModel, rotor_speed: float | None) -> Boundary:
+    value, spectrum = found.value, found.spectrum
+    mode = spectrum.modes(np.array([found.state]))
     shares = name_shares(
         model.dofs, held_coordinates(model), mode.values, mode.left, mode.right, rotor_speed
     )[:, 0]
     told = name_list(model.dofs)
     largest = [k for k in np.argsort(-shares) if shares[k] >= _TOLD]
+    alone = Spectrum(spectrum.values[None], spectrum.right[None])
     return Boundary(
-        position=float(position),
-        mode=names[crossing.states[place]],
-        kind="divergence" if real else "flutter",
-        onset=bool(crossing.onset[place]) == bool(crossing.x[1, place] >= crossing.x[0, place]),
+        position=found.position,
+        mode=_names(model, alone, 0, rotor_speed)[found.state],
+        kind="divergence" if value.imag == 0 else "flutter",
+        onset=found.onset,
         eigenvalue=value if value.imag >= 0 else value.conjugate(),
-        rate=float(slope),
-        eigenvalue_rate=complex(change if value.imag >= 0 else np.conj(change)),
+        rate=found.slope,
+        eigenvalue_rate=complex(found.change if value.imag >= 0 else np.conj(found.change)),
         mechanism={told[k]: float(shares[k]) for k in largest},
         defect=float(defect(mode)[0]),
-        eigen_solves=int(crossing.solves[place]),
+        eigen_solves=found.solves,
+        branch=branch,
     )
-
-
-def _distinct(boundaries: list[Boundary]) -> list[Boundary]:
-    """Both states of a pair that parts within a step may be found to cross as the same root: it counts once."""
-    kept: list[Boundary] = []
-    for found in boundaries:
-        again = any(
-            abs(found.position - other.position) <= 1e-7 * abs(found.position)
-            and abs(found.eigenvalue - other.eigenvalue) <= 1e-6 * max(1.0, abs(found.eigenvalue))
-            for other in kept
-        )
-        if not again:
-            kept.append(found)
-    return kept
 
 
 def boundaries(
@@ -298,6 +352,7 @@ def boundaries(
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
+    line = rising(line)
     near = approach_to(case, line, line.models(line.positions), options)
     return find_crossings(line, level=level, rotor_speed=rotor_speed_of(case), approach=near)
 
@@ -355,4 +410,5 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
         eigen_solves=found.eigen_solves,
         scan_solves=found.scan_solves,
         level=level,
+        failed=found.failed,
     )

@@ -190,7 +190,7 @@ def _link_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> 
     likeness = _packed_likeness(first, last, pairs)
     scale = np.sqrt((first.values.real**2 + first.values.imag**2).max(axis=1))[:, None, None]
     ends = np.concatenate([last.values[:, :pairs], last.values[:, :pairs].conj(), last.values[:, pairs:]], 1)
-    choice = (likeness - _size(first.values[:, :, None] - ends[:, None, :]) / scale).argmax(axis=2)
+    choice = (likeness - size_of(first.values[:, :, None] - ends[:, None, :]) / scale).argmax(axis=2)
     # Upper states go to pairs, real ones to real ones, each to another.
     target = np.where((choice >= pairs) & (choice < 2 * pairs), choice - pairs, choice)
     rows = np.arange(likeness.shape[1])
@@ -275,8 +275,8 @@ def _link_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
-    likeness = np.sqrt(_size((rows @ later_columns) * (later_rows @ columns).T))
-    distance = _size(start[:, None] - end) / np.abs(start).max()
+    likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
+    distance = size_of(start[:, None] - end) / np.abs(start).max()
     gain = likeness - distance
     successor = linear_sum_assignment(np.where(np.isfinite(gain), gain, -1e300), maximize=True)[1]
     mixing = likeness[:, successor]
@@ -316,7 +316,7 @@ def side_by_side(values: Array) -> Array:
     return order
 
 
-def _size(numbers: Array) -> Array:
+def size_of(numbers: Array) -> Array:
     """|z|, without the care that np.abs takes of the largest and smallest of numbers."""
     size: Array = np.sqrt(numbers.real**2 + numbers.imag**2)
     return size

@@ -1,0 +1,134 @@
+"""Roots as exact as the matrices of a model allow, and how exact that is: what "neutral" rests on.
+
+LAPACK finds the eigenvalues of a state matrix to rounding of its largest entries, so that a stiff spring or a hinge near
+the centre spoils roots that have nothing to do with it. In (λ²M + λC + K)x = 0 such a spring stands beside the small
+motion that it allows: the root that the computed vectors have there,
+
+    λ - yᴴ(λ²M + λC + K)x / yᴴ(2λM + C)x,
+
+has an error of second order in theirs. What is left is rounding of the matrices' own entries, at most
+n ε |yᴴ|(|λ²||M| + |λ||C| + |K|)|x| / |yᴴ(2λM + C)x| with n of a few: the backward error, times the condition of the root.
+
+A root whose distance from a level is within its error is neutral there: it is neither beyond the level nor crosses it.
+Two roots that fall into one have vectors with no common part, an error without bound by the formula above, and one of
+the square root of rounding in fact; that is the most that is told.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from proprotor.arrays import Array
+from proprotor.eigenvalue_derivatives import real_times, second_order_left
+from proprotor.model import LinearModel
+from proprotor.modes import decomposition, first_order, have_modes, held_coordinates, some_points
+from proprotor.tracking import Modes, Spectrum, size_of
+
+_EPSILON = float(np.finfo(float).eps)
+_ROUNDINGS = 4.0  # of an entry of M, C or K
+_OF_CORRECTION = 1e-3  # its own error, for vectors that are right to three digits
+_DOUBLE = _EPSILON**0.5  # of the largest root: what rounding parts two roots by that are one
+_NEAR = 1e-6  # of the largest root: farther from a level no error reaches
+
+
+class Refined(NamedTuple):
+    """Roots (..., modes), and the bound on the error of each, rad/s."""
+
+    values: Array
+    error: Array
+
+
+def growth(values: Array, level: float = 0.0) -> Array:
+    """G = Re λ + ζ0 |λ|, 1/s: positive where the damping ratio is below the level."""
+    return values.real + level * np.abs(values) if level else values.real
+
+
+def growth_error(error: Array, level: float = 0.0) -> Array:
+    """Error of G with that of the root."""
+    return error * (1 + abs(level)) if level else error
+
+
+def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refined:
+    """Roots refined by their vectors, with their errors; NaN at failed points.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Points (...,).
+    modes : Modes
+        All modes of every point, each pair side by side.
+    left : array (..., modes, n), optional
+        Of `second_order_left`, where it is known.
+    """
+    values, right, _ = modes
+    n, held = len(model.dofs), held_coordinates(model)
+    left = second_order_left(model, modes.left) if left is None else left
+    with np.errstate(all="ignore"):
+        displacement = right[..., : len(held), :]
+        rates = right[..., -n:, :].copy()
+        rates[..., held, :] = values[..., None, :] * displacement
+        motion = np.concatenate([values[..., None, :] * rates, rates, displacement], axis=-2)
+        matrices = np.concatenate([model.M.real, model.C.real, model.K.real[..., held]], axis=-1)
+        correction = -_products(left, real_times(matrices, motion))
+        rounding = _ROUNDINGS * _EPSILON * _products(size_of(left), np.abs(matrices) @ size_of(motion))
+        apart = _nearest(values)
+        share = size_of(correction) / apart
+        better = share < 0.5
+        error = rounding + size_of(correction) * np.where(better, _OF_CORRECTION + share, 1.0)
+        most = _DOUBLE * np.abs(values).max(axis=-1, keepdims=True)
+        error = np.where(np.isnan(values), np.nan, np.fmin(error, most))
+    return Refined(np.where(better, values + correction, values), error)
+
+
+def errors_of(model: LinearModel, modes: Modes) -> Array:
+    """Bound on the error (..., modes) of eigenvalues as LAPACK finds them, rad/s."""
+    found = refined(model, modes)
+    error: Array = found.error + np.abs(found.values - modes.values)
+    return error
+
+
+def refined_spectrum(model: LinearModel) -> tuple[Spectrum, Array]:
+    """Spectrum with refined roots, and their errors."""
+    spectrum = decomposition(model)
+    found = refined(model, spectrum.all_modes)
+    return Spectrum(found.values, spectrum.right), found.error
+
+
+def roots(model: LinearModel, level: float = 0.0) -> Refined:
+    """Eigenvalues (..., states) and their errors; refined, with vectors, at points where a root is near the level or zero.
+
+    Farther away no error reaches, and it is told as zero. NaN at failed points.
+    """
+    good = have_modes(model)
+    states = len(held_coordinates(model)) + len(model.dofs)
+    values = np.full((*good.shape, states), complex(np.nan, np.nan))
+    error = np.full(values.shape, np.nan)
+    if not good.any():
+        return Refined(values, error)
+    part = some_points(model, good)
+    found = np.linalg.eigvals(first_order(part)).astype(complex, copy=False)
+    size, own = np.abs(found), np.zeros(found.shape)
+    near = np.minimum(np.abs(growth(found, level)), size) <= _NEAR * size.max(axis=-1, keepdims=True)
+    close = near.any(axis=-1)
+    if close.any():
+        spectrum, own[close] = refined_spectrum(some_points(part, close))
+        found[close] = spectrum.values
+    values[good], error[good] = found, own
+    return Refined(values, error)
+
+
+def _products(rows: Array, columns: Array) -> Array:
+    """Of each row (..., modes, n) with its own column (..., n, modes)."""
+    found: Array = (rows * np.swapaxes(columns, -1, -2)).sum(axis=-1)
+    return found
+
+
+def _nearest(values: Array) -> Array:
+    """Distance of each root to the nearest other one of its point."""
+    apart = size_of(values[..., :, None] - values[..., None, :])
+    states = np.arange(values.shape[-1])
+    apart[..., states, states] = np.inf
+    nearest: Array = apart.min(axis=-1)
+    return nearest
