@@ -21,8 +21,9 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.cubic import hermite_root
 from proprotor.eigenvalue_derivatives import eigenvalue_change, second_order_left, with_changes
+from proprotor.errors import InputError
 from proprotor.model import LinearModel
-from proprotor.modes import decomposition
+from proprotor.modes import decomposition, some_points
 from proprotor.root_error import growth, growth_error, refined
 from proprotor.steps import Steps, first_steps, parted, undecided
 from proprotor.tracking import Modes, Spectrum, link
@@ -72,24 +73,79 @@ class Points(NamedTuple):
         )
 
 
-def solved(models: Models, line: Array, position: Array, level: float) -> tuple[Points, LinearModel]:
-    """Eigen-solves at points of lines, NaN at failed ones, and the models there."""
+class Solved(NamedTuple):
+    """What came of a number of eigen-solves.
+
+    points : those that work; works (k,), which of those asked for they are; reason (k,) of the others, and warning of
+    all; model, of any of them, for what all have in common; None where there is none.
+    """
+
+    points: Points | None
+    works: Array
+    reason: Array
+    warning: Array
+    model: LinearModel | None
+
+
+def solved(models: Models, line: Array, position: Array, level: float, forgiving: bool = False) -> Solved:
+    """Eigen-solves at points of lines; where one of them cannot be had it spoils no other.
+
+    Raises
+    ------
+    InputError
+        For an input that cannot be, unless `forgiving`: then it is the reason of its point.
+    """
+    try:
+        return _solved(models, line, position, level)
+    except np.linalg.LinAlgError as error:
+        told: Exception = error
+    except InputError as error:
+        if not forgiving:
+            raise
+        told = error
+    if len(line) == 1:
+        reason = np.array([" ".join(str(told).split("\n"))], dtype=object)
+        return Solved(None, np.array([False]), reason, np.array([""], dtype=object), None)
+    halves = [
+        solved(models, line[half], position[half], level, forgiving)
+        for half in np.array_split(np.arange(len(line)), 2)
+    ]
+    return _together(*halves)
+
+
+def _together(one: Solved, other: Solved) -> Solved:
+    works, reason, warning = (
+        np.concatenate([getattr(one, name), getattr(other, name)]) for name in ("works", "reason", "warning")
+    )
+    if one.points is None or other.points is None:
+        some = other if one.points is None else one
+        return Solved(some.points, works, reason, warning, some.model)
+    return Solved(one.points.joined(other.points), works, reason, warning, one.model)
+
+
+def _solved(models: Models, line: Array, position: Array, level: float) -> Solved:
     model, changes = with_changes(lambda x: models(line, x), position)
     spectrum = decomposition(model)
-    modes = spectrum.all_modes
-    left = second_order_left(model, modes.left)
-    found = refined(model, modes, left)
-    change = eigenvalue_change(model, changes, Modes(found.values, modes.right, modes.left), left)
+    works = spectrum.works
+    reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
+    if not works.any():
+        return Solved(None, works, reason, warning, model)
+    part, some = some_points(model, works), spectrum.at(works)
+    modes = some.all_modes
+    left = second_order_left(part, modes.left)
+    found = refined(part, modes, left)
+    moved = tuple(np.broadcast_to(change, model.K.shape)[works] for change in changes)
+    change = eigenvalue_change(part, moved, Modes(found.values, modes.right, modes.left), left)
     points = Points(
-        line,
-        position,
-        Spectrum(found.values, spectrum.right),
+        line[works],
+        position[works],
+        Spectrum(found.values, some.right),
         change,
         growth(found.values, level),
         growth_rate(found.values, change, level),
         growth_error(found.error, level),
     )
-    return points, model
+    return Solved(points, works, reason, warning, model)
 
 
 class Search:
@@ -107,6 +163,8 @@ class Search:
         Whether steps are parted wherever they do not tell which root is which, and not only near the level.
     onset_only : bool
         Whether the lowest onset of each line is all that is wanted.
+    forgiving : bool
+        Whether an input that cannot be is the reason of its points, and not raised.
     """
 
     def __init__(
@@ -118,16 +176,17 @@ class Search:
         *,
         names: bool = False,
         onset_only: bool = False,
+        forgiving: bool = False,
     ) -> None:
         self.models, self.level, self.names, self.onset_only = models, level, names, onset_only
-        every, self.model = solved(models, line, position, level)
-        self.scanned = every
-        works = np.flatnonzero(every.spectrum.works)
-        self.points = every.at(works)
-        neighbours = np.flatnonzero(np.diff(self.points.line) == 0)
-        self.steps = first_steps(self.points.spectrum, neighbours)
-        self.solves = np.bincount(line[works], minlength=int(line.max(initial=-1)) + 1)
-        self._settle()
+        self.forgiving = forgiving
+        self.scanned = solved(models, line, position, level, forgiving)
+        self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
+        if self.scanned.points is not None:
+            self.points = self.scanned.points
+            neighbours = np.flatnonzero(np.diff(self.points.line) == 0)
+            self.steps = first_steps(self.points.spectrum, neighbours)
+            self._settle()
 
     def _settle(self) -> None:
         """Part steps until each tells how often every root crosses."""
@@ -156,13 +215,14 @@ class Search:
         """Put a point into each of some steps; whether any could be analysed."""
         x, line = self.points.position, self.points.line[self.steps.before[chosen]]
         start, end = x[self.steps.before[chosen]], x[self.steps.after[chosen]]
-        between, _ = solved(self.models, line, start + share * (end - start), self.level)
-        works = np.flatnonzero(between.spectrum.works)
-        first = len(x)
-        self.points = self.points.joined(between.at(works))
-        np.add.at(self.solves, line[works], 1)
-        self.steps = parted(self.steps, chosen[works], self.points, first)
-        return bool(len(works))
+        at = start + share * (end - start)
+        between = solved(self.models, line, at, self.level, self.forgiving)
+        if between.points is None:
+            return False
+        self.points = self.points.joined(between.points)
+        np.add.at(self.solves, line[between.works], 1)
+        self.steps = parted(self.steps, chosen[between.works], self.points, len(x))
+        return True
 
 
 class Crossing(NamedTuple):
@@ -170,13 +230,14 @@ class Crossing(NamedTuple):
 
     line; position; spectrum of its point, and the state of it that crosses; change of the root and slope of G by the
     position; onset, whether it becomes unstable; start, the point of the search before it, and from_state, the state
-    there; solves beyond the search.
+    there; value, of the root at the position; solves beyond the search.
     """
 
     line: int
     position: float
     spectrum: Spectrum
     state: int
+    value: complex
     change: complex
     slope: float
     onset: bool
@@ -184,17 +245,20 @@ class Crossing(NamedTuple):
     from_state: int
     solves: int
 
-    @property
-    def value(self) -> complex:
-        return complex(self.spectrum.values[self.state])
-
 
 class Brackets:
-    """Steps over which a followed root crosses, closed in on for all of them at once."""
+    """Steps over which a followed root crosses, closed in on for all of them at once.
 
-    def __init__(self, search: Search) -> None:
+    Parameters
+    ----------
+    search : Search
+    close : float, optional
+        The last correction of a position, in its unit; a billionth of it by default.
+    """
+
+    def __init__(self, search: Search, close: float | None = None) -> None:
         steps, points = search.steps, search.points
-        self.models, self.level = search.models, search.level
+        self.models, self.level, self.forgiving = search.models, search.level, search.forgiving
         rows, states, ends = steps.crossing(points)
         if search.onset_only:
             rows, states, ends = _lowest_onsets(rows, states, ends, points.line[steps.before])
@@ -203,12 +267,14 @@ class Brackets:
         last, to_state = steps.after[rows], steps.successor[rows, states]
         self.x = np.stack([points.position[self.start], points.position[last]])
         self.scale = np.abs(self.x).max(axis=0, initial=0)
+        self.near = np.full(self.count, close) if close else _CLOSE * self.scale
         self.cubic = ends
         self.onset = ends[1] > ends[0]
         self.place = np.stack([states, to_state])
         self.ends = [points.spectrum.at(self.start), points.spectrum.at(last)]
         self.solves = np.zeros(self.count, dtype=int)
         self.found: dict[int, Crossing] = {}
+        self.lost: dict[int, str] = {}  # why those were not found that were not
 
     def close(self) -> list[Crossing]:
         """Newton's method on every crossing, by the derivative at the last point, within the bracket."""
@@ -219,9 +285,12 @@ class Brackets:
         for _ in range(_ITERATIONS):
             if not len(active):
                 break
-            points, _ = solved(self.models, self.line[active], guess[active], self.level)
-            works = points.spectrum.works
-            active, points = active[works], points.at(works)
+            tried = solved(self.models, self.line[active], guess[active], self.level, self.forgiving)
+            for row in np.flatnonzero(~tried.works):
+                self.lost[int(active[row])] = f"at {guess[active[row]]:.6g}: {tried.reason[row]}"
+            if tried.points is None:
+                break
+            active, points = active[tried.works], tried.points
             place = self._place(active, points)
             rows = np.arange(len(active))
             value, slope, error = (part[rows, place] for part in (points.growth, points.slope, points.error))
@@ -231,7 +300,7 @@ class Brackets:
             width = np.abs(self.x[1, active] - self.x[0, active])
             # Within its error the growth says no more, if it is the slope that made it as small as that.
             done = (np.abs(value) <= error) & (np.abs(slope) * width > _SURE * error)
-            done |= (np.abs(correction) <= _CLOSE * self.scale[active]) & (np.abs(value) > error)
+            done |= (np.abs(correction) <= self.near[active]) & (np.abs(value) > error)
             done |= width <= 4e-16 * self.scale[active]
             for row in np.flatnonzero(done):
                 self._keep(int(active[row]), points, row, int(place[row]), float(correction[row]))
@@ -246,14 +315,14 @@ class Brackets:
 
     def _keep(self, crossing: int, points: Points, row: int, place: int, correction: float) -> None:
         low, high = self.x[:, crossing]
-        position = float(points.position[row])
-        if np.isfinite(correction) and low <= position + correction <= high:
-            position += correction
+        if not (np.isfinite(correction) and low <= points.position[row] + correction <= high):
+            correction = 0.0
         self.found[crossing] = Crossing(
             int(self.line[crossing]),
-            position,
+            float(points.position[row]) + correction,
             points.spectrum.at(row),
             place,
+            complex(points.spectrum.values[row, place] + correction * points.change[row, place]),
             complex(points.change[row, place]),
             float(points.slope[row, place]),
             bool(self.onset[crossing]),
@@ -291,11 +360,10 @@ class Brackets:
                 kept[crossing] = new[row]
 
 
-def crossings(search: Search) -> list[Crossing]:
-    """All crossings of a search, by line and position, each root once."""
-    found = sorted(Brackets(search).close(), key=lambda one: (one.line, one.position))
+def each_once(found: list[Crossing]) -> list[Crossing]:
+    """Crossings by line and position, each root once."""
     kept: list[Crossing] = []
-    for one in found:
+    for one in sorted(found, key=lambda one: (one.line, one.position)):
         if not any(_same(one, other) for other in reversed(kept[-8:])):
             kept.append(one)
     return kept

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from proprotor import summary
 from proprotor.arrays import Array
-from proprotor.crossings import Crossing, Search, crossings
+from proprotor.crossings import Brackets, Crossing, Search, each_once
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
 from proprotor.mode_names import name_list, name_shares
@@ -172,7 +172,7 @@ class Crossings(NamedTuple):
         What it took to bracket every boundary, and in all.
     failed : tuple of Failed
         Positions of the scan that could not be analysed, with the reason: why the range searched ends where it does, or
-        has gaps.
+        has gaps; then steps over which a mode crosses where no position for it could be found.
     """
 
     boundaries: tuple[Boundary, ...]
@@ -218,26 +218,25 @@ def find_crossings(
     search = Search(
         lambda _, x: line.models(x), np.zeros(len(positions), dtype=int), positions, level, names=True
     )
-    failed = _failed(positions, search.model.trim.reason, search.scanned.spectrum.works)
-    path = _path(search)
-    if not len(path.points):
+    scanned, model = search.scanned, search.scanned.model
+    failed = _failed(positions, scanned.reason, scanned.works)
+    if scanned.points is None or model is None:
         return Crossings((), (), (np.nan, np.nan), 0, 0, failed)
-    named = state_names(search.model, line, path, rotor_speed, approach)
+    path, points = _path(search, positions), search.points
+    named = state_names(model, line, path, rotor_speed, approach)
     branches = [named.names[state] for state in path.places[named.point]]
-    found = crossings(search)
-    first = int(search.points.position.argmin())
-    names = _names(search.model, search.points.spectrum, first, rotor_speed)
-    growth, error = search.points.growth[first], search.points.error[first]
-    beyond = np.flatnonzero((growth > error) & (search.points.spectrum.values[first].imag >= 0))
+    brackets = Brackets(search)
+    found = each_once(brackets.close())
+    names = _names(model, points.spectrum, 0, rotor_speed)
+    beyond = np.flatnonzero((points.growth[0] > points.error[0]) & (points.spectrum.values[0].imag >= 0))
     scan_solves = int(search.solves.sum()) + named.eigen_solves
-    ends = search.points.position.min(), search.points.position.max()
     return Crossings(
-        tuple(_boundary(one, _branch(one, search, path, branches), search.model, rotor_speed) for one in found),
+        tuple(_boundary(one, _branch(one, search, path, branches), model, rotor_speed) for one in found),
         tuple(dict.fromkeys(names[state] for state in beyond)),
-        (float(ends[0]), float(ends[1])),
+        (float(points.position.min()), float(points.position.max())),
         scan_solves,
-        scan_solves + sum(one.solves for one in found),
-        failed,
+        scan_solves + int(brackets.solves.sum()),
+        failed + tuple(Failed(*sorted(brackets.x[:, k].tolist()), why) for k, why in brackets.lost.items()),
     )
 
 
@@ -260,19 +259,22 @@ def _failed(positions: Array, reason: Array, works: Array) -> tuple[Failed, ...]
     return tuple(found)
 
 
-def _path(search: Search) -> Path:
+def _path(search: Search, positions: Array) -> Path:
     """The points of a search of one line as a path: those of the scan, failed ones too, then those between them."""
-    scanned, points = search.scanned, search.points
-    works = np.flatnonzero(scanned.spectrum.works)
+    points, works = search.points, np.flatnonzero(search.scanned.works)
     between = np.arange(len(works), len(points.position))
-    spectrum = scanned.spectrum.joined(points.spectrum.at(between))
-    place = np.concatenate([works, len(scanned.position) + np.arange(len(between))])
+    place = np.concatenate([works, len(positions) + np.arange(len(between))])
+    spectrum = Spectrum(
+        *(np.full((len(positions) + len(between), *part.shape[1:]), complex(np.nan)) for part in points.spectrum)
+    )
+    for whole, part in zip(spectrum, points.spectrum, strict=True):
+        whole[place] = part
     order = np.argsort(points.position, kind="stable")
     return Path(
-        Spectrum(*spectrum),
-        place[order].astype(int),
+        spectrum,
+        place[order],
         Steps(search.steps.successor, search.steps.quality),
-        np.concatenate([scanned.position, points.position[between]]),
+        np.concatenate([positions, points.position[between]]),
     )
 
 
