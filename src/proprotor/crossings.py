@@ -24,7 +24,7 @@ from proprotor.eigenvalue_derivatives import eigenvalue_change, second_order_lef
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition, some_points
-from proprotor.root_error import growth, growth_error, refined
+from proprotor.root_error import growth, growth_error, refined_near
 from proprotor.steps import Steps, first_steps, parted, undecided
 from proprotor.tracking import Modes, Spectrum, link
 
@@ -133,7 +133,7 @@ def _solved(models: Models, line: Array, position: Array, level: float) -> Solve
     part, some = some_points(model, works), spectrum.at(works)
     modes = some.all_modes
     left = second_order_left(part, modes.left)
-    found = refined(part, modes, left)
+    found = refined_near(part, modes, left, level)
     moved = tuple(np.broadcast_to(change, model.K.shape)[works] for change in changes)
     change = eigenvalue_change(part, moved, Modes(found.values, modes.right, modes.left), left)
     points = Points(

@@ -82,6 +82,19 @@ def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refi
     return Refined(np.where(better, values + correction, values), error)
 
 
+def refined_near(model: LinearModel, modes: Modes, left: Array, level: float = 0.0) -> Refined:
+    """The same at points (k,) where a root is near a level; elsewhere roots as they are, with an error of zero.
+
+    Farther from the level than a millionth of the largest root no error reaches.
+    """
+    values, error = modes.values.copy(), np.zeros(modes.values.shape)
+    near = _any_near(growth(values, level), values)
+    if near.any():
+        some = Modes(*(part[near] for part in modes))
+        values[near], error[near] = refined(some_points(model, near), some, left[near])
+    return Refined(values, error)
+
+
 def errors_of(model: LinearModel, modes: Modes) -> Array:
     """Bound on the error (..., modes) of eigenvalues as LAPACK finds them, rad/s."""
     found = refined(model, modes)
@@ -89,15 +102,8 @@ def errors_of(model: LinearModel, modes: Modes) -> Array:
     return error
 
 
-def refined_spectrum(model: LinearModel) -> tuple[Spectrum, Array]:
-    """Spectrum with refined roots, and their errors."""
-    spectrum = decomposition(model)
-    found = refined(model, spectrum.all_modes)
-    return Spectrum(found.values, spectrum.right), found.error
-
-
 def roots(model: LinearModel, level: float = 0.0) -> Refined:
-    """Eigenvalues (..., states) and their errors; refined, with vectors, at points where a root is near the level or zero.
+    """Eigenvalues (..., states) and their errors; refined, with vectors, at points where one is near the level.
 
     Farther away no error reaches, and it is told as zero. NaN at failed points.
     """
@@ -105,18 +111,32 @@ def roots(model: LinearModel, level: float = 0.0) -> Refined:
     states = len(held_coordinates(model)) + len(model.dofs)
     values = np.full((*good.shape, states), complex(np.nan, np.nan))
     error = np.full(values.shape, np.nan)
-    if not good.any():
-        return Refined(values, error)
-    part = some_points(model, good)
-    found = np.linalg.eigvals(first_order(part)).astype(complex, copy=False)
-    size, own = np.abs(found), np.zeros(found.shape)
-    near = np.minimum(np.abs(growth(found, level)), size) <= _NEAR * size.max(axis=-1, keepdims=True)
-    close = near.any(axis=-1)
-    if close.any():
-        spectrum, own[close] = refined_spectrum(some_points(part, close))
-        found[close] = spectrum.values
-    values[good], error[good] = found, own
+    if good.any():
+        values[good] = np.linalg.eigvals(first_order(some_points(model, good)))
+        error[good] = 0
+    near = _any_near(growth(values, level), values)
+    if near.any():
+        part = some_points(model, near)
+        values[near], error[near] = refined(part, decomposition(part).all_modes)
     return Refined(values, error)
+
+
+def error_near_zero(model: LinearModel, values: Array) -> Array:
+    """Errors of known eigenvalues (..., states) at points where one is near zero or the imaginary axis; else zero."""
+    error = np.zeros(values.shape)
+    near = _any_near(values.real, values)
+    if near.any():
+        part = some_points(model, near)
+        modes = decomposition(part).all_modes
+        place = size_of(values[near][..., :, None] - modes.values[..., None, :]).argmin(axis=-1)
+        error[near] = np.take_along_axis(errors_of(part, modes), place, -1)
+    return error
+
+
+def _any_near(distance: Array, values: Array) -> Array:
+    """At which points (...) a root is so near to a level that its error may reach it."""
+    largest = size_of(values).max(axis=-1, keepdims=True)
+    return np.asarray((np.abs(distance) <= _NEAR * largest).any(axis=-1))
 
 
 def _products(rows: Array, columns: Array) -> Array:
