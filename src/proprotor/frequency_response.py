@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import HUB, SWASHPLATE, LinearModel
+from proprotor.root_error import roots
 from proprotor.state_space import LOADS, StateSpace
 from proprotor.units import values_in_si
 
@@ -67,7 +69,7 @@ def frequency_response(
             "response": (dims, response, unit),
             "magnitude": (dims, np.abs(response), unit),
             "phase": (dims, np.angle(response), {"units": "rad"}),
-            "stable": (leading, _stable(space.A)),
+            "stable": (leading, _stable(model)),
         },
         coords={
             "frequency": ("frequency", omega, {"units": "rad/s"}),
@@ -135,11 +137,10 @@ def _solved(matrices: np.ndarray[Any, Any], loads: np.ndarray[Any, Any]) -> np.n
         return solutions
 
 
-def _stable(system: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    works = np.isfinite(system).all(axis=(-2, -1))
-    stable = np.zeros(works.shape, dtype=bool)
-    stable[works] = (np.linalg.eigvals(system[works]).real < 0).all(axis=-1)
-    return stable
+def _stable(model: LinearModel) -> NDArray[np.bool_]:
+    """Whether every root decays, by more than its error."""
+    values, error = roots(model)
+    return np.asarray((values.real < -error).all(axis=-1))
 
 
 def _unit_of(output: str) -> str:

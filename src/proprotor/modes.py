@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from proprotor.path import Line
 
-_NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping ratio
-
 
 class Eigensystem(NamedTuple):
     """All eigenvalues of a batch of models, with vectors in the state space.
@@ -158,7 +156,7 @@ def modes(model: LinearModel) -> xarray.Dataset:
     Returns
     -------
     xarray.Dataset
-        eigenvalue (rad/s), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
+        eigenvalue (rad/s), eigenvalue_error, the bound on its rounding error (`proprotor.root_error`), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
         largest component 1), dominant (name of the coordinate with the largest participation); dimensions (..., mode)
         and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN.
 
@@ -167,8 +165,11 @@ def modes(model: LinearModel) -> xarray.Dataset:
     InputError
         When the mass matrix has no inverse, as that of a rotor alone may not.
     """
+    from proprotor.root_error import errors_of  # here, because it is built on this module
+
     system = eigensystem(model)
     values = system.values
+    error = errors_of(model, Spectrum(values, system.right))
     kept = np.where(values.imag >= 0, np.abs(values.imag), np.inf)
     order = np.argsort(kept, axis=-1, kind="stable")
     count = int(np.isfinite(kept).sum(axis=-1).max(initial=0))
@@ -178,13 +179,16 @@ def modes(model: LinearModel) -> xarray.Dataset:
     )
     shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
     shares = np.take_along_axis(participation(model, system), order[..., None, :], -1)
-    return mode_dataset(model, values, shapes, shares)
+    return mode_dataset(model, values, np.take_along_axis(error, order, -1), shapes, shares)
 
 
 def mode_dataset(
-    model: LinearModel, values: Array, shapes: Array, shares: Array, line: Line | None = None
+    model: LinearModel, values: Array, error: Array, shapes: Array, shares: Array, line: Line | None = None
 ) -> xarray.Dataset:
-    """The dataset of `modes` from eigenvalues (..., mode), motions and participations (..., n, mode)."""
+    """The dataset of `modes` from eigenvalues and their errors (..., mode), motions and participations (..., n, mode).
+
+    A root at zero within its error has no damping ratio.
+    """
     import xarray  # here, because it takes long to import
 
     leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
@@ -192,14 +196,18 @@ def mode_dataset(
         leading = ("airspeed" if line is None else line.name,)
     by_mode = (*leading, "mode")
     with np.errstate(all="ignore"):
-        neutral = np.abs(values) < _NEUTRAL * np.nanmax(np.abs(values), initial=0)
-        ratio = np.where(neutral, np.nan, -values.real / np.abs(values))
+        ratio = np.where(np.abs(values) <= error, np.nan, -values.real / np.abs(values))
         largest = np.take_along_axis(shapes, np.abs(np.nan_to_num(shapes)).argmax(axis=-2)[..., None, :], -2)
         shapes = np.where(np.isnan(values)[..., None, :], np.nan, shapes / largest)
     dominant = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-2)]
     dominant = np.where(np.isnan(values), "", dominant)
     data = {
         "eigenvalue": (by_mode, values, {"units": "rad/s"}),
+        "eigenvalue_error": (
+            by_mode,
+            np.where(np.isnan(values), np.nan, error),
+            {"units": "rad/s", "long_name": "bound on the rounding error of the eigenvalue"},
+        ),
         "frequency": (
             by_mode,
             np.where(np.isnan(values), np.nan, np.abs(values.imag)),

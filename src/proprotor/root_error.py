@@ -95,10 +95,14 @@ def refined_near(model: LinearModel, modes: Modes, left: Array, level: float = 0
     return Refined(values, error)
 
 
-def errors_of(model: LinearModel, modes: Modes) -> Array:
-    """Bound on the error (..., modes) of eigenvalues as LAPACK finds them, rad/s."""
-    found = refined(model, modes)
-    error: Array = found.error + np.abs(found.values - modes.values)
+def errors_of(model: LinearModel, spectrum: Spectrum) -> Array:
+    """Bound on the error (..., states) of eigenvalues as LAPACK finds them, rad/s; NaN at failed points."""
+    works = spectrum.works
+    error = np.full(spectrum.values.shape, np.nan)
+    if works.any():
+        modes = spectrum.at(works).all_modes
+        found = refined(some_points(model, works), modes)
+        error[works] = found.error + size_of(found.values - modes.values)
     return error
 
 
@@ -127,9 +131,9 @@ def error_near_zero(model: LinearModel, values: Array) -> Array:
     near = _any_near(values.real, values)
     if near.any():
         part = some_points(model, near)
-        modes = decomposition(part).all_modes
-        place = size_of(values[near][..., :, None] - modes.values[..., None, :]).argmin(axis=-1)
-        error[near] = np.take_along_axis(errors_of(part, modes), place, -1)
+        spectrum = decomposition(part)
+        place = size_of(values[near][..., :, None] - spectrum.values[..., None, :]).argmin(axis=-1)
+        error[near] = np.take_along_axis(errors_of(part, spectrum), place, -1)
     return error
 
 

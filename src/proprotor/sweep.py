@@ -20,6 +20,7 @@ from proprotor.modes import (
     mode_dataset,
 )
 from proprotor.path import Line, Path, follow, path_of
+from proprotor.root_error import errors_of
 from proprotor.speed import in_metres_per_second
 from proprotor.tracking import Spectrum, link, side_by_side
 
@@ -94,7 +95,8 @@ def sweep(
     # Of a pair that parts into two real roots the second is a mode only where it is real.
     values = np.where(values.imag < 0, np.nan, values)
     shapes = coordinate_motion(held, n, values, right)
-    data = mode_dataset(model, values, shapes, coordinate_shares(held, n, left, right), line)
+    error = np.take_along_axis(errors_of(model, path.spectrum.at(slice(points))), order[:, columns], 1)
+    data = mode_dataset(model, values, error, shapes, coordinate_shares(held, n, left, right), line)
     by_mode = data.eigenvalue.dims
     sense = np.where(np.isnan(values), np.nan, whirl(model.dofs, held, values, left, right))
     trust = np.where(np.isnan(path.spectrum.values[:points, :1]), np.nan, path.trust(points)[:, columns])

@@ -13,8 +13,6 @@ from proprotor.arrays import Array
 if TYPE_CHECKING:
     import xarray
 
-_ROUNDING = 1e-9  # of the largest eigenvalue: a real part within this of zero says nothing
-
 
 class UnstableRange(NamedTuple):
     """Airspeeds between which a mode is unstable.
@@ -43,10 +41,9 @@ def damped_frequency(sweep: xarray.Dataset) -> Array:
 
 
 def growth_rate(sweep: xarray.Dataset) -> Array:
-    """Re s (airspeed, mode) in rad/s, exactly zero where it is zero but for rounding."""
+    """Re s (airspeed, mode) in rad/s, exactly zero where it is neutral: zero within the error of the root."""
     real = sweep.eigenvalue.values.real
-    largest = np.nanmax(np.abs(sweep.eigenvalue.values), initial=0)
-    return np.where(np.abs(real) <= _ROUNDING * largest, 0.0, real)
+    return np.where(np.abs(real) <= sweep.eigenvalue_error.values, 0.0, real)
 
 
 def damping_percent(sweep: xarray.Dataset) -> Array:

@@ -12,6 +12,7 @@ from proprotor.arrays import Array
 from proprotor.model import LinearModel
 from proprotor.modes import held_coordinates
 from proprotor.path import Line, Path, follow
+from proprotor.root_error import error_near_zero
 from proprotor.sweep import ANCHORS, Named, mode_columns, names_at, rotor_speed_of, tip_speed
 from proprotor.sweep_summary import UnstableRange, unstable_ranges
 
@@ -97,7 +98,9 @@ def live_modes(
     # Of a pair that parts into two real roots the second is a mode only where it is real.
     found = np.where(found.imag < 0, np.nan, found)
     reason, warning = model.trim.reason[shown], model.trim.warning[shown]
-    return LiveModes(airspeeds, names, found, reason, warning, _unstable(airspeeds, names, found))
+    error = error_near_zero(model, path.spectrum.values[: len(positions)])
+    unstable = _unstable(airspeeds, names, found, np.take_along_axis(error, order, 1)[shown])
+    return LiveModes(airspeeds, names, found, reason, warning, unstable)
 
 
 def _between(model: LinearModel) -> Any:
@@ -128,9 +131,9 @@ def _named(model: LinearModel, path: Path, anchors: Array, rotor_speed: float | 
     return Named(place, names, f"airspeed {at[place]:.6g} m/s", 0)
 
 
-def _unstable(airspeeds: Array, names: list[str], eigenvalue: Array) -> list[UnstableRange]:
+def _unstable(airspeeds: Array, names: list[str], eigenvalue: Array, error: Array) -> list[UnstableRange]:
     import xarray
 
     by_mode = ("airspeed", "mode")
-    data = {"eigenvalue": (by_mode, eigenvalue)}
+    data = {"eigenvalue": (by_mode, eigenvalue), "eigenvalue_error": (by_mode, error)}
     return unstable_ranges(xarray.Dataset(data, coords={"airspeed": airspeeds, "mode": names}))
