@@ -269,7 +269,9 @@ def main() -> None:
             if chosen.verbose:
                 console.print(number, len(reference), f"{time.process_time() - begin:.0f} s")
     for name, verdicts in totals.items():
-        missed, invented, compared = (sum(len(v[k]) if k < 2 else v[k] for v, _ in verdicts) for k in range(3))
+        missed, invented, compared = (
+            sum(len(v[k]) if k < 2 else v[k] for v, _ in verdicts) for k in range(3)
+        )
         solves = np.mean([count for _, count in verdicts])
         console.print(
             f"{name}: {len(verdicts)} decks, {compared} boundaries compared, {missed} missed, "

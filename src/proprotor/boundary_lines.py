@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 
-
 class BoundaryLine(NamedTuple):
     """A line along which one mode is neutral.
 

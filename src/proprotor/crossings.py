@@ -1,11 +1,11 @@
 """Crossings of a damping level along lines of models, all lines at once: found, bracketed and closed in on.
 
-The level is a damping ratio ζ0, and G = Re λ + ζ0 |λ| is positive where the damping -Re λ/|λ| is below it. Each root has
-G and its exact derivative at every point, from matrices a complex step away. Over a step from one point to the next a
-root is followed by its vectors, and the cubic that has values and slopes of both ends, in a band of its likely error,
+The level is a damping ratio ζ0, and G = Re λ + ζ0 |λ| is positive where the damping -Re λ/|λ| is below it. Each root
+has G and its exact derivative at every point, from matrices a complex step away. Over a step from one point to the next
+a root is followed by its vectors, and the cubic that has values and slopes of both ends, in a band of its likely error,
 tells how often G changes its sign: `proprotor.steps`. Where that is not settled the step is parted at the point in
-question, until it is; the error of the cubic is known by then. Each crossing is found by Newton's method, started at the
-root of the cubic and kept in its bracket.
+question, until it is; the error of the cubic is known by then. Each crossing is found by Newton's method, started at
+the root of the cubic and kept in its bracket.
 
 Whether G has a sign is a matter of its error (`proprotor.root_error`). A root within it is neutral, and counts as not
 beyond the level; one that is neutral all along crosses nothing.
@@ -25,7 +25,7 @@ from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition, some_points
 from proprotor.root_error import growth, growth_error, refined_near
-from proprotor.steps import Steps, first_steps, parted, undecided
+from proprotor.steps import first_steps, parted, undecided
 from proprotor.tracking import Modes, Spectrum, link
 
 Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
@@ -61,16 +61,19 @@ class Points(NamedTuple):
 
     def at(self, points: Array) -> Points:
         """Some of the points."""
-        return Points(*(part.at(points) if isinstance(part, Spectrum) else part[points] for part in self))
+        line, position, *rest = (part[points] for part in self._arrays)
+        return Points(line, position, self.spectrum.at(points), *rest)
 
     def joined(self, other: Points) -> Points:
         """The points of both."""
-        return Points(
-            *(
-                one.joined(two) if isinstance(one, Spectrum) else np.concatenate([one, two])
-                for one, two in zip(self, other, strict=True)
-            )
+        line, position, *rest = (
+            np.concatenate(parts) for parts in zip(self._arrays, other._arrays, strict=True)
         )
+        return Points(line, position, self.spectrum.joined(other.spectrum), *rest)
+
+    @property
+    def _arrays(self) -> tuple[Array, ...]:
+        return self.line, self.position, self.change, self.growth, self.slope, self.error
 
 
 class Solved(NamedTuple):
@@ -134,8 +137,9 @@ def _solved(models: Models, line: Array, position: Array, level: float) -> Solve
     modes = some.all_modes
     left = second_order_left(part, modes.left)
     found = refined_near(part, modes, left, level)
-    moved = tuple(np.broadcast_to(change, model.K.shape)[works] for change in changes)
-    change = eigenvalue_change(part, moved, Modes(found.values, modes.right, modes.left), left)
+    mass, damping, stiffness = (np.broadcast_to(change, model.K.shape)[works] for change in changes)
+    moved = Modes(found.values, modes.right, modes.left)
+    change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
     points = Points(
         line[works],
         position[works],
@@ -302,8 +306,8 @@ class Brackets:
             done = (np.abs(value) <= error) & (np.abs(slope) * width > _SURE * error)
             done |= (np.abs(correction) <= self.near[active]) & (np.abs(value) > error)
             done |= width <= 4e-16 * self.scale[active]
-            for row in np.flatnonzero(done):
-                self._keep(int(active[row]), points, row, int(place[row]), float(correction[row]))
+            for one in np.flatnonzero(done).tolist():
+                self._keep(int(active[one]), points, one, int(place[one]), float(correction[one]))
             beyond = value > error
             self._narrow(active, beyond, points, place)
             newton = points.position + correction

@@ -236,7 +236,11 @@ def find_crossings(
         (float(points.position.min()), float(points.position.max())),
         scan_solves,
         scan_solves + int(brackets.solves.sum()),
-        failed + tuple(Failed(*sorted(brackets.x[:, k].tolist()), why) for k, why in brackets.lost.items()),
+        failed
+        + tuple(
+            Failed(float(brackets.x[:, k].min()), float(brackets.x[:, k].max()), why)
+            for k, why in brackets.lost.items()
+        ),
     )
 
 
@@ -265,7 +269,10 @@ def _path(search: Search, positions: Array) -> Path:
     between = np.arange(len(works), len(points.position))
     place = np.concatenate([works, len(positions) + np.arange(len(between))])
     spectrum = Spectrum(
-        *(np.full((len(positions) + len(between), *part.shape[1:]), complex(np.nan)) for part in points.spectrum)
+        *(
+            np.full((len(positions) + len(between), *part.shape[1:]), complex(np.nan))
+            for part in points.spectrum
+        )
     )
     for whole, part in zip(spectrum, points.spectrum, strict=True):
         whole[place] = part

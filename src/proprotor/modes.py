@@ -156,9 +156,10 @@ def modes(model: LinearModel) -> xarray.Dataset:
     Returns
     -------
     xarray.Dataset
-        eigenvalue (rad/s), eigenvalue_error, the bound on its rounding error (`proprotor.root_error`), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
-        largest component 1), dominant (name of the coordinate with the largest participation); dimensions (..., mode)
-        and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN.
+        eigenvalue (rad/s), eigenvalue_error (rad/s, the bound on its rounding error, `proprotor.root_error`), frequency
+        (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio (NaN for a root at zero within its error), shape
+        (complex, largest component 1), dominant (name of the coordinate with the largest participation); dimensions
+        (..., mode) and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN.
 
     Raises
     ------

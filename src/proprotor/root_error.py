@@ -1,17 +1,17 @@
 """Roots as exact as the matrices of a model allow, and how exact that is: what "neutral" rests on.
 
-LAPACK finds the eigenvalues of a state matrix to rounding of its largest entries, so that a stiff spring or a hinge near
-the centre spoils roots that have nothing to do with it. In (λ²M + λC + K)x = 0 such a spring stands beside the small
-motion that it allows: the root that the computed vectors have there,
+LAPACK finds the eigenvalues of a state matrix to rounding of its largest entries, so that a stiff spring or a hinge
+near the centre spoils roots that have nothing to do with it. In (λ²M + λC + K)x = 0 such a spring stands beside the
+small motion that it allows: the root that the computed vectors have there,
 
     λ - yᴴ(λ²M + λC + K)x / yᴴ(2λM + C)x,
 
-has an error of second order in theirs. What is left is rounding of the matrices' own entries, at most
-n ε |yᴴ|(|λ²||M| + |λ||C| + |K|)|x| / |yᴴ(2λM + C)x| with n of a few: the backward error, times the condition of the root.
+has an error of second order in theirs. What is left is rounding of the matrices' own entries, a few times
+ε |yᴴ|(|λ|²|M| + |λ||C| + |K|)|x| / |yᴴ(2λM + C)x|: the backward error, times the condition of the root.
 
-A root whose distance from a level is within its error is neutral there: it is neither beyond the level nor crosses it.
-Two roots that fall into one have vectors with no common part, an error without bound by the formula above, and one of
-the square root of rounding in fact; that is the most that is told.
+A root whose distance from a level is within its error is neutral there: neither beyond the level nor crossing it. Two
+roots that fall into one, as those of a motion without spring and damper, have an error without bound by that formula,
+and in fact one of the square root of rounding: that is the most that is told.
 """
 
 from __future__ import annotations

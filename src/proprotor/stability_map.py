@@ -36,7 +36,7 @@ Edge = tuple[Point, Point]
 
 
 class Edges(NamedTuple):
-    """Edges of the grid on which the boundary crosses: the places of both ends, the crossing, (k, 2) each, and its root."""
+    """Edges of the grid that the boundary crosses: places of both ends and the crossing, (k, 2) each; its root (k,)."""
 
     first: Array
     last: Array
@@ -188,7 +188,9 @@ def _onsets(plane: Plane, start: Array, end: Array, level: float) -> tuple[Array
     share, value = np.full(count, np.inf), np.full(count, complex(np.nan, np.nan))
     if not count:
         return share, value, 0
-    search = Search(models, np.repeat(np.arange(count), 2), np.tile([0.0, 1.0], count), level, onset_only=True)
+    search = Search(
+        models, np.repeat(np.arange(count), 2), np.tile([0.0, 1.0], count), level, onset_only=True
+    )
     if search.scanned.points is None:
         return np.full(count, 0.5), value, 0
     brackets = Brackets(search)
@@ -272,7 +274,11 @@ def _dataset(
             "frequency": (dims, frequency, {"units": "rad/s", "long_name": "of the mode that grows most"}),
             "reason": (dims, reason.astype(str), {"long_name": "why a point failed"}),
             "boundary": (("vertex", "axis"), vertices),
-            "boundary_eigenvalue": ("vertex", root, {"units": "rad/s", "long_name": "root that is neutral there"}),
+            "boundary_eigenvalue": (
+                "vertex",
+                root,
+                {"units": "rad/s", "long_name": "root that is neutral there"},
+            ),
         },
         coords={names[0]: values[0], names[1]: values[1], "axis": list(names)},
     )

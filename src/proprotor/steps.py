@@ -2,9 +2,9 @@
 
 G of a root over a step is the cubic that has values and slopes of its ends, with a band about it that is as wide as the
 cubic is likely to be wrong: zero at the ends, widest in the middle. A step is settled when every line within the band
-crosses the level as often as its ends say, once or not at all; else it is parted where the band leaves it open. The width
-is a share of how far the cubic bends away from the straight line as long as nothing better is known, and after parting
-what the cubic was seen to be wrong by.
+crosses the level as often as its ends say, once or not at all; else it is parted where the band leaves it open. As long
+as nothing better is known the width is a share of how far the cubic bends away from the straight line, and after
+parting what the cubic was seen to be wrong by.
 """
 
 from __future__ import annotations
@@ -34,8 +34,9 @@ class Steps:
     """Pairs of neighbouring points of one line.
 
     before, after (steps,) of int; successor (steps, states) of int and quality (steps, states), see
-    `proprotor.tracking.link`; wrong (steps, states), what the cubic is wrong by as its forerunner was seen to be, and NaN
-    where it has none; depth (steps,), how often it was parted; open (steps,), whether it is still to be looked at.
+    `proprotor.tracking.link`; wrong (steps, states), the error of the cubic by what was seen when the step was parted
+    from a longer one, NaN where it was not; depth (steps,), how often that was; open (steps,), whether it is still to
+    be looked at.
     """
 
     before: Array
@@ -60,7 +61,9 @@ class Steps:
         """Growth at both ends, and both slopes times the length of the step (4, steps, states)."""
         length = (points.position[self.after] - points.position[self.before])[:, None]
         value, slope = (self._later(part) for part in (points.growth, points.slope))
-        return np.stack([points.growth[self.before], value, points.slope[self.before] * length, slope * length])
+        return np.stack(
+            [points.growth[self.before], value, points.slope[self.before] * length, slope * length]
+        )
 
     def errors(self, points: Points) -> Array:
         """Error of the growth at both ends (2, steps, states)."""
