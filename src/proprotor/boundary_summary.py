@@ -10,7 +10,7 @@ from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
     from proprotor.case import Case
-    from proprotor.flutter import Boundary, FlutterPoint
+    from proprotor.flutter import Boundary, Crossings, FlutterPoint
 
 COLUMNS = (
     "airspeed (kt)",
@@ -21,6 +21,7 @@ COLUMNS = (
     "kind",
     "onset",
     "mechanism",
+    "branch",
     "growth per airspeed (1/m)",
 )
 
@@ -36,6 +37,7 @@ def boundary_record(boundary: Boundary, case: Case) -> dict[str, Any]:
         boundary.kind,
         boundary.onset,
         dict(boundary.mechanism),
+        boundary.branch,
         boundary.rate,
     )
     return dict(zip(COLUMNS, values, strict=True))
@@ -55,6 +57,20 @@ def mechanism_told(mechanism: dict[str, float]) -> str:
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in mechanism.items())
 
 
+def failed_told(found: FlutterPoint | Crossings, unit: str, factor: float) -> Iterator[str]:
+    """Sentences on what of a scan could not be analysed, and why: where the range searched ends, and its gaps."""
+    for first, last, reason in found.failed:
+        low, high = f"{first / factor:.4g}", f"{last / factor:.4g}"
+        yield f"Not analysed: {low if low == high else f'{low} to {high}'} {unit}".rstrip() + f" ({reason})."
+
+
+def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:
+    """The same as plain data."""
+    return [
+        {"from (m/s)": first, "to (m/s)": last, "reason": reason} for first, last, reason in found.failed
+    ]
+
+
 def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
     """Sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
     low, high = (speed / factor for speed in found.searched)
@@ -65,6 +81,7 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
         yield f"No mode becomes {beyond} between {low:.4g} and {high:.4g} {unit}."
     else:
         yield f"Flutter speed {found.speed / factor:.2f} {unit} ({found.mode}, {found.kind})."
+    yield from failed_told(found, unit, factor)
     if at is None:
         return
     count = modes_beyond(found, at)

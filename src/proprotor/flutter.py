@@ -6,6 +6,7 @@ Every crossing in a range is looked for, flutter and divergence, those between t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -255,12 +256,16 @@ def _failed(positions: Array, reason: Array, works: Array) -> tuple[Failed, ...]
     before = -2
     for place in np.flatnonzero(~works):
         told = str(reason[place])
-        if place == before + 1 and found[-1].reason.split(":")[0] == told.split(":")[0]:
+        if place == before + 1 and _without_numbers(found[-1].reason) == _without_numbers(told):
             found[-1] = found[-1]._replace(last=float(positions[place]))
         else:
             found.append(Failed(float(positions[place]), float(positions[place]), told))
         before = int(place)
     return tuple(found)
+
+
+def _without_numbers(reason: str) -> str:
+    return re.sub(r"[-+.\deE]*\d", "", reason)
 
 
 def _path(search: Search, positions: Array) -> Path:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from proprotor.boundary_summary import failed_told
 from proprotor.provenance import reservations
 from proprotor.speed import KNOT
 
@@ -55,7 +56,7 @@ def of_crossings(found: Crossings) -> str:
     low, high = found.searched
     lines = [f"{len(found.boundaries)} boundaries from {low:.6g} to {high:.6g}"]
     lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
-    return "\n".join(lines + list(_at_start(found)))
+    return "\n".join([*lines, *_at_start(found), *_failed(found, "", 1.0)])
 
 
 def of_flutter_point(found: FlutterPoint) -> str:
@@ -70,7 +71,7 @@ def of_flutter_point(found: FlutterPoint) -> str:
         first += f"; damping of {100 * found.level:g} % counts as the boundary"
     others = [boundary for boundary in found.boundaries if boundary.position != found.speed]
     lines = [f"  {boundary.position / KNOT:.2f} kt: {_event(boundary)}" for boundary in others]
-    return "\n".join([first, *lines, *_at_start(found)])
+    return "\n".join([first, *lines, *_at_start(found), *_failed(found, "kt", KNOT)])
 
 
 def _event(boundary: Boundary) -> str:
@@ -80,6 +81,11 @@ def _event(boundary: Boundary) -> str:
 def _at_start(found: Crossings | FlutterPoint) -> Iterator[str]:
     if found.unstable_at_start:
         yield f"  from the start beyond the level: {', '.join(found.unstable_at_start)}"
+
+
+def _failed(found: Crossings | FlutterPoint, unit: str, factor: float) -> Iterator[str]:
+    for told in failed_told(found, unit, factor):
+        yield f"  {told}"
 
 
 def _range(values: np.ndarray) -> str:
