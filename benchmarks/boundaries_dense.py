@@ -208,9 +208,11 @@ class Verdict(NamedTuple):
     compared: int
 
 
-def compare(found: list[Signed], reference: list[Signed], low: float, high: float) -> Verdict:
-    """Boundaries of a scan with those of the reference that stand alone, within the range of both."""
-    inside = [one for one in reference if low + APART < one[0] < high - APART]
+def compare(
+    found: list[Signed], reference: list[Signed], known: list[Signed], low: float, high: float
+) -> Verdict:
+    """Boundaries of a scan with those of the reference: `known` are those where the scan says it could analyse."""
+    inside = [one for one in known if low + APART < one[0] < high - APART]
     alone = [
         one for place, one in enumerate(inside)
         if all(abs(one[0] - other[0]) >= APART for k, other in enumerate(inside) if k != place)
@@ -262,7 +264,9 @@ def main() -> None:
                 told = case.flutter_point(speeds, level=level)
                 low, high = (speed / KNOT for speed in told.searched)
                 found = [(b.position / KNOT, b.onset) for b in told.boundaries]
-                verdict = compare(found, reference, low, high)
+                gaps = [(first / KNOT, last / KNOT) for first, last, _ in told.failed]
+                known = [one for one in reference if not any(a - APART <= one[0] <= b + APART for a, b in gaps)]
+                verdict = compare(found, reference, known, low, high)
                 totals.setdefault(name, []).append((verdict, told.eigen_solves))
                 if verdict.missed or verdict.invented:
                     console.print(number, name, level, "missed", verdict.missed, "invented", verdict.invented)

@@ -66,9 +66,7 @@ def failed_told(found: FlutterPoint | Crossings, unit: str, factor: float) -> It
 
 def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:
     """The same as plain data."""
-    return [
-        {"from (m/s)": first, "to (m/s)": last, "reason": reason} for first, last, reason in found.failed
-    ]
+    return [{"from (m/s)": first, "to (m/s)": last, "reason": reason} for first, last, reason in found.failed]
 
 
 def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:

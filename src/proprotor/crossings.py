@@ -31,6 +31,7 @@ from proprotor.tracking import Modes, Spectrum, link
 Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
 
 _ROUNDS = 16  # of parting: a step to its 65536th part
+_HALVINGS = 6  # of a step at whose other end nothing can be analysed
 _ITERATIONS = 60  # of Newton's method; with bisection as the last resort
 _CLOSE = 1e-9  # of the position: the last correction, after which the next is rounding
 _SURE = 4.0  # errors of the growth that a slope must make over a bracket to count
@@ -188,9 +189,25 @@ class Search:
         self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
         if self.scanned.points is not None:
             self.points = self.scanned.points
-            neighbours = np.flatnonzero(np.diff(self.points.line) == 0)
-            self.steps = first_steps(self.points.spectrum, neighbours)
+            self._reach_edges(line, position)
+            order = np.lexsort((self.points.position, self.points.line))
+            same = np.diff(self.points.line[order]) == 0
+            self.steps = first_steps(self.points.spectrum, order[:-1][same], order[1:][same])
             self._settle()
+
+    def _reach_edges(self, line: Array, position: Array) -> None:
+        """Halve the steps from a point that works to one that does not: boundaries may lie there."""
+        works = self.scanned.works
+        edges = np.flatnonzero((line[1:] == line[:-1]) & (works[1:] != works[:-1]))
+        good, bad = (np.where(works[edges], edges + k, edges + 1 - k) for k in (0, 1))
+        line, good, bad = line[edges], position[good], position[bad]
+        for _ in range(_HALVINGS if len(line) else 0):
+            middle = (good + bad) / 2
+            found = solved(self.models, line, middle, self.level, self.forgiving)
+            good, bad = np.where(found.works, middle, good), np.where(found.works, bad, middle)
+            if found.points is not None:
+                self.points = self.points.joined(found.points)
+                np.add.at(self.solves, found.points.line, 1)
 
     def _settle(self) -> None:
         """Part steps until each tells how often every root crosses."""
@@ -291,7 +308,7 @@ class Brackets:
                 break
             tried = solved(self.models, self.line[active], guess[active], self.level, self.forgiving)
             for row in np.flatnonzero(~tried.works):
-                self.lost[int(active[row])] = f"at {guess[active[row]]:.6g}: {tried.reason[row]}"
+                self.lost[int(active[row])] = str(tried.reason[row])
             if tried.points is None:
                 break
             active, points = active[tried.works], tried.points
@@ -321,6 +338,7 @@ class Brackets:
         low, high = self.x[:, crossing]
         if not (np.isfinite(correction) and low <= points.position[row] + correction <= high):
             correction = 0.0
+        slope = float(points.slope[row, place])
         self.found[crossing] = Crossing(
             int(self.line[crossing]),
             float(points.position[row]) + correction,
@@ -328,8 +346,8 @@ class Brackets:
             place,
             complex(points.spectrum.values[row, place] + correction * points.change[row, place]),
             complex(points.change[row, place]),
-            float(points.slope[row, place]),
-            bool(self.onset[crossing]),
+            slope,
+            slope > 0 if slope else bool(self.onset[crossing]),
             int(self.start[crossing]),
             int(self.from_state[crossing]),
             int(self.solves[crossing]),

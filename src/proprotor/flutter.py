@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from proprotor import summary
 from proprotor.arrays import Array
-from proprotor.crossings import Brackets, Crossing, Search, each_once
+from proprotor.crossings import Brackets, Crossing, Search, Solved, each_once
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
 from proprotor.mode_names import name_list, name_shares
@@ -143,14 +143,14 @@ class FlutterPoint:
 
 
 class Failed(NamedTuple):
-    """Neighbouring positions of a scan that could not be analysed.
+    """A stretch of a scan that could not be analysed.
 
     Parameters
     ----------
     first, last : float
-        m/s or in SI units of the input.
+        Between what works, or the ends of the scan: m/s or in SI units of the input.
     reason : str
-        Why, at the first of them.
+        Why.
     """
 
     first: float
@@ -220,28 +220,25 @@ def find_crossings(
         lambda _, x: line.models(x), np.zeros(len(positions), dtype=int), positions, level, names=True
     )
     scanned, model = search.scanned, search.scanned.model
-    failed = _failed(positions, scanned.reason, scanned.works)
     if scanned.points is None or model is None:
-        return Crossings((), (), (np.nan, np.nan), 0, 0, failed)
+        return Crossings((), (), (np.nan, np.nan), 0, 0, _failed(positions, scanned, np.empty(0)))
     path, points = _path(search, positions), search.points
+    failed = _failed(positions, scanned, np.sort(points.position))
     named = state_names(model, line, path, rotor_speed, approach)
     branches = [named.names[state] for state in path.places[named.point]]
     brackets = Brackets(search)
     found = each_once(brackets.close())
-    names = _names(model, points.spectrum, 0, rotor_speed)
-    beyond = np.flatnonzero((points.growth[0] > points.error[0]) & (points.spectrum.values[0].imag >= 0))
+    start = int(points.position.argmin())
+    names = _names(model, points.spectrum, start, rotor_speed)
+    above = (points.growth[start] > points.error[start]) & (points.spectrum.values[start].imag >= 0)
     scan_solves = int(search.solves.sum()) + named.eigen_solves
     return Crossings(
         tuple(_boundary(one, _branch(one, search, path, branches), model, rotor_speed) for one in found),
-        tuple(dict.fromkeys(names[state] for state in beyond)),
+        tuple(dict.fromkeys(names[state] for state in np.flatnonzero(above))),
         (float(points.position.min()), float(points.position.max())),
         scan_solves,
         scan_solves + int(brackets.solves.sum()),
-        failed
-        + tuple(
-            Failed(float(brackets.x[:, k].min()), float(brackets.x[:, k].max()), why)
-            for k, why in brackets.lost.items()
-        ),
+        failed + _lost(brackets),
     )
 
 
@@ -250,18 +247,33 @@ def rising(line: Line) -> Line:
     return replace(line, positions=np.unique(np.asarray(line.positions, dtype=float)), end=None)
 
 
-def _failed(positions: Array, reason: Array, works: Array) -> tuple[Failed, ...]:
-    """Stretches of positions that failed for one reason."""
+def _failed(positions: Array, scanned: Solved, works: Array) -> tuple[Failed, ...]:
+    """Stretches between points that work in which the scan failed, for one reason each.
+
+    positions (points,) of the scan; works, those of all points that could be analysed, rising.
+    """
     found: list[Failed] = []
-    before = -2
-    for place in np.flatnonzero(~works):
-        told = str(reason[place])
-        if place == before + 1 and _without_numbers(found[-1].reason) == _without_numbers(told):
-            found[-1] = found[-1]._replace(last=float(positions[place]))
-        else:
-            found.append(Failed(float(positions[place]), float(positions[place]), told))
-        before = int(place)
+    failed = set(np.flatnonzero(~scanned.works).tolist())
+    for place in sorted(failed):
+        here, told = float(positions[place]), str(scanned.reason[place])
+        above = works[np.searchsorted(works, here) :]
+        end = here if place + 1 in failed or not len(above) else float(above[0])
+        if place - 1 in failed and _without_numbers(found[-1].reason) == _without_numbers(told):
+            found[-1] = found[-1]._replace(last=end)
+            continue
+        below = works[: np.searchsorted(works, here)]
+        start = here if place - 1 in failed or not len(below) else float(below[-1])
+        found.append(Failed(start, end, told))
     return tuple(found)
+
+
+def _lost(brackets: Brackets) -> tuple[Failed, ...]:
+    """Stretches over which a mode crosses the level, at positions that could not be analysed."""
+    ends = {k: np.sort(brackets.x[:, k]).tolist() for k in brackets.lost}
+    told = "a mode crosses the level where nothing can be analysed"
+    return tuple(
+        sorted({Failed(low, high, f"{told}: {brackets.lost[k]}") for k, (low, high) in ends.items()})
+    )
 
 
 def _without_numbers(reason: str) -> str:

@@ -95,12 +95,12 @@ class Steps:
         return np.take_along_axis(part[self.after], self.successor, 1)
 
 
-def first_steps(spectrum: Spectrum, before: Array) -> Steps:
+def first_steps(spectrum: Spectrum, before: Array, after: Array) -> Steps:
     """Steps from points to those that follow them."""
-    linked = link(spectrum, before, before + 1)
+    linked = link(spectrum, before, after)
     nothing = np.full(linked.quality.shape, np.nan)
     count = len(before)
-    return Steps(before, before + 1, *linked, nothing, np.zeros(count, dtype=int), np.ones(count, dtype=bool))
+    return Steps(before, after, *linked, nothing, np.zeros(count, dtype=int), np.ones(count, dtype=bool))
 
 
 def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:

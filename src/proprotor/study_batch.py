@@ -319,7 +319,7 @@ class Analysis:
             first = _lowest(brackets.close())
             for place, why in brackets.lost.items():
                 if brackets.line[place] not in first:
-                    found["flutter_note"][brackets.line[place]] = f"the search for its boundary failed {why}"
+                    found["flutter_note"][brackets.line[place]] = f"the search for its boundary failed: {why}"
             _put_onsets(found, first, search)
 
     def _model_of_each(self, batch: Batch, speeds: Array) -> LinearModel:
@@ -334,7 +334,9 @@ class Analysis:
         works, unstable = np.zeros(len(reason), dtype=bool), np.zeros(len(reason), dtype=bool)
         if search.scanned.points is not None:
             points = search.points
-            lines, first = np.unique(points.line, return_index=True)  # its lowest airspeed comes first
+            order = np.lexsort((points.position, points.line))
+            lines, place = np.unique(points.line[order], return_index=True)
+            first = order[place]
             works[lines], unstable[lines] = True, (points.growth[first] > points.error[first]).any(axis=1)
         for row, why in enumerate(reason):
             failed = np.flatnonzero(why != "")
