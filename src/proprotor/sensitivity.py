@@ -23,6 +23,7 @@ from proprotor.flutter import Boundary, flutter_point
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition
 from proprotor.named_modes import named_modes
+from proprotor.root_error import refined
 from proprotor.tracking import Modes
 
 if TYPE_CHECKING:
@@ -243,8 +244,10 @@ def _of_modes(
     rates, exact = _rates(case, inputs, speed, modes, model, options)
     value, units = modes.values, "rad/s"
     if of == "damping":
-        value, units = -modes.values.real / np.abs(modes.values), "1"
-        rates = damping_rate(modes.values, rates)
+        root = refined(model, modes)
+        at_zero = np.abs(root.values) <= root.error
+        value, units = np.where(at_zero, np.nan, -modes.values.real / np.abs(modes.values)), "1"
+        rates = np.where(at_zero, np.nan, damping_rate(modes.values, rates))
     data = _dataset(inputs, ("input", "mode"), rates, units, exact).assign_coords(mode=names)
     data[of] = ("mode", value, {"units": units})
     data["defect"] = ("mode", defect(modes))
