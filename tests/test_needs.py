@@ -322,20 +322,28 @@ def test_a_limit_on_the_process_counts():
     ), done.stderr
 
 
-def test_a_limit_of_a_control_group_counts(tmp_path, monkeypatch):
+FILES_OF_GROUPS = {
+    "0::": ("", "memory.max", "memory.current", "inactive_file"),
+    "9:memory:": ("memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+}
+
+
+@pytest.mark.parametrize("version", FILES_OF_GROUPS)
+def test_a_limit_of_a_control_group_counts(tmp_path, monkeypatch, version):
     """As containers and jobs of a cluster have it; the tightest of a group and those around it."""
-    inner = tmp_path / "job" / "step"
+    root, limit, use, files = FILES_OF_GROUPS[version]
+    inner = tmp_path / root / "job" / "step"
     inner.mkdir(parents=True)
     monkeypatch.setattr(needs, "_GROUPS", tmp_path)
     monkeypatch.setattr(needs, "_GROUP_OF_PROCESS", tmp_path / "cgroup")
-    (tmp_path / "cgroup").write_text("0::/job/step\n")
+    (tmp_path / "cgroup").write_text(f"3:cpu,cpuacct:/job\n{version}/job/step\n")
     unlimited = free_memory()
     for group, most, used, cached in ((inner, "max", 1, 0), (inner.parent, "3000000", 2500000, 100000)):
-        (group / "memory.max").write_text(f"{most}\n")
-        (group / "memory.current").write_text(f"{used}\n")
-        (group / "memory.stat").write_text(f"anon 5\ninactive_file {cached}\n")
+        (group / limit).write_text(f"{most}\n")
+        (group / use).write_text(f"{used}\n")
+        (group / "memory.stat").write_text(f"anon 5\n{files} {cached}\n")
     assert free_memory() == 600000 < unlimited
-    (inner / "memory.max").write_text("100\n")
+    (inner / limit).write_text("100\n")
     assert free_memory() == 99
 
 

@@ -13,6 +13,10 @@ from proprotor.errors import InputError
 
 _SMALL = 64e6  # bytes; not worth asking the system
 _GROUPS, _GROUP_OF_PROCESS = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")  # where Linux tells its limits
+_FILES = {  # of control groups, versions 2 and 1: limit, use, and what in it the system would give back
+    "": ("memory.max", "memory.current", "inactive_file"),
+    "memory": ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+}
 
 
 def need(package: str, field: str, purpose: str, extra: str = "") -> None:
@@ -54,21 +58,27 @@ def free_memory() -> float:
 def _free_of_group() -> float:
     """Return what the control group of a container or a job of a cluster leaves, bytes; inf where nothing limits it."""
     try:
-        own = _GROUP_OF_PROCESS.read_text().removeprefix("0::/").strip()
+        lines = _GROUP_OF_PROCESS.read_text().splitlines()
     except OSError:  # not on Linux
         return float("inf")
-    groups = [_GROUPS / own, *(_GROUPS / own).parents]
-    return min(_left(group) for group in groups if group.is_relative_to(_GROUPS))
+    free = float("inf")
+    for line in lines:
+        _, controllers, own = line.split(":", 2)
+        if controllers in _FILES:
+            root = _GROUPS / controllers
+            group = root / own.lstrip("/")
+            around = [it for it in (group, *group.parents) if it.is_relative_to(root)]
+            free = min(free, *(_left(it, *_FILES[controllers]) for it in around))
+    return free
 
 
-def _left(group: Path) -> float:
+def _left(group: Path, limit: str, used: str, cached: str) -> float:
     try:
-        most, taken = (int((group / name).read_text()) for name in ("memory.max", "memory.current"))
+        most, taken = (int((group / name).read_text()) for name in (limit, used))
         told = dict(line.split() for line in (group / "memory.stat").read_text().splitlines())
     except (OSError, ValueError):  # no such group, or "max" for no limit
         return float("inf")
-    cached = int(told.get("inactive_file", 0))  # of files, which the system gives back
-    return max(0.0, float(most - taken + cached))
+    return max(0.0, float(most - taken + int(told.get(cached, 0))))
 
 
 def _free_address_space() -> float:
