@@ -127,17 +127,17 @@ def state_names(
     if not len(path.points):
         return Named(0, [], "", 0)
     if approach is not None:
-        leg_model = approach.models(approach.positions)
-        held = max(
-            held, held_coordinates(leg_model), key=len
-        )  # a shaft may hold the azimuth on one of them only
-        leg = follow(leg_model, approach, held)
+        on_the_way = approach.models(approach.positions)
+        # A shaft may hold the azimuth on the way there, or on the line, alone.
+        of_both = max(held, held_coordinates(on_the_way), key=len)
+        leg = follow(on_the_way, approach, of_both)
         ends = [0, len(approach.positions) - 1]
         if len(leg.points) and [leg.points[0], leg.points[-1]] == ends:
             nearest = int(np.argmin(np.abs(path.positions[path.points] - approach.end)))
-            given = names_at(model.dofs, held, leg.spectrum, 0, rotor_speed)
+            given = names_at(model.dofs, of_both, leg.spectrum, 0, rotor_speed)
             here = path.spectrum.at([int(path.points[nearest])])
-            successor = _same_point(leg, ends[1], with_azimuth(here, model.dofs, len(held) + len(model.dofs)))
+            whole = with_azimuth(here, model.dofs, len(of_both) + len(model.dofs))
+            successor = _same_point(leg, ends[1], whole)
             names = {int(state): given[first] for first, state in zip(leg.places[0], successor, strict=True)}
             told = f"{approach.name} {approach.positions[0]:.6g} {approach.units}"
             given = [names[state] for state in range(here.values.shape[1])]
