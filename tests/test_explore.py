@@ -281,10 +281,8 @@ async def handshake(address, origin):
     except HTTPClientError as error:
         return error.code
     opened.close()
-    while (
-        await opened.read_message() is not None
-    ):  # until the server has closed as well, and with it the socket
-        pass
+    while await opened.read_message() is not None:
+        pass  # until the server has closed as well, and with it the socket
     return 101
 
 

@@ -81,9 +81,7 @@ def test_airspeeds_alone_make_a_study():
 
 def test_every_variable_has_its_unit_and_meaning():
     found = study(CASE, {PRECONE: [0.04]}, [120.0, 125.0], QUANTITIES)
-    assert set(found.data_vars) == set(variables(QUANTITIES)) - {
-        "missing"
-    }  # told where there is something to tell
+    assert set(found.data_vars) == set(variables(QUANTITIES)) - {"missing"}  # nothing is
     units = {name: it.attrs.get("units") for name, it in found.variables.items()}
     assert units["eigenvalue"] == units["frequency"] == "rad/s"
     assert (units["growth_rate"], units["thrust"], units["torque"]) == ("1/s", "N", "N*m")

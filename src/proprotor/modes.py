@@ -133,12 +133,15 @@ def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum
     """
     model = _real(model)
     states = len(held_coordinates(model) if held is None else held) + len(model.dofs)
+    parts = [
+        (points, with_azimuth(Spectrum(*_solved(first_order(part)), part.shapes), model.dofs, states))
+        for points, part in _alike(model)
+    ]
+    if len(parts) == 1 and parts[0][0] is ...:
+        return parts[0][1]
     values = np.full((*model.M.shape[:-2], states), complex(np.nan, np.nan))
     right = np.full((*values.shape, states), np.nan, dtype=complex)
-    for points, part in _alike(model):
-        found = with_azimuth(Spectrum(*_solved(first_order(part)), part.shapes), model.dofs, states)
-        if points is ...:
-            return found
+    for points, found in parts:
         values[points], right[points] = found.values, found.right
     return Spectrum(values, right, model.shapes)
 
