@@ -13,9 +13,10 @@ test: .venv/installed  ## Run the tests
 test-browser: .venv/installed  ## Move the sliders of `proprotor explore` in a real browser; needs Chromium and its driver
 	$(BIN)/python -m pytest tests/browser
 
-verify: .venv/verify-installed  ## Check the equations against derivation and an independent engine; build and check packages and site
+verify: .venv/verify-installed  ## Check the equations against derivation and an independent engine, numbers under several kernels of OpenBLAS, packages and site
 	$(BIN)/python -m derive --check
 	$(BIN)/python -m pytest tests/verify $(PARALLEL)
+	$(BIN)/python -m tests.verify.kernels $(PARALLEL)
 
 verify-versions: .venv/installed  ## Derive the equations under other hash seeds, another Python and another SymPy
 	$(BIN)/python -m tests.verify.determinism

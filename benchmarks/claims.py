@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 import proprotor as pp
 from proprotor.figures import Analyses
 from proprotor.figures.analyses import XV15
-from proprotor.figures.blade_state import blade_state, on_rigid_hub
+from proprotor.figures.blade_state import AS_THE_PAPER, blade_state, on_rigid_hub
 from proprotor.figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES, XV15_FLUTTER
 from proprotor.model import HUB, LinearModel, rotor_model
 from proprotor.modes import eigensystem, participation
@@ -179,7 +179,7 @@ def _cyclic_lag(analyses: Analyses, dropped: tuple[str, ...]) -> NDArray:
 
 def _on_rigid_hub(analyses: Analyses, speeds: NDArray, dropped: tuple[str, ...] = ()) -> LinearModel:
     case = analyses.case(XV15)
-    model = rotor_model(case.rotor, case.operation, speeds, airloads="none", pitch="coupling")
+    model = rotor_model(case.rotor, case.operation, speeds, airloads="none", pitch="coupling", **AS_THE_PAPER)
     return model.submodel(tuple(name for name in model.dofs if name not in (*HUB, *dropped)))
 
 
@@ -375,7 +375,8 @@ def _coning(case: pp.Case) -> float:
 
 def _lowest(analyses: Analyses, values: dict[str, Any]) -> float:
     """Lowest boundary of the wing of another design, kt."""
-    model = analyses.case(XV15).vary(values).linearize(analyses.airspeeds(XV15)[None], pitch="coupling")
+    case = analyses.case(XV15).vary(values)
+    model = case.linearize(analyses.airspeeds(XV15)[None], pitch="coupling", **AS_THE_PAPER)
     return float(boundary(analyses.knots(XV15), least_damping(model))[0])
 
 
@@ -413,7 +414,7 @@ def airloads(analyses: Analyses) -> Iterator[Claim]:
 
     def lowest(**options: Any) -> float:
         case, speeds = analyses.case(XV15), analyses.airspeeds(XV15)
-        model = case.linearize(speeds[None], pitch="coupling", **options)
+        model = case.linearize(speeds[None], pitch="coupling", **AS_THE_PAPER, **options)
         return float(boundary(analyses.knots(XV15), least_damping(model))[0])
 
     full, slope = lowest(), lowest(airloads="lift-slope")

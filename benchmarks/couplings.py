@@ -42,7 +42,7 @@ class PitchCouplings(NamedTuple):
 def pitch_couplings(case: pp.Case, speeds: NDArray) -> PitchCouplings:
     """Couplings at the trim of each airspeed."""
     rotor = case.rotor
-    state = pp.rotor_model(rotor, case.operation, speeds, airloads="none").trim
+    state = pp.rotor_model(rotor, case.operation, speeds, airloads="none", section_damping=False).trim
     springs = flap_lag_springs.effective_stiffness(
         flap_stiffness=rotor.flap_stiffness,
         lag_stiffness=rotor.lag_stiffness,

@@ -23,7 +23,7 @@ from proprotor.explore.curves import curves, ends
 from proprotor.explore.inputs import first_inputs, slider_input
 from proprotor.explore.page import ExplorePage, messages, readout
 from proprotor.flutter import scan_speeds
-from proprotor.options import CHOICES
+from proprotor.options import CHOICES, default_choice
 from proprotor.speed import KNOT
 
 _POINTS = 60
@@ -34,7 +34,7 @@ def timed_moves(moves: int, seed: int = 1) -> tuple[dict[str, list[float]], int,
     """Milliseconds of each stage, move by move; bytes of the last transfer; and how many moves were not physical."""
     case = pp.load_case("xv15")
     speeds = scan_speeds(case, _POINTS)
-    options = {name: choices[0] for name, choices in CHOICES.items()}
+    options = {name: default_choice(name, {}) for name in CHOICES}
     page, document = ExplorePage(case, "xv15", speeds, {}, options), Document()
     page.put_on(document)
     events: list[object] = []

@@ -20,7 +20,6 @@ from scipy.special import hankel2
 
 import proprotor as pp
 from proprotor.assembly import mount
-from proprotor.model import rigid_hub_mass
 from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
 from proprotor.structural_damping import NeutralDamping, neutral_damping
 from proprotor.support import NormalModes, two_axis_pivot
@@ -67,6 +66,7 @@ QUASI_STEADY = {
     "locked": ("flap", "lag", "pitch", "gimbal"),
     "rotor_speed": "constant",
     "compressibility": False,
+    "section_damping": False,  # the report's strips have the incidence of the quarter chord
 }
 
 
@@ -100,13 +100,13 @@ def pivot(stiffness_ratio: float, structural_damping: float = 0.0, frequency: fl
     stiffness = PIVOT_INERTIA * PITCH_FREQUENCY**2 * np.array([1.0, stiffness_ratio])
     damping = structural_damping * stiffness / frequency
     inertia = (PIVOT_INERTIA, PIVOT_INERTIA)
-    return two_axis_pivot(PIVOT_DISTANCE, inertia, stiffness, damping, includes_rotor=True)
+    return two_axis_pivot(PIVOT_DISTANCE, inertia, stiffness, damping, includes_rotor="rigid")
 
 
-def neutral(rotor_alone: pp.LinearModel, rigid_mass: NDArray, stiffness_ratio: float) -> NeutralDamping:
+def neutral(rotor_alone: pp.LinearModel, stiffness_ratio: float) -> NeutralDamping:
     """Structural dampings at neutral stability of a propeller or rotor on the report's mount."""
     support = pivot(stiffness_ratio)
-    return neutral_damping(mount(rotor_alone, support, rigid_mass), support.stiffness)
+    return neutral_damping(mount(rotor_alone, support), support.stiffness)
 
 
 def whirl(shape: NDArray) -> NDArray:
@@ -195,23 +195,22 @@ def fitted_rotor(unsteady: bool, root_cutout: float = ROOT_CUTOUT) -> pp.Rotor:
     return bladed_rotor(brentq(excess, 0.01 * RADIUS, RADIUS), root_cutout)
 
 
-def chart_of(rotor_alone: pp.LinearModel, rigid_mass: NDArray) -> dict[float, NDArray]:
+def chart_of(rotor_alone: pp.LinearModel) -> dict[float, NDArray]:
     """g at the points of the report's chart."""
-    return {ratio: neutral(rotor_alone, rigid_mass, ratio).damping[:, 0] for ratio in CHART}
+    return {ratio: neutral(rotor_alone, ratio).damping[:, 0] for ratio in CHART}
 
 
 def chart_of_report(**instead: float) -> dict[float, NDArray]:
     """g with the report's derivatives, or some other value for one of them."""
     derivatives = reported_derivatives(CHART_ADVANCE_RATIOS)._replace(**instead)
-    model = propeller(CHART_ADVANCE_RATIOS, derivatives)
-    return chart_of(model, model.M)
+    return chart_of(propeller(CHART_ADVANCE_RATIOS, derivatives))
 
 
 def chart_of_blades(unsteady: bool, root_cutout: float = ROOT_CUTOUT) -> dict[float, NDArray]:
     """g with the airloads of blade elements."""
     rotor = fitted_rotor(unsteady, root_cutout)
     lift = lift_factor(rotor.chord, CHART_ADVANCE_RATIOS, unsteady)
-    return chart_of(lagging(rotor, CHART_ADVANCE_RATIOS, lift), rigid_hub_mass(rotor))
+    return chart_of(lagging(rotor, CHART_ADVANCE_RATIOS, lift))
 
 
 def print_charts(console: Console) -> None:
@@ -233,7 +232,7 @@ def print_whirl(console: Console) -> None:
     model = propeller(CHART_ADVANCE_RATIOS, reported_derivatives(CHART_ADVANCE_RATIOS))
     table = Table("S_ψ/S_θ", "J", "g", "ω/ω_θ", "|ψ/θ|", "whirl", title="All neutral oscillations")
     for ratio in CHART:
-        points = neutral(model, model.M, ratio)
+        points = neutral(model, ratio)
         for place, found in np.argwhere(np.isfinite(points.damping)):
             g, omega, shape = (values[place, found] for values in points)
             numbers = (g, omega / PITCH_FREQUENCY, abs(shape[1] / shape[0]))

@@ -25,7 +25,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from proprotor import blade_airloads, model, sampling, study_batch, study_workers, trim_solver
+from proprotor import blade_airloads, model, modes, sampling, study_workers, trim_solver
 from proprotor import case as case_module
 from proprotor.modes import state_matrix
 from proprotor.study import BATCH, study
@@ -52,8 +52,8 @@ PARTS = {
     "trim: the rest": [(model, "solve_trim")],
     "blade matrices and airloads": [(model, "_blade_matrices")],
     "blades to rotor": [(model, "_fixed_frame")],
-    "rotor on its support": [(case_module, "mount"), (case_module, "rigid_hub_mass")],
-    "state matrix": [(study_batch, "state_matrix")],
+    "rotor on its support": [(case_module, "mount")],
+    "state matrix": [(modes, "have_modes"), (modes, "first_order")],
     "eigenvalues (LAPACK)": [(np.linalg, "eigvals")],
 }
 REST = "all else: inputs, checks, order, results"
@@ -172,7 +172,7 @@ def floors(case: pp.Case, points: int) -> dict[str, float]:
     airspeed = numbers.pop("airspeed")
     linear = case.vary(numbers).linearize(airspeed)
     right = np.concatenate([linear.K, linear.C], axis=-1)[..., 1:]
-    matrix = study_batch.state_matrix(linear)
+    matrix = state_matrix(linear)
     solve, values = best(
         (lambda: np.linalg.solve(linear.M, right), time.process_time),
         (lambda: np.linalg.eigvals(matrix), time.process_time),

@@ -211,12 +211,9 @@ def effects(case: pp.Case) -> list[Effect]:
 
 
 def combined(case: pp.Case, found: list[Effect]) -> tuple[float, float]:
-    """Boundaries with all inputs at their lower end: of the wing, and of the rotor's own modes.
-
-    The latter with pitch damping of the sections, without which pitch modes are neutral to a fraction of 1 %.
-    """
+    """Boundaries with all inputs at their lower end: of the wing, and of the rotor's own modes."""
     alterations = [alter for _, alter in (effect.worst for effect in found)]
-    of_rotor = boundaries(altered(case, *alterations), section_damping=True)["rotor"]
+    of_rotor = boundaries(altered(case, *alterations))["rotor"]
     return boundary(case, *alterations), float(np.nan_to_num(of_rotor, nan=np.inf))
 
 

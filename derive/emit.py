@@ -8,6 +8,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import os
+import secrets
 import subprocess
 import sys
 import time
@@ -319,9 +320,10 @@ def update(folder: Path = GENERATED, progress: Progress = print) -> None:
 
 def _write_whole(path: Path, text: str) -> None:
     """As `proprotor.output_file.write_whole`, which cannot be imported while the equations are not there."""
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    unfinished = path.with_name(f".proprotor-{secrets.token_hex(8)}.tmp")
     try:
-        unfinished.write_text(text, encoding="utf-8")
+        with unfinished.open("x", encoding="utf-8") as file:
+            file.write(text)
         os.replace(unfinished, path)
     finally:
         unfinished.unlink(missing_ok=True)

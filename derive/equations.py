@@ -538,6 +538,21 @@ def trim_shared() -> Iterator[Function]:
     )
     yield Function(
         "trim",
+        "precone_load",
+        "Steady centrifugal load of precone on the undeflected blade: flap, lag and pitch moment.",
+        "AIAA-2002-1604, Eqs. 12 and 32, steady part",
+        rows=trim.HINGED,
+        columns=("trim",),
+        entries=_entries(
+            trim.HINGED,
+            ("trim",),
+            lambda row, _: trim.precone_load(row),
+            lambda row, _: row_dimension(row),
+            ROW_EQUATION,
+        ),
+    )
+    yield Function(
+        "trim",
         "jacobian",
         "Derivative of the residual with coning, lag, elastic pitch and collective, without airloads.",
         "AIAA-2002-1604, Eqs. 12 and 32, differentiated",

@@ -385,7 +385,10 @@ def damping_against_flap_hub_inertia() -> Figure:
     unit = consequences.SLUG_FT2
     values = TABLES[0].values
     inertias = np.linspace(85, 106, 43)
-    models = [consequences.with_flap_hub_inertia(value * unit).linearize(250 * KNOT) for value in inertias]
+    models = [
+        consequences.with_flap_hub_inertia(value * unit).linearize(250 * KNOT, **consequences.AS_THE_PAPER)
+        for value in inertias
+    ]
     least = [_least_eigenvalue(model.M) for model in models]
     damping = [100 * float(model.modes().damping_ratio.min()) for model in models]
     bound = np.sqrt(values["I_b"] * values["I_β"])

@@ -91,6 +91,7 @@ def moments() -> list[tuple[sp.Symbol, sp.Expr]]:
         section.axial_velocity: tip_speed * inflow_ratio,
         section.radial_velocity: 0,
         section.section_damping: 0,
+        section.turn_incidence: 0,
         section.pressure_chord: s.density * s.chord / 2,
     }
     alone = {symbol: 0 for key, symbol in section.COEFFICIENT.items() if key != ("lift", "alpha")}

@@ -9,6 +9,7 @@ Jupyter where `derive` can be imported: PYTHONPATH=. jupyter lab notebooks (with
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import re
 import sys
@@ -60,7 +61,7 @@ def executed(source: Path) -> NotebookNode:
     client = NotebookClient(
         notebook, kernel_manager_class=OwnKernel, kernel_name="python3", timeout=TIMEOUT, resources=in_root
     )
-    client.execute()
+    asyncio.run(client.async_execute())  # whose loop is closed again, with its sockets
     return notebook
 
 

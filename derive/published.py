@@ -16,6 +16,8 @@ class DroppedTerm:
     term: str
     equation: str
     reason: str
+    option: str = ""
+    """The option of the model that drops the term and brings it back; without one the derivation leaves it out."""
 
 
 DROPPED_TERMS = {
@@ -78,6 +80,12 @@ DROPPED_TERMS = {
         "steady airloads whose arms and directions change with the blade's motion",
         "Eqs. 12 and 32, and the hub loads",
         "absent: the airloads are coefficients times perturbation velocities",
+    ),
+    "section_pitch_damping": DroppedTerm(
+        "damping of a turning section: lift by its incidence at 3/4 chord, and the moment -pi/8 rho c^3 U omega",
+        "Eqs. 14-16 and 32",
+        "absent: the airloads have the pitch of a section and not the rate of its turn",
+        option="section_damping",
     ),
 }
 

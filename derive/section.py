@@ -6,8 +6,14 @@
 The air is taken by its speed and its inflow angle: in these the loads have few derivatives, from which those with u_T
 and u_P follow by the turn from polar to rectangular components.
 
-A section that turns about d may be given thin-airfoil theory's quasi-steady damping about the quarter chord,
-- pi/8 rho c³ U omega_d, the part of the moment that circulation does not bring.
+A section that turns about d at omega_d meets air that is curved like its own path: thin-airfoil theory's quasi-steady
+damping. Its 3/4 chord, where the incidence makes the lift, moves at c omega_d / 2 to the quarter chord; and about the
+quarter chord it has the moment - pi/8 rho c³ U omega_d, which circulation does not bring:
+
+    c_l = c_l(alpha + c omega_d / (2 U), Mach)        moment 1/2 rho c² U² (c_m - pi/4 c omega_d / U)
+
+Drag and c_m keep the angle of attack of the quarter chord, and lift stays normal to the air there. omega_d is the whole
+turn of the section in space: a coned blade has Omega sin(cone) of it in steady flight.
 """
 
 from __future__ import annotations
@@ -32,6 +38,12 @@ inflow_angle = s.quantity("inflow_angle", r"\phi", "rad", "angle of the air's ve
 inflow_cosine = s.quantity("inflow_cosine", r"\cos\phi", "", "cosine of the inflow angle, u_T/U")
 inflow_sine = s.quantity("inflow_sine", r"\sin\phi", "", "sine of the inflow angle, u_P/U")
 angle_of_attack = s.quantity("angle_of_attack", r"\alpha", "rad", "angle of attack")
+turn_incidence = s.quantity(
+    "turn_incidence", r"\alpha_\omega", "rad", "angle of attack at 3/4 chord less that at the quarter chord"
+)
+lift_incidence = s.quantity(
+    "lift_incidence", r"\alpha_l", "rad", "angle of attack at 3/4 chord, which makes the lift"
+)
 mach = s.quantity("mach", "M", "", "Mach number of the section")
 pressure_chord = s.quantity("pressure_chord", r"\rho c/2", "kg/m^2", "half the density times the chord")
 pressure_speed = s.quantity(
@@ -104,8 +116,13 @@ def speed() -> sp.Expr:
     return sp.sqrt(tangential_velocity**2 + axial_velocity**2)
 
 
+def incidence_of_turn() -> sp.Expr:
+    """What the turn of a section adds at 3/4 chord to the angle of attack of the quarter chord."""
+    return section_damping * s.chord * section_spin / (2 * section_speed)
+
+
 def _coefficient(name: str) -> sp.Expr:
-    """A coefficient as it depends on the air, in polar components, and the pitch."""
+    """A coefficient as it depends on the air, in polar components, and the pitch; for lift the turn is held."""
     return sp.Function(name)(section_speed, inflow_angle, section_pitch)
 
 
@@ -114,7 +131,7 @@ def loads() -> dict[str, sp.Expr]:
     """f_x, f_n, f_d and m in speed, inflow angle, radial velocity, pitch and rotation."""
     lift, drag, moment = (_coefficient(name) for name in COEFFICIENTS)
     cosine, sine = sp.cos(inflow_angle), sp.sin(inflow_angle)
-    spin_moment = section_damping * sp.pi / 4 * s.chord * section_spin
+    spin_moment = sp.pi / 2 * section_speed * incidence_of_turn()
     return {
         "fx": pressure_chord * section_speed**2 * (lift * sine + drag * cosine),
         "fn": pressure_chord * section_speed**2 * (lift * cosine - drag * sine),
@@ -133,13 +150,20 @@ def load_derivatives() -> dict[sp.Symbol, sp.Expr]:
     for load, expression in loads().items():
         steps[SECTION_LOADS[load, ""]] = _named(expression)
         along, across = POLAR_LOADS[load, "speed"], POLAR_LOADS[load, "inflow"]
-        steps[along] = _named(sp.diff(expression, section_speed))
+        steps[along] = _derivative(expression, section_speed)
         steps[across] = _named(sp.diff(expression, inflow_angle) / section_speed)
         steps[SECTION_LOADS[load, "_ut"]] = along * inflow_cosine - across * inflow_sine
         steps[SECTION_LOADS[load, "_up"]] = along * inflow_sine + across * inflow_cosine
         for argument, variable in _DIRECT.items():
-            steps[SECTION_LOADS[load, argument]] = _named(sp.diff(expression, variable))
+            steps[SECTION_LOADS[load, argument]] = _derivative(expression, variable)
     return steps
+
+
+def _derivative(expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+    """Derivative of a load by speed, radial velocity, pitch or rotation: its own, and by the incidence of the turn."""
+    by_turn = sp.diff(expression, _coefficient("lift")) * sp.diff(incidence_of_turn(), variable)
+    by_turn = by_turn.subs(section_spin, 2 * section_speed * turn_incidence / (section_damping * s.chord))
+    return _named(sp.diff(expression, variable)) + _named(by_turn) * COEFFICIENT["lift", "alpha"]
 
 
 def force_coefficients() -> dict[sp.Symbol, sp.Expr]:
@@ -219,6 +243,8 @@ def air_at_section() -> list[tuple[sp.Symbol, sp.Expr]]:
         (section_speed, speed()),
         *_INFLOW.items(),
         (angle_of_attack, section_pitch - sp.atan(axial_velocity / tangential_velocity)),
+        (turn_incidence, incidence_of_turn()),
+        (lift_incidence, angle_of_attack + turn_incidence),
         (mach, section_speed / s.speed_of_sound),
     ]
 

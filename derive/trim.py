@@ -3,6 +3,9 @@
 Unknowns are coning, lag, elastic pitch and, for a windmilling rotor, the collective that makes the torque vanish. The
 Jacobian is made of the same entries as the blade's stiffness matrix: elastic pitch and collective add up to the
 section's pitch, and only the control system tells them apart.
+
+The path from the undeflected blade to the trim multiplies the airloads and the steady centrifugal load of precone by
+one number from 0 to 1; centrifugal stiffness and springs stay whole.
 """
 
 from __future__ import annotations
@@ -11,10 +14,11 @@ import sympy as sp
 
 from derive import flap_lag_springs, pitch
 from derive import symbols as s
-from derive.inertia import BladeInertia
+from derive.inertia import BladeInertia, trim_integrals
 
 BALANCES = ("flap", "lag", "pitch", "azimuth")
 UNKNOWNS = ("flap", "lag", "pitch", "collective")
+HINGED = ("flap", "lag", "pitch")  # balances of the blade, which the path loads
 # Rows whose steady airloads are wanted: the balances and the thrust.
 STEADY_ROWS = (*BALANCES, "hub_k")
 
@@ -22,6 +26,16 @@ STEADY_ROWS = (*BALANCES, "hub_k")
 def residual(row: str) -> sp.Expr:
     """Inertia, springs and control system at trim; airloads are subtracted from it."""
     return BladeInertia().steady(row) + flap_lag_springs.steady(row) + pitch.steady(row)
+
+
+def precone_load(row: str) -> sp.Expr:
+    """Virtual work of the steady inertia forces on the undeflected blade: what precone alone makes of them."""
+    undeflected = dict.fromkeys((s.coning, s.lag), 0)
+    integrals = {symbol: sp.sympify(value).subs(undeflected) for symbol, value in trim_integrals().items()}
+    load = BladeInertia().steady(row)
+    while load.free_symbols & integrals.keys():  # an integral at trim is made of those before it
+        load = sp.expand(load.subs(integrals))
+    return sp.factor_terms(sp.simplify(load))
 
 
 def blade_coordinate(unknown: str) -> str:

@@ -95,8 +95,9 @@ Picture(figures.gimbal_question)
 # %% [markdown]
 # ## What the print leaves out
 #
-# Twelve named terms are all the difference between the consistent and the published equations; both come from
-# the same derivation.
+# Thirteen named terms are all the difference between the consistent and the published equations; both come from
+# the same derivation. The last one, the damping of turning sections, is dropped by the option `section_damping`:
+# the boundaries on these pages are without it.
 
 # %%
 dropped_terms()

@@ -1,6 +1,7 @@
 """Settings of all tests."""
 
 import sys
+import weakref
 
 import pytest
 from hypothesis import settings
@@ -13,6 +14,22 @@ providers.is_local_module_file = lambda path: False
 # A first example that has to import a library is slow, and no fault.
 settings.register_profile("proprotor", deadline=None)
 settings.load_profile("proprotor")
+
+
+_opened: "weakref.WeakSet[object]" = weakref.WeakSet()
+sys.addaudithook(lambda event, given: _opened.add(given[0]) if event == "socket.__new__" else None)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def no_socket_left_open():
+    """Who opens a socket closes it.
+
+    Else the garbage collector does, some time later, with a warning that fails whatever test runs then.
+    """
+    before = set(_opened)
+    yield
+    left = [opened for opened in set(_opened) - before if opened.fileno() != -1]
+    assert not left, left
 
 
 @pytest.fixture(autouse=True)

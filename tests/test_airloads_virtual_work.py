@@ -6,6 +6,8 @@ converged quadrature on the other side. A block is held to 1e-11 of its largest 
 largest term.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -44,24 +46,31 @@ CASES = {
     },
     "hinges inboard of the cutout": {"seed": 8, "airspeed": 110.0, "trim": POWERED, "root_cutout": 0.9},
     "slow flight": {"seed": 9, "airspeed": 20.0, "trim": {"collective": 0.2}},
+    "no section damping": {"seed": 10, "airspeed": 105.0, "trim": "windmill", "section_damping": False},
+    "no section damping, powered, tables": {
+        "seed": 11,
+        "tables": True,
+        "airspeed": 100.0,
+        "trim": POWERED,
+        "section_damping": False,
+    },
 }
 
 
 class Case:
     """A rotor in the air, in the package and in the oracle."""
 
-    def __init__(self, seed, airspeed, trim, compressibility=True, **rotor):
+    def __init__(self, seed, airspeed, trim, compressibility=True, section_damping=True, **rotor):
         self.pair = random_rotor(seed, **rotor)
-        self.airspeed, self.compressibility = airspeed, compressibility
+        self.airspeed = airspeed
+        self.switches = {"compressibility": compressibility, "section_damping": section_damping}
         self.operation = pp.Operation(
             rotor_speed=self.pair.rotor_speed, density=DENSITY, speed_of_sound=SPEED_OF_SOUND, trim=trim
         )
-        self.air = self.pair.air(airspeed, DENSITY, compressibility)
+        self.air = self.pair.air(airspeed, DENSITY, **self.switches)
 
     def model(self, **options):
-        model = pp.rotor_model(
-            self.pair.package, self.operation, self.airspeed, compressibility=self.compressibility, **options
-        )
+        model = pp.rotor_model(self.pair.package, self.operation, self.airspeed, **self.switches, **options)
         assert model.trim.converged, model.trim.reason
         return model
 
@@ -134,7 +143,7 @@ def test_thrust_and_torque_are_the_steady_loads_of_the_hub(case):
         assert abs(torque) > 0.1 * scale, "a powered trim must carry a steady torque"
 
 
-@pytest.mark.parametrize("name", ["windmilling", "powered, tables", "incompressible"])
+@pytest.mark.parametrize("name", ["windmilling", "powered, tables", "incompressible", "no section damping"])
 def test_lift_slope_airloads_keep_the_change_of_incidence_alone(name):
     """At the trim of the full airloads."""
     case = Case(**CASES[name])
@@ -168,13 +177,15 @@ def pitch_flap_and_pitch_lag_coupling(rotor, trim):
 
 @pytest.mark.parametrize("name", ["windmilling", "powered, tables"])
 def test_quasi_static_pitch_couples_flap_and_lag_into_the_airloads(name):
-    """Pitch follows −K_Pβ δβ − K_Pζ δζ of each blade in the airloads only."""
+    """Pitch follows −K_Pβ δβ − K_Pζ δζ of each blade in the airloads only, a static angle that turns no section."""
     case = Case(**CASES[name])
     model, airloads = case.airloads(pitch="coupling")
     rotor, trim = case.oracle(model)
     flap_coupling, lag_coupling = pitch_flap_and_pitch_lag_coupling(rotor, trim)
     _, C, K = linearised(lambda q, time: airload_rows(case.air, rotor, q, time), trim, 0.0)
-    pitch = K[:, PITCH : PITCH + 3].copy()
+    unturned = replace(case.air, section_damping=False)
+    _, _, by_angle = linearised(lambda q, time: airload_rows(unturned, rotor, q, time), trim, 0.0)
+    pitch = by_angle[:, PITCH : PITCH + 3]
     K[:, FLAP : FLAP + 3] -= flap_coupling * pitch
     K[:, LAG : LAG + 3] -= lag_coupling * pitch
     case.assert_match(airloads, (np.zeros_like(C), C, K), model)

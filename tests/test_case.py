@@ -105,7 +105,7 @@ def test_a_deck_has_the_fields_of_what_it_describes():
     def names(kind) -> set[str]:
         return {entry.name for entry in fields(kind)}
 
-    instead = {"flap_frequency", "lag_frequency", "lock_number", "mass_distribution"}
+    instead = {"flap_frequency", "lag_frequency", "lock_number", "mass_distribution", "hub_mass"}
     beside = {"frequencies"}  # of the case, as its drive train
     assert set(RotorSection.model_fields) - instead - beside == names(Rotor)
     assert set(AirfoilSection.model_fields) - {"table"} == names(Airfoil)

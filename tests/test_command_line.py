@@ -40,7 +40,7 @@ def expected():
 def test_table_has_a_row_for_each_airspeed_and_the_support_modes(table, expected):
     rows = [line.split() for line in table.splitlines() if line.strip()[:3].isdigit()]
     assert [float(row[0]) for row in rows] == [300, 320, 340, 360, 380, 400]
-    header = next(line for line in table.splitlines() if "torsion" in line)
+    header = next(line for line in table.splitlines() if line.strip().startswith("beam"))
     assert {"beam", "chord", "torsion"} <= set(header.split())
     per_rev = expected.frequency.sel(mode="beam").values[0] / pp.load_case("xv15").operation.rotor_speed
     percent = 100 * expected.damping_ratio.sel(mode="beam").values[0]
@@ -191,7 +191,7 @@ def test_every_option_of_the_model_is_a_flag_that_says_what_it_does():
     for name, choices in CHOICES.items():
         # a structure that is not given is the deck's, see test_deck_rotor_options.py
         assert parameters[name].default == (choices[0] if name != "structure" else None)
-        if not isinstance(choices[0], bool):
+        if not isinstance(choices[-1], bool):
             assert tuple(parameters[name].type.choices) == choices
     assert tuple(parameters["locked"].type.choices) == LOCKABLE
 

@@ -8,9 +8,10 @@ import pytest
 from derive import consequences, printed, table_audit
 from derive.equations import REDUCED_MODULES
 from derive.published import DROPPED_TERMS, PUBLISHED
+from proprotor.options import Options
 
 
-@pytest.mark.parametrize("term", DROPPED_TERMS)
+@pytest.mark.parametrize("term", [name for name, term in DROPPED_TERMS.items() if not term.option])
 def test_a_module_that_a_term_does_not_reach_does_not_name_it(term):
     """The derivation of a module names the terms it can lose, in its own source or in that of the kinematics."""
     reached = consequences.reached_by(term)
@@ -21,6 +22,15 @@ def test_a_module_that_a_term_does_not_reach_does_not_name_it(term):
             assert module in reached
         elif term != "yoke_roll":  # asked for by the kinematics, which all modules use
             assert module not in reached
+
+
+@pytest.mark.parametrize("name", [name for name, term in DROPPED_TERMS.items() if term.option])
+def test_a_term_that_an_option_drops_reaches_no_module_and_is_off_in_the_published_set_alone(name):
+    assert not consequences.reached_by(name)
+    option = DROPPED_TERMS[name].option
+    assert getattr(Options(), option) is True
+    assert getattr(Options(equations="published"), option) is False
+    assert consequences.AS_THE_PAPER[option] is False
 
 
 def test_yoke_roll_reaches_every_module_that_has_the_gimbal():

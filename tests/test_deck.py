@@ -174,7 +174,7 @@ MISTAKES = [
     (
         "includes_rotor = true",
         'includes_rotor = "yes"',
-        "support.includes_rotor = yes: must be true or false",
+        'support.includes_rotor = yes: must be "gimballed" or "rigid" or "mass only" or true or false',
     ),
     ("n_blades = 3", "n_blades = 2", "rotor.n_blades = 2: must be a whole number, at least 3"),
     ("n_blades = 3", "n_blades = 3.5", "rotor.n_blades = 3.5: must be a whole number, at least 3"),

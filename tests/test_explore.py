@@ -57,11 +57,20 @@ def random_designs(case, count):
 
 
 def test_modes_are_those_of_sweep_under_the_same_names(case, speeds):
+    told_apart = 0
     for values in ({}, *random_designs(case, 8)):
         live, exact = live_modes(case, speeds, values), case.vary(values).sweep(speeds)
         assert live.names == exact.mode.values.tolist(), values
-        np.testing.assert_allclose(live.eigenvalue, exact.eigenvalue.values, rtol=1e-9, atol=1e-9)
+        found = np.stack([live.eigenvalue, exact.eigenvalue.values])
+        if (
+            exact.tracking_quality.min() == 0
+        ):  # two roots meet, of which the sweep looks between the airspeeds too
+            found = np.sort(found, axis=2)
+        else:
+            told_apart += 1
+        np.testing.assert_allclose(*found, rtol=1e-9, atol=1e-9)
         assert live.reason.tolist() == exact.reason.values.tolist()
+    assert told_apart >= 6
 
 
 @pytest.mark.parametrize("changed", [{"pitch": "rigid"}, {"airloads": "none"}, {"rotor_speed": "constant"}])
@@ -272,6 +281,8 @@ async def handshake(address, origin):
     except HTTPClientError as error:
         return error.code
     opened.close()
+    while await opened.read_message() is not None:  # until the server has closed as well, and with it the socket
+        pass
     return 101
 
 

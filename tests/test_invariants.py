@@ -27,6 +27,7 @@ OPTIONS = st.fixed_dictionaries(
     optional={
         "pitch": st.sampled_from(["dynamic", "coupling", "rigid"]),
         "compressibility": st.booleans(),
+        "section_damping": st.booleans(),
         "rotor_speed": st.sampled_from(["windmilling", "constant"]),
         "locked": st.lists(st.sampled_from(["flap", "lag", "pitch", "gimbal"]), unique=True),
     },
@@ -658,10 +659,10 @@ IN_OTHER_UNITS = {
 }
 
 
-def converted(part):
+def converted(part, **instead):
     """A rotor or an operation with its plain numbers in the other units."""
     given = {name: getattr(part, name) for name in IN_OTHER_UNITS if hasattr(part, name)}
-    return replace(part, **{name: IN_OTHER_UNITS[name] * value for name, value in given.items()})
+    return replace(part, **{name: IN_OTHER_UNITS[name] * value for name, value in given.items()}, **instead)
 
 
 def along_blade(distribution, unit):
@@ -673,7 +674,7 @@ def along_blade(distribution, unit):
 
 def in_other_units(flight):
     chord, twist = along_blade(flight.rotor.chord, METRE), along_blade(flight.rotor.twist, 1.0)
-    rotor = replace(converted(flight.rotor), chord=chord, twist=twist)
+    rotor = converted(flight.rotor, chord=chord, twist=twist)
     return Flight(rotor, converted(flight.operation), METRE / SECOND * flight.airspeed)
 
 

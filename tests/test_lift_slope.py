@@ -31,7 +31,10 @@ class Feathered:
     def __init__(self, seed, **options):
         airfoil = pp.Airfoil(lift_slope=5.8, zero_lift_angle=ZERO_LIFT)
         self.pair = random_rotor(seed, airfoil=airfoil)
-        self.options = {"compressibility": False} | options
+        self.options = {
+            "compressibility": False,
+            "section_damping": False,
+        } | options  # its moment has no slope in it
         self.collective = 0.8
         for _ in range(12):  # the inflow depends on the deflection, and that on the collective, a little
             self.deflected = self.in_vacuum()

@@ -1,7 +1,7 @@
 """Normal modes from Nastran results: a wing's modes, written as an .op2 file and read back."""
 
-import builtins
 import io
+import sys
 import warnings
 from contextlib import redirect_stdout
 
@@ -184,14 +184,7 @@ def test_a_damaged_file_is_refused_in_one_line(file, tmp_path, share):
 
 
 def test_without_pynastran_the_extra_is_named(file, monkeypatch):
-    ordinary = builtins.__import__
-
-    def missing(name, *args, **kwargs):
-        if name.startswith("pyNastran"):
-            raise ImportError("No module named 'pyNastran'")
-        return ordinary(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", missing)
+    monkeypatch.setitem(sys.modules, "pyNastran", None)
     with pytest.raises(InputError, match=r'needs pyNastran: pip install "proprotor\[nastran\]"'):
         read(file)
 

@@ -10,7 +10,7 @@ om = pytest.importorskip("openmdao.api")
 from proprotor.openmdao import WhirlFlutter, variable_name  # noqa: E402
 
 INPUTS = ["rotor.precone", "support.modes[chord].frequency"]
-SEARCH = "360:380:10kt"  # around the boundary of the XV-15, at about 373 kt
+SEARCH = "375:395:10kt"  # around the boundary of the XV-15, at about 384 kt
 DIFFERENCES = (
     2e-5  # relative: central differences with steps of 1e-5 of the input, of numbers known to about 1e-12
 )

@@ -8,7 +8,7 @@ import pytest
 
 import proprotor as pp
 from proprotor.plots import plot_damping, plot_frequency, plot_sweep
-from proprotor.sweep_summary import unstable_ranges
+from proprotor.sweep_summary import leaps, unstable_ranges
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -36,6 +36,12 @@ def line_of(ax, label):
     return next(line for line in ax.lines if line.get_label() == label)
 
 
+def points_of(ax, label):
+    """What is drawn of a line (2, points), without the gaps in it."""
+    points = np.array(line_of(ax, label).get_xydata()).T
+    return points[:, np.isfinite(points[1])]
+
+
 @pytest.mark.parametrize("plot", [plot_frequency, plot_damping])
 def test_a_plot_goes_into_the_axes_given_and_returns_them(sweep, plot):
     figure, (left, right) = plt.subplots(1, 2)
@@ -54,23 +60,38 @@ def test_lines_are_the_numbers_of_the_sweep(case, sweep):
     above, below = figure.axes
     for mode in sweep.mode.values.tolist():
         data = sweep.sel(mode=mode)
-        np.testing.assert_allclose(line_of(above, mode).get_xdata(), sweep.airspeed / KNOT)
-        np.testing.assert_allclose(
-            line_of(above, mode).get_ydata(), data.frequency / case.operation.rotor_speed
-        )
-        np.testing.assert_allclose(line_of(below, mode).get_ydata(), 100 * data.damping_ratio)
+        airspeed = sweep.airspeed / KNOT
+        per_rev, percent = data.frequency / case.operation.rotor_speed, 100 * data.damping_ratio
+        np.testing.assert_allclose(points_of(above, mode), [airspeed, per_rev])
+        np.testing.assert_allclose(points_of(below, mode), [airspeed, percent])
     assert below.get_ylim() == (-5, 20)
     assert "kt" in below.get_xlabel()
     assert "per rev" in above.get_ylabel()
     assert "critical" in below.get_ylabel()
 
 
+def test_a_line_is_broken_where_its_name_leaps_to_another_root_and_goes_on_where_roots_veer(sweep):
+    """Near 130 kt chord and regressive lag exchange motions at 7 % of critical; near 380 kt a name leaps to 80 %."""
+    leaping = leaps(sweep)
+    passes = sweep.branch.values[1:] != sweep.branch.values[:-1]
+    assert (leaping & ~passes).sum() == 0 and (passes & ~leaping).any() and leaping.any()
+    ax = plot_damping(sweep)
+    for place, mode in enumerate(sweep.mode.values.tolist()):
+        x, y = np.array(line_of(ax, mode).get_xydata()).T
+        gaps = x[np.isnan(y)]
+        between = sweep.airspeed.values[np.flatnonzero(leaping[:, place])] / KNOT
+        np.testing.assert_allclose(gaps, between + 5)
+    chord = sweep.eigenvalue.sel(mode="chord").values
+    assert not leaping[:, sweep.mode.values.tolist().index("chord")].any()
+    assert np.abs(np.diff(chord)).max() < 0.03 * np.abs(chord).min()
+    told = plot_sweep(sweep).texts
+    assert any("broken" in text.get_text() for text in told)
+
+
 def test_frequency_is_in_hertz_when_the_rotor_speed_is_not_known(sweep):
     ax = plot_frequency(sweep)
     assert "Hz" in ax.get_ylabel()
-    np.testing.assert_allclose(
-        line_of(ax, "beam").get_ydata(), sweep.frequency.sel(mode="beam") / (2 * np.pi)
-    )
+    np.testing.assert_allclose(points_of(ax, "beam")[1], sweep.frequency.sel(mode="beam") / (2 * np.pi))
 
 
 def test_no_two_modes_look_the_same(sweep):
@@ -157,4 +178,4 @@ def test_an_unknown_unit_is_an_input_error(sweep):
 def test_unstable_ranges_are_interpolated_between_neighbouring_points(sweep, growth, expected):
     few = sweep.isel(airspeed=slice(3), mode=slice(1)).assign_coords(airspeed=[0.0, 10.0, 20.0])
     few["eigenvalue"] = ("airspeed", "mode"), np.array(growth)[:, None] + 2j
-    assert [found[1:] for found in unstable_ranges(few)] == expected
+    assert [found[1:5] for found in unstable_ranges(few)] == expected

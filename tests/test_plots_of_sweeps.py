@@ -36,7 +36,7 @@ def fan(case):
 @pytest.fixture(scope="module")
 def along_stiffness(case):
     stiffness = np.linspace(5000, 12000, 15) * FOOT_POUND
-    return case.sweep("350 kt", vary={"rotor.control_stiffness": stiffness})
+    return case.sweep("370 kt", vary={"rotor.control_stiffness": stiffness})
 
 
 @pytest.fixture(autouse=True)
@@ -71,8 +71,9 @@ def test_a_root_locus_has_the_roots_of_the_sweep(case, sweep):
     ax = plots.plot_root_locus(sweep, rotor_speed=omega)
     for mode in sweep.mode.values.tolist():
         roots = sweep.eigenvalue.sel(mode=mode).values / omega
-        np.testing.assert_allclose(line_of(ax, mode).get_xdata(), roots.real, atol=1e-9)
-        np.testing.assert_allclose(line_of(ax, mode).get_ydata(), np.abs(roots.imag), atol=1e-12)
+        drawn = np.array(line_of(ax, mode).get_xydata())
+        drawn = drawn[np.isfinite(drawn[:, 0])]  # without gaps where the name leaps to another root
+        np.testing.assert_allclose(drawn, np.column_stack([roots.real, np.abs(roots.imag)]), atol=1e-9)
     assert "per rev" in ax.get_xlabel() and "per rev" in ax.get_ylabel()
     assert "rad/s" in plots.plot_root_locus(sweep).get_xlabel()
 

@@ -10,7 +10,7 @@ import proprotor as pp
 from benchmarks import reed_bland as report
 from proprotor.assembly import mount
 from proprotor.errors import InputError
-from proprotor.model import HUB, rigid_hub_mass
+from proprotor.model import HUB
 from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
 from proprotor.structural_damping import neutral_damping
 from proprotor.support import two_axis_pivot
@@ -34,7 +34,7 @@ def small_propeller(airspeed, derivatives=None, **instead):
 
 def reported_points(ratio):
     model = reported_propeller()
-    return report.neutral(model, model.M, ratio)
+    return report.neutral(model, ratio)
 
 
 # The report's propeller -------------------------------------------------------------------------------------
@@ -88,10 +88,10 @@ def test_backward_whirl_is_the_one_that_needs_damping(ratio):
 def test_neutral_among_all_modes(ratio, factor, backward):
     """At one frequency a structural damping is a viscous one, and the eigenvalues say the same."""
     model = reported_propeller()
-    points = report.neutral(model, model.M, ratio)
+    points = report.neutral(model, ratio)
     for place in range(len(J)):
         support = report.pivot(ratio, factor * points.damping[place, 0], points.frequency[place, 0])
-        modes = mount(model, support, model.M[place]).modes().isel(airspeed=place)
+        modes = mount(model, support).modes().isel(airspeed=place)
         low, high = modes.damping_ratio.values
         assert high > 0.01
         assert np.sign(np.round(low, 9)) == backward
@@ -111,7 +111,7 @@ def test_the_slow_mode_of_a_spinning_body_whirls_backward_in_a_vacuum():
 def test_the_share_of_the_propeller_in_the_pivot_inertia_does_not_matter():
     heavy, light = (report.propeller(J, report.reported_derivatives(J), mass) for mass in (200.0, 0.0))
     support = report.pivot(1.96)
-    np.testing.assert_allclose(mount(heavy, support, heavy.M).M, mount(light, support, light.M).M, rtol=1e-12)
+    np.testing.assert_allclose(mount(heavy, support).M, mount(light, support).M, rtol=1e-12)
 
 
 # In a rotor's place -----------------------------------------------------------------------------------------
@@ -131,12 +131,12 @@ def test_one_array_of_airspeeds_or_many_numbers():
 
 def test_what_is_refused():
     model, support = reported_propeller(), report.pivot(1.0)
-    with pytest.raises(InputError, match="rigid_mass: must be given"):
-        mount(model, support)
+    with pytest.raises(InputError, match="mass_at_rest: must be given with the model"):
+        mount(replace(model, mass_at_rest=None), support)
     with pytest.raises(InputError, match="dofs = x, y: must begin with x, y, z, alpha_x"):
-        mount(model.submodel(("x", "y")), support, model.M)
+        mount(model.submodel(("x", "y")), support)
     with pytest.raises(InputError, match=r"springs = .*: must be invertible on pitch, yaw"):
-        neutral_damping(mount(model, support, model.M), np.diag([1.0, 0.0]))
+        neutral_damping(mount(model, support), np.diag([1.0, 0.0]))
     with pytest.raises(InputError, match=r"diametral_inertia = -1\.0: must not be negative"):
         small_propeller(50.0, diametral_inertia=-1.0)
     with pytest.raises(InputError, match="m_q = nan: must be finite"):
@@ -150,7 +150,7 @@ def test_viscous_damping_alone_and_failed_points():
     support = two_axis_pivot(0.5, (2.0, 3.0), (200.0, 1200.0), (1.0, 6.0), includes_rotor=True)
     model = small_propeller([0.0, 0.0], rotor_speed=0.0, mass=0.0, diametral_inertia=0.0)
     model.M[1], model.K[1] = np.nan, np.nan
-    points = neutral_damping(mount(model, support, np.zeros((6, 6))), support.stiffness)
+    points = neutral_damping(mount(model, support), support.stiffness)
     np.testing.assert_allclose(points.damping[0, :2], [-0.05, -0.1], rtol=1e-9)
     np.testing.assert_allclose(points.frequency[0, :2], [10.0, 20.0], rtol=1e-9)
     assert np.isnan(points.damping[0, 2:]).all() and np.isnan(points.damping[1]).all()
@@ -264,7 +264,7 @@ def test_one_fitted_chord_gives_the_derivatives_at_every_blade_angle():
 def test_the_rotor_mounts_as_the_propeller_does():
     rotor = report.bladed_rotor(chord=0.4)
     model = report.rotor_on_hub(rotor, J)
-    mounted = mount(model, report.pivot(1.0), rigid_hub_mass(rotor))
+    mounted = mount(model, report.pivot(1.0))
     assert mounted.dofs == ("pitch", "yaw")
     np.testing.assert_allclose(
         mounted.M, np.broadcast_to(report.PIVOT_INERTIA * np.eye(2), mounted.M.shape), rtol=1e-12, atol=1e-9

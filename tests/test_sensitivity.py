@@ -13,7 +13,7 @@ from tests.known_systems import linear_model
 
 KNOT = 1852 / 3600
 AIRSPEED = 300 * KNOT
-SPEED_OF_XV15 = 198.3  # m/s, roughly: of the chord mode with the hinges below
+SPEED_OF_XV15 = 204.6  # m/s, roughly: of the chord mode with the hinges below
 LEVELS = 7  # of differences, each with half the step of the one before
 # Of eigenvalues and of flutter speeds: relative, for what changes them by more than a ten-thousandth part when it
 # doubles. Below that rounding of the eigenvalues, some 1e-13 of the largest, is all that differences see.
@@ -135,7 +135,7 @@ def neutral_points(design, near, points):
 
 
 def test_the_flutter_speed_by_every_input_of_the_deck(case):
-    found = sensitivity(case, airspeed="330:390:20kt")
+    found = sensitivity(case, airspeed="330:410:20kt")
     assert found.attrs["value"] == pytest.approx(SPEED_OF_XV15, abs=0.5)
     frequency = neutral_points(case, 33j, 1)[0, 1]
     paths = found.input.values.tolist()
@@ -186,17 +186,21 @@ def test_a_boundary_of_another_level(case, level):
 
 
 def test_density_and_chord_act_alike():
-    """Airloads are proportional to ρ c, and nothing else depends on either: p dV/dp is the same."""
-    relative = pp.load_case("xv15").sensitivity(wrt=["operation.density", "rotor.chord"]).relative.values
+    """Airloads are proportional to ρ c, but for the damping of turning sections, and nothing else depends on either:
+
+    p dV/dp is the same.
+    """
+    inputs = ["operation.density", "rotor.chord"]
+    relative = pp.load_case("xv15").sensitivity(wrt=inputs, section_damping=False).relative.values
     assert relative[0] == pytest.approx(relative[1], rel=1e-10)
 
 
 def test_what_a_dataset_tells(case):
-    found = sensitivity(case, wrt=["rotor.precone", "operation.rotor_speed"], airspeed="350:390:20kt")
+    found = sensitivity(case, wrt=["rotor.precone", "operation.rotor_speed"], airspeed="350:410:20kt")
     assert found.unit.values.tolist() == ["rad", "rad/s"]
     assert found.value.values.tolist() == [case.given[path].si for path in found.input.values]
     np.testing.assert_allclose(found.relative, found.derivative * found.value)
-    assert found.attrs["mode"] == "chord" and 350 * KNOT < found.attrs["value"] < 390 * KNOT
+    assert found.attrs["mode"] == "chord" and 350 * KNOT < found.attrs["value"] < 410 * KNOT
     assert found.defect >= 1 and not found.nearly_defective
 
 

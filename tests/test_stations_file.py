@@ -138,9 +138,10 @@ def test_a_deck_with_its_stations_in_a_file(file, monkeypatch):
     file(STATIONS)
     path = deck(
         file,
-        'twist = { file = "stations.csv", column = "twist", status = "published", source = "a drawing" }\n'
-        'chord = { file = "stations.csv", column = "chord" }\n'
-        'mass_distribution = { file = "stations.csv", column = "mass_per_length" }',
+        'twist = { file = "stations.csv", column = "twist", beyond = "held", status = "published", '
+        'source = "a drawing" }\n'
+        'chord = { file = "stations.csv", column = "chord", beyond = "held" }\n'
+        'mass_distribution = { file = "stations.csv", column = "mass_per_length", beyond = "nothing" }',
     )
     monkeypatch.chdir("/")  # the name starts from the deck's folder
     case, radius = pp.load_case(path), 12.5 * FOOT
@@ -151,7 +152,7 @@ def test_a_deck_with_its_stations_in_a_file(file, monkeypatch):
     mass = np.array([0.32, 0.20, 0.15]) * SLUG / FOOT
     assert case.rotor.blade_mass == pytest.approx(np.trapezoid(mass, r), rel=1e-8)
     assert case.sources["rotor.twist"].status == "published"
-    assert case.sources["rotor.twist"].written == "3 values of twist in stations.csv"
+    assert case.sources["rotor.twist"].written == "3 values of twist in stations.csv, held beyond"
     assert case.sources["rotor.chord"].status == "unstated"
 
 

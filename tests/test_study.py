@@ -4,10 +4,7 @@ A batch must give the bits of single points, so comparisons with `case.vary(...)
 """
 
 import json
-import os
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +18,6 @@ import proprotor as pp
 from proprotor import flutter_scan, sampling, study_workers
 from proprotor.command_line import main
 from proprotor.errors import InputError
-from proprotor.fingerprint import fingerprint
 from proprotor.modes import state_matrix
 from proprotor.results_file import load_results, save_results
 from proprotor.study import study
@@ -85,7 +81,9 @@ def test_airspeeds_alone_make_a_study():
 
 def test_every_variable_has_its_unit_and_meaning():
     found = study(CASE, {PRECONE: [0.04]}, [120.0, 125.0], QUANTITIES)
-    assert set(found.data_vars) == set(variables(QUANTITIES))
+    assert set(found.data_vars) == set(variables(QUANTITIES)) - {
+        "missing"
+    }  # told where there is something to tell
     units = {name: it.attrs.get("units") for name, it in found.variables.items()}
     assert units["eigenvalue"] == units["frequency"] == "rad/s"
     assert (units["growth_rate"], units["thrust"], units["torque"]) == ("1/s", "N", "N*m")
@@ -306,14 +304,15 @@ def test_flutter_speed_is_that_of_a_root_finder_on_single_points():
 
 def test_a_design_whose_search_meets_a_bad_input_spoils_no_other():
     """A frequency that is none between two airspeeds of the range, where one design has its boundary."""
-    inputs = sampling.points({CHORD_MODE: [30.0, 28.0, 31.0, 33.0]})
-    options = {"structure": "tabulated"}
+    inputs = sampling.points({CHORD_MODE: [30.0, 28.0, 29.5, 29.0]})
+    # Without pitch equations no mode is undamped: the growth whose zero is sought is none of rounding.
+    options = {"structure": "tabulated", "pitch": "coupling"}
 
     def flap(gap):
         return lambda speed: np.where((speed > gap[0]) & (speed < gap[1]), -1.0, 1.85)
 
     def analysed(gap):
-        table = pp.BladeFrequencies(against="airspeed", at=[0, 300], flap=flap(gap), lag=1.3)
+        table = pp.BladeFrequencies(against="airspeed", at=[0, 300], flap=flap(gap), lag=1.2)
         return study(CASE, inputs, "160:460:20kt", "flutter", frequencies=table, workers=1, **options)
 
     whole = analysed((0.0, 0.0))
@@ -495,63 +494,6 @@ def test_a_progress_bar_counts_points(capsys):
     assert "4/4" in told and "1 failed" in told
     study(CASE, {PRECONE: [0.04]}, 110.0)
     assert capsys.readouterr().err == ""
-
-
-# Fingerprints -------------------------------------------------------------------------------------
-
-
-def test_a_fingerprint_is_the_same_in_another_process():
-    imports = "import proprotor as pp; from proprotor.fingerprint import fingerprint"
-    command = f"{imports}; print(fingerprint(pp.load_case('xv15')))"
-    seed = {"PYTHONHASHSEED": "1" if os.environ.get("PYTHONHASHSEED") != "1" else "2"}
-    done = subprocess.run(
-        [sys.executable, "-c", command], env=os.environ | seed, capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == fingerprint(CASE)
-
-
-def test_a_fingerprint_tells_apart():
-    different = [
-        1,
-        1.0,
-        True,
-        "1",
-        b"1",
-        None,
-        (1,),
-        [1],
-        ["1"],
-        ("a", "bc"),
-        ("ab", "c"),
-        {"a": 1},
-        {"a": 2},
-        np.array([1.0]),
-        np.array([[1.0]]),
-        np.array([1]),
-        0.0,
-        -0.0,
-        lambda r: r,
-        lambda r: r + 1,
-        lambda r: r + 2,
-        lambda r: max(r, key=lambda x: x + 1),
-        lambda r: max(r, key=lambda x: x + 2),
-        {"a"},
-        {"a", "b"},
-        np.array(["a", None], dtype=object),
-        np.array(["b", None], dtype=object),
-        np.sin,
-        np.cos,
-        CASE,
-        replace(CASE, rotor=replace(CASE.rotor, precone=np.nextafter(CASE.rotor.precone, 1))),
-    ]
-    assert len({fingerprint(one) for one in different}) == len(different)
-    assert fingerprint({"a": 1, "b": 2}) == fingerprint({"b": 2, "a": 1})
-    assert fingerprint(set("abc")) == fingerprint(set("cab"))
-
-
-def test_what_cannot_be_told_has_no_fingerprint():
-    with pytest.raises(InputError, match=r"^checkpoint = builtins.object: stands among the inputs"):
-        fingerprint([1, object()])
 
 
 # Files --------------------------------------------------------------------------------------------

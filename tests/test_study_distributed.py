@@ -1,5 +1,6 @@
 """A study on a real cluster of worker processes, one of which is killed in the middle."""
 
+import gc
 import os
 import signal
 from threading import Timer
@@ -31,6 +32,7 @@ def client():
         distributed.Client(cluster) as client,
     ):
         yield client
+    gc.collect()  # what the killed worker left open is found here, not during the test of another module
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,8 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -248,10 +250,133 @@ def test_a_folder_of_something_else_is_refused(tmp_path):
     ]
 
 
+# One study at a time ------------------------------------------------------------------------------
+
+
 def test_two_studies_do_not_share_a_folder(tmp_path):
-    with Checkpoint(tmp_path).held(), pytest.raises(InputError, match="in use"):
-        run(tmp_path)
+    """Neither another process nor another thread; and who is refused removes nothing."""
+    with Checkpoint(tmp_path).open({}, {}):
+        unfinished = tmp_path / ".proprotor-0123456789abcdef.tmp"
+        unfinished.write_bytes(b"half of a batch")
+        with pytest.raises(InputError, match="in use by a study that is running"):
+            run(tmp_path)
+        assert unfinished.read_bytes() == b"half of a batch"
     study_workers.end_workers()
+
+
+TOGETHER = """
+import sys, time
+import numpy as np
+from proprotor import InputError
+from proprotor.checkpoint import Checkpoint
+
+name = sys.argv[1]
+for folder in sys.stdin:
+    try:
+        kept = Checkpoint(folder.strip())
+        with kept.open({"study": name}, {"batches": 3}):
+            for number in range(3):
+                kept.save(number, {"x": np.full(100, float(name))})
+            time.sleep(0.01)
+        print("kept", flush=True)
+    except InputError as error:
+        print(error.rule, flush=True)
+"""
+
+
+def test_studies_begun_together_in_one_folder_never_mix(tmp_path):
+    """Forty times four processes: one has the folder, and what is in it is that one's."""
+    command = [sys.executable, "-c", TOGETHER]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "bufsize": 1}
+    others = [subprocess.Popen([*command, str(number)], **pipes) for number in range(4)]
+    try:
+        for turn in range(40):
+            folder = tmp_path / str(turn)
+            for process in others:
+                process.stdin.write(f"{folder}\n")
+            told = [process.stdout.readline().strip() for process in others]
+            assert told.count("kept") == 1, told
+            winner = str(told.index("kept"))
+            refusals = ("is in use by a study that is running", "holds another study (different: study)")
+            assert all(text == "kept" or text.startswith(refusals) for text in told)
+            kept = Checkpoint(folder)
+            with kept.open({"study": winner}, {"batches": 3}):
+                found = dict(kept.finished(3))
+            assert sorted(found) == [0, 1, 2]
+            assert all((batch["x"] == float(winner)).all() for batch in found.values())
+    finally:
+        for process in others:
+            process.communicate()
+
+
+def test_studies_of_threads_never_mix(tmp_path):
+    """The same call twice at once is one study; the numbers are its own, whoever had the folder."""
+
+    def begun(precone):
+        try:
+            return study(CASE, {PRECONE: [precone]}, 100.0, batch=1, checkpoint=tmp_path, workers=1)
+        except InputError as error:
+            return error.rule
+
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(begun, (0.02, 0.03, 0.04, 0.05)))
+    kept = [results for results in found if not isinstance(results, str)]
+    assert len(kept) == 1
+    xr.testing.assert_identical(kept[0], study(CASE, {PRECONE: kept[0][PRECONE].values}, 100.0, workers=1))
+
+
+DIES = """
+import os, signal, sys
+from proprotor.checkpoint import Checkpoint
+with Checkpoint(sys.argv[1]).open({}, {}):
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_the_hold_of_a_study_that_was_killed_holds_nobody(tmp_path):
+    done = subprocess.run([sys.executable, "-c", DIES, tmp_path])
+    assert done.returncode == -signal.SIGKILL
+    with Checkpoint(tmp_path).open({}, {}):
+        pass
+
+
+def test_a_batch_of_another_study_is_none_of_this(finished, tmp_path, uninterrupted):
+    """Even where one was copied into the folder, or two were exchanged."""
+    run(tmp_path / "other", case=CASE.vary({PRECONE: 0.0437}))
+    first, second, third = sorted(finished.glob("batch-*"))[:3]
+    shutil.copy(tmp_path / "other" / first.name, first)
+    exchanged = second.read_bytes(), third.read_bytes()
+    third.write_bytes(exchanged[0])
+    second.write_bytes(exchanged[1])
+    with pytest.warns(UserWarning, match="is damaged: the batch is computed again") as told:
+        found = run(finished)
+    assert len(told) == 3
+    xr.testing.assert_identical(found, uninterrupted)
+
+
+class Lead:
+    """A blade whose frequency is a method of an object, as people write them."""
+
+    def __init__(self, value):
+        self.value = value
+
+    def curve(self, x):
+        return self.value + 0 * x
+
+
+def test_a_study_of_other_functions_is_another(tmp_path):
+    """Frequencies by methods of two objects: the second call once returned the results of the first."""
+
+    def of(value):
+        table = pp.BladeFrequencies(flap=Lead(value).curve, lag=1.5)
+        return replace(CASE, frequencies=table)
+
+    inputs = {"inputs": {PRECONE: [0.03]}, "airspeed": 100.0, "structure": "tabulated"}
+    found = run(tmp_path, case=of(1.1), **inputs)
+    xr.testing.assert_identical(run(tmp_path, case=of(1.1), **inputs), found)
+    with pytest.raises(InputError, match=r"holds another study \(different: case\)"):
+        run(tmp_path, case=of(1.9), **inputs)
+    assert not np.array_equal(run(None, case=of(1.9), **inputs).eigenvalue, found.eigenvalue)
 
 
 def test_a_study_that_ends_with_an_error_keeps_what_it_has(tmp_path, uninterrupted, monkeypatch):

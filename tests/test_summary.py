@@ -54,9 +54,12 @@ def test_a_flutter_point_says_the_speed_in_knots_and_all_boundaries():
     assert f"{knots:.2f} kt" in told and "flutter of chord" in told
     assert f"{found.frequency / (2 * math.pi):.4g} Hz" in told
     assert len(told.splitlines()) >= len(found.boundaries)
-    assert "from the start beyond the level: progressive pitch" in told
+    undamped = repr(CASE.flutter_point("100:440:20kt", section_damping=False))
+    assert "from the start beyond the level: progressive pitch" in undamped
     nothing = repr(CASE.flutter_point("200:240:20kt"))
-    assert nothing.startswith("FlutterPoint: nothing becomes unstable between 200 and 240 kt")
+    assert nothing.startswith("FlutterPoint: nothing becomes unstable between 200 and 240 kt; least damping ")
+    least = CASE.sweep("200:240:20kt").damping_ratio
+    assert f"least damping {100 * float(least.min()):.2g} % of critical: " in nothing
     assert "3 % counts" in repr(CASE.flutter_point("300:440:20kt", level=0.03))
 
 
@@ -66,6 +69,13 @@ def test_boundaries_are_looked_for_in_the_same_range_as_flutter():
     told = repr(found)
     assert told.startswith(f"{len(found.boundaries)} boundaries from ")
     assert all(repr(boundary) in told for boundary in found.boundaries)
+
+
+def test_a_line_without_boundaries_tells_the_least_damping():
+    found = CASE.boundaries("200:240:20kt")
+    ratio, mode, position = found.least
+    told = f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
+    assert repr(found).startswith("0 boundaries from ") and repr(found).endswith(told)
 
 
 def test_one_input_that_varies_needs_an_airspeed():

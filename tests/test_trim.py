@@ -118,9 +118,15 @@ def slopes(rotor, operation, airspeed, step):
 
 
 def trimmed(rotor, operation, airspeed):
-    """The model of a rotor that has a trim: one whose controls are soft enough to diverge has none."""
+    """The model of a rotor that has a trim: one whose controls are soft enough to diverge has none.
+
+    Beyond 20 deg rigid hinges are no model of a blade, and neighbouring collectives may find other trims.
+    """
     model = pp.rotor_model(rotor, operation, airspeed)
     assume(model.trim.converged.all())
+    assume(
+        max(abs(getattr(model.trim, name)) for name in ("coning", "lag", "elastic_pitch")) < np.radians(20)
+    )
     return model
 
 

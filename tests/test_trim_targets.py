@@ -12,10 +12,10 @@ from tests.oracles.nonlinear_rotor import AZIMUTH, HUB_MOMENT, UNIT, blades, clo
 from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
 from tests.oracles.virtual_work import (
     airload_rows,
+    nose_up_rotation,
     quadrature,
     section_flow,
     section_loads,
-    virtual_nose_up_rotation,
 )
 from tests.test_airloads_virtual_work import DENSITY, Case
 
@@ -102,7 +102,7 @@ def hub_rotation_rows(air, rotor, q, time):
         rotor, station, Motion(q.value[..., None, :], UNIT[HUB_MOMENT]), clock(rotor, time, running=False)
     )
     work = (force * weight[:, None])[..., None, :, :, :] * virtual.position.rate
-    pitching_work = (moment * weight)[..., None, :, :] * virtual_nose_up_rotation(virtual)
+    pitching_work = (moment * weight)[..., None, :, :] * nose_up_rotation(virtual)
     return -(work.sum((-3, -2, -1)) + pitching_work.sum((-2, -1)))
 
 

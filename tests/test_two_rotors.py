@@ -7,7 +7,7 @@ import pytest
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.model import HUB, rigid_hub_mass, rotor_model
+from proprotor.model import HUB, rotor_model
 from proprotor.modes import state_matrix
 from proprotor.several_rotors import MountedRotor, mount_rotors
 
@@ -40,10 +40,9 @@ def aircraft(case, stiffer):
         names, both(half.mass), both(half.damping), both(half.stiffness, stiffer), right, includes_rotor=True
     )
     rotor = rotor_model(case.rotor, case.operation, [100.0, 160.0], rotor_speed="constant")
-    mass = rigid_hub_mass(case.rotor)
     rotors = {
-        "right": MountedRotor(rotor, right, rigid_mass=mass),
-        "left": MountedRotor(rotor, left, mirrored=True, rigid_mass=mass),
+        "right": MountedRotor(rotor, right),
+        "left": MountedRotor(rotor, left, mirrored=True),
     }
     return mount_rotors(rotors, support)
 
@@ -88,8 +87,9 @@ def test_what_cannot_be_mounted(case):
         mount_rotors({}, case.support)
     with pytest.raises(InputError, match=r"rotors\[a\].hub = array of shape \(6, 2\)"):
         mount_rotors({"a": MountedRotor(rotor, np.eye(6)[:, :2])}, case.support)
-    with pytest.raises(InputError, match=r"rotors\[a\].rigid_mass: must be given"):
-        mount_rotors({"a": MountedRotor(rotor, case.support.hub)}, case.support)
+    with pytest.raises(InputError, match=r"mass_at_rest: must be given with the model"):
+        bare = replace(rotor, mass_at_rest=None)
+        mount_rotors({"a": MountedRotor(bare, case.support.hub)}, case.support)
     with pytest.raises(InputError, match=r"rotors\[a\].model = .* must begin with"):
         mount_rotors({"a": MountedRotor(rotor.submodel(("x", "y")), case.support.hub)}, case.support)
 

@@ -12,6 +12,8 @@ import numpy as np
 from proprotor import stamp
 from proprotor.doubts import MARK, marked
 from proprotor.errors import InputError
+from proprotor.needs import check_memory
+from proprotor.output_file import check_place, write_whole
 from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
@@ -24,6 +26,7 @@ _SIZE = (8.0, 4.4)  # inches
 _PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "side": (0.82, 0.09, 0.17, 0.76)}
 _TITLES = {"3d": "", "front": "from ahead", "side": "from outboard"}
 _COLOURS = 32  # of the GIF
+_CANVAS = 16  # bytes a pixel while one picture is drawn: the canvas, its background, the colours
 _LETTERS = 170  # of a line of the small print
 
 
@@ -58,17 +61,20 @@ def animate_mode(
     Raises
     ------
     InputError
-        For another ending, or numbers that make no animation.
+        For another ending, a file that cannot be written, numbers that make no animation, or pictures that do not fit
+        into memory.
     """
     target = Path(path)
-    if target.suffix.lower() != ".gif":
-        raise InputError("path", str(path), "must end in .gif")
+    check_place(path, ".gif")
     if frames < 4 or not frames_per_second > 0 or not dpi > 0:
         told = f"{frames} frames, {frames_per_second} per second, {dpi} dpi"
         raise InputError("frames", told, "must be at least 4, at a speed and a size above zero")
+    picture = _SIZE[0] * _SIZE[1] * float(dpi) ** 2  # pixels
+    check_memory("frames", frames, picture * (frames + _CANVAS), "the pictures", "take fewer or smaller ones")
     first, *others = _frames(motion, frames, dpi)
     lasts = round(1000 / frames_per_second)
-    first.save(target, save_all=True, append_images=others, duration=lasts, loop=0, optimize=True)
+    given: dict[str, Any] = {"append_images": others, "duration": lasts, "loop": 0, "optimize": True}
+    write_whole(target, lambda file: first.save(file, format="GIF", save_all=True, **given))
     return target
 
 

@@ -7,49 +7,49 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.massless import with_reasons
 from proprotor.mode_names import check_distinct
 from proprotor.model import HUB, LinearModel
+from proprotor.rotor_share import refuse, without_rotors
 from proprotor.support import NormalModes
+from proprotor.trim import Trim
 
 
-def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike | None = None) -> LinearModel:
+def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     """The coupled model on the coordinates of the support and of the rotor without its hub.
 
     Hub motion is Φ p, so by virtual work the rotor's matrices become Tᵀ (...) T, with the support's own
-    added. Where the support's generalised masses include the rotor, its rigid-body share Φᵀ M_hub Φ is
-    taken off first.
+    added. Where the support's generalised masses include the rotor, its share is taken off first:
+    `proprotor.rotor_share`.
 
     Parameters
     ----------
     rotor_alone : LinearModel
-        Six hub coordinates, then any others: `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere.
+        Six hub coordinates, then any others: `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere, these
+        with `mass_at_rest` where the support's masses include the rotor.
     support : NormalModes
-    rigid_mass : array_like, shape (..., 6, 6)
-        M_hub in SI (kg, kg m, kg m²), such as `rigid_hub_mass(rotor)`; only asked for where the support's masses
-        include the rotor.
 
     Returns
     -------
     LinearModel
         With the coordinates of the support first, SI. A point whose mass matrix has no inverse has its matrices, but
-        no modes, and the reason in `trim`.
+        no modes, and the reason in `trim`; one whose support has no mass without the rotor has neither.
 
     Raises
     ------
     InputError
         When the model does not begin with the hub coordinates, a coordinate of the support has the name of one of the
-        rotor's, or a rigid mass is asked for and not given.
+        rotor's, the mass at rest is needed and missing, or the only support there is has no mass without the rotor.
     """
     if rotor_alone.dofs[: len(HUB)] != HUB:
         raise InputError("dofs", ", ".join(rotor_alone.dofs), f"must begin with {', '.join(HUB)}")
     own = rotor_alone.dofs[len(HUB) :]
     _check_names(support.names, own)
-    additions = {"M": _mass_without_rotor(support, rigid_mass), "C": support.damping, "K": support.stiffness}
+    mass, refusal = without_rotors(support, [(support.hub, rotor_alone.mass_at_rest)])
+    additions = {"M": mass, "C": support.damping, "K": support.stiffness}
     shape = np.broadcast_shapes(
         rotor_alone.M.shape[:-2],
         support.hub.shape[:-2],
@@ -70,8 +70,50 @@ def mount(rotor_alone: LinearModel, support: NormalModes, rigid_mass: ArrayLike 
         dofs=(*support.names, *own),
         hub=np.concatenate([support.hub, still], axis=-1),
         rotor=rotor_alone,
+        mass_at_rest=None,
+        shapes=_at_points(support.shapes, shape, 2),
+        trim=_with_warning(rotor_alone.trim, _at_points(support.warning, shape, 0)),
     )
-    return with_reasons(coupled)
+    return refused_where(refusal, with_reasons(coupled), support)
+
+
+def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> LinearModel:
+    """Return the model with NaN and the reason at each point whose support has no mass without its rotors.
+
+    Raises
+    ------
+    InputError
+        When the refusal is that of all points at once.
+    """
+    if not refusal.ndim:
+        refuse(refusal, support)
+    everywhere = np.broadcast_to(refusal, model.M.shape[:-2])
+    if not (refused := everywhere != "").any():
+        return model
+    field = str(InputError("support.includes_rotor", support.includes_rotor, ""))
+    reason = np.where(refused, field + everywhere, model.trim.reason)
+    trim = replace(model.trim, reason=reason, converged=model.trim.converged & ~refused)
+    matrices: dict[str, Any] = {
+        name: np.where(refused[..., None, None], np.nan, getattr(model, name))
+        for name in ("M", "C", "K", "B")
+        if getattr(model, name) is not None
+    }
+    return replace(model, **matrices, trim=trim)
+
+
+def _at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
+    """An array of many designs, with some axes of its own, at each point of a batch."""
+    if values is None:
+        return None
+    return np.broadcast_to(values, (*shape, *values.shape[values.ndim - own :]))
+
+
+def _with_warning(trim: Trim, warning: Array | None) -> Trim:
+    if warning is None:
+        return trim
+    pairs = zip(trim.warning.ravel(), warning.ravel(), strict=True)
+    joined = np.array(["; ".join(filter(None, texts)) for texts in pairs], dtype=object)
+    return replace(trim, warning=joined.reshape(trim.warning.shape))
 
 
 def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
@@ -106,15 +148,8 @@ def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
         name: None if matrix is None else np.broadcast_to(matrix, (*shape, *matrix.shape[-2:]))
         for name, matrix in matrices.items()
     }
-    return replace(
-        model, **matrices, trim=model.trim.broadcast(shape), airspeed=np.broadcast_to(model.airspeed, shape)
-    )
-
-
-def _mass_without_rotor(support: NormalModes, rigid_mass: ArrayLike | None) -> Array:
-    if not support.includes_rotor:
-        return support.mass
-    if rigid_mass is None:
-        raise InputError("rigid_mass", None, "must be given: the support's masses include the rotor")
-    mass: Array = support.mass - np.swapaxes(support.hub, -1, -2) @ np.asarray(rigid_mass) @ support.hub
-    return mass
+    speeds: dict[str, Any] = {
+        name: None if speed is None else np.broadcast_to(speed, shape)
+        for name, speed in (("airspeed", model.airspeed), ("rotor_speed", model.rotor_speed))
+    }
+    return replace(model, **matrices, **speeds, trim=model.trim.broadcast(shape))

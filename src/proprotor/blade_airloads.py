@@ -181,7 +181,7 @@ def load_moments(
     compressibility : bool
         Prandtl-Glauert factor on lift and moment, unless the airfoil holds compressibility already.
     lift_slope_only : bool
-        Keep the terms proportional to the lift slope and no others.
+        Keep the terms proportional to the lift slope and no others: of the sections' damping, its lift.
     steady_only : bool
         The loads without their derivatives, which are left out or zero.
     doubts : dict, optional
@@ -203,7 +203,7 @@ def load_moments(
             _doubt(doubts, here, block, air, rows, points)
         if lift_slope_only:
             coefficients = _lift_slope_alone(coefficients)
-        for name, load in _loads(air, coefficients, spins, steady_only).items():
+        for name, load in _loads(air, coefficients, spins and not lift_slope_only, steady_only).items():
             if np.ndim(load):
                 moments[name][rows] = here.quadrature.moments(load)
     found = {
@@ -222,23 +222,38 @@ def _needed(equations: ModuleType) -> tuple[str, ...]:
 def _aerodynamics(
     sections: BladeSections, segments: Quantities, compressibility: bool, equations: ModuleType
 ) -> tuple[dict[str, Any], SectionCoefficients, bool]:
-    """Air at the stations, the airfoil's coefficients there, and whether the sections' rotation is damped."""
+    """Air at the stations, the airfoil's coefficients there, and whether the sections' rotation is damped.
+
+    Lift has the angle of attack at 3/4 chord, drag and moment that at the quarter chord.
+    """
     spins = _any(segments["section_damping"])
     air = _air(sections, segments, equations, spins)
     coefficients = sections.airfoil.coefficients(air["angle_of_attack"], air["mach"])
+    if spins:
+        coefficients = _with_lift_of(
+            coefficients, sections.airfoil.coefficients(air["lift_incidence"], air["mach"])
+        )
     if compressibility and not sections.airfoil.contains_compressibility:
         coefficients = compressible(coefficients, air["mach"])
     return air, coefficients, spins
 
 
+def _with_lift_of(coefficients: SectionCoefficients, turned: SectionCoefficients) -> SectionCoefficients:
+    lift = {name: value for name, value in turned._asdict().items() if name.startswith("lift")}
+    return coefficients._replace(**lift)
+
+
 def _loads(
-    air: Quantities, coefficients: SectionCoefficients, spins: bool, steady_only: bool
+    air: Quantities, coefficients: SectionCoefficients, damps: bool, steady_only: bool
 ) -> dict[str, Any]:
-    """Loads and derivatives at the stations, by name; a plain number, or nothing, where there are none."""
+    """Loads and derivatives at the stations, by name; a plain number, or nothing, where there are none.
+
+    `damps` says whether there is the moment of the sections' rotation, which no coefficient brings.
+    """
     pool = dict(air) | coefficients._asdict()
     loads: dict[str, Any] = evaluate(section.steady_forces if steady_only else section.forces, pool)._asdict()
     pitching = [value for name, value in coefficients._asdict().items() if name.startswith("moment")]
-    if spins or _any(*pitching):
+    if damps or _any(*pitching):
         loads |= evaluate(section.pitching_moment, pool)._asdict()
     return loads
 
@@ -257,7 +272,7 @@ def _doubt(
     radius = np.ravel(np.real(segments["radius"]))[:, None]
     outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * radius
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
-    found = sections.airfoil.warnings(*(air[name][..., first:] for name in ("angle_of_attack", "mach")))
+    found = sections.airfoil.warnings(*(air[name][..., first:] for name in ("lift_incidence", "mach")))
     for text, mask in found.items():
         if mask.any():
             told = doubts.setdefault(f"{text} outboard of {_OUTBOARD:g} R", np.zeros(points, dtype=bool))

@@ -9,6 +9,8 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
+from proprotor.mode_names import moving
+from proprotor.modes import decomposition
 from proprotor.stability_map import AIRSPEED, largest_growth
 from proprotor.stamp import options_of
 
@@ -27,7 +29,7 @@ class BoundaryLine(NamedTuple):
     Parameters
     ----------
     mode : str
-        Its name.
+        What moves in it at the middle of the line.
     x, y : array (vertices,)
         In SI, as the axes of the map.
     frequency : array (vertices,)
@@ -135,11 +137,9 @@ def _same_mode(frequency: Array, rotor_speed: float) -> Iterator[slice]:
 def _mode_at(
     case: Case, names: list[str], point: Array, frequency: float, airspeed: Any, options: dict[str, Any]
 ) -> str:
-    from proprotor.speed import in_metres_per_second
-
     varied, speed = _at(case, names, point, airspeed)
-    modes = varied.sweep(in_metres_per_second(speed).reshape(-1), **options).isel(airspeed=0)
-    values = modes.eigenvalue.values
+    model = varied.linearize(speed, **options)
+    values, right, left = decomposition(model).all_modes
     # Neutral at this point: the least growth in size of those with this frequency.
-    distance = np.hypot(values.real, np.abs(values.imag) - frequency)
-    return str(modes.mode.values[np.nanargmin(distance)])
+    nearest = np.argmin(np.hypot(values.real, np.abs(values.imag) - frequency))
+    return str(moving(model, values, left, right).names[nearest])

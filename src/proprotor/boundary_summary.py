@@ -23,6 +23,7 @@ COLUMNS = (
     "onset",
     "mechanism",
     "growth per airspeed (1/m)",
+    "branch",
     "warning",
 )
 
@@ -39,6 +40,7 @@ def boundary_record(boundary: Boundary, case: Case) -> dict[str, Any]:
         boundary.onset,
         dict(boundary.mechanism),
         boundary.rate,
+        boundary.branch,
         boundary.warning,
     )
     return dict(zip(COLUMNS, values, strict=True))
@@ -58,6 +60,14 @@ def mechanism_told(mechanism: dict[str, float]) -> str:
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in mechanism.items())
 
 
+def least_told(found: FlutterPoint, unit: str, factor: float) -> str:
+    """Return the least damping of a search, with its mode and airspeed; "" where there was no mode."""
+    if math.isnan(found.least_damping):
+        return ""
+    where = f"{found.least_damping_mode} at {found.least_damping_speed / factor:.4g} {unit}"
+    return f"{100 * found.least_damping:.2g} % of critical: {where}"
+
+
 def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
     """Sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
     low, high = (speed / factor for speed in found.searched)
@@ -66,6 +76,8 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
         yield f"Already {beyond} at {low:.4g} {unit}: {', '.join(found.unstable_at_start)}."
     if math.isnan(found.speed):
         yield f"No mode becomes {beyond} between {low:.4g} and {high:.4g} {unit}."
+        if told := least_told(found, unit, factor):
+            yield f"The least damping there is {told}."
     else:
         speed = marked(f"{found.speed / factor:.2f}", found.warning)
         yield f"Flutter speed {speed} {unit} ({found.mode}, {found.kind})."

@@ -20,9 +20,10 @@ from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
 from proprotor.drive_train import DriveTrain
 from proprotor.errors import InputError
 from proprotor.frequencies import BladeFrequencies
-from proprotor.model import LinearModel, rigid_hub_mass, rotor_model
+from proprotor.model import LinearModel, mass_at_rest, rotor_model
 from proprotor.operation import Operation
 from proprotor.rotor import Rotor
+from proprotor.rotor_share import settled, spring_warnings
 from proprotor.support import NormalModes
 from proprotor.support_of_deck import support_of
 
@@ -107,7 +108,7 @@ class Case:
         """
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
-        model = mount(rotor_alone, support, rigid_hub_mass(self.rotor))
+        model = mount(rotor_alone, support)
         return model if model.origin is None else replace(model, origin=model.origin._replace(case=self))
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
@@ -153,7 +154,7 @@ class Case:
         return vary(self, values)
 
     def sweep(self, airspeeds: Any, vary: Mapping[str, Any] | None = None, **options: Any) -> xarray.Dataset:
-        """Modes along airspeeds, or along one input, tracked and named: see `proprotor.sweep.sweep_case`.
+        """Modes along airspeeds, or along one input, named and followed: see `proprotor.sweep.sweep_case`.
 
         Parameters
         ----------
@@ -371,17 +372,19 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
     with _told_as_written("drive_train", numbers):
         train = None if deck.drive_train is None else DriveTrain(**_values(numbers, "drive_train"))
     with _told_as_written("support", numbers):
-        support = support_of(deck.support, numbers)
+        at_rest = mass_at_rest(rotor)
+        support = settled(support_of(deck.support, numbers), at_rest)
+        doubts = spring_warnings(support, at_rest, rotor.gimbal_stiffness)
     return Case(
         name=deck.case.name,
         title=deck.case.title,
         description=deck.case.description,
         calibration=deck.case.calibration,
-        warnings=tuple(deck.case.warnings),
+        warnings=(*deck.case.warnings, *doubts),
         rotor=rotor,
         operation=operation,
         support=support,
-        sources=dict(numbers) | air | derived,
+        sources=dict(numbers) | air | derived | _how_held(support, numbers),
         frequencies=frequencies,
         drive_train=train,
         deck=deck,
@@ -403,12 +406,15 @@ def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
 
 
 def _per_second(number: Datum, rotor_speed: float) -> Datum:
-    """A frequency per revolution in rad/s: n cycles per revolution are n Ω."""
-    return replace(number, si=number.si * rotor_speed, unit="rad/s") if number.unit == PER_REV else number
+    """A frequency per revolution in rad/s: n cycles per revolution are n Ω, with Ω of the file it was written in."""
+    if number.unit != PER_REV:
+        return number
+    own = rotor_speed if number.rotor_speed is None else number.rotor_speed
+    return replace(number, si=number.si * own, unit="rad/s", rotor_speed=own)
 
 
 def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
-    """The SI values of a section's own numbers by field; a distribution as (r in m, values)."""
+    """The SI values of a section's own numbers by field; a distribution as (r in m, values) and what lies beyond."""
     own = {
         path.removeprefix(f"{section}."): n for path, n in numbers.items() if path.startswith(f"{section}.")
     }
@@ -419,7 +425,8 @@ def _value(number: Datum, numbers: Mapping[str, Datum]) -> Any:
     if number.r_over_R is None:
         return number.si
     radius = np.asarray(numbers["rotor.radius"].si)
-    return np.array(number.r_over_R) * radius[..., None], np.array(number.si)
+    beyond = () if number.beyond is None else (number.beyond,)
+    return np.array(number.r_over_R) * radius[..., None], np.array(number.si), *beyond
 
 
 def _with_air(given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Datum]]:
@@ -451,7 +458,11 @@ def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datu
     lock_number = given.pop("lock_number", None)
     build: Callable[..., Rotor] = Rotor
     if "mass_distribution" in given:
-        build = partial(Rotor.from_mass_distribution, *given.pop("mass_distribution"))
+        build = partial(
+            Rotor.from_mass_distribution,
+            *given.pop("mass_distribution"),
+            hub_mass=given.pop("hub_mass", None),
+        )
     # Springs and chord may follow from inertias that only the rotor knows: hence the stand-ins.
     bare = build(**{"flap_stiffness": 0.0, "lag_stiffness": 0.0, "chord": 1.0} | given)
     derived = {f"{name}_stiffness": _spring(bare, name, frequency) for name, frequency in omega.items()}
@@ -459,6 +470,20 @@ def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datu
         derived["chord"] = _chord(bare, lock_number, density)
     rotor = replace(bare, **{name: number.si for name, number in derived.items()})
     return rotor, {f"rotor.{name}": number for name, number in derived.items()}
+
+
+def _how_held(support: NormalModes, numbers: Mapping[str, Datum]) -> dict[str, Datum]:
+    """Return how the rotor was held while the modes were found, where the deck leaves that to the program."""
+    taken = {}
+    given = numbers.get("support.includes_rotor")
+    if given is not None and given.si is True:
+        source = (
+            f"{given.source}; " * bool(given.source) + 'true: taken as "gimballed", for there is a gimbal'
+        )
+        taken["support.includes_rotor"] = replace(given, si=support.includes_rotor, source=source)
+    if support.includes_rotor in ("gimballed", "rigid") and "support.shaft" not in numbers:
+        taken["support.shaft"] = Datum("held", "held", "", source="left out")
+    return taken
 
 
 def _spring(rotor: Rotor, hinge: str, frequency: float) -> Datum:

@@ -1,7 +1,9 @@
 """A folder in which a study keeps each batch it has finished, so that it can be killed and go on.
 
+`.held` keeps other studies from the folder while one is running; only who holds it reads, writes or removes anything.
 `manifest.json` says of which study the batches are, and how it is divided; `batch-00000012` is a SHA-256 and then a
-NumPy archive of one batch. Every file is written beside its place and moved there when it is complete.
+NumPy archive of one batch. Every file is written beside its place and moved there when it is complete. The SHA-256 is
+of the study and of the batch's number too, so that a batch of another study, wherever it came from, is none of this.
 """
 
 from __future__ import annotations
@@ -22,8 +24,8 @@ from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.output_file import write_whole
 
-_FORMAT = 1
-_MANIFEST = "manifest.json"
+_FORMAT = 2
+_MANIFEST, _LOCK = "manifest.json", ".held"
 _DIGEST = hashlib.sha256().digest_size
 
 
@@ -41,9 +43,11 @@ class Checkpoint:
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
+        self._study = b""  # what the batches are of
 
-    def open(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> dict[str, Any]:
-        """Begin, or go on with what is there.
+    @contextmanager
+    def open(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+        """Hold the folder, and begin there or go on with what is there. The hold ends with the process at the latest.
 
         Parameters
         ----------
@@ -52,48 +56,74 @@ class Checkpoint:
         division : mapping
             How the study is divided into batches.
 
-        Returns
-        -------
+        Yields
+        ------
         dict
             The division the study was begun with.
 
         Raises
         ------
         InputError
-            When the folder holds another study, or cannot be used.
+            When the folder holds another study, is held by one that is running, or cannot be used.
         """
-        place = self.folder / _MANIFEST
+        with self._held():
+            division = self._begun(identity, division)
+            self._study = json.dumps([dict(identity), division], sort_keys=True).encode()
+            yield division
+
+    @contextmanager
+    def _held(self) -> Iterator[None]:
+        """Keep all other threads and processes from the folder."""
+        from filelock import FileLock, Timeout  # here, because most studies keep nothing
+
+        lock = FileLock(self.folder / _LOCK, timeout=0)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            begun = place.exists()
-            if not begun and any(self.folder.glob("[!.]*")):
-                raise InputError(
-                    "checkpoint", self.folder, "must be an empty folder, or that of a study begun before"
-                )
+            self._check_ours()  # before anything is put there
+            lock.acquire()
+        except Timeout:
+            raise InputError("checkpoint", self.folder, "is in use by a study that is running") from None
+        except (OSError, NotImplementedError) as error:
+            raise self._unusable(error) from None
+        try:
+            yield
+        finally:
+            lock.release()
+
+    def _check_ours(self) -> None:
+        if not (self.folder / _MANIFEST).exists() and any(self.folder.glob("[!.]*")):
+            rule = "must be an empty folder, or that of a study begun before"
+            raise InputError("checkpoint", self.folder, rule)
+
+    def _begun(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the division in the manifest, which is written where there is none."""
+        place = self.folder / _MANIFEST
+        manifest = {"format": _FORMAT, "identity": dict(identity), "division": dict(division)}
+        try:
+            self._check_ours()
             for unfinished in self.folder.glob(".*.tmp"):  # of a study that was killed
                 unfinished.unlink()
-            if not begun:
-                manifest = {"format": _FORMAT, "identity": dict(identity), "division": dict(division)}
+            if not place.exists():
                 write_whole(place, lambda file: file.write(json.dumps(manifest, indent=1).encode()))
-                return dict(division)
             manifest = json.loads(place.read_text(encoding="utf-8"))
             stored, begun_with = manifest["identity"], dict(manifest["division"])
+            differ = [name for name in identity if stored.get(name) != identity[name]]
+        except OSError as error:
+            raise self._unusable(error) from None
         except InputError:
             raise
-        except OSError as error:
-            raise InputError(
-                "checkpoint", self.folder, f"cannot be used ({error.strerror or error})"
-            ) from None
-        except (ValueError, KeyError, TypeError):
-            raise InputError(
-                "checkpoint", place, "cannot be read: delete the folder to begin again"
-            ) from None
-        differ = [name for name in identity if stored.get(name) != identity[name]]
+        except (ValueError, KeyError, TypeError, AttributeError):
+            rule = "cannot be read: delete the folder to begin again"
+            raise InputError("checkpoint", place, rule) from None
         if manifest.get("format") != _FORMAT or differ:
             what = ", ".join(differ) or "its format"
             rule = f"holds another study (different: {what}); give another folder, or delete this one"
             raise InputError("checkpoint", self.folder, rule)
         return begun_with
+
+    def _unusable(self, error: Exception) -> InputError:
+        reason = getattr(error, "strerror", None) or error
+        return InputError("checkpoint", self.folder, f"cannot be used ({reason})")
 
     def save(self, number: int, found: Mapping[str, Array]) -> None:
         """Keep a finished batch."""
@@ -101,14 +131,14 @@ class Checkpoint:
         arrays: dict[str, Any] = {name: _plain(array) for name, array in found.items()}
         np.savez(content, **arrays)
         payload = content.getbuffer()
+        digest = self._digest(number, payload)
+        write_whole(self._place(number), lambda file: file.writelines((digest, payload)))
 
-        def write(file: Any) -> None:
-            file.write(hashlib.sha256(payload).digest())
-            file.write(payload)
-            file.flush()
-            os.fsync(file.fileno())
-
-        write_whole(self._place(number), write)
+    def _digest(self, number: int, payload: Any) -> bytes:
+        digest = hashlib.sha256(self._study)
+        digest.update(number.to_bytes(8, "big"))
+        digest.update(payload)
+        return digest.digest()
 
     def load(self, number: int) -> dict[str, Array] | None:
         """A batch kept before, None where there is none.
@@ -116,14 +146,14 @@ class Checkpoint:
         Raises
         ------
         CorruptBatch
-            When the file is not what was written.
+            When the file is not what this study has written.
         """
         try:
             content = self._place(number).read_bytes()
         except FileNotFoundError:
             return None
         digest, payload = content[:_DIGEST], memoryview(content)[_DIGEST:]
-        if hashlib.sha256(payload).digest() != digest:
+        if self._digest(number, payload) != digest:
             raise CorruptBatch(str(self._place(number)))
         with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
             return {name: _as_objects(stored[name]) for name in stored.files}
@@ -142,21 +172,6 @@ class Checkpoint:
 
     def _place(self, number: int) -> Path:
         return self.folder / f"batch-{number:08d}"
-
-    @contextmanager
-    def held(self) -> Iterator[None]:
-        """Keep other processes from the folder; the hold ends with the process, however it ends."""
-        try:
-            import fcntl
-        except ImportError:  # Windows: two studies in one folder overwrite each other with the same results
-            yield
-            return
-        with (self.folder / ".held").open("w") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                raise InputError("checkpoint", self.folder, "is in use by a study that is running") from None
-            yield
 
 
 def _plain(array: Array) -> Array:

@@ -208,4 +208,5 @@ class Brackets:
             self.x[side, crossing], self.value[side, crossing] = position[row], value[row]
             self.place[side, crossing] = place[row]
             for kept, new in zip(self.ends[side], spectrum, strict=True):
-                kept[crossing] = new[row]
+                if kept is not None and new is not None:
+                    kept[crossing] = new[row]

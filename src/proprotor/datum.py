@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -27,7 +27,8 @@ class Datum:
     written : str
         The value as the deck gives it.
     si : float, int, array, tuple of float or str
-        The value in `unit`; an array of those of many designs, a tuple for a distribution, the path for a file.
+        The value in `unit`; an array of those of many designs, a tuple for a distribution, a `FilePath` for a file, the
+        word for a choice.
     unit : str
         SI unit, ``""`` for a plain number.
     status : str
@@ -36,6 +37,10 @@ class Datum:
         Where the number was read, or how it was found.
     r_over_R : tuple of float or None
         Stations of a distribution.
+    rotor_speed : float or None
+        rad/s, of a frequency written per revolution: what one per revolution is.
+    beyond : str or None
+        What a distribution says of the blade beyond its stations: "held" or "nothing"; None where it says nothing.
     """
 
     written: str
@@ -44,6 +49,8 @@ class Datum:
     status: str = "unstated"
     source: str = ""
     r_over_R: tuple[float, ...] | None = None
+    rotor_speed: float | None = None
+    beyond: str | None = None
 
 
 class FileName(str):
@@ -57,6 +64,31 @@ class FileName(str):
         file = cls(name)
         file.folder = folder
         return file
+
+
+class PerRevolution(str):
+    """A frequency per revolution as a deck has it, and the rotor speed (rad/s) of the file that it was written in."""
+
+    rotor_speed: float
+
+    @classmethod
+    def of(cls, text: str, rotor_speed: float) -> PerRevolution:
+        """A frequency per revolution of a rotor speed."""
+        frequency = cls(text)
+        frequency.rotor_speed = rotor_speed
+        return frequency
+
+    @property
+    def per_second(self) -> str:
+        """The same in rad/s, or as it is where it is no number."""
+        try:
+            return f"{to_si(self.removesuffix('/rev'), '') * self.rotor_speed!r} rad/s"
+        except InputError:
+            return str(self)
+
+
+class FilePath(str):
+    """The path of a file, the SI value of a field that names one."""
 
 
 class Bound(NamedTuple):
@@ -94,23 +126,54 @@ def read_count(raw: Any, least: int) -> Datum:
     return _datum(table, str(value), value, "")
 
 
+def read_choice(raw: Any, choices: tuple[bool | str, ...]) -> Datum:
+    """One of some words, true or false, or a table holding one."""
+    table = _as_table(raw, ("value",))
+    value = table["value"]
+    if not is_choice(value, choices):
+        raise InputError("", value, f"must be {told_choices(choices)}")
+    return _datum(table, as_toml(value), value, "")
+
+
+def is_choice(value: Any, choices: tuple[bool | str, ...]) -> bool:
+    """Whether a value is one of some words, true or false; 1 is not true."""
+    return isinstance(value, bool | str) and value in choices
+
+
+def told_choices(choices: tuple[bool | str, ...]) -> str:
+    """The choices as a message lists them."""
+    return " or ".join(f'"{choice}"' if isinstance(choice, str) else as_toml(choice) for choice in choices)
+
+
+def as_toml(value: bool | str) -> str:
+    """A word, true or false as a deck has it, without quotation marks."""
+    return value if isinstance(value, str) else str(value).lower()
+
+
 def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
-    """A frequency; one written per revolution (``"0.42/rev"``) keeps the unit `PER_REV`."""
+    """A frequency; one written per revolution (``"0.42/rev"``) has the unit `PER_REV` and its rotor speed, if told."""
     table = _as_table(raw, ("value",))
     value = table["value"]
     if not isinstance(value, str) or not value.endswith("/rev"):
         return read_quantity(raw, "rad/s", bound)
     try:
-        return _datum(table, value, _bounded(value.removesuffix("/rev"), "", bound), PER_REV)
+        found = _datum(table, str(value), _bounded(value.removesuffix("/rev"), "", bound), PER_REV)
     except InputError as error:
         raise InputError(error.field, value, error.rule) from None
+    return replace(found, rotor_speed=value.rotor_speed) if isinstance(value, PerRevolution) else found
 
 
-def read_distribution(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
-    """A table ``{ r_over_R, value, unit, status, source }`` of two equally long lists."""
+def read_distribution(raw: Any, unit: str, bound: Bound = ANY, beyond: str = "") -> Datum:
+    """A table ``{ r_over_R, value, unit, status, source }`` of two equally long lists, perhaps with ``beyond``.
+
+    Parameters
+    ----------
+    beyond : str
+        The one word that the table may have for what lies beyond its stations; "" where it may have none.
+    """
     if not isinstance(raw, dict):
         raise InputError("", raw, "must be a table with r_over_R, value and unit")
-    table = _as_table(raw, ("r_over_R", "value", "unit"))
+    table = _as_table(raw, ("r_over_R", "value", "unit"), ("beyond",) if beyond else ())
     stations, values, written_unit = table["r_over_R"], table["value"], table["unit"]
     _check_stations(stations)
     _check_numbers("value", values)
@@ -119,7 +182,24 @@ def read_distribution(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
         raise InputError("value", f"{len(values)} values", rule)
     si = _converted(values, _factor_of_list(written_unit, unit), bound)
     written = f"{len(values)} values in {written_unit}"
-    return _datum(table, written, si, unit, tuple(float(station) for station in stations))
+    return _along_the_blade(table, written, si, unit, tuple(map(float, stations)), beyond)
+
+
+def _along_the_blade(
+    table: Mapping[str, Any],
+    written: str,
+    si: tuple[float, ...],
+    unit: str,
+    r_over_R: tuple[float, ...],
+    beyond: str,
+) -> Datum:
+    """A distribution with what its table says of the blade beyond it."""
+    said = table.get("beyond")
+    if said is None:
+        return _datum(table, written, si, unit, r_over_R)
+    if said != beyond:
+        raise InputError("beyond", said, f'must be "{beyond}", or left out')
+    return replace(_datum(table, f"{written}, {said} beyond", si, unit, r_over_R), beyond=beyond)
 
 
 def read_curve(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
@@ -149,10 +229,10 @@ def read_list(raw: Any, unit: str, bound: Bound = ANY, *, rising: bool = False) 
     return _datum(table, written, si, unit)
 
 
-def read_profile(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
+def read_profile(raw: Any, unit: str, bound: Bound = ANY, beyond: str = "") -> Datum:
     """One number for the whole blade, or a distribution along it."""
     is_distribution = isinstance(raw, dict) and ("r_over_R" in raw or isinstance(raw.get("value"), list))
-    return read_distribution(raw, unit, bound) if is_distribution else read_quantity(raw, unit, bound)
+    return read_distribution(raw, unit, bound, beyond) if is_distribution else read_quantity(raw, unit, bound)
 
 
 def _factor_of_list(written_unit: Any, unit: str) -> float:
@@ -174,11 +254,14 @@ def _converted(values: list[float], factor: float, bound: Bound) -> tuple[float,
     return si
 
 
-def read_column(raw: Any, unit: str, bound: Bound, radius: float) -> Datum:
-    """A table ``{ file, column, status, source }``: one column of a file of blade stations, see `stations_file`."""
+def read_column(raw: Any, unit: str, bound: Bound, radius: float, beyond: str) -> Datum:
+    """A table ``{ file, column, status, source }``: one column of a file of blade stations, see `stations_file`.
+
+    It may have ``beyond``, as for `read_distribution`.
+    """
     from proprotor.stations_file import read_stations  # here, because few decks have one
 
-    table = _as_table(raw, ("file", "column"))
+    table = _as_table(raw, ("file", "column"), ("beyond",))
     try:
         file = read_file(table["file"])
     except InputError as error:
@@ -191,7 +274,7 @@ def read_column(raw: Any, unit: str, bound: Bound, radius: float) -> Datum:
     except InputError as error:
         raise InputError(error.field, file.written, error.rule) from None
     written = f"{len(found.values)} values of {column} in {file.written}"
-    return _datum(table, written, found.values, unit, found.r_over_R)
+    return _along_the_blade(table, written, found.values, unit, found.r_over_R, beyond)
 
 
 def read_file(raw: Any) -> Datum:
@@ -201,13 +284,13 @@ def read_file(raw: Any) -> Datum:
     if not isinstance(name, str) or not name:
         raise InputError("", name, "must be the name of a file")
     folder = name.folder if isinstance(name, FileName) else FileName.folder
-    return _datum(table, str(name), str(folder / name), "")
+    return _datum(table, str(name), FilePath(folder / name), "")
 
 
 def _datum(
     table: Mapping[str, Any],
     written: str,
-    si: float | tuple[float, ...] | str,
+    si: bool | float | tuple[float, ...] | str,
     unit: str,
     r_over_R: tuple[float, ...] | None = None,
 ) -> Datum:
@@ -219,9 +302,9 @@ def _datum(
     return Datum(written, si, unit, status, source, r_over_R)
 
 
-def _as_table(raw: Any, required: Collection[str]) -> dict[str, Any]:
+def _as_table(raw: Any, required: Collection[str], further: Collection[str] = ()) -> dict[str, Any]:
     table = raw if isinstance(raw, dict) else {"value": raw}
-    known = (*required, "status", "source")
+    known = (*required, *further, "status", "source")
     for key in table:
         if key not in known:
             raise InputError(key, table[key], unknown_name(key, known))

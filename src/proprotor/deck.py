@@ -9,8 +9,12 @@ likes; a plain number has none. Either may be a table that says where it comes f
 
 with a status of published, derived, recalled, calibrated or assumed. Chord and twist take one value (twist:
 the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
-linear between its stations and constant beyond them; chord, twist and mass_distribution also a column of a CSV
-file, ``{ file = "stations.csv", column = "twist" }`` (`proprotor.stations_file`).
+linear between its stations; chord, twist and mass_distribution also a column of a CSV file,
+``{ file = "stations.csv", column = "twist" }`` (`proprotor.stations_file`).
+
+Stations of chord and twist reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
+values hold there. Those of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to the
+tip, or their table says ``beyond = "nothing"``: no mass there.
 
 ``base``
     Above all sections: the deck this one alters, a bundled name or a file beside it. A field given here
@@ -37,8 +41,10 @@ file, ``{ file = "stations.csv", column = "twist" }`` (`proprotor.stations_file`
 ``[support]``
     kind and the fields of that kind: `proprotor.support_sections` lists them.
 
-A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution at the deck's rotor
-speed. `proprotor.units` lists the units.
+A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
+written in the same file, or in its base where the file gives none. It is a frequency in hertz from then on: a
+deck that alters another, ``--set``, a study and a map change the rotor speed and not the frequency, and a
+frequency that is set in /rev is one of the deck's own rotor speed too. `proprotor.units` lists the units.
 """
 
 from __future__ import annotations
@@ -65,6 +71,7 @@ from proprotor.deck_fields import (
     Length,
     Mass,
     MassDistribution,
+    MassOrNone,
     Name,
     NotNegative,
     Number,
@@ -168,7 +175,14 @@ class RotorSection(Section):
     flap_inertia: Inertia = optional("Integral of m (r - e)² outboard of the flap hinge.")
     lag_first_moment: FirstMoment = optional("Integral of m (r - e) outboard of the lag hinge.")
     lag_inertia: Inertia = optional("Integral of m (r - e)² outboard of the lag hinge.")
-    mass_distribution: MassDistribution = optional("Mass per length, which gives all seven integrals.")
+    mass_distribution: MassDistribution = optional(
+        "Mass per length from the centre (or with hub_mass from anywhere) to the tip, which gives all seven integrals; "
+        'beyond = "nothing" where it has no mass there.'
+    )
+    hub_mass: MassOrNone = optional(
+        "Of the whole rotor at the centre of rotation, for a mass_distribution that begins further out, and not once "
+        "more in the masses of the support."
+    )
     flap_stiffness: Stiffness = optional("Flap spring, hub and blade in series.")
     flap_frequency: Frequency = optional("Flap frequency without rotation, K = I ω².")
     lag_stiffness: Stiffness = optional("Lag spring, hub and blade in series.")
@@ -185,10 +199,14 @@ class RotorSection(Section):
     pitch_damping: Damping = optional("Viscous damper of the blade's pitch.")
     gimbal_damping: Damping = optional("Viscous damper of the gimbal, which does not rotate.")
     propeller_moment: bool = optional("Whether the propeller moment acts on the blade's pitch.", True)
-    chord: Chord = optional("Chord of the blade, one value or along r.")
+    chord: Chord = optional(
+        "Chord of the blade, one value or along r from root cutout to tip; "
+        'beyond = "held" where its end values hold beyond the stations.'
+    )
     lock_number: Positive = optional("γ, chord = γ I_b / (ρ c_lα R⁴) at the deck's density.")
     twist: Twist = needed(
-        "One value: change from centre to tip, linear. Or along r; pitch counts from 0.75 R."
+        "One value: change from centre to tip, linear. Or along r from root cutout to tip; "
+        'beyond = "held" where its end values hold beyond the stations. Pitch counts from 0.75 R.'
     )
     airfoil: AirfoilSection = needed("Sections of the blade.")
     frequencies: FrequenciesSection | None = optional("Of the blades; from the springs where left out.")
@@ -205,6 +223,9 @@ class RotorSection(Section):
             for name in sides[0]:
                 if name not in self.model_fields_set:
                     raise InputError(name, None, "is missing")
+        if self.hub_mass is not None and self.mass_distribution is None:
+            rule = "must be given with mass_distribution; blade_mass holds the hub's mass"
+            raise InputError("hub_mass", self.hub_mass.written, rule)
         return self
 
 

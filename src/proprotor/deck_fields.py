@@ -21,6 +21,7 @@ from proprotor.datum import (
     POSITIVE,
     Bound,
     Datum,
+    read_choice,
     read_column,
     read_count,
     read_curve,
@@ -32,6 +33,8 @@ from proprotor.datum import (
     read_quantity,
 )
 from proprotor.errors import InputError
+from proprotor.rotor import HELD, NOTHING
+from proprotor.support import INCLUDES_ROTOR, SHAFT
 
 
 def read_spanwise(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
@@ -67,18 +70,24 @@ class Reading:
     ----------
     form : str
         "number", "count", "frequency", "along the blade", "distribution" (along the blade, never one number),
-        "along the wing", "curve" (one number or a list of them), "rising list" or "file".
+        "along the wing", "curve" (one number or a list of them), "rising list", "file" or "choice".
     unit : str
         SI unit.
     bound : Bound
     least : int
         Of a count.
+    choices : tuple of str or bool
+        Of a choice.
+    beyond : str
+        What a distribution along the blade may say of the blade beyond its stations.
     """
 
     form: str
     unit: str = ""
     bound: Bound = ANY
     least: int = 0
+    choices: tuple[bool | str, ...] = ()
+    beyond: str = ""
 
     def read(self, raw: Any) -> Datum:
         """The value of a field.
@@ -90,6 +99,10 @@ class Reading:
         """
         if self.form == "count":
             return read_count(raw, self.least)
+        if self.form == "choice":
+            return read_choice(raw, self.choices)
+        if self.beyond:
+            return _READERS[self.form](raw, self.unit, self.bound, self.beyond)
         return _READERS[self.form](raw, self.unit, self.bound)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
@@ -158,7 +171,7 @@ class AlongTheBlade(Reading):
                 return self.read(raw)
             if info.data.get("radius") is None:  # itself wrong or missing, and reported
                 return None
-            return read_column(raw, self.unit, self.bound, info.data["radius"].si)
+            return read_column(raw, self.unit, self.bound, info.data["radius"].si, self.beyond)
 
         return core_schema.with_info_plain_validator_function(read)
 
@@ -187,13 +200,17 @@ DampingRatio = Annotated[Datum | None, Reading("number", "", BELOW_CRITICAL)]
 Frequency = Annotated[Datum | None, Reading("frequency", "rad/s", NOT_NEGATIVE)]
 Count = Annotated[Datum | None, Reading("count", least=3)]
 Size = Annotated[Datum | None, Reading("count", least=1)]
-Chord = Annotated[Datum | None, AlongTheBlade("along the blade", "m", POSITIVE)]
-Twist = Annotated[Datum | None, AlongTheBlade("along the blade", "rad")]
-MassDistribution = Annotated[Datum | None, AlongTheBlade("distribution", "kg/m", NOT_NEGATIVE)]
+Chord = Annotated[Datum | None, AlongTheBlade("along the blade", "m", POSITIVE, beyond=HELD)]
+Twist = Annotated[Datum | None, AlongTheBlade("along the blade", "rad", beyond=HELD)]
+MassDistribution = Annotated[
+    Datum | None, AlongTheBlade("distribution", "kg/m", NOT_NEGATIVE, beyond=NOTHING)
+]
 TemperatureDifference = Annotated[Datum | None, Reading("number", "K")]
 CurvePerRev = Annotated[Datum | None, Reading("curve", "", POSITIVE)]
 Abscissa = Annotated[Datum | None, ByAbscissa("rising list", "rad", of_speed="m/s")]
 File = Annotated[Datum | None, Reading("file")]
+IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
+Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
 
 GeneralizedMass = Annotated[Datum | None, ByCoordinate("number", "kg", POSITIVE, of_angle="kg*m**2")]
 HubDisplacement = Annotated[Datum | None, ByCoordinate("number", "", of_angle="m/rad")]

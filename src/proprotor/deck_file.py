@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import tomllib
+from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from proprotor.datum import FileName
+from proprotor.datum import FileName, PerRevolution, read_quantity
 from proprotor.errors import InputError, unknown_name
 from proprotor.rotor import MASS_INTEGRALS
 from proprotor.text_file import read_text
@@ -61,6 +62,9 @@ def list_cases() -> tuple[str, ...]:
 def read_tables(name_or_path: str | os.PathLike[str]) -> dict[str, Any]:
     """The tables of a deck by its bundled name or path, put into those of its base, if it has one.
 
+    A frequency per revolution is a `PerRevolution`: it knows the rotor speed of its own file, which is that of the
+    file's base where the file gives none.
+
     Raises
     ------
     InputError
@@ -78,14 +82,62 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
     for name in _MAY_BE_COLUMNS if isinstance(tables.get("rotor"), dict) else ():
         _locate_file(tables["rotor"].get(name), folder, ("file",))
     if "base" not in tables:
-        return tables
+        return per_revolution_of(tables, tables)
     base = tables.pop("base")
     if not isinstance(base, str):
         raise InputError("base", base, "must be the name or path of a deck")
     if str(file) in altered_by:
         raise InputError("base", base, "must not lead back to the deck itself")
     inherited = _without(_tables(base, folder, (*altered_by, str(file))), ("case", "name"))  # one deck's only
-    return altered(inherited, tables)
+    whole = altered(inherited, tables)
+    return per_revolution_of(whole, whole)
+
+
+def per_revolution_of(speed: Mapping[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables whose frequencies per revolution are those of a rotor speed, that of other tables, unless they have one.
+
+    Left as they are where the others have no rotor speed that can be read: what is wrong with it is told elsewhere.
+    """
+    rotor_speed = _rotor_speed(speed)
+    if rotor_speed is None:
+        return tables
+
+    def told(entry: Any) -> Any:
+        if isinstance(entry, str) and entry.endswith("/rev") and not isinstance(entry, PerRevolution):
+            return PerRevolution.of(entry, rotor_speed)
+        return entry
+
+    whole: dict[str, Any] = _every(tables, told)
+    return whole
+
+
+def as_one_file(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables as a file of their own may hold them: frequencies per revolution of another rotor speed in rad/s."""
+    rotor_speed = _rotor_speed(tables)
+
+    def told(entry: Any) -> Any:
+        other = isinstance(entry, PerRevolution) and entry.rotor_speed != rotor_speed
+        return entry.per_second if other else entry
+
+    whole: dict[str, Any] = _every(tables, told)
+    return whole
+
+
+def _every(entry: Any, changed: Callable[[Any], Any]) -> Any:
+    """Nested tables and lists with each value changed."""
+    if isinstance(entry, dict):
+        return {name: _every(value, changed) for name, value in entry.items()}
+    if isinstance(entry, list):
+        return [_every(value, changed) for value in entry]
+    return changed(entry)
+
+
+def _rotor_speed(tables: Mapping[str, Any]) -> float | None:
+    """rad/s of a deck, None where it has none that can be read."""
+    try:
+        return float(read_quantity(tables["operation"]["rotor_speed"], "rad/s").si)
+    except (InputError, KeyError, TypeError):
+        return None
 
 
 def _bundled() -> dict[str, Traversable]:
@@ -138,6 +190,9 @@ def altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     superseded += (
         [("support",)] if _is_section(changes.get("support")) and "kind" in changes["support"] else []
     )
+    rotor: Any = changes.get("rotor")
+    if _is_section(rotor) and not rotor.keys().isdisjoint(MASS_INTEGRALS):
+        superseded.append(("rotor", "hub_mass"))  # which stood beside a distribution; integrals hold it
     for place in superseded:
         base = _without(base, place)
     return _merged(base, changes)

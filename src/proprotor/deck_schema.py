@@ -83,7 +83,7 @@ _TABLES = {
 def value_schema(reading: Reading) -> Schema:
     """What a field that a `Reading` reads may be: a value, or a table with its provenance."""
     if reading.form == "distribution":
-        return {"anyOf": [_distribution(reading), _COLUMN]}
+        return {"anyOf": [_distribution(reading), _with_beyond(_COLUMN, reading)]}
     if reading.form == "rising list":
         return _table({"value": _NUMBERS, "unit": {"type": "string"}})
     value = _value(reading)
@@ -94,7 +94,7 @@ def value_schema(reading: Reading) -> Schema:
     if reading.form in _STATIONS:
         choices.append(_distribution(reading))
     if reading.form == "along the blade":
-        choices.append(_COLUMN)
+        choices.append(_with_beyond(_COLUMN, reading))
     return {"anyOf": choices}
 
 
@@ -103,6 +103,8 @@ def _value(reading: Reading) -> Schema:
         return {"type": "integer", "minimum": reading.least}
     if reading.form == "file":
         return {"type": "string", "minLength": 1}
+    if reading.form == "choice":
+        return {"enum": list(reading.choices)}
     text = {"type": "string", "pattern": _NUMBER, "description": _told(reading)}
     plain = {"type": "number", **_LIMITS.get(reading.bound, {})}
     dimensional = reading.unit and getattr(reading, "of_angle", reading.unit)
@@ -117,7 +119,15 @@ def _told(reading: Reading) -> str:
 
 def _distribution(reading: Reading) -> Schema:
     stations = {"type": "array", "items": {"type": "number", "minimum": 0, "maximum": 1}, "minItems": 2}
-    return _table({_STATIONS[reading.form]: stations, "value": _NUMBERS, "unit": {"type": "string"}})
+    table = _table({_STATIONS[reading.form]: stations, "value": _NUMBERS, "unit": {"type": "string"}})
+    return _with_beyond(table, reading)
+
+
+def _with_beyond(table: Schema, reading: Reading) -> Schema:
+    """The table of a distribution, with what it may say of the blade beyond its stations."""
+    if not reading.beyond:
+        return table
+    return table | {"properties": table["properties"] | {"beyond": {"const": reading.beyond}}}
 
 
 def _table(properties: Schema) -> Schema:

@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Mapping
 from typing import Any, Literal, get_args, get_origin
 
-from proprotor.deck_file import altered
+from proprotor.deck_file import altered, per_revolution_of
 from proprotor.errors import InputError, unknown_name
 
 _STEP = re.compile(r"([^.\[\]]+)(?:\[([^\[\]]+)\])?(?:\.|$)")
@@ -34,7 +34,8 @@ def with_settings(tables: Mapping[str, Any], settings: Mapping[str, str]) -> dic
         Text by place: ``rotor.precone``, ``operation.trim``, ``support.modes[beam].frequency``, an entry of a list by
         its name. A number is written with its unit, as in a deck; what else TOML has is read as TOML, and all other
         text is text. A field replaces its alternatives, as chord does a Lock number. Numbers become
-        assumed ones, and the title tells what was set.
+        assumed ones, and the title tells what was set. A frequency per revolution is one of the deck's own rotor speed,
+        whatever speed is set.
 
     Raises
     ------
@@ -53,7 +54,7 @@ def with_settings(tables: Mapping[str, Any], settings: Mapping[str, str]) -> dic
     result = altered(dict(tables), changes)
     for place, value in entries:
         result = _replaced(result, place, value, "")
-    return _titled(result, settings)
+    return _titled(per_revolution_of(tables, result), settings)
 
 
 def _steps(path: str, text: str) -> list[tuple[str, str]]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from proprotor.datum import FileName
+from proprotor.deck_file import as_one_file
 from proprotor.describe import DeckField, deck_fields
 from proprotor.units import meaning
 
@@ -55,6 +56,7 @@ def deck_text(
         Only what differs from the base: its fields are comments, to be taken in where they change.
     """
     place = Path(file)
+    tables = tables if variant else as_one_file(dict(tables))
     parts = [_HEAD.format(origin=f", made from {base}" if base else "", file=place.name)]
     if variant:
         parts.append(f"# A variant: what stands here replaces what the base has.\nbase = {toml(base)}\n")
@@ -79,6 +81,8 @@ def example(field: DeckField) -> str:
     if field.form == "distribution":
         unit = _first_example(field.unit).strip('"').partition(" ")[2]
         return f'{{ r_over_R = [0, 1], value = [0.3, 0.2], unit = "{unit}" }}'
+    if field.form == "choice":
+        return field.takes.partition(" or ")[0]
     unit = field.unit.partition(" or ")[0]
     return _EXAMPLES.get(field.form) or _first_example("" if unit == "1" else unit)
 

@@ -13,19 +13,12 @@ if TYPE_CHECKING:
 _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*")
 
 
-def deck_unit(number: Datum, rotor_speed: float) -> tuple[str, float]:
-    """The unit a number is written in, and how many SI units it is.
-
-    Parameters
-    ----------
-    number : Datum
-    rotor_speed : float
-        rad/s, of which "/rev" is a multiple.
-    """
+def deck_unit(number: Datum) -> tuple[str, float]:
+    """The unit a number is written in, and how many SI units it is; "/rev" is the rotor speed of its file."""
     match = _NUMBER.match(number.written)
     unit = number.written[match.end() :].strip() if match else ""
-    if unit == "/rev" and number.unit == "rad/s":
-        return "/rev", rotor_speed
+    if unit == "/rev" and number.rotor_speed is not None:
+        return "/rev", number.rotor_speed
     if not unit:
         return number.unit, 1.0
     return unit, factor_to_si(number.written, unit, number.unit)

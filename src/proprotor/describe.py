@@ -11,7 +11,7 @@ from dataclasses import MISSING, asdict, dataclass, fields
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
-from proprotor.datum import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
+from proprotor.datum import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound, told_choices
 from proprotor.errors import InputError
 from proprotor.units import meaning
 
@@ -161,6 +161,8 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
         return "a whole number"
     if reading.form == "file":
         return "the name of a file"
+    if reading.form == "choice":
+        return told_choices(reading.choices)
     by_angle = getattr(reading, "of_angle", None)
     if reading.form == "rising list":
         return "{ value = [...], unit = ... }"
@@ -291,9 +293,13 @@ likes; a plain number has none. Either may be a table that says where it comes f
 
     radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
 
-with a status of published, derived, recalled, calibrated or assumed. A frequency per revolution, `"0.42/rev"`, is
-that of the deck's rotor speed. `base = "xv15"` above all sections alters another deck: a field given replaces the
-base's and its alternatives.
+with a status of published, derived, recalled, calibrated or assumed. `base = "xv15"` above all sections alters another
+deck: a field given replaces the base's and its alternatives.
+
+A frequency per revolution, `"0.42/rev"`, is one of the rotor speed that is written in the same file, or in its base
+where the file gives none. Another rotor speed, by `--set`, `vary`, a study, a map, a slider or a deck that alters this
+one, leaves it its hertz: a wing does not know how fast the rotor turns. A frequency that is set in /rev is one of the
+deck's own rotor speed too.
 
     proprotor new my.toml --from xv15                       # a commented deck that runs as it is
     proprotor describe rotor.precone                        # one field

@@ -55,8 +55,8 @@ def vary(case: Case, values: Mapping[str, Any]) -> Case:
     """The case with other values of some numbers of its deck.
 
     What follows from a number follows: a spring from a frequency and an inertia, the chord from the Lock number. A
-    frequency per revolution was turned to rad/s at the deck's own rotor speed, and keeps that value when the rotor
-    speed varies.
+    frequency per revolution was turned to rad/s at the rotor speed of its deck, and keeps that value when the rotor
+    speed varies, as it does when a setting or a variant of the deck changes it.
 
     Parameters
     ----------

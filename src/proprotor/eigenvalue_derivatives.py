@@ -79,8 +79,18 @@ def eigenvalue_change(
     mass, damping, stiffness = changes
     rates, displacement = right[..., -n:, :], right[..., : len(held), :]
     load = mass @ (values[..., None, :] * rates) + damping @ rates + stiffness[..., held] @ displacement
+    for place in set(range(n)) - set(held):  # an azimuth that nothing holds, which a shaft would
+        load = load + _pull(stiffness[..., place], rates[..., place, :], values)
     change: Array = -np.einsum("...mn,...nm->...m", second_order_left(model, left), load)
     return change
+
+
+def _pull(stiffness: Array, rate: Array, values: Array) -> Array:
+    """Load (..., n, modes) of a change of stiffness (..., n) on a coordinate that has a rate alone."""
+    with np.errstate(all="ignore"):
+        motion = rate / np.where(values == 0, np.nan, values)
+    column = stiffness[..., None]
+    return np.where(column == 0, 0.0, column * motion[..., None, :])
 
 
 def defect(modes: Modes) -> Array:

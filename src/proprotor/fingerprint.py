@@ -1,87 +1,380 @@
-"""A short text that is the same for the same inputs, today and in another process, and no other."""
+"""A short text that is the same for the same inputs, today and in another process, and no other.
+
+Numbers, texts, arrays and containers count by value. An object counts as what it would be pickled as: its class, and
+the state that another process would get of it. A function counts as what it does: its code, its defaults, what its
+closure and its attributes hold, and every global it refers to. What was installed counts by name and version instead,
+for these say what it does. What holds itself is followed once around.
+
+What cannot be told, such as an open file, is refused: a fingerprint without it could be that of other inputs.
+"""
 
 from __future__ import annotations
 
+import builtins
+import copyreg
 import dataclasses
+import dis
+import functools
 import hashlib
-from collections.abc import Mapping
-from pathlib import PurePath
-from types import CodeType
+import pickle
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from types import (
+    CodeType,
+    EllipsisType,
+    FunctionType,
+    MappingProxyType,
+    MethodType,
+    ModuleType,
+    NotImplementedType,
+)
 from typing import Any
 
 import numpy as np
 
 from proprotor.errors import InputError
 
+_OWN = ("proprotor", "proprotor_equations")  # a study has the fingerprint of their text beside this one
+_PLAIN = (type(None), bool, float, complex, bytes, EllipsisType, NotImplementedType)
+_CACHED_FUNCTION = type(functools.cache(lambda: None))
+_WRAPPERS = (property, staticmethod, classmethod, functools.cached_property, _CACHED_FUNCTION)
+_OF_GLOBALS = ("LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS")  # instructions
+_LONGEST = 8  # names of a path in a message
+_MADE_AS_IT_RUNS = 1 << 9  # flag of a class that Python has made
+_UNSEEN = ("eval", "exec", "open", "input", "globals", "__import__")  # read what is no part of a function
+_MADE_BY_PYTHON = (  # entries of a class that hold nothing of its own
+    *("__module__", "__qualname__", "__doc__", "__dict__", "__weakref__", "__firstlineno__"),
+    *(
+        "__slotnames__",
+        "__abstractmethods__",
+        "__static_attributes__",
+        "__dataclass_fields__",
+        "__dataclass_params__",
+        "_abc_impl",
+    ),
+)
 
-def fingerprint(content: Any) -> str:
-    """SHA-256 of nested numbers, texts, arrays, mappings, sequences, records and functions, in hexadecimal.
+
+def fingerprint(content: Any, name: str = "") -> str:
+    """SHA-256 of nested numbers, texts, arrays, containers, records, objects and functions, in hexadecimal.
+
+    Parameters
+    ----------
+    content : object
+    name : str
+        Of the content, for the message.
 
     Raises
     ------
     InputError
         For something whose content cannot be told.
     """
-    digest = hashlib.sha256()
-    _add(digest, content)
-    return digest.hexdigest()
+    walk = _Walk([name] if name else [])
+    try:
+        walk.add(content)
+    except RecursionError:
+        raise walk.refusal("what is nested too deeply") from None
+    return walk.digest.hexdigest()
 
 
-def _add(digest: Any, it: Any) -> None:
-    kind = f"{type(it).__module__}.{type(it).__qualname__}"
-    if it is None or isinstance(it, bool | int | str | bytes | PurePath):
-        _text(digest, kind, repr(it) if not isinstance(it, str) else it)
-    elif isinstance(it, float | complex | np.generic):
-        _text(digest, kind, repr(it.item() if isinstance(it, np.generic) else it))
-    elif isinstance(it, np.ndarray):
-        _text(digest, "array", f"{it.dtype.str}{it.shape}")
-        if it.dtype.hasobject:
-            _add(digest, it.tolist())
+class _Walk:
+    """A way through all that an object holds, and the digest of what was met on it."""
+
+    def __init__(self, path: list[str]) -> None:
+        self.digest = hashlib.sha256()
+        self.path = path  # names of what is being looked at, from outside in
+        self.around: dict[int, int] = {}  # what is being looked at, by identity: its place on the way
+        self.met: dict[int, tuple[int, Any]] = {}  # functions and classes: the number of each, and itself
+
+    def add(self, it: Any) -> None:
+        """Go through one object."""
+        kind = type(it)
+        if kind in _PLAIN:
+            self.text(kind.__name__, repr(it))
+        elif kind is str:
+            self.text("str", it)
+        elif kind is int:
+            self.text("int", hex(it))
+        elif kind is np.ndarray or isinstance(it, np.generic):
+            self._array(kind, np.asarray(it))
+        elif id(it) in self.around:
+            self.text("around", str(self.around[id(it)]))
         else:
-            digest.update(np.ascontiguousarray(it).tobytes())
-    elif isinstance(it, Mapping):
-        _text(digest, "mapping", str(len(it)))
-        for key in sorted(it, key=str):
-            _add(digest, key)
-            _add(digest, it[key])
-    elif isinstance(it, list | tuple):
-        _text(digest, kind, str(len(it)))
-        for one in it:
-            _add(digest, one)
-    elif isinstance(it, set | frozenset):
-        _add(digest, sorted(map(fingerprint, it)))
-    else:
-        _add_object(digest, kind, it)
+            self.around[id(it)] = len(self.around)
+            self._inside(kind, it)
+            del self.around[id(it)]
+
+    def text(self, kind: str, text: str) -> None:
+        """Add one piece of text, so that no two pieces can be taken for one."""
+        raw = text.encode(errors="surrogatepass")
+        self.digest.update(f"{kind}:{len(raw)}:".encode() + raw)
+
+    def refusal(self, kind: str) -> InputError:
+        """The error for something that cannot be told."""
+        path = self.path if len(self.path) <= _LONGEST else [*self.path[:_LONGEST], "…"]
+        where = f" of the study ({' → '.join(path)})" if path else ""
+        rule = f"stands among the inputs{where}, and what it holds cannot be told: give another, or no checkpoint"
+        return InputError("checkpoint", kind, rule)
+
+    @contextmanager
+    def _within(self, name: str) -> Iterator[None]:
+        self.path.append(name)
+        yield
+        self.path.pop()
+
+    def _named(self, of: Iterable[tuple[str, Any]]) -> None:
+        for name, value in of:
+            self.text("name", name)
+            with self._within(name):
+                self.add(value)
+
+    def _each(self, kind: str, many: Iterable[Any]) -> None:
+        entries = list(many)
+        self.text(kind, str(len(entries)))
+        for entry in entries:
+            self.add(entry)
+
+    def _alone(self, it: Any) -> str:
+        """The fingerprint of an entry of a set, which must not depend on the entries before it."""
+        walk = _Walk(self.path)
+        walk.around, walk.met = dict(self.around), dict(self.met)
+        walk.add(it)
+        return walk.digest.hexdigest()
+
+    def _array(self, kind: type, it: np.ndarray[Any, Any]) -> None:
+        self.text(kind.__name__, f"{it.dtype!r}{it.shape}")
+        if it.dtype.hasobject:
+            self._each("entries", it.reshape(-1).tolist())
+        else:
+            self.digest.update(np.ascontiguousarray(it).reshape(-1).view(np.uint8).data)
+
+    def _inside(self, kind: type, it: Any) -> None:
+        if kind in (list, tuple):
+            self._each(kind.__name__, it)
+        elif kind in (dict, MappingProxyType):
+            self._mapping(it)
+        elif kind in (set, frozenset):
+            self._each(kind.__name__, sorted(map(self._alone, it)))
+        elif kind in (FunctionType, type) or isinstance(it, type):
+            self._once(it)
+        elif kind is CodeType:
+            self._code(it)
+        elif kind is MethodType:
+            self._each("method", (it.__func__, it.__self__))
+        elif kind is ModuleType:
+            self._module(it, None)
+        elif kind in _WRAPPERS:
+            self._wrapper(kind, it)
+        else:
+            self._object(kind, it)
+
+    def _mapping(self, it: Mapping[Any, Any]) -> None:
+        if all(type(key) is str for key in it):
+            self.text("by name", str(len(it)))
+            self._named(sorted(it.items()))
+        else:
+            self.text("mapping", str(len(it)))
+            for key in sorted(it, key=self._alone):
+                self.add(key)
+                self.add(it[key])
+
+    # Objects --------------------------------------------------------------------------------------
+
+    def _object(self, kind: type, it: Any) -> None:
+        """Class and state of an object; of a record of this package the fields, and not what it has worked out."""
+        self.text("object", kind.__name__)
+        self.add(kind)
+        if dataclasses.is_dataclass(it) and _package(kind.__module__) in _OWN:
+            self._named((entry.name, getattr(it, entry.name)) for entry in dataclasses.fields(it))
+            return
+        try:
+            reduced = _reduced(kind, it)
+        except Exception:  # whatever a class raises that cannot be pickled
+            raise self.refusal(f"{kind.__module__}.{kind.__qualname__}") from None
+        if isinstance(reduced, str):  # the name of a global
+            module = str(pickle.whichmodule(it, reduced))  # type: ignore[attr-defined]
+            if not _is_installed(it, module, reduced):
+                raise self.refusal(f"{kind.__module__}.{kind.__qualname__}")
+            self.text("installed", f"{_package(module)} {_version(module)} {reduced}")
+            return
+        state, entries, pairs, *_ = (*reduced[2:], None, None, None)
+        self._each("made by", reduced[:2])
+        self.add(_without_cached(kind, state))
+        self._each("entries", entries or ())
+        self._mapping(dict(pairs or ()))
+
+    def _wrapper(self, kind: type, it: Any) -> None:
+        """A property, a method of a class, or a function that keeps what it has found: what is within."""
+        self.text("wrapper", kind.__qualname__)
+        names = ("fget", "fset", "fdel", "func", "__func__", "__wrapped__")
+        self._named((name, getattr(it, name)) for name in names if hasattr(it, name))
+
+    # Functions, classes and modules ---------------------------------------------------------------
+
+    def _once(self, it: Any) -> None:
+        """A function or class: the first time by what it holds, then by its number."""
+        if id(it) in self.met:
+            self.text("met", str(self.met[id(it)][0]))
+            return
+        self.met[id(it)] = len(self.met), it
+        if _is_compiled(it) or _is_installed(it, it.__module__, it.__qualname__):
+            self.text("installed", f"{it.__module__}.{it.__qualname__} {_version(it.__module__)}")
+        elif isinstance(it, type):
+            self._class(it)
+        else:
+            self._function(it)
+
+    def _class(self, it: type) -> None:
+        self._each("class", (type(it), *it.__bases__))
+        own = {
+            name: entry
+            for name, entry in vars(it).items()
+            if name not in _MADE_BY_PYTHON and not name.startswith("__annot")
+        }
+        self._mapping(own)
+
+    def _function(self, it: FunctionType) -> None:
+        self.text("function", "")
+        self.add(it.__code__)
+        self._each("defaults", (it.__defaults__, it.__kwdefaults__))
+        cells = zip(it.__code__.co_freevars, it.__closure__ or (), strict=True)
+        self._named((name, _content(cell)) for name, cell in cells)
+        self._mapping(vars(it))
+        home = it.__globals__.get("__name__", "")
+        if _version(home) is not None:  # what its module has is told by the version
+            self.text("of", f"{home} {_version(home)}")
+            return
+        codes = list(_nested(it.__code__))
+        names = {name for code in codes for name in code.co_names}
+        names |= {text for code in codes for text in code.co_consts if isinstance(text, str)}
+        for name in sorted({name for code in codes for name in _globals_of(code)}):
+            with self._within(name):
+                self._global(name, it.__globals__, names)
+        for name in sorted({name for code in codes for name in _imports_of(code)}):
+            with self._within(name):
+                self._imported(name, names)
+
+    def _global(self, name: str, own: Mapping[str, Any], names: set[str]) -> None:
+        self.text("global", name)
+        if name not in own:
+            if name in _UNSEEN:
+                raise self.refusal(f"a call of {name}()")
+            self.text("builtin" if hasattr(builtins, name) else "missing", name)
+        elif isinstance(own[name], ModuleType):
+            self._module(own[name], names)
+        else:
+            self.add(own[name])
+
+    def _imported(self, name: str, names: set[str]) -> None:
+        """A module that a function imports as it runs."""
+        self.text("import", name)
+        if _version(name) is not None:
+            self.text("installed", f"{name} {_version(name)}")
+        elif name in sys.modules:
+            self._module(sys.modules[name], names)
+        else:
+            raise self.refusal(f"an import of {name}")
+
+    def _module(self, it: ModuleType, names: set[str] | None) -> None:
+        """A module: by version, or by those of its attributes that a function names; without names by all."""
+        if _version(it.__name__) is not None:
+            self.text("installed", f"{it.__name__} {_version(it.__name__)}")
+            return
+        self.text("module", it.__name__)
+        found = {name: value for name, value in vars(it).items() if not name.startswith("__")}
+        for name in sorted(found.keys() if names is None else found.keys() & names):
+            self.text("attribute", name)
+            with self._within(name):
+                value = found[name]
+                if not isinstance(value, ModuleType):
+                    self.add(value)
+                elif id(value) not in self.around:
+                    self.around[id(value)] = len(self.around)
+                    self._module(value, names)
+                    del self.around[id(value)]
+
+    def _code(self, it: CodeType) -> None:
+        arguments = it.co_varnames[: it.co_argcount + it.co_kwonlyargcount]
+        counts = (it.co_argcount, it.co_posonlyargcount, it.co_kwonlyargcount, it.co_flags)
+        self._each("code", (counts, arguments, it.co_names, it.co_cellvars, it.co_freevars))
+        self._each("instructions", (it.co_code, it.co_exceptiontable, it.co_consts))
 
 
-def _add_object(digest: Any, kind: str, it: Any) -> None:
-    _text(digest, "object", kind)
-    if dataclasses.is_dataclass(it) and not isinstance(it, type):
-        # The fields alone: what a record has worked out and kept is no input.
-        _add(digest, {entry.name: getattr(it, entry.name) for entry in dataclasses.fields(it)})
-    elif isinstance(it, type) or hasattr(it, "__name__"):
-        _text(digest, "named", f"{getattr(it, '__module__', '')}.{getattr(it, '__qualname__', it.__name__)}")
-        if hasattr(it, "__code__"):
-            _add_code(digest, it.__code__)
-            cells = [cell.cell_contents for cell in it.__closure__ or ()]
-            _add(digest, [cells, it.__defaults__, it.__kwdefaults__])
-    elif getattr(it, "__dict__", None):
-        _add(digest, {name: value for name, value in vars(it).items() if not name.startswith("__")})
-    else:
-        raise InputError("checkpoint", kind, "stands among the inputs, and what it holds cannot be told")
+def _reduced(kind: type, it: Any) -> str | tuple[Any, ...]:
+    """What pickle takes an object apart into."""
+    own = copyreg.dispatch_table.get(kind)
+    return own(it) if own else it.__reduce_ex__(pickle.HIGHEST_PROTOCOL)
 
 
-def _add_code(digest: Any, code: CodeType) -> None:
-    digest.update(code.co_code)
-    _add(digest, list(code.co_names))
+def _content(cell: Any) -> Any:
+    try:
+        return cell.cell_contents
+    except ValueError:
+        return NotImplemented, "nothing was put into it"
+
+
+def _without_cached(kind: type, state: Any) -> Any:
+    """The state of an object without what `functools.cached_property` has kept in it; None for nothing."""
+    if not isinstance(state, dict):
+        return state
+    cached = functools.cached_property
+    own = {
+        name: value for name, value in state.items() if not isinstance(getattr(kind, str(name), None), cached)
+    }
+    return own or None
+
+
+def _nested(code: CodeType) -> Iterator[CodeType]:
+    """The code of a function and of all functions and classes within it."""
+    yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
-            _add_code(digest, constant)
-        else:
-            _add(digest, constant)
+            yield from _nested(constant)
 
 
-def _text(digest: Any, kind: str, text: str) -> None:
-    raw = text.encode()
-    digest.update(f"{kind}:{len(raw)}:".encode())
-    digest.update(raw)
+def _globals_of(code: CodeType) -> set[str]:
+    return {step.argval for step in dis.get_instructions(code) if step.opname in _OF_GLOBALS}
+
+
+def _imports_of(code: CodeType) -> set[str]:
+    return {step.argval for step in dis.get_instructions(code) if step.opname == "IMPORT_NAME"}
+
+
+def _package(module: str) -> str:
+    return module.partition(".")[0]
+
+
+def _is_compiled(it: Any) -> bool:
+    """Whether something is a class of compiled code, which no script can make or alter."""
+    return isinstance(it, type) and not it.__flags__ & _MADE_AS_IT_RUNS
+
+
+def _is_installed(it: Any, module: str | None, name: str) -> bool:
+    """Whether something is what an installed module has by that name."""
+    found: Any = sys.modules.get(module or "")
+    if found is None or _version(found.__name__) is None:
+        return False
+    for part in name.split("."):
+        found = getattr(found, part, None)
+    return found is it
+
+
+@functools.cache
+def _version(module: str) -> str | None:
+    """The version of the package that a module was installed with; None where it was not, as a script of the user's."""
+    from importlib import metadata
+
+    package = _package(module)
+    if package in _OWN:
+        return ""
+    if package in sys.stdlib_module_names:
+        return None if package == "__main__" else ".".join(map(str, sys.version_info[:2]))
+    place = getattr(sys.modules.get(package), "__file__", None) or ""
+    if not {"site-packages", "dist-packages"} & set(place.replace("\\", "/").split("/")):
+        return None
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        names = metadata.packages_distributions().get(package, [])
+    return " ".join(metadata.version(name) for name in names) or None

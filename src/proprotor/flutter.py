@@ -19,13 +19,14 @@ from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
 from proprotor.doubts import Doubt, doubts_along
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
-from proprotor.mode_names import name_list, name_shares
+from proprotor.least_damping import NOWHERE, LeastDamping, least_damping
+from proprotor.mode_names import Moving, moving, name_list
 from proprotor.model import LinearModel
-from proprotor.modes import held_coordinates
-from proprotor.path import Line, follow
+from proprotor.path import Line, Path, follow
 from proprotor.speed import in_metres_per_second
 from proprotor.stamp import Stamp
-from proprotor.sweep import approach_to, line_of_case, rotor_speed_of, state_names, tip_speed
+from proprotor.sweep import approach_to, line_of_case, names_at, state_names, tip_speed
+from proprotor.tracking import Spectrum
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -44,7 +45,7 @@ class Boundary:
     position : float
         Airspeed in m/s, or another input in SI.
     mode : str
-        Name of the mode that crosses, which it has wherever it is followed.
+        What moves most in the mode that crosses, by `proprotor.mode_names`: its name at the boundary itself.
     kind : "flutter" or "divergence"
         A pair, or a real root.
     onset : bool
@@ -62,6 +63,8 @@ class Boundary:
         (`proprotor.eigenvalue_derivatives.defect`).
     eigen_solves : int
         Spent on this crossing beyond those that bracketed it.
+    branch : str
+        The exact root that crosses, by what moves in it where branches are named (`proprotor.branches`).
     warning : str
         What makes the boundary doubtful, such as Mach numbers beyond what the airfoil knows; empty where nothing does.
     level : float
@@ -80,6 +83,7 @@ class Boundary:
     mechanism: Mapping[str, float]
     defect: float
     eigen_solves: int
+    branch: str = ""
     warning: str = ""
     level: float = 0.0
     stamp: Stamp = field(default_factory=dict)
@@ -107,7 +111,7 @@ class FlutterPoint:
     boundaries : tuple of Boundary
         By airspeed.
     unstable_at_start : tuple of str
-        Modes that are beyond the level at the lowest airspeed already.
+        What moves in the modes that are beyond the level at the lowest airspeed already.
     searched : tuple of float
         Lowest and highest airspeed that could be analysed, m/s.
     eigen_solves : int
@@ -115,6 +119,11 @@ class FlutterPoint:
     scan_solves : int
     level : float
         Damping ratio.
+    least_damping : float
+        The smallest damping ratio of any mode at the airspeeds of the search, dimensionless; NaN where there is none.
+    least_damping_mode : str
+    least_damping_speed : float
+        Where that was, m/s.
     doubts : tuple of Doubt
         What makes airspeeds of the search doubtful, and from where to where in m/s.
     stamp : mapping of str to str
@@ -131,6 +140,9 @@ class FlutterPoint:
     eigen_solves: int
     scan_solves: int
     level: float = 0.0
+    least_damping: float = np.nan
+    least_damping_mode: str = ""
+    least_damping_speed: float = np.nan
     doubts: tuple[Doubt, ...] = ()
     stamp: Stamp = field(default_factory=dict)
 
@@ -170,6 +182,8 @@ class Crossings(NamedTuple):
         First and last position that could be analysed, m/s or in SI units of the input.
     scan_solves, eigen_solves : int
         What it took to bracket every boundary, and in all.
+    least : LeastDamping
+        The smallest damping ratio of any mode at the points of the search, with the mode's name and the position.
     doubts : tuple of Doubt
         What makes positions of the scan doubtful, and from where to where.
     stamp : mapping of str to str
@@ -181,6 +195,7 @@ class Crossings(NamedTuple):
     searched: tuple[float, float]
     scan_solves: int
     eigen_solves: int
+    least: LeastDamping = NOWHERE
     doubts: tuple[Doubt, ...] = ()
     stamp: Stamp = {}  # noqa: RUF012 - never changed
 
@@ -200,7 +215,7 @@ def find_crossings(
     level : float
         Damping ratio that counts as the boundary.
     rotor_speed : float, optional
-        rad/s, for the names of modes.
+        rad/s, for the names of modes; that of the models by default.
     approach : Line, optional
         From where modes get their names: see `proprotor.sweep.sweep`.
 
@@ -227,48 +242,58 @@ def find_crossings(
     boundaries = []
     if crossing is not None:
         crossing.close()
-        for place in crossing.found:
-            boundaries.append(_boundary(crossing, place, names, model, rotor_speed))
+    if crossing is not None and crossing.found:
+        moves = _moving_at_crossings(crossing, rotor_speed)
+        for row, place in enumerate(crossing.found):
+            boundaries.append(_boundary(crossing, place, names, moves, row))
     boundaries = _distinct(sorted(boundaries, key=lambda found: found.position))
     scan_solves = len(path.points) + named.eigen_solves
     return Crossings(
         tuple(boundaries),
-        _beyond(path.values[0], names, level),
+        _beyond(model, path, level, rotor_speed),
         (float(scan.positions[0]), float(scan.positions[-1])),
         scan_solves,
         scan_solves + (0 if crossing is None else int(crossing.solves.sum())),
+        least_damping(path, names),
     )
 
 
-def _beyond(values: Array, names: list[str], level: float) -> tuple[str, ...]:
-    """Modes beyond the level."""
-    above = growth(values, level) > NEUTRAL * np.abs(values).max()
-    return tuple(dict.fromkeys(names[state] for state in np.flatnonzero(above & (values.imag >= 0))))
+def _beyond(model: LinearModel, path: Path, level: float, rotor_speed: float | None) -> tuple[str, ...]:
+    """What moves in the modes that are beyond the level at the first point."""
+    first = int(path.points[0])
+    values = path.spectrum.values[first]
+    above = growth(values, level) > NEUTRAL * np.nanmax(np.abs(values))
+    names = np.array(name_list(model.dofs))[names_at(model, path.spectrum, first, rotor_speed)]
+    return tuple(dict.fromkeys(names[above & (values.imag >= 0)].tolist()))
 
 
-def _boundary(
-    crossing: Brackets, place: int, names: list[str], model: LinearModel, rotor_speed: float | None
-) -> Boundary:
+def _moving_at_crossings(crossing: Brackets, rotor_speed: float | None) -> Moving:
+    """What moves in all modes of every crossing."""
+    positions = np.array([position for position, *_ in crossing.found.values()])
+    spectra = [spectrum for _, spectrum, *_ in crossing.found.values()]
+    stacked = (np.stack([getattr(spectrum, part) for spectrum in spectra]) for part in ("values", "right"))
+    values, right, left = Spectrum(*stacked).all_modes
+    return moving(crossing.scan.line.models(positions), values, left, right, rotor_speed)
+
+
+def _boundary(crossing: Brackets, place: int, names: list[str], moves: Moving, row: int) -> Boundary:
     position, spectrum, state, change, slope = crossing.found[place]
     value = complex(spectrum.values[state])
-    real = abs(value.imag) <= _REAL * np.abs(spectrum.values).max()
-    mode = spectrum.modes(np.array([state]))
-    shares = name_shares(
-        model.dofs, held_coordinates(model), mode.values, mode.left, mode.right, rotor_speed
-    )[:, 0]
-    told = name_list(model.dofs)
+    real = abs(value.imag) <= _REAL * np.nanmax(np.abs(spectrum.values))
+    shares = moves.shares[row, :, state]
     largest = [k for k in np.argsort(-shares) if shares[k] >= _TOLD]
     return Boundary(
         position=float(position),
-        mode=names[crossing.states[place]],
+        mode=str(moves.names[row, state]),
         kind="divergence" if real else "flutter",
         onset=bool(crossing.onset[place]) == bool(crossing.x[1, place] >= crossing.x[0, place]),
         eigenvalue=value if value.imag >= 0 else value.conjugate(),
         rate=float(slope),
         eigenvalue_rate=complex(change if value.imag >= 0 else np.conj(change)),
-        mechanism={told[k]: float(shares[k]) for k in largest},
-        defect=float(defect(mode)[0]),
+        mechanism={moves.known[k]: float(shares[k]) for k in largest},
+        defect=float(defect(spectrum.modes(np.array([state])))[0]),
         eigen_solves=int(crossing.solves[place]),
+        branch=names[crossing.states[place]],
     )
 
 
@@ -328,7 +353,7 @@ def boundaries(
         raise InputError("case", case.name, "must be one design: give one input to vary")
     model = line.models(line.positions)
     near = approach_to(case, line, model, options)
-    found = find_crossings(line, level=level, rotor_speed=rotor_speed_of(case), approach=near)
+    found = find_crossings(line, level=level, approach=near)
     doubts = doubts_along(np.asarray(line.positions), model.trim.warning)
     own = stamp.of_case(case, options)
     return found._replace(
@@ -398,6 +423,9 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
         eigen_solves=found.eigen_solves,
         scan_solves=found.scan_solves,
         level=level,
+        least_damping=found.least.ratio,
+        least_damping_mode=found.least.mode,
+        least_damping_speed=found.least.position,
         doubts=found.doubts,
         stamp=found.stamp,
     )

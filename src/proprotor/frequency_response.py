@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import HUB, SWASHPLATE, LinearModel
+from proprotor.needs import check_memory
 from proprotor.state_space import LOADS, StateSpace
 from proprotor.units import values_in_si
 
 if TYPE_CHECKING:
     import xarray
 
+_BYTES_PER_ENTRY = 48.0  # of a response: a complex number, its magnitude and phase, and a copy
 _BLOCK = 4096  # matrices solved at once
 
 
@@ -51,13 +54,18 @@ def frequency_response(
     Raises
     ------
     InputError
-        For an unknown name, a frequency that is negative or not finite, or a model without inputs.
+        For an unknown name, a frequency that is negative or not finite, a model without inputs, or a response that does
+        not fit into memory.
     """
     import xarray  # here, because it takes long to import
 
     omega = _frequencies(frequency)
     space = model.to_state_space()
     columns, rows = _places(inputs, space.inputs, "inputs"), _places(outputs, space.outputs, "outputs")
+    count = space.A[..., 0, 0].size * omega.size
+    told = f"{omega.size} frequencies"
+    size = _BYTES_PER_ENTRY * count * len(rows) * len(columns)
+    check_memory("frequency", told, size, "the response", "take fewer, or fewer inputs and outputs")
     response = _response(space, omega, rows, columns)
     leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
     leading = ("airspeed",) if len(leading) == 1 else leading
@@ -89,7 +97,7 @@ def frequency_response(
     )
 
 
-def _frequencies(frequency: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _frequencies(frequency: Any) -> Array:
     omega = values_in_si(frequency, "rad/s", "frequency").reshape(-1)
     wrong = ~(np.isfinite(omega) & (omega >= 0))
     if wrong.any():
@@ -105,11 +113,9 @@ def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> 
     return [known.index(name) for name in names]
 
 
-def _response(
-    space: StateSpace, omega: np.ndarray[Any, Any], rows: list[int], columns: list[int]
-) -> np.ndarray[Any, Any]:
+def _response(space: StateSpace, omega: Array, rows: list[int], columns: list[int]) -> Array:
     """C (iω - A)⁻¹ B + D (..., frequencies, rows, columns)."""
-    leading, states = space.A.shape[:-2], space.A.shape[-1]
+    leading = space.A.shape[:-2]
     count = int(np.prod(leading, dtype=int))
     a, b, c, d = (
         np.reshape(np.broadcast_to(m, (*leading, *m.shape[-2:])), (count, *m.shape[-2:]))
@@ -120,16 +126,38 @@ def _response(
             space.D[..., rows, :][..., columns],
         )
     )
-    found = np.empty((count, len(omega), len(rows), len(columns)), dtype=complex)
-    step = max(1, _BLOCK // max(count, 1))
-    for start in range(0, len(omega), step):
-        at = slice(start, start + step)
-        turning = 1j * omega[at, None, None] * np.eye(states)
-        found[:, at] = c[:, None] @ _solved(turning - a[:, None], b[:, None]) + d[:, None]
+    found = np.full((count, len(omega), len(rows), len(columns)), complex(np.nan, np.nan))
+    for points, own in _alike(a):
+        parts = a[points][:, own][:, :, own], b[points][:, own], c[points][:, :, own], d[points]
+        found[points] = _of_alike(*parts, omega)
     return found.reshape(*leading, *found.shape[1:])
 
 
-def _solved(matrices: np.ndarray[Any, Any], loads: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def _of_alike(a: Array, b: Array, c: Array, d: Array, omega: Array) -> Array:
+    """The same (points, frequencies, rows, columns) for points with the same states."""
+    found = np.empty((len(a), len(omega), *d.shape[1:]), dtype=complex)
+    step = max(1, _BLOCK // max(len(a), 1))
+    for start in range(0, len(omega), step):
+        at = slice(start, start + step)
+        turning = 1j * omega[at, None, None] * np.eye(a.shape[-1])
+        found[:, at] = c[:, None] @ _solved(turning - a[:, None], b[:, None]) + d[:, None]
+    return found
+
+
+def _alike(systems: Array) -> Iterator[tuple[Array, Array]]:
+    """Points (k,) of matrices (points, states, states) that have the same states, and these; failed ones left out."""
+    present = np.isfinite(np.diagonal(systems, axis1=-2, axis2=-1))
+    kinds, kind = np.unique(present, axis=0, return_inverse=True)
+    for place, states in enumerate(kinds):
+        points = np.flatnonzero(kind.reshape(-1) == place)
+        own = np.flatnonzero(states)
+        if not len(own):
+            continue
+        works = np.isfinite(systems[points][:, own][:, :, own]).all(axis=(-2, -1))
+        yield points[works], own
+
+
+def _solved(matrices: Array, loads: Array) -> Array:
     """Solutions (points, frequencies, states, columns); NaN where there is none."""
     loads = np.broadcast_to(loads, (*matrices.shape[:-1], loads.shape[-1]))
     try:
@@ -144,11 +172,12 @@ def _solved(matrices: np.ndarray[Any, Any], loads: np.ndarray[Any, Any]) -> np.n
         return solutions
 
 
-def _stable(system: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    works = np.isfinite(system).all(axis=(-2, -1))
-    stable = np.zeros(works.shape, dtype=bool)
-    stable[works] = (np.linalg.eigvals(system[works]).real < 0).all(axis=-1)
-    return stable
+def _stable(system: Array) -> Array:
+    flat = system.reshape(-1, *system.shape[-2:])
+    stable = np.zeros(len(flat), dtype=bool)
+    for points, own in _alike(flat):
+        stable[points] = (np.linalg.eigvals(flat[points][:, own][:, :, own]).real < 0).all(axis=-1)
+    return stable.reshape(system.shape[:-2])
 
 
 def _unit_of(output: str) -> str:

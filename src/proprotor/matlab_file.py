@@ -12,14 +12,13 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.model import INPUTS, LinearModel
-from proprotor.output_file import write_whole
+from proprotor.output_file import check_place, write_whole
 from proprotor.stamp import of_model
 
 if TYPE_CHECKING:
@@ -54,26 +53,18 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
     Raises
     ------
     InputError
-        When the path is no such file, or the results are something else.
+        When the path is no such file or cannot be written, or the results are something else.
     OSError
         When the file cannot be written.
     """
     from scipy.io import savemat  # here, because it takes long to import
 
-    _check_path(path)
+    check_place(path, ".mat")
     content = _of_model(results) if isinstance(results, LinearModel) else _of_dataset(results)
     write_whole(
         path,
         lambda file: savemat(file, content, long_field_names=True, do_compression=True, oned_as="column"),
     )
-
-
-def _check_path(path: str | os.PathLike[str]) -> None:
-    place = Path(path).resolve()
-    if place.suffix.lower() != ".mat":
-        raise InputError("path", os.fspath(path), "must end in .mat")
-    if not place.parent.is_dir():
-        raise InputError("path", os.fspath(path), "must be in a folder that exists")
 
 
 def matlab_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, str]:

@@ -45,7 +45,8 @@ def on_modes(
     count: int | None = None,
     damping_ratio: ArrayLike | Callable[[Array], ArrayLike] = 0.0,
     rotor_mass: float = 0.0,
-    includes_rotor: bool = False,
+    includes_rotor: bool | str = False,
+    shaft: str = "held",
     name_modes: Callable[[Array], Sequence[str]] | None = None,
 ) -> ModalSupport:
     """A structure as a support, on all its coordinates or on its lowest modes.
@@ -64,8 +65,8 @@ def on_modes(
     rotor_mass : float
         kg at the hub for the modes that are kept and damped. It does not stay in the mass: the rotor model brings
         it. Modes without it would bend too little near the hub, and six would not be enough.
-    includes_rotor : bool
-        Whether the mass holds the rotor already.
+    includes_rotor, shaft : bool or str, str
+        How the mass holds the rotor already, as for `proprotor.support.NormalModes`.
     name_modes : callable, optional
         The names of shapes (n, k); mode_1 and so on when left out.
 
@@ -94,7 +95,9 @@ def on_modes(
     matrices = {"mass": mass, "stiffness": stiffness, "damping": damping}
     reduced = {name: _projected(matrix, shapes) for name, matrix in matrices.items() if matrix is not None}
     reduced["damping"] = reduced.get("damping", 0.0) + _symmetric(structural)
-    support = NormalModes(names=names, **reduced, hub=hub @ shapes, includes_rotor=includes_rotor)
+    support = NormalModes(
+        names=names, **reduced, hub=hub @ shapes, includes_rotor=includes_rotor, shaft=shaft
+    )
     return ModalSupport(support, shapes, found)
 
 

@@ -46,7 +46,7 @@ def follow_support_modes(model: LinearModel, system: Eigensystem | None = None) 
         )
     system = eigensystem(model) if system is None else system
     shares = support_share(model, system)
-    good = np.asarray(np.isfinite(system.values).all(axis=-1))
+    good = np.asarray(np.isfinite(system.values).any(axis=-1))
     middle = good.shape[1] // 2
     followed = np.full((*good.shape, shares.shape[-2]), np.nan, dtype=complex)
     places = np.zeros((len(good), shares.shape[-2]), dtype=int)
@@ -79,8 +79,9 @@ def _next_places(system: Eigensystem, designs: Array, before: Array, point: int,
     backward = np.abs(system.left[designs, point] @ right)
     values = system.values[designs, before]
     apart = np.take_along_axis(values, places, axis=1)[:, :, None] - system.values[designs, point][:, None, :]
-    scale = np.abs(values).max(axis=1)[:, None, None]
+    scale = np.nanmax(np.abs(values), axis=1)[:, None, None]
     cost = np.abs(apart) / scale - np.sqrt(forward * np.swapaxes(backward, 1, 2))
+    cost = np.where(np.isnan(cost), np.inf, cost)  # what a point does not have no mode becomes
     found: Array = cost.argmin(axis=2)
     for row in np.flatnonzero([len(set(one)) < len(one) for one in found.tolist()]):
         found[row] = _one_to_one(cost[row])

@@ -1,9 +1,15 @@
-"""Names of modes, from the coordinates that take part in them and the way they whirl.
+"""Names of modes: what moves in them at a point, told by participation and by the way cyclic motion whirls.
 
 A model has as many names as modes: one for each coordinate of the support, for coning and the collective motion of
 each other blade angle, for the rotor speed, and two for the cyclic motion of each blade angle and of the gimbal,
-regressive and progressive. A mode gets its name at one point, the anchor, by the assignment with the largest sum of
-participations, one name to one mode, and keeps it wherever it is followed.
+regressive and progressive. At each point the modes get them by the assignment with the largest sum of participations,
+one name to one mode. That is a function of the point alone: of the eigenvalues and vectors there, and of nothing that
+lies before, behind or beside it. Where two branches veer and exchange their motions, the names pass from one to the
+other where both have moved as far as they will go on: where the sum of participations is the same for either.
+Which branch is which is another question, answered by following roots: `proprotor.branches`.
+
+The share that a mode has in its own name says how much the name is worth: near 1 nothing else moves, below one third
+something else may move more.
 
 Progressive and regressive are meant as the blades see it. A cyclic motion of frequency ν in the rotating frame appears
 in the fixed frame at ν + 1 per revolution, whirling with the rotor, when it runs round the rotor forwards, and at
@@ -19,19 +25,25 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
-from proprotor.model import HUB, ROTOR_SPEED, reactionless_coordinates
+from proprotor.model import HUB, ROTOR_SPEED, LinearModel, reactionless_coordinates
+from proprotor.modes import coordinate_motion, held_coordinates
 from proprotor.printable import unprintable
 
 _COLLECTIVE = {"flap": "coning"}
 _AZIMUTH = "rotor speed"
 SECOND = ", second root"
+DOUBTFUL = 1 / 3  # a share below which two other motions may each move more
+_TIE = 1e-6  # of a share: what parts names that fit equally well, above the rounding of vectors
+_STILL = 1e-6  # participation of cyclic motion below which the way it whirls is rounding
 
 
 class Motion(NamedTuple):
@@ -47,6 +59,73 @@ class Motion(NamedTuple):
 
     names: tuple[str, ...]
     places: tuple[int, ...]
+
+
+class Moving(NamedTuple):
+    """What moves in the modes of points.
+
+    Attributes
+    ----------
+    known : list of str
+        The names of the model, in the order of its coordinates.
+    place : array (..., states) of int
+        The name of each state, by its place in `known`; -1 at failed points. Both states of a pair have one name; a
+        name that two real roots have stands twice.
+    shares : array (..., names, states)
+        Participation of each name's motion in each state, 0 to 1; NaN at failed points.
+    """
+
+    known: list[str]
+    place: Array
+    shares: Array
+
+    @property
+    def names(self) -> Array:
+        """The name of each state (..., states), as text; empty at failed points."""
+        return np.array([*self.known, ""], dtype=object)[self.place]
+
+    @property
+    def share(self) -> Array:
+        """How much of each state (..., states) is the motion that it is named after, 0 to 1."""
+        rows = np.maximum(self.place, 0)[..., None, :]
+        share: Array = np.take_along_axis(self.shares, rows, -2)[..., 0, :]
+        return share
+
+
+def moving(
+    model: LinearModel, values: Array, left: Array, right: Array, rotor_speed: ArrayLike | None = None
+) -> Moving:
+    """What moves in each mode of each point: a function of the point alone.
+
+    Parameters
+    ----------
+    model : LinearModel
+        With leading axes (...) that broadcast to those of the eigenvalues.
+    values : array (..., states)
+        All eigenvalues, rad/s, each pair side by side.
+    left, right : array (..., states, states)
+        Left vectors in rows, right ones in columns, left @ right = 1: `proprotor.tracking.Spectrum.all_modes`.
+    rotor_speed : float or array (...), optional
+        rad/s; that of the model by default. Without either, regressive and progressive are told by the whirl in the
+        fixed frame alone.
+    """
+    held, states = held_coordinates(model), values.shape[-1]
+    given = model.rotor_speed if rotor_speed is None else rotor_speed
+    speed = None if given is None else np.broadcast_to(np.abs(given), values.shape[:-1]).reshape(-1)
+    flat = values.reshape(-1, states)
+    known = name_list(model.dofs)
+    place = np.full(flat.shape, -1)
+    shares = np.full((len(flat), len(known), states), np.nan)
+    exists = np.isfinite(flat)
+    good = np.flatnonzero(exists.any(axis=-1))
+    if len(good):
+        rows, vectors = (part.reshape(-1, states, states)[good] for part in (left, right))
+        own = None if speed is None else speed[good]
+        # A state that a point does not have, though others do, stands as a root at zero while names are given.
+        roots = np.where(exists[good], flat[good], 0)
+        shares[good] = name_shares(model.dofs, held, roots, rows, vectors, own)
+        place[good] = assign_names(model.dofs, held, shares[good], roots)
+    return Moving(known, place.reshape(values.shape), shares.reshape(*values.shape[:-1], *shares.shape[1:]))
 
 
 def motions(dofs: tuple[str, ...]) -> list[Motion]:
@@ -162,19 +241,46 @@ def _states(place: int, held: list[int], states: int) -> list[int]:
     return [held.index(place), rate] if place in held else [rate]
 
 
-def whirl(dofs: tuple[str, ...], held: list[int], values: Array, left: Array, right: Array) -> Array:
-    """Sense of whirl in the fixed frame (..., states): 1 with the rotor, -1 against it, by participation.
+def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array:
+    """Sense of whirl in the fixed frame (..., modes): 1 with the rotor, -1 against it.
 
-    NaN for real roots and where a model has no cyclic motion.
+    Of the blades' and the gimbal's cyclic motion, by participation. Of a mode in which they take no part, as all modes
+    of a propeller on a pivot: of the way the shaft's axis goes round, or where that does not tilt, the hub's centre.
+    NaN for real roots, and where nothing goes round.
     """
+    held = held_coordinates(model)
     against, with_rotor = np.zeros(values.shape), np.zeros(values.shape)
-    for motion in motions(dofs):
+    for motion in motions(model.dofs):
         if len(motion.places) == 2:
             shares = whirl_shares(motion, held, left, right)
             against, with_rotor = against + shares[0], with_rotor + shares[1]
+    of_hub = _hub_whirl(model, values, right)
+    still = against + with_rotor < _STILL
+    against, with_rotor = (
+        np.where(still, hub, own) for hub, own in zip(of_hub, (against, with_rotor), strict=True)
+    )
     total = against + with_rotor
     turned = np.where(values.imag < 0, -1.0, 1.0) * (with_rotor - against)
     return np.where((total > 0) & (values.imag != 0), turned / np.where(total > 0, total, 1), np.nan)
+
+
+def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, Array]:
+    """Squares of what goes round against and with the rotor of the shaft's axis, or of the hub (..., modes)."""
+    n = len(model.dofs)
+    shape = coordinate_motion(held_coordinates(model), n, values, right)
+    if model.hub is not None:
+        moved = np.asarray(model.hub) @ np.nan_to_num(shape)
+    else:
+        moved = np.zeros((*shape.shape[:-2], len(HUB), shape.shape[-1]), dtype=complex)
+        for axis, name in enumerate(HUB):
+            if name in model.dofs:
+                moved[..., axis, :] = np.nan_to_num(shape[..., model.dofs.index(name), :])
+    x, y, _, about_x, about_y, _ = np.moveaxis(moved, -2, 0)
+    # The axis k leans by α × k = (α_y, -α_x); x leads y by a quarter where a point goes round with the rotor.
+    sizes = [[np.abs(a - 1j * b) ** 2, np.abs(a + 1j * b) ** 2] for a, b in ((about_y, -about_x), (x, y))]
+    tilts = sum(sizes[0]) > 0
+    against, with_rotor = (np.where(tilts, tilt, way) for tilt, way in zip(*sizes, strict=True))
+    return against, with_rotor
 
 
 def name_shares(
@@ -183,58 +289,83 @@ def name_shares(
     values: Array,
     left: Array,
     right: Array,
-    rotor_speed: float | None,
+    rotor_speed: ArrayLike | None,
 ) -> Array:
-    """Share of each name in each state of one point (names, states); sums to 1 over the names."""
+    """Share of each name in each state (..., names, states); sums to 1 over the names."""
     columns = []
-    faster = np.abs(values.imag) > (np.inf if rotor_speed is None else abs(rotor_speed))
+    limit = np.inf if rotor_speed is None else np.abs(np.asarray(rotor_speed, dtype=float))[..., None]
+    faster, below = np.abs(values.imag) > limit, values.imag < 0
     for motion in motions(dofs):
         if len(motion.places) == 1:
             places = _states(motion.places[0], held, right.shape[-2])
-            columns.append(sum(np.abs(left[:, place] * right[place]) for place in places))
+            columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
             continue
         against, with_rotor = whirl_shares(motion, held, left, right)
-        swapped = values.imag < 0  # the conjugate of a state whirls as the state does
-        against, with_rotor = (
-            np.where(swapped, with_rotor, against),
-            np.where(swapped, against, with_rotor),
-        )
+        # The conjugate of a state whirls as the state does.
+        against, with_rotor = np.where(below, with_rotor, against), np.where(below, against, with_rotor)
         if rotor_speed is None:
             columns += [against, with_rotor]
         else:
             columns += [against + np.where(faster, 0, with_rotor), np.where(faster, with_rotor, 0)]
-    sums = np.array(columns)
-    shares: Array = sums / sums.sum(axis=0)
+    sums = np.stack(columns, axis=-2)
+    shares: Array = sums / sums.sum(axis=-2, keepdims=True)
     return shares
 
 
-def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> list[str]:
-    """The name of each state of one point; both states of a pair have the same one.
+def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> Array:
+    """The name of each state (points, states), by its place in `name_list`; both states of a pair have the same one.
+
+    The assignment with the largest sum of shares. Where the best names of all states go together, that is it. Of
+    assignments that are equally good, as for a propeller on a pivot that is alike in all directions, the one in which
+    frequencies rise in the order of the names: the choice must not be left to rounding.
 
     Parameters
     ----------
     dofs : tuple of str
     held : list of int
-    shares : array (names, states)
+    shares : array (points, names, states)
         Of `name_shares`.
-    values : array (states,)
+    values : array (points, states)
         Eigenvalues, each pair side by side.
     """
     slots = _slots(dofs, held)
-    fixed: dict[int, int] = {}
-    while True:
-        given = _assignment(shares, slots, fixed)
-        torn = [k for k in np.flatnonzero(values.imag > 0) if given[k] != given[k + 1]]
-        if not torn:
-            names = name_list(dofs)
-            return [names[name] for name in given]
-        # A pair has one name, of those with room for both its states: the likelier of the two, and whoever has its
-        # other half finds another. Each round settles one pair more, so that there is an end.
-        room = np.bincount(slots) - np.bincount(list(fixed.values()), minlength=slots.max() + 1)
-        surest = max(torn, key=lambda k: shares[[given[k], given[k + 1]], k].max())
-        whole = [name for name in (given[surest], given[surest + 1]) if room[name] >= 2]
-        name = max(whole or np.flatnonzero(room >= 2), key=lambda name: shares[name, surest])
-        fixed |= {int(surest): int(name), int(surest) + 1: int(name)}
+    gain = np.swapaxes(shares, -1, -2) + _TIE * _by_rank(values, shares.shape[-2])
+    upper = values.imag > 0
+    best: Array = gain.argmax(axis=-1)
+    best[:, 1:] = np.where(upper[:, :-1], best[:, :-1], best[:, 1:])
+    counts = (best[..., None] == np.arange(shares.shape[-2])).sum(axis=-2)
+    for point in np.flatnonzero((counts != np.bincount(slots)).any(axis=-1)):
+        best[point] = _assigned(gain[point], slots, values[point])
+    return best
+
+
+def _by_rank(values: Array, names: int) -> Array:
+    """Products (points, states, names) of the ranks of frequencies and of names, 0 to 1: largest where both rise."""
+    order = np.lexsort((values.real, np.abs(values.imag)), axis=-1)
+    rank = np.empty(values.shape)
+    np.put_along_axis(rank, order, np.broadcast_to(np.linspace(0, 1, values.shape[-1]), values.shape), -1)
+    return rank[..., None] * np.linspace(0, 1, names)
+
+
+def _assigned(gain: Array, slots: Array, values: Array) -> Array:
+    """The best assignment (states,) of one point in which no pair is torn."""
+    upper, real = np.flatnonzero(values.imag > 0), np.flatnonzero(values.imag == 0)
+    given: Array = slots[_best(gain[:, slots])]
+    if (given[upper] == given[upper + 1]).all():
+        return given
+    # Two real roots that want different names would tear a pair. Which names are left to the real roots is tried.
+    counts = np.bincount(slots)
+    whole, half = np.flatnonzero(counts == 2), np.flatnonzero(counts == 1)
+    largest = -np.inf
+    for left in combinations(whole.tolist(), len(whole) - len(upper)):
+        of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)
+        pairs, roots = _best(gain[np.ix_(upper, of_pairs)]), _best(gain[np.ix_(real, of_real)])
+        total = 2 * gain[upper, of_pairs[pairs]].sum() + gain[real, of_real[roots]].sum()
+        if total > largest:
+            largest = total
+            given[upper] = given[upper + 1] = of_pairs[pairs]
+            given[real] = of_real[roots]
+    return given
 
 
 def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
@@ -248,11 +379,9 @@ def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
     return np.array(slots)
 
 
-def _assignment(shares: Array, slots: Array, fixed: dict[int, int]) -> Array:
+def _best(gain: Array) -> Array:
+    """The column of each row in the assignment with the largest sum."""
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
-    gain = shares[slots].T.copy()  # (states, slots)
-    for state, name in fixed.items():
-        gain[state] = np.where(slots == name, 1e3, 0)
-    assigned: Array = slots[linear_sum_assignment(gain, maximize=True)[1]]
-    return assigned
+    columns: Array = linear_sum_assignment(gain, maximize=True)[1]
+    return columns

@@ -33,6 +33,7 @@ from proprotor.drive_train import DriveTrain
 from proprotor.equation_set import EquationSet
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
+from proprotor.needs import check_memory
 from proprotor.operation import Operation
 from proprotor.options import Options, parse_options
 from proprotor.rotor import Rotor
@@ -50,7 +51,9 @@ HUB = FIXED_COORDINATES[:6]
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
+MASS_AT_REST = (*HUB, "gimbal_1c", "gimbal_1s")  # coordinates of a rotor at rest with locked blades
 COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
+_BYTES_PER_POINT, _BYTES_PER_ENTRY = 10_000.0, 80.0  # while a rotor is trimmed and its matrices are made
 _SOFTEST_SPRING = 1e-100  # of the other spring: a free hinge, without a division by zero in series
 
 
@@ -74,6 +77,14 @@ class LinearModel:
         Hub motion in the coordinates; None for a model whose first six coordinates are the hub's own.
     rotor : LinearModel, optional
         The rotor alone of a rotor on a support, from which the hub loads follow.
+    mass_at_rest : array (..., 6, 6) or (..., 8, 8), optional
+        Of a rotor alone: its mass matrix at rest with locked blades on the hub's coordinates and, where it has a
+        gimbal, that gimbal's (`MASS_AT_REST`), whatever the options. A support whose masses include the rotor needs it.
+    rotor_speed : array (...), optional
+        rad/s; None for matrices from elsewhere that do not tell it.
+    shapes : array (..., m, k), optional
+        Of the first k coordinates, those of a support that other designs have in other shapes: see
+        `proprotor.support.NormalModes`.
     origin : Origin, optional
         The options in force, and the case where it is one's: see `proprotor.stamp`.
     """
@@ -87,6 +98,9 @@ class LinearModel:
     B: Array | None = None
     hub: Array | None = None
     rotor: LinearModel | None = None
+    mass_at_rest: Array | None = None
+    rotor_speed: Array | None = None
+    shapes: Array | None = None
     origin: Origin | None = None
 
     def __repr__(self) -> str:
@@ -95,10 +109,12 @@ class LinearModel:
         return of_model(self)
 
     @property
-    def shaft_holds_azimuth(self) -> bool:
-        """Whether a shaft to a constant-speed end makes the azimuth a displacement of its own; else it is a rate."""
-        place = self.dofs.index(ROTOR_SPEED) if ROTOR_SPEED in self.dofs else None
-        return place is not None and bool(np.any(np.nan_to_num(self.K[..., place, place]) > 0))
+    def shaft_holds_azimuth(self) -> Array:
+        """Points (...) where a shaft to a constant-speed end makes the azimuth a displacement (rad), no mere rate."""
+        if ROTOR_SPEED not in self.dofs:
+            return np.zeros(self.K.shape[:-2], dtype=bool)
+        place = self.dofs.index(ROTOR_SPEED)
+        return np.asarray(np.nan_to_num(np.real(self.K[..., place, place])) > 0)
 
     def modes(self) -> xarray.Dataset:
         """Eigenvalues and mode shapes, see `proprotor.modes.modes`.
@@ -149,7 +165,9 @@ class LinearModel:
         parts = {name: getattr(self, name)[..., places, :][..., places] for name in "MCK"}
         inputs = None if self.B is None else self.B[..., places, :]
         hub = None if self.hub is None else self.hub[:, places]
-        return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, **parts)
+        whole = self.shapes is not None and places[: self.shapes.shape[-1]] == [*range(self.shapes.shape[-1])]
+        shapes = self.shapes if whole else None
+        return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts)
 
 
 def rotor_quantities(
@@ -180,7 +198,7 @@ def model_quantities(
         for name, value in given.items()
         if value is not None
     }
-    damping = {"section_damping": float(options.section_damping)}
+    damping = {"section_damping": float(bool(options.section_damping))}
     return rotor_quantities(rotor, operation, airspeed, points) | given | damping
 
 
@@ -218,14 +236,15 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     Raises
     ------
     InputError
-        For an unknown option, or a rotor that the options do not allow.
+        For an unknown option, a rotor that the options do not allow, or more points than there is memory for.
     """
     choice = parse_options(options)
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed)
     shape = batch_shape(rotor, operation, speed, choice.drive_train)
-    quantities = model_quantities(rotor, operation, choice, speed, shape)
     points = int(np.prod(shape, dtype=int))
+    _check_memory(rotor, choice, points)
+    quantities = model_quantities(rotor, operation, choice, speed, shape)
     sections, coarse = (BladeSections.of(rotor, shape, coarse) for coarse in (False, True))
     target = _flat(trim_target(rotor, operation), shape)
     settled = solve_trim(sections, coarse, quantities, choice, target, points)
@@ -240,9 +259,29 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    speeds = np.broadcast_to(speed, shape)
-    model = LinearModel(**parts, dofs=coordinates, trim=shaped, airspeed=speeds, origin=Origin(choice))
+    per_point: dict[str, Any] = {
+        name: np.broadcast_to(value, shape)
+        for name, value in (("airspeed", speed), ("rotor_speed", np.real(operation.rotor_speed)))
+    }
+    model = LinearModel(
+        **parts,
+        **per_point,
+        dofs=coordinates,
+        trim=shaped,
+        mass_at_rest=mass_at_rest(rotor),
+        origin=Origin(choice),
+    )
     return model if dofs == coordinates else model.submodel(dofs)
+
+
+def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
+    """Refuse a batch, or blades whose motions are all kept, that do not fit into memory."""
+    own = len(FIXED_COORDINATES)
+    count = own + 3 * (float(np.max(rotor.n_blades)) - 3) * options.reactionless
+    if count > own:
+        check_memory("n_blades", rotor.n_blades, _BYTES_PER_ENTRY * count**2, "the matrices")
+    size = points * (_BYTES_PER_POINT + _BYTES_PER_ENTRY * count**2)
+    check_memory("airspeed", f"{points} points", size, "their matrices", "take fewer points at once")
 
 
 def _flat(target: Target, shape: tuple[int, ...]) -> Target:
@@ -461,15 +500,23 @@ def in_closed_form(sections: BladeSections, options: Options) -> bool:
     return options.airloads == "lift-slope" and simple and has_closed_form(sections)
 
 
-def rigid_hub_mass(rotor: Rotor) -> Array:
-    """Mass matrix (6, 6) of the undeflected rotor on its hub coordinates, everything else locked."""
-    still = {name: 0.0 for name in UNKNOWNS}
+def mass_at_rest(rotor: Rotor) -> Array:
+    """Return the mass matrix of the undeflected rotor with locked blades, which no option of an analysis changes.
+
+    Parameters
+    ----------
+    rotor : Rotor
+
+    Returns
+    -------
+    array (..., 8, 8)
+        On the coordinates `MASS_AT_REST`, in kg, kg m and kg m².
+    """
     names = [e.name for e in fields(rotor) if e.name not in ("airfoil", "chord", "twist")]
-    pool = {
-        name: getattr(rotor, name)
-        for name in (*names, "flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")
-    }
-    pool |= still
+    names += ["flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia"]
+    pool = {name: getattr(rotor, name) for name in names} | dict.fromkeys(UNKNOWNS, 0.0)
     pool |= evaluate(inertia.trim_integrals, pool)._asdict()
-    mass: Array = evaluate(multiblade.mass, pool, evaluate(inertia.mass, pool))
-    return mass[..., :6, :6]
+    blade = evaluate(inertia.mass, pool) + evaluate(pitch.mass, pool)
+    places = np.array([FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
+    mass: Array = evaluate(multiblade.mass, pool, blade)[..., places[:, None], places]
+    return mass

@@ -32,10 +32,11 @@ from proprotor.model import (
     batch_shape,
     couplings,
     in_closed_form,
+    mass_at_rest,
     model_quantities,
-    rigid_hub_mass,
 )
 from proprotor.options import Options, parse_options
+from proprotor.rotor_share import without_rotors
 from proprotor.stamp import check_options, of_model
 from proprotor.support import NormalModes
 from proprotor.trim import UNKNOWNS, with_trim
@@ -217,7 +218,10 @@ def _moments(
     if in_closed_form(sections, choice):
         return segments | closed_form_moments(sections, segments)
     some = replace(sections, airfoil=_SomeCoefficients(sections.airfoil, kept, choice.compressibility))
-    return segments | load_moments(some, segments, compressibility=False, equations=equations)
+    alone = choice.airloads == "lift-slope"
+    return segments | load_moments(
+        some, segments, compressibility=False, lift_slope_only=alone, equations=equations
+    )
 
 
 def _loads(pool: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
@@ -270,9 +274,7 @@ def _support_parts(
         filled[..., :modes, :modes] = matrix
         return filled
 
-    mass = np.asarray(support.mass)
-    if support.includes_rotor:
-        mass = mass - np.swapaxes(support.hub, -1, -2) @ rigid_hub_mass(case.rotor) @ support.hub
+    mass, _ = without_rotors(support, [(support.hub, mass_at_rest(case.rotor))])
     zero, own = np.zeros((*shape, n, n)), case.support
     air = Part(
         whole(mass * 0 + support.mass - own.mass),

@@ -2,11 +2,15 @@
 
 Signs: s = -ζω ± iω√(1 - ζ²), damping ratio ζ = -Re s / |s|, so a negative ratio is an instability. The rotor's
 azimuth has no stiffness unless a shaft gives it one, and enters as a rate: n coordinates have 2n - 1 states.
+In a batch in which a shaft holds the azimuth at some points only, each point has the states that it has alone; arrays
+have room for 2n, and where a point has one fewer its last eigenvalue is NaN.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from types import EllipsisType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,7 +18,7 @@ import numpy as np
 from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.errors import InputError
-from proprotor.massless import massless, massless_coordinates
+from proprotor.massless import massless, massless_coordinates, with_reasons
 from proprotor.model import ROTOR_SPEED, LinearModel
 from proprotor.tracking import Spectrum
 
@@ -24,6 +28,7 @@ if TYPE_CHECKING:
     from proprotor.path import Line
 
 _NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping ratio
+_NO_SHAFT = "no shaft holds the azimuth: its rate has one root, where a shaft gives two"
 
 
 class Eigensystem(NamedTuple):
@@ -31,7 +36,7 @@ class Eigensystem(NamedTuple):
 
     values (..., states), right (..., states, states) in columns, left (..., states, states) in rows with
     left @ right = 1; displacement (..., n, states) is each mode's motion of the model's n coordinates.
-    NaN at failed points.
+    NaN at failed points, and the last eigenvalue of a point that has fewer than others.
     """
 
     values: Array
@@ -41,9 +46,14 @@ class Eigensystem(NamedTuple):
 
 
 def state_matrix(model: LinearModel) -> Array:
-    """A of ẋ = A x with x the displacements without the azimuth, then all velocities; (..., 2n - 1, 2n - 1)."""
-    _check_inertia(model)
-    return first_order(model)
+    """A of ẋ = A x with x the displacements without the azimuth, then all velocities; (..., 2n - 1, 2n - 1).
+
+    With a shaft the azimuth is among the displacements: (..., 2n, 2n), NaN in its row and column at points without.
+    """
+    model = without_massless(model)
+    matrix = first_order(model)
+    matrix[~np.isfinite(model.M).all(axis=(-2, -1))] = np.nan
+    return matrix
 
 
 def first_order(model: LinearModel) -> Array:
@@ -54,32 +64,55 @@ def first_order(model: LinearModel) -> Array:
     matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
     matrix[..., np.arange(len(held)), len(held) + np.array(held)] = 1
     matrix[..., len(held) :, :] = acceleration
+    free = lack_azimuth(model)
+    if free.any():
+        azimuth = model.dofs.index(ROTOR_SPEED)
+        matrix[free, azimuth, :] = np.nan
+        matrix[free, :, azimuth] = np.nan
     return matrix
 
 
-def _check_inertia(model: LinearModel) -> None:
-    """A rotor alone has massless directions: its hub may move against azimuth and gimbal without moving any mass."""
-    singular = massless(model.M)
-    if singular.any():
-        names = massless_coordinates(model.M[singular][0], model.dofs)
-        rule = "give the mass matrix no inverse: mount the rotor on a support, or hold some of them with submodel"
-        raise InputError("dofs", ", ".join(names), rule)
+def without_massless(model: LinearModel) -> LinearModel:
+    """The model with NaN for a mass matrix that has no inverse, so that it spoils no other point."""
+    good = have_modes(model)
+    return model if good.all() else replace(model, M=np.where(good[..., None, None], model.M, np.nan))
 
 
 def held_coordinates(model: LinearModel) -> list[int]:
-    """Places of the coordinates whose displacement is a state: all but an azimuth that no shaft holds."""
-    return [
-        place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or model.shaft_holds_azimuth
-    ]
+    """Places of the coordinates whose displacement is a state anywhere: all but an azimuth that no shaft holds."""
+    held = bool(model.shaft_holds_azimuth.any())
+    return [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or held]
+
+
+def lack_azimuth(model: LinearModel) -> Array:
+    """Which points (...) do not have the azimuth among their states, while others of the batch do."""
+    holds = model.shaft_holds_azimuth
+    if not holds.any():
+        return np.zeros(holds.shape, dtype=bool)
+    return np.asarray(~holds & np.isfinite(model.K).all(axis=(-2, -1)))
+
+
+def missing_roots(model: LinearModel, states: int | None = None) -> Array:
+    """Why a point (...) has fewer eigenvalues than `states`, by default the most of its batch; "" where it has not."""
+    n, holds = len(model.dofs), model.shaft_holds_azimuth
+    most = n + len(held_coordinates(model)) if states is None else states
+    own = 2 * n - ((ROTOR_SPEED in model.dofs) & ~holds)
+    fewer = (own < most) & np.isfinite(model.K).all(axis=(-2, -1))
+    return np.where(fewer, _NO_SHAFT, "").astype(object)
 
 
 def have_modes(model: LinearModel) -> Array:
-    """Which points of a batch (...) did not fail; a rotor alone with motions that have no mass is refused."""
-    good = np.asarray(np.isfinite(model.M).all(axis=(-2, -1)))
-    if model.hub is None:
-        _check_inertia(model)
-        return good
-    return good & ~massless(model.M)
+    """Which points of a batch (...) did not fail and have mass in every motion.
+
+    A rotor alone has massless directions: its hub may move against azimuth and gimbal without moving any mass. It is
+    refused where no point is left.
+    """
+    good, singular = np.asarray(np.isfinite(model.M).all(axis=(-2, -1))), massless(model.M)
+    if model.hub is None and singular.any() and not (good & ~singular).any():
+        names = massless_coordinates(model.M[singular][0], model.dofs)
+        rule = "give the mass matrix no inverse: mount the rotor on a support, or hold some of them with submodel"
+        raise InputError("dofs", ", ".join(names), rule)
+    return good & ~singular
 
 
 def eigensystem(model: LinearModel) -> Eigensystem:
@@ -89,22 +122,67 @@ def eigensystem(model: LinearModel) -> Eigensystem:
     return Eigensystem(values, right, left, coordinate_motion(held, len(model.dofs), values, right))
 
 
-def decomposition(model: LinearModel) -> Spectrum:
-    """Eigenvalues and right vectors in the state space; of a complex model, those of its real part."""
-    good, model = have_modes(model), _real(model)
-    if good.all():
-        return _solved(first_order(model))
-    states = len(held_coordinates(model)) + len(model.dofs)
-    values = np.full((*good.shape, states), complex(np.nan, np.nan))
-    right = np.full((*good.shape, states, states), np.nan, dtype=complex)
-    if good.any():
-        values[good], right[good] = _solved(first_order(some_points(model, good)))
-    return Spectrum(values, right)
+def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum:
+    """Eigenvalues and right vectors in the state space; of a complex model, those of its real part.
+
+    The eigenvalue of a state that a point does not have is NaN, and stands last. States are those of the batch, or with
+    `held` those of another one with the same coordinates.
+    """
+    model = _real(model)
+    states = len(held_coordinates(model) if held is None else held) + len(model.dofs)
+    values = np.full((*model.M.shape[:-2], states), complex(np.nan, np.nan))
+    right = np.full((*values.shape, states), np.nan, dtype=complex)
+    for points, part in _alike(model):
+        found = with_azimuth(Spectrum(*_solved(first_order(part)), part.shapes), model.dofs, states)
+        if points is ...:
+            return found
+        values[points], right[points] = found.values, found.right
+    return Spectrum(values, right, model.shapes)
 
 
-def _solved(matrix: Array) -> Spectrum:
+def eigenvalues(model: LinearModel) -> Array:
+    """The eigenvalues (..., states) alone, in no particular order; NaN as `decomposition` has it."""
+    states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
+    values = np.full((*shape, states), complex(np.nan, np.nan))
+    for points, part in _alike(_real(model)):
+        found = np.linalg.eigvals(first_order(part))
+        values[points, : found.shape[-1]] = found
+    return values
+
+
+def _alike(model: LinearModel) -> Iterator[tuple[Array | EllipsisType, LinearModel]]:
+    """Points that have modes, in parts with the same states: where they are, and the model there."""
+    good, free = have_modes(model), lack_azimuth(model)
+    if good.all() and not free.any():
+        yield ..., model
+        return
+    for points in (good & ~free, good & free):
+        if points.any():
+            yield points, some_points(model, points)
+
+
+def with_azimuth(spectrum: Spectrum, dofs: tuple[str, ...], states: int) -> Spectrum:
+    """States of points at which nothing holds the azimuth among those, one more, of points where a shaft does.
+
+    The azimuth moves by its rate over the eigenvalue. The state more has no eigenvalue, as the azimuth alone moves
+    nothing else: with a vanishing shaft stiffness it is what the root at zero comes to.
+    """
+    values, right, shapes = spectrum
+    if values.shape[-1] == states:
+        return spectrum
+    place = dofs.index(ROTOR_SPEED)
+    zero, rate = values == 0, right[..., len(dofs) - 1 + place, :]
+    whole = np.zeros((*values.shape[:-1], states, states), dtype=complex)
+    whole[..., np.delete(np.arange(states), place), :-1] = right
+    whole[..., place, :-1] = np.where(zero, 0, rate / np.where(zero, 1, values))
+    whole[..., place, -1] = 1
+    none = np.full((*values.shape[:-1], 1), complex(np.nan, np.nan))
+    return Spectrum(np.concatenate([values, none], axis=-1), whole, shapes)
+
+
+def _solved(matrix: Array) -> tuple[Array, Array]:
     values, right = np.linalg.eig(matrix)
-    return Spectrum(values.astype(complex, copy=False), right.astype(complex, copy=False))
+    return values.astype(complex, copy=False), right.astype(complex, copy=False)
 
 
 def _real(model: LinearModel) -> LinearModel:
@@ -115,9 +193,11 @@ def _real(model: LinearModel) -> LinearModel:
 
 def some_points(model: LinearModel, points: Array) -> LinearModel:
     """M, C and K of a model at some of its points."""
-    return replace(
-        model, M=model.M[points], C=model.C[points], K=model.K[points], B=None, hub=None, rotor=None
-    )
+    parts = {name: getattr(model, name)[points] for name in "MCK"}
+    for name in ("rotor_speed", "shapes"):
+        whole = getattr(model, name)
+        parts[name] = None if whole is None else whole[points]
+    return replace(model, **parts, B=None, hub=None, rotor=None)
 
 
 def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:
@@ -160,26 +240,37 @@ def modes(model: LinearModel) -> xarray.Dataset:
     -------
     xarray.Dataset
         eigenvalue (rad/s), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
-        largest component 1), dominant (name of the coordinate with the largest participation); dimensions (..., mode)
-        and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN.
+        largest component 1), dominant (name of the coordinate with the largest participation), name (what moves, see
+        `proprotor.mode_names`) and share (how much of the mode that is, 0 to 1); dimensions (..., mode) and dof. A real
+        root is a mode of its own, with frequency 0. Points with fewer modes end in NaN; where a batch has points with
+        fewer eigenvalues than others, missing tells why.
 
     Raises
     ------
     InputError
         When the mass matrix has no inverse, as that of a rotor alone may not.
     """
+    from proprotor.mode_names import moving  # which needs the vectors of this module
+
     system = eigensystem(model)
+    model = with_reasons(model) if model.hub is None else model
     values = system.values
+    moves = moving(model, values, system.left, system.right)
     kept = np.where(values.imag >= 0, np.abs(values.imag), np.inf)
     order = np.argsort(kept, axis=-1, kind="stable")
     count = int(np.isfinite(kept).sum(axis=-1).max(initial=0))
     order = order[..., :count]
-    values = np.where(
-        np.isfinite(np.take_along_axis(kept, order, -1)), np.take_along_axis(values, order, -1), np.nan
-    )
+    there = np.isfinite(np.take_along_axis(kept, order, -1))
+    values = np.where(there, np.take_along_axis(values, order, -1), np.nan)
     shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
     shares = np.take_along_axis(participation(model, system), order[..., None, :], -1)
-    return mode_dataset(model, values, shapes, shares)
+    data = mode_dataset(model, values, shapes, shares)
+    by_mode = data.eigenvalue.dims
+    names = np.where(there, np.take_along_axis(moves.names, order, -1), "").astype(str)
+    data["name"] = by_mode, names, {"long_name": "what moves"}
+    share = np.where(there, np.take_along_axis(moves.share, order, -1), np.nan)
+    data["share"] = by_mode, share, {"units": "1", "long_name": "participation of what the name says"}
+    return data
 
 
 def mode_dataset(
@@ -193,7 +284,8 @@ def mode_dataset(
         leading = ("airspeed" if line is None else line.name,)
     by_mode = (*leading, "mode")
     with np.errstate(all="ignore"):
-        neutral = np.abs(values) < _NEUTRAL * np.nanmax(np.abs(values), initial=0)
+        size = np.nan_to_num(np.abs(values))
+        neutral = size < _NEUTRAL * size.max(axis=-1, keepdims=True, initial=0)
         ratio = np.where(neutral, np.nan, -values.real / np.abs(values))
         largest = np.take_along_axis(shapes, np.abs(np.nan_to_num(shapes)).argmax(axis=-2)[..., None, :], -2)
         shapes = np.where(np.isnan(values)[..., None, :], np.nan, shapes / largest)
@@ -214,6 +306,13 @@ def mode_dataset(
         "warning": (leading, model.trim.warning.astype(str), {"long_name": "what makes a point doubtful"}),
         "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
     }
+    missing = missing_roots(model)
+    if (missing != "").any():
+        data["missing"] = (
+            leading,
+            missing.astype(str),
+            {"long_name": "why a point has fewer roots than others"},
+        )
     coordinates = {"dof": list(model.dofs), "airspeed": (leading, model.airspeed, {"units": "m/s"})}
     if line is not None and line.name != "airspeed":
         coordinates[line.name] = (leading, line.positions, {"units": line.units})

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from proprotor.errors import InputError, unknown_name
+from proprotor.mode_names import moving
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition
 from proprotor.speed import in_metres_per_second
-from proprotor.sweep import sweep_case
+from proprotor.sweep import mode_columns
 from proprotor.tracking import Modes
 
 if TYPE_CHECKING:
@@ -37,22 +38,21 @@ def named_modes(case: Case, airspeed: Any, mode: str | None, options: Mapping[st
     Raises
     ------
     InputError
-        For an airspeed that is not one, or that cannot be analysed, and an unknown mode.
+        For an airspeed that is not one, or that cannot be analysed, many designs, and an unknown mode.
     """
     speed = in_metres_per_second(airspeed).reshape(-1)
     if len(speed) != 1:
         raise InputError("airspeed", airspeed, "must be one speed")
-    named = sweep_case(case, speed, **options).isel(airspeed=0)
-    if named.reason.item():
-        raise InputError("airspeed", airspeed, named.reason.item())
-    found = named.isel(mode=np.flatnonzero(np.isfinite(named.eigenvalue.values.real)))
-    names = [str(name) for name in found.mode.values]
+    model = case.linearize(speed[0], **options)
+    if model.airspeed.ndim:
+        raise InputError("case", case.name, f"must be one design, not {model.airspeed.size}")
+    if model.trim.reason.item():
+        raise InputError("airspeed", airspeed, model.trim.reason.item())
+    spectrum = decomposition(model)
+    values, right, left = spectrum.all_modes
+    columns, names = mode_columns(moving(model, values[None], left[None], right[None]), values[None])
     if mode is not None and mode not in names:
         raise InputError("mode", mode, unknown_name(mode, names, "mode"))
-    names = names if mode is None else [mode]
-    model = case.linearize(speed[0], **options)
-    spectrum = decomposition(model)
-    wanted = found.eigenvalue.sel(mode=names).values
-    places = np.abs(spectrum.values[None, :] - wanted[:, None]).argmin(axis=1)
-    solves = int(named.attrs["eigen_solves"]) + 1
-    return NamedModes(names, spectrum.modes(places), model, float(speed[0]), solves)
+    chosen = np.array([names.index(name) for name in (names if mode is None else [mode])])
+    wanted = spectrum.modes(columns[0, chosen])
+    return NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]), 1)

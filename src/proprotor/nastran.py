@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.modal_reduction import per_mode
+from proprotor.needs import need
 from proprotor.support import HUB_AXES, NormalModes
 
 COMPONENTS = ("T1", "T2", "T3", "R1", "R2", "R3")
@@ -31,7 +32,8 @@ def nastran_modes(
     file: str | os.PathLike[str],
     grid: int,
     *,
-    includes_rotor: bool,
+    includes_rotor: bool | str,
+    shaft: str = "held",
     damping_ratio: ArrayLike = 0.0,
     modes: int | None = None,
     subcase: int | None = None,
@@ -49,8 +51,9 @@ def nastran_modes(
         table LAMA.
     grid : int
         The grid point at the hub; its motion is read in its own output coordinate system.
-    includes_rotor : bool
-        Whether the run had the rotor's mass at the hub.
+    includes_rotor, shaft : bool or str, str
+        How the run had the rotor on, as for `proprotor.support.NormalModes`: "mass only" for a point mass at the hub's
+        grid point (CONM2 without inertias), "rigid" with the rotor's inertias, "gimballed" with a gimbal between.
     damping_ratio : float or array
         Of critical for the lowest modes, the last for all above them.
     modes : int, optional
@@ -98,6 +101,7 @@ def nastran_modes(
         damping_ratio=per_mode(damping_ratio, count),
         hub=motion,
         includes_rotor=includes_rotor,
+        shaft=shaft,
     )
 
 
@@ -109,11 +113,9 @@ def _read(path: Path) -> Any:
     with warnings.catch_warnings():  # pyNastran uses names that NumPy has deprecated
         warnings.simplefilter("ignore")
         with _names_of_older_numpy():
-            try:
-                from pyNastran.op2.op2 import OP2
-            except ImportError as error:
-                rule = f'needs pyNastran: pip install "proprotor[nastran]" ({error})'
-                raise InputError("file", str(path), rule) from None
+            need("pyNastran.op2.op2", "file", "Nastran's results", "nastran")
+            from pyNastran.op2.op2 import OP2
+
             results = OP2(debug=False, log=_Silent())
             try:
                 with redirect_stdout(StringIO()):

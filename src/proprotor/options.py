@@ -1,4 +1,7 @@
-"""Modelling options: one keyword each, the same everywhere, the first choice is the default."""
+"""Modelling options: one keyword each, the same everywhere, the first choice is the default.
+
+A first choice None stands for one of the others, which `default_choice` finds by what else is chosen.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "structure": ("coupled", "diagonal", "tabulated"),
     "airloads": ("full", "lift-slope", "none"),
     "compressibility": (True, False),
-    "section_damping": (False, True),
+    "section_damping": (None, True, False),
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
 }
@@ -28,9 +31,18 @@ FURTHER = ("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling",
 LOCKABLE = ("flap", "lag", "pitch", "gimbal")
 
 
+def default_choice(name: str, options: Mapping[str, Any]) -> Any:
+    """Return what an option is when it is not given; the paper's equations have no section damping, the others do."""
+    if name == "section_damping":
+        return options.get("equations", CHOICES["equations"][0]) != "published"
+    return CHOICES[name][0]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Choices of the model.
+
+    Section damping that is not given stands in the object as what it means, True or False.
 
     Parameters
     ----------
@@ -50,8 +62,10 @@ class Options:
         Perturbation airloads: all, those proportional to the lift slope, or none. The trim has them all.
     compressibility : bool
         Prandtl-Glauert factor on lift and moment.
-    section_damping : bool
-        Quasi-steady pitch damping of the sections, thin-airfoil theory about the quarter chord.
+    section_damping : bool, optional
+        Quasi-steady damping of turning sections (lift by the incidence at 3/4 chord, and the moment about the quarter
+        chord), in the trim too. Not given: on, and off with equations="published", to which True adds it. Lift-slope
+        airloads keep its lift alone.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional
@@ -75,7 +89,7 @@ class Options:
     pitch_lag_coupling: ArrayLike | None = None
     airloads: str = "full"
     compressibility: bool = True
-    section_damping: bool = False
+    section_damping: bool | None = None
     rotor_speed: str = "windmilling"
     drive_train: DriveTrain | None = None
     reactionless: bool = False
@@ -88,6 +102,8 @@ class Options:
                 continue
             if value not in choices:
                 raise InputError(name, value, f"must be one of {', '.join(map(str, choices))}")
+        if self.section_damping is None:
+            object.__setattr__(self, "section_damping", default_choice("section_damping", vars(self)))
         locked = (self.locked,) if isinstance(self.locked, str) else tuple(self.locked)
         for name in locked:
             if name not in LOCKABLE:

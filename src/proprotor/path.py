@@ -11,12 +11,12 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
-from proprotor.modes import decomposition
+from proprotor.modes import decomposition, held_coordinates
 from proprotor.tracking import POOR, Spectrum, Steps, chain, keep_upper, link
 
 Linearize = Callable[[Array], LinearModel]  # positions (k,) along a line to the models there
 
-_HALVINGS = 7  # of a step whose modes cannot be told apart: of 5 kt, to 0.04 kt
+_HALVINGS = 24  # of a step whose modes cannot be told apart: of 20 kt, to 1e-6 kt
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,15 +132,18 @@ def path_of(spectrum: Spectrum, positions: Array | None = None) -> Path:
     return Path(spectrum, good, link(spectrum, good[:-1], good[1:]), told)
 
 
-def follow(model: LinearModel, line: Line | None = None) -> Path:
+def follow(model: LinearModel, line: Line | None = None, held: list[int] | None = None) -> Path:
     """States of the points of a line of models, followed one to one.
 
     A step whose quality is poor is halved until it is not, where the line can be linearised between its points. A step
-    that stays poor keeps its quality as a warning.
+    that stays poor keeps its quality as a warning. `held` as `decomposition` has it.
     """
+    held = held_coordinates(model) if held is None else held
     if line is None or line.linearize is None:
-        return path_of(decomposition(model), None if line is None else np.ravel(np.real(line.positions)))
-    path = path_of(decomposition(model), np.asarray(line.positions, dtype=float))
+        return path_of(
+            decomposition(model, held), None if line is None else np.ravel(np.real(line.positions))
+        )
+    path = path_of(decomposition(model, held), np.asarray(line.positions, dtype=float))
     hopeless = np.zeros(max(len(path.points) - 1, 0), dtype=bool)
     for _ in range(_HALVINGS):
         poor = np.flatnonzero((path.steps.quality.min(axis=1, initial=1) < POOR) & ~hopeless)
@@ -148,7 +151,7 @@ def follow(model: LinearModel, line: Line | None = None) -> Path:
             break
         ends = path.positions[path.points]
         middle = (ends[poor] + ends[poor + 1]) / 2
-        between = decomposition(line.linearize(middle))
+        between = decomposition(line.linearize(middle), held)
         works = between.works
         hopeless[poor[~works]] = True
         path = path.with_points(poor[works], middle[works], between.at(works))

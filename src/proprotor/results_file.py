@@ -5,17 +5,21 @@ from __future__ import annotations
 import errno
 import os
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.needs import need
+from proprotor.output_file import check_place, write_whole
 
 if TYPE_CHECKING:
     import xarray
 
 PARTS = ("_real", "_imag")
 _COMPLEX = "complex_of"  # attribute of both parts: the name of the number they make
+_ONE_AT_A_TIME = Lock()  # the netCDF library is not made for threads: two at once crash the process
 
 
 def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
@@ -32,21 +36,13 @@ def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        When the path is no such file, or a variable is in the way of a part.
+        When the path is no such file or cannot be written, the library that writes netCDF is missing, or a variable is
+        in the way of a part.
     OSError
         When the file cannot be written.
     """
     check_path(path)
-    place = Path(path).resolve()
-    unfinished = place.with_name(f".{place.name}.{os.getpid()}.tmp")
-    try:
-        try:
-            _in_parts(results).to_netcdf(unfinished, engine="netcdf4", format="NETCDF4")
-        except RuntimeError as error:  # how the library tells a full disk
-            raise OSError(errno.EIO, f"{error}: is the disk full?") from None
-        os.replace(unfinished, place)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    write_whole(path, lambda file: _write(_in_parts(results), file.name))
 
 
 def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
@@ -61,15 +57,11 @@ def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
     Raises
     ------
     InputError
-        When the path does not end in ``.nc``, is a folder, or lies in none.
+        When the path does not end in ``.nc``, is a folder, lies in none or cannot be written, or the library that
+        writes netCDF is missing.
     """
-    place = Path(path).resolve()
-    if place.suffix.lower() != ".nc":
-        raise InputError(field, path, "must end in .nc")
-    if place.exists() and not place.is_file():
-        raise InputError(field, path, "must be a file")
-    if not place.parent.is_dir():
-        raise InputError(field, path, "must be in a folder that exists")
+    check_place(path, ".nc", field)
+    need("netCDF4", field, "netCDF files")
 
 
 def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
@@ -93,11 +85,27 @@ def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
 
     if not Path(path).is_file():
         raise InputError("path", path, "must be a file that exists")
+    need("netCDF4", "path", "netCDF files")
     try:
-        with xarray.open_dataset(path, engine="netcdf4") as stored:
+        with _ONE_AT_A_TIME, xarray.open_dataset(path, engine="netcdf4") as stored:
             return _whole(stored.load())
     except OSError as error:
         raise InputError("path", path, f"cannot be read as netCDF ({error.strerror or error})") from None
+
+
+def _write(results: xarray.Dataset, path: str) -> None:
+    """Write a dataset without complex numbers.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
+    try:
+        with _ONE_AT_A_TIME:
+            results.to_netcdf(path, engine="netcdf4", format="NETCDF4")
+    except RuntimeError as error:  # how the library tells a full disk
+        raise OSError(errno.EIO, f"{error}: is the disk full?") from None
 
 
 def _in_parts(results: xarray.Dataset) -> xarray.Dataset:

@@ -112,13 +112,16 @@ def rigid_propeller(
     values += [_finite(name, value) for name, value in derivatives._asdict().items()]
     speed, radius, omega, density, mass, polar, diametral, *numbers = np.broadcast_arrays(*values)
     damping, stiffness = _airloads(speed, radius, density, WhirlDerivatives(*numbers))
+    inertia = _diagonal(mass, mass, mass, diametral, diametral, polar)
     return LinearModel(
-        M=_diagonal(mass, mass, mass, diametral, diametral, polar),
+        M=inertia,
         C=_gyroscopic(polar * omega) + damping,
         K=stiffness,
         dofs=HUB,
         trim=_unloaded(speed.shape),
         airspeed=speed,
+        mass_at_rest=inertia.copy(),
+        rotor_speed=omega,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from proprotor_equations import inertia
 
 from proprotor.airfoil import SectionModel
 from proprotor.arrays import Array
-from proprotor.errors import InputError
+from proprotor.errors import InputError, check_number
 from proprotor.evaluation import evaluate
 from proprotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
 
@@ -43,8 +43,10 @@ _NOT_NEGATIVE = (
     "gimbal_damping",
 )
 _FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
+_REACH = 1e-3  # of the radius: stations may be printed to three digits
+HELD, NOTHING = "held", "nothing"  # what a table may say of the blade beyond its stations
 
-Table = tuple[ArrayLike, ArrayLike]
+Table = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, str]  # r, values, perhaps `HELD`
 Distribution = float | Table | Callable[[Array], Array]
 
 
@@ -86,7 +88,8 @@ class Rotor:
         Whether the propeller moment acts on the blade's pitch.
     chord, twist : float, (r, values) or function of r
         m and rad. A number is a constant chord and a linear twist over the radius; a pair of arrays is interpolated
-        linearly between its stations; a smooth function takes an array of radii. Twist counts from the pitch at 0.75 R.
+        linearly between its stations, which reach from the root cutout to the tip; (r, values, "held") says that the
+        end values hold beyond them. A smooth function takes an array of radii. Twist counts from the pitch at 0.75 R.
     airfoil : SectionModel
         Such as `Airfoil`.
 
@@ -134,6 +137,7 @@ class Rotor:
             raise InputError("n_blades", self.n_blades, "must be a whole number of at least 3")
         self._check_signs()
         self._check_hinges()
+        self._check_reach()
         self._check_mass()
 
     def _check_number(self, name: str) -> None:
@@ -180,6 +184,21 @@ class Rotor:
         if np.any(np.real(self.lag_hinge_offset) >= np.real(self.radius)):
             rule = f"must lie inboard of the tip ({_shown(self.radius)} m)"
             raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
+
+    def _check_reach(self) -> None:
+        """Chord and twist are known wherever there are airloads, or said to hold beyond their stations."""
+        radius, cutout = np.real(self.radius), np.real(self.root_cutout)
+        for name in ("chord", "twist"):
+            table = getattr(self, name)
+            if not isinstance(table, tuple) or table[2:] == (HELD,):
+                continue
+            first, last = (np.real(np.asarray(table[0]))[..., end] / radius for end in (0, -1))
+            if np.any(first > cutout / radius + _REACH) or np.any(last < 1 - _REACH):
+                rule = (
+                    f"has stations from {_shown(first)} R to {_shown(last)} R; they must reach from the root cutout, "
+                    f'{_shown(cutout / radius)} R, to the tip, or say beyond = "held" for end values that hold there'
+                )
+                raise InputError(name, f"{np.size(table[1])} values", rule)
 
     def _check_mass(self) -> None:
         """Integrals of m times two of the arms 1, r, ρβ, ρζ are inner products: no negative Gram matrix."""
@@ -298,11 +317,21 @@ class Rotor:
         return twist
 
     @classmethod
-    def from_mass_distribution(cls, r: ArrayLike, mass_per_length: ArrayLike, **fields_: Any) -> Rotor:
+    def from_mass_distribution(
+        cls,
+        r: ArrayLike,
+        mass_per_length: ArrayLike,
+        beyond: str = "",
+        *,
+        hub_mass: ArrayLike | None = None,
+        **fields_: Any,
+    ) -> Rotor:
         """A rotor whose seven mass integrals come from mass per length, linear between stations.
 
         Exact for that distribution: each interval between stations and hinges is integrated as the cubic it is. Hinge
         offsets and, with leading axes, r may be arrays of many designs.
+
+        Stations reach from the centre of rotation to the tip, where those within 0.1 % of the radius are taken to be.
 
         Parameters
         ----------
@@ -310,6 +339,10 @@ class Rotor:
             Stations from the centre of rotation, m, increasing.
         mass_per_length : array_like, shape (k,)
             kg/m, not negative.
+        beyond : "" or "nothing"
+            "nothing" says that there is no mass inboard of the first station and outboard of the last.
+        hub_mass : float or array, optional
+            Of the whole rotor at the centre of rotation, kg, for stations that begin further out; it may be 0.
         **fields_
             The other fields of `Rotor`.
 
@@ -320,18 +353,65 @@ class Rotor:
         Raises
         ------
         InputError
-            When the distribution is not increasing in r or negative, or a field is wrong.
+            When the distribution is not increasing in r or negative, ends short of centre or tip without a word, or a
+            field is wrong.
         """
         r, mass = np.asarray(r), np.asarray(mass_per_length, dtype=float)
         _check_distribution("mass_distribution", (r, mass))
         if np.any(mass < 0):
             raise InputError("mass_distribution", float(mass.min()), "must not be negative")
+        if beyond not in ("", NOTHING):
+            raise InputError(
+                "mass_distribution", beyond, f'must say "{NOTHING}" of what is beyond, or not say it'
+            )
+        r = _reaching(r, fields_.get("radius"), beyond, hub_mass)
+        _check_distribution("mass_distribution", (r, mass))
         hinges = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
         integrals = {"blade_mass": _outboard_moment(r, mass, None, 0)}
         for name, axis in {"blade": None, **hinges}.items():
             for power, kind in ((1, "first_moment"), (2, "inertia")):
                 integrals[f"{name}_{kind}"] = _outboard_moment(r, mass, axis, power)
-        return cls(**integrals, **fields_)
+        rotor = cls(**integrals, **fields_)
+        return rotor if hub_mass is None else rotor._with_hub(hub_mass)
+
+    def _with_hub(self, hub_mass: ArrayLike) -> Rotor:
+        """The rotor with a mass at its centre, a share of it in every blade."""
+        check_number("hub_mass", hub_mass)
+        if not np.all(np.isfinite(hub_mass)) or np.any(np.real(hub_mass) < 0):
+            raise InputError("hub_mass", hub_mass, "must be finite and not negative")
+        share: Any = hub_mass / np.asarray(self.n_blades)
+        return replace(self, blade_mass=self.blade_mass + share)
+
+
+def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) -> Array:
+    """Return the stations of the mass, with those near centre and tip moved there; refuse ones that leave mass out."""
+    try:
+        tip = np.asarray(radius, dtype=complex if np.iscomplexobj(radius) else float)
+    except (TypeError, ValueError):
+        return r  # refused as a field of the rotor
+    if not np.all(np.real(tip) > 0):
+        return r
+    first, last = (np.real(r[..., end]) / np.real(tip) for end in (0, -1))
+    reached = f"has stations from {_shown(first)} R to {_shown(last)} R"
+    at_centre, at_tip = np.abs(first) <= _REACH, np.abs(last - 1) <= _REACH
+    if np.any(first < -_REACH) or np.any(last > 1 + _REACH):
+        raise InputError(
+            "mass_distribution", f"{r.shape[-1]} values", f"{reached}; there is no blade beyond its tip"
+        )
+    if hub_mass is not None and np.any(at_centre):
+        rule = "must not be given with a mass_distribution that begins at the centre of rotation and holds the hub"
+        raise InputError("hub_mass", hub_mass, rule)
+    if beyond != NOTHING and not (np.all(at_tip) and (hub_mass is not None or np.all(at_centre))):
+        rule = (
+            f"{reached}; they must reach from the centre to the tip. Give hub_mass for what is inboard of the first, "
+            f'or say beyond = "{NOTHING}" where there is no mass beyond the stations'
+        )
+        raise InputError("mass_distribution", f"{r.shape[-1]} values", rule)
+    moved = np.array(np.broadcast_to(r, (*np.broadcast_shapes(r.shape[:-1], tip.shape), r.shape[-1])))
+    moved = moved.astype(np.result_type(moved, tip), copy=False)
+    moved[..., 0] = np.where(at_centre, 0.0, moved[..., 0])
+    moved[..., -1] = np.where(at_tip, tip, moved[..., -1])
+    return moved
 
 
 def _shown(value: ArrayLike) -> str:
@@ -341,7 +421,9 @@ def _shown(value: ArrayLike) -> str:
 
 
 def _check_distribution(name: str, distribution: Table) -> None:
-    r, values = (np.real(part) for part in distribution)
+    if (further := distribution[2:]) not in ((), (HELD,)):
+        raise InputError(name, further, f'must be (r, values), or (r, values, "{HELD}")')
+    r, values = (np.real(part) for part in distribution[:2])
     if values.ndim != 1 or r.shape[-1:] != values.shape or values.size < 2:
         raise InputError(
             name, f"arrays of shape {r.shape} and {values.shape}", "must be two lists of equal length"

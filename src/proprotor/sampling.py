@@ -6,6 +6,7 @@ A plan says how inputs vary, in any unit; with the numbers of a deck it becomes 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Mapping, Sized
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
@@ -15,10 +16,14 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.datum import Datum
 from proprotor.errors import InputError, unknown_name
+from proprotor.needs import check_memory, need
 
 AIRSPEED = "airspeed"
 DESIGN = "design"  # the dimension of a list or a sample
 _MOST_DESIGNS = 100_000_000
+_BYTES_OF_INPUT = (
+    32  # of each design, while designs are laid out: what was drawn, its value, and a copy of both
+)
 
 
 class Quantity(Protocol):
@@ -289,8 +294,9 @@ def saltelli(inputs: Mapping[str, Any], size: int, seed: int = 0, second_order: 
     Raises
     ------
     InputError
-        When the size is no power of two.
+        When the size is no power of two, or SALib is not installed.
     """
+    need("SALib", "sample", "Saltelli samples", "study")
     _check_power_of_two(size)
     return _sampled("saltelli", inputs, size, seed, _draw_saltelli, second_order=second_order)
 
@@ -365,7 +371,8 @@ def _distribution(name: str, given: Any, known: Quantity) -> Any:
 
 def _outer_product(read: dict[str, Array], units: dict[str, str]) -> Designs:
     axes = {name: np.atleast_1d(values) for name, values in read.items()}
-    _check_size(int(np.prod([len(axis) for axis in axes.values()], dtype=float)))
+    designs = math.prod(len(axis) for axis in axes.values())
+    _check_size("inputs", f"{designs:.4g} designs", designs, len(axes))
     grids = np.meshgrid(*axes.values(), indexing="ij")
     return Designs(
         {name: grid.reshape(-1) for name, grid in zip(axes, grids, strict=True)}, _axes_of(axes), units
@@ -395,10 +402,11 @@ def _sampled(
         raise InputError("size", size, "must be a whole number above zero")
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError("seed", seed, "must be a whole number, not negative")
+    rows = {"saltelli": (2 if extra.get("second_order") else 1) * len(inputs) + 2}.get(method, 1)
+    _check_size("size", int(size), rows * int(size), len(inputs))
 
     def lay_out(read: dict[str, Any], units: dict[str, str]) -> Designs:
         shares = draw(len(read), int(size), seed, **extra)
-        _check_size(len(shares))
         values = {
             name: np.asarray(distribution.ppf(column), dtype=float)
             for (name, distribution), column in zip(read.items(), shares.T, strict=True)
@@ -436,6 +444,9 @@ def _check_power_of_two(size: int) -> None:
         raise InputError("size", size, "must be a power of two, such as 1024")
 
 
-def _check_size(designs: float) -> None:
+def _check_size(field: str, given: object, designs: int, inputs: int) -> None:
+    """Refuse more designs than there is memory for their inputs, before any are laid out."""
     if designs > _MOST_DESIGNS:
-        raise InputError("inputs", f"{designs:.4g} designs", f"must be at most {_MOST_DESIGNS} designs")
+        raise InputError(field, given, f"must make at most {_MOST_DESIGNS} designs")
+    size = float(_BYTES_OF_INPUT * designs * max(1, inputs))
+    check_memory(field, given, size, f"the inputs of {designs:.4g} designs")

@@ -19,10 +19,10 @@ READ_IN = {"flutter_speed": ("kt", KNOT), "damping": ("% of critical", 0.01)}
 def sensitivity_records(case: Case, found: xarray.Dataset, of: str) -> list[dict[str, Any]]:
     """Derivatives input by input, the largest effect of 1 % first."""
     read_in, factor = READ_IN[of]
-    numbers, omega = case.given, float(case.operation.rotor_speed)
+    numbers = case.given
     records = []
     for place, path in enumerate(found.input.values.tolist()):
-        unit, size = deck_unit(numbers[path], omega)
+        unit, size = deck_unit(numbers[path])
         relative = float(found.relative.values[place]) / factor
         records.append(
             {

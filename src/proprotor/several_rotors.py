@@ -11,9 +11,11 @@ from numpy.typing import ArrayLike
 
 from proprotor import stamp
 from proprotor.arrays import Array
+from proprotor.assembly import refused_where
 from proprotor.errors import InputError
 from proprotor.mode_names import check_distinct
 from proprotor.model import HUB, LinearModel
+from proprotor.rotor_share import without_rotors
 from proprotor.support import NormalModes
 
 # A mirror across the plane of I and K turns y around, and of the rotations (axial vectors) the other two.
@@ -29,14 +31,11 @@ class MountedRotor(NamedTuple):
         Motion of its hub per coordinate of the support, in the support's I, J, K.
     mirrored : bool
         Whether it is the model's mirror image: on the left side, turning the other way.
-    rigid_mass : array (6, 6), optional
-        M_hub of the model, only needed where the support's masses include the rotors.
     """
 
     model: LinearModel
     hub: ArrayLike
     mirrored: bool = False
-    rigid_mass: ArrayLike | None = None
 
 
 Placed = tuple[
@@ -66,8 +65,8 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     Raises
     ------
     InputError
-        Without a rotor, for a model that does not begin with the hub coordinates, a hub of another shape, or a rigid
-        mass that is missing.
+        Without a rotor, for a model that does not begin with the hub coordinates, a hub of another shape, a mass at
+        rest that is needed and missing, or a support that has no mass without the rotors.
     """
     if not rotors:
         raise InputError("rotors", None, "must be one or more")
@@ -87,9 +86,13 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     shape = np.broadcast_shapes(
         *(rotor.model.M.shape[:-2] for rotor in rotors.values()), support.mass.shape[:-2]
     )
+    mass, refusal = without_rotors(
+        support, [(hub, rotor.model.mass_at_rest) for rotor, hub, _ in placed.values()]
+    )
+    shape = np.broadcast_shapes(shape, mass.shape[:-2])
     matrices: dict[str, Any] = {}
     for kind, of_support in (
-        ("M", _mass_alone(support, placed)),
+        ("M", mass),
         ("C", support.damping),
         ("K", support.stiffness),
     ):
@@ -104,10 +107,18 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     (first, hub, _), *_ = placed.values()
     motion = np.pad(hub, ((0, 0), (0, len(names) - n)))
     told = {stamp.of_model(rotor.model).get("options") for rotor in rotors.values()}
-    origin = (
-        first.model.origin if len(told) == 1 else None
-    )  # of rotors with different options there is no one stamp
-    return replace(first.model, **matrices, B=None, dofs=tuple(names), hub=motion, rotor=None, origin=origin)
+    coupled = replace(
+        first.model,
+        **matrices,
+        B=None,
+        dofs=tuple(names),
+        hub=motion,
+        rotor=None,
+        mass_at_rest=None,
+        shapes=None,
+        origin=first.model.origin if len(told) == 1 else None,  # rotors of different options have no one stamp
+    )
+    return refused_where(refusal, coupled, support)
 
 
 def _hub_of(name: str, rotor: MountedRotor, n: int) -> Array:
@@ -122,14 +133,3 @@ def _hub_of(name: str, rotor: MountedRotor, n: int) -> Array:
             f"rotors[{name}].hub", f"array of shape {hub.shape}", f"must be finite, {(len(HUB), n)}"
         )
     return MIRROR @ hub if rotor.mirrored else hub
-
-
-def _mass_alone(support: NormalModes, placed: Mapping[str, Placed]) -> Array:
-    mass = np.array(support.mass)
-    if support.includes_rotor:
-        for name, (rotor, hub, _) in placed.items():
-            if rotor.rigid_mass is None:
-                rule = "must be given: the support's masses include the rotors"
-                raise InputError(f"rotors[{name}].rigid_mass", None, rule)
-            mass = mass - hub.T @ np.asarray(rotor.rigid_mass) @ hub
-    return mass

@@ -18,7 +18,8 @@ from proprotor.arrays import Array
 from proprotor.crossings import growth
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
-from proprotor.modes import first_order, have_modes, some_points
+from proprotor.modes import eigenvalues
+from proprotor.needs import check_memory
 from proprotor.speed import in_metres_per_second
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 AIRSPEED = "airspeed"
 _AT_ONCE = 4096  # points of one batch
+_BYTES_PER_POINT = 100.0  # of the grid: where it is, what was found there, and the line between
 _HALVINGS = 60
 _CLOSE = 1e-10  # of an edge
 _NEUTRAL = 1e-9  # of the largest eigenvalue: growth that says nothing
@@ -47,17 +49,12 @@ class Edges(NamedTuple):
 
 def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
     """Largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points."""
-    good = have_modes(model)
-    best, value = np.full(good.shape, np.nan), np.full(good.shape, np.nan, dtype=complex)
-    if good.any():
-        values = np.linalg.eigvals(first_order(some_points(model, good))).astype(complex)
-        found = growth(values, level)
-        found = np.where(np.abs(found) <= _NEUTRAL * np.abs(values).max(axis=-1, keepdims=True), 0.0, found)
-        place = found.argmax(axis=-1)[:, None]
-        best[good] = np.take_along_axis(found, place, -1)[:, 0]
-        critical = np.take_along_axis(values, place, -1)[:, 0]
-        value[good] = critical.real + 1j * np.abs(critical.imag)
-    return best, value
+    values = eigenvalues(model)
+    found, size = growth(values, level), np.nan_to_num(np.abs(values))
+    found = np.where(np.abs(found) <= _NEUTRAL * size.max(axis=-1, keepdims=True), 0.0, found)
+    place = np.where(np.isnan(found), -np.inf, found).argmax(axis=-1)[..., None]
+    critical = np.take_along_axis(values, place, -1)[..., 0]
+    return np.take_along_axis(found, place, -1)[..., 0], critical.real + 1j * np.abs(critical.imag)
 
 
 def stability_map(
@@ -94,13 +91,16 @@ def stability_map(
     Raises
     ------
     InputError
-        For axes that are not two, values that do not rise, an unknown input, or an airspeed that is missing.
+        For axes that are not two, values that do not rise, an unknown input, an airspeed that is missing, or a grid
+        that does not fit into memory.
     """
     from proprotor.design import design_inputs
 
     names, values = _axes(case, axes)
     plane = _plane(case, names, airspeed, options)
     x, y = values
+    points = len(x) * len(y)
+    check_memory("axes", f"{points:.4g} points", _BYTES_PER_POINT * points, "the map", "take larger steps")
     grid_x, grid_y = (part.reshape(-1) for part in np.meshgrid(x, y))
     parts = [
         _evaluated(plane, grid_x[start : start + _AT_ONCE], grid_y[start : start + _AT_ONCE], level)

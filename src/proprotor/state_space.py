@@ -15,8 +15,9 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
-from proprotor.model import HUB, INPUTS, LinearModel
-from proprotor.modes import held_coordinates, state_matrix
+from proprotor.model import HUB, INPUTS, ROTOR_SPEED, LinearModel
+from proprotor.modes import held_coordinates, lack_azimuth, state_matrix, without_massless
+from proprotor.needs import need
 from proprotor.stamp import Stamp, of_model
 
 if TYPE_CHECKING:
@@ -31,6 +32,9 @@ LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 @dataclass(frozen=True, eq=False)
 class StateSpace:
     """ẋ = A x + B u, y = C x + D u, batched over leading axes; NaN at failed points.
+
+    Where a shaft holds the azimuth at some points of a batch only, the azimuth is a state and an output, NaN at the
+    other points in its row and column of A, its rows of B, C and D and its column of C; its rate is an output too.
 
     Attributes
     ----------
@@ -74,10 +78,9 @@ class StateSpace:
         Raises
         ------
         InputError
-            When the model is a batch of several points.
-        ImportError
-            When python-control is not installed.
+            When the model is a batch of several points, or python-control is not installed.
         """
+        need("control", "to_control", "state spaces", "control")
         import control
 
         if self.A.ndim != 2:
@@ -108,10 +111,10 @@ def state_space(model: LinearModel) -> StateSpace:
     """
     if model.B is None:
         raise InputError("B", None, "must be given: the model has no inputs")
+    system, mass = state_matrix(model), without_massless(model).M
     n, held = len(model.dofs), held_coordinates(model)
-    system = state_matrix(model)
     rates = slice(len(held), len(held) + n)
-    acceleration_by_input = np.linalg.solve(model.M, model.B)
+    acceleration_by_input = np.linalg.solve(mass, model.B)
     inputs = np.zeros((*system.shape[:-1], len(INPUTS)))
     inputs[..., rates, :] = acceleration_by_input
     displacement = np.zeros((n, system.shape[-1]))
@@ -120,6 +123,13 @@ def state_space(model: LinearModel) -> StateSpace:
     rate[:, rates] = np.eye(n)
     motion = (displacement, rate, system[..., rates, :])
     names, rows, feedthrough = _outputs(model, motion, acceleration_by_input)
+    free, failed = lack_azimuth(model), ~np.isfinite(mass).all(axis=(-2, -1))
+    if free.any():
+        state, output = model.dofs.index(ROTOR_SPEED), names.index(ROTOR_SPEED)
+        inputs[free, state], rows[free, :, state] = np.nan, np.nan
+        rows[free, output], feedthrough[free, output] = np.nan, np.nan
+    for part in (inputs, rows, feedthrough):
+        part[failed] = np.nan
     states = (*(model.dofs[place] for place in held), *(f"{name} rate" for name in model.dofs))
     doubt = model.trim.warning, model.trim.reason
     return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names, *doubt, of_model(model))
@@ -130,8 +140,8 @@ def _outputs(
 ) -> tuple[tuple[str, ...], Array, Array]:
     """Names, rows of C and of D."""
     hub = np.eye(len(HUB), len(model.dofs)) if model.hub is None else model.hub
-    own = [place for place, name in enumerate(model.dofs) if model.hub is None or not np.any(hub[..., place])]
-    own = [place for place in own if model.dofs[place] not in HUB]
+    rotor = model if model.rotor is None else model.rotor
+    own = [place for place, name in enumerate(model.dofs) if name in rotor.dofs[len(HUB) :]]
     displacement, rate, acceleration = motion
     loads, loads_by_input = _hub_loads(model, motion, acceleration_by_input)
     shape = acceleration.shape[:-2]
@@ -152,9 +162,10 @@ def _outputs(
 
 
 def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: Array) -> list[Block]:
-    """Displacements of the rotor's own coordinates, and the rate of one that is no displacement."""
-    held = held_coordinates(model)
-    moved, turning = ([p for p in own if (p in held) is kept] for kept in (True, False))
+    """Displacements of the rotor's own coordinates, and the rate of one that is no displacement everywhere."""
+    held, mixed = held_coordinates(model), bool(lack_azimuth(model).any())
+    moved = [place for place in own if place in held]
+    turning = [p for p in own if p not in held or (mixed and model.dofs[p] == ROTOR_SPEED)]
     return [
         (tuple(model.dofs[p] for p in moved), displacement[moved], np.zeros((len(moved), len(INPUTS)))),
         (

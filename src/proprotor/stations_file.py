@@ -3,7 +3,7 @@
 ::
 
     r [ft], twist [deg], chord [inch], mass_per_length [slug/ft]
-    1.1,    30.2,        17.0,         0.32
+    0.0,    34.4,        17.0,         0.90
     12.5,   -5.8,        13.5,         0.15
 
 The column of the stations is ``r_over_R``, without a unit, or ``r`` with one. Columns are parted by commas, semicolons

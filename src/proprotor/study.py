@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 from warnings import warn
 
 import numpy as np
 from numpy.typing import ArrayLike
+from proprotor_equations import FIXED_COORDINATES
 
 from proprotor import stamp, study_workers
 from proprotor.arrays import Array
 from proprotor.checkpoint import Checkpoint
 from proprotor.errors import InputError, unknown_name
 from proprotor.fingerprint import fingerprint
-from proprotor.modes import held_coordinates
+from proprotor.model import HUB, ROTOR_SPEED
+from proprotor.needs import check_memory, free_memory
 from proprotor.options import parse_options
 from proprotor.sampling import AIRSPEED, Designs, Plan, as_plan
 from proprotor.source_code import code_fingerprint
@@ -42,8 +45,10 @@ if TYPE_CHECKING:
 
 BATCH = 2000  # points at most: enough for NumPy's own cost to vanish beside LAPACK's
 _BYTES_PER_POINT = 100_000  # while a batch is analysed; the XV-15 takes 30 kB, 46 kB with vectors
+_BYTES_PER_WORKER = 150e6  # of a process with NumPy, SciPy and a case
 _SHARE_OF_MEMORY = 0.25  # of what is free, for the batches of all processes together
 _SMALL = 4000  # points that are analysed before worker processes have started
+_SHAFT = "drive_train.shaft_stiffness"
 _MOST_TRIED = 25  # airspeeds, to see the coordinates of the model
 
 
@@ -102,7 +107,7 @@ def study(
     ------
     InputError
         For an unknown input, quantity or option, a value with a wrong unit, a checkpoint of another study or of other
-        code, or a cluster that runs other code.
+        code, a cluster that runs other code, or results, batches or workers that do not fit into memory.
     """
     # What is kept, or comes from other computers, must all be of one code.
     code = "" if checkpoint is None and client is None else code_fingerprint()
@@ -111,13 +116,14 @@ def study(
         raise InputError("batch", batch, "must be a whole number above zero")
     if workers is not None and (not isinstance(workers, int) or workers < 1):
         raise InputError("workers", workers, "must be a whole number above zero")
+    _check_needs(work, batch, workers, client)
     division = {"points": batch or _points_at_once(work, workers, client)}
     with ExitStack() as held:
         kept = None
         if checkpoint is not None:
             kept = Checkpoint(checkpoint)
-            division = kept.open(work.identity, division)
-            held.enter_context(kept.held())
+            division = held.enter_context(kept.open(work.identity, division))
+        work = work.with_coordinates()
         _run(work, work.blocks(int(division["points"])), kept, workers, client, progress)
     return work.dataset()
 
@@ -160,10 +166,9 @@ class _Study:
             )
         if set(ALONG_AIRSPEEDS) & set(quantities):
             _check_range(speeds, next(name for name in ALONG_AIRSPEEDS if name in quantities))
-        tried = designs.values[AIRSPEED] if speeds is None else np.atleast_1d(speeds)
-        dofs, states = _coordinates(case, tried, options)
-        own_tolerance = {} if tolerance is None else {"tolerance": _positive("tolerance", tolerance)}
-        analysis = Analysis(case, quantities, options, dofs, states, code=code, **own_tolerance)
+        analysis = Analysis(case, quantities, options, code=code)
+        if tolerance is not None:
+            analysis = replace(analysis, tolerance=_positive("tolerance", tolerance))
         line = None if speeds is None else np.atleast_1d(speeds)
         return cls(analysis, designs, line, speeds is not None and not speeds.ndim)
 
@@ -186,9 +191,11 @@ class _Study:
             "options": dict(analysis.options),
             "tolerance": analysis.tolerance,
             "code": analysis.code,
-            "versions": [version(package) for package in ("proprotor", "numpy", "scipy")],
+            "versions": [
+                version(package) for package in ("proprotor", "numpy", "scipy", "pystran", "fluids")
+            ],
         }
-        return {name: fingerprint(part) for name, part in parts.items()}
+        return {name: fingerprint(part, name) for name, part in parts.items()}
 
     def blocks(self, points: int) -> list[tuple[slice, slice]]:
         """Designs and airspeeds of each batch."""
@@ -204,6 +211,29 @@ class _Study:
         rows, columns = block
         speeds = None if self.airspeed is None else self.airspeed[columns]
         return Batch({name: values[rows] for name, values in self.designs.values.items()}, speeds)
+
+    def with_coordinates(self) -> _Study:
+        """The same study with the coordinates of the model, for which a point is analysed."""
+        it = self.analysis
+        tried = self.designs.values[AIRSPEED] if self.airspeed is None else self.airspeed
+        dofs = _coordinates(it.case, tried, it.options)
+        held = _a_shaft_holds(it.case, self.designs, it.options)
+        states = 2 * len(dofs) - (ROTOR_SPEED in dofs and not held)
+        return replace(self, analysis=replace(it, dofs=dofs, states=states))
+
+    @property
+    def size(self) -> float:
+        """Bytes of all results at most, before the coordinates are known."""
+        dofs = _most_coordinates(self.analysis.case, self.analysis.options)
+        sizes = {"state": 2 * dofs, "dof": dofs}
+        return float(
+            sum(
+                math.prod(self.shape if it.on == POINT else self.shape[:1])
+                * math.prod(sizes[dim] for dim in it.dims)
+                * empty(it, ()).itemsize
+                for it in variables(self.analysis.quantities).values()
+            )
+        )
 
     def allocate(self) -> None:
         """Arrays for all results, once."""
@@ -228,6 +258,8 @@ class _Study:
         data = {}
         for name, it in variables(self.analysis.quantities).items():
             array = self.found[name]
+            if name == "missing" and not (array != "").any():
+                continue
             if it.on == POINT:
                 array = array.reshape(*shape, *self.shape[1:] * over_speeds, *array.shape[2:])
             else:
@@ -303,15 +335,28 @@ def _slices(size: int, width: int) -> list[slice]:
     return [slice(start, min(start + width, size)) for start in range(0, size, width)]
 
 
+def _check_needs(work: _Study, batch: int | None, workers: int | None, client: Client | None) -> None:
+    """Refuse results, batches and workers that do not fit into memory."""
+    designs, speeds = work.shape
+    told = f"{designs} designs at {speeds} airspeeds"
+    check_memory("inputs", told, work.size, "the results", "take fewer, or fewer quantities")
+    if client is not None:  # whose computers have memory of their own
+        return
+    at_once = min(batch or 1, designs * speeds)
+    processes = min(workers or 1, -(-designs * speeds // at_once))
+    if processes > 1:
+        check_memory("workers", workers, _BYTES_PER_WORKER * processes, f"{processes} processes")
+    check_memory("batch", batch, _BYTES_PER_POINT * at_once * processes, "the batches of all workers")
+
+
 def _points_at_once(work: _Study, workers: int | None, client: Client | None) -> int:
     """Points of a batch, so that the batches of all workers fit into memory and come out even."""
     workers = workers or study_workers.cores()
     most = BATCH
     if client is not None:
         workers = study_workers.threads_of(client)
-    elif hasattr(os, "sysconf") and "SC_AVPHYS_PAGES" in os.sysconf_names:
-        free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-        most = int(np.clip(_SHARE_OF_MEMORY * free / workers / _BYTES_PER_POINT, 50, BATCH))
+    else:
+        most = int(np.clip(_SHARE_OF_MEMORY * free_memory() / workers / _BYTES_PER_POINT, 50, BATCH))
     points = int(np.prod(work.shape))
     rounds = -(-points // (most * workers))
     return -(-points // (rounds * workers))
@@ -339,8 +384,23 @@ def _positive(name: str, value: ArrayLike) -> float:
     return float(value)
 
 
-def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple[tuple[str, ...], int]:
-    """Coordinates and number of eigenvalues of the case's model."""
+def _a_shaft_holds(case: Case, designs: Designs, options: Mapping[str, Any]) -> bool:
+    """Whether a shaft holds the azimuth of any design, which then has one eigenvalue more than others."""
+    train = case.model_options(options).get("drive_train")
+    stiffness = 0.0 if train is None else train.shaft_stiffness
+    if "drive_train" not in options:
+        stiffness = designs.values.get(_SHAFT, stiffness)
+    return bool(np.any(np.nan_to_num(stiffness) > 0))
+
+
+def _most_coordinates(case: Case, options: Mapping[str, Any]) -> int:
+    """Coordinates of a model of the case with everything free."""
+    blades = 3 * (int(np.max(case.rotor.n_blades)) - 3) if options.get("reactionless") else 0
+    return len(case.support.names) + len(FIXED_COORDINATES) - len(HUB) + blades
+
+
+def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple[str, ...]:
+    """Coordinates of the case's model."""
     few = speeds[np.unique(np.linspace(0, len(speeds) - 1, _MOST_TRIED).astype(int))]
     few = np.roll(few, -(len(few) // 2))  # the middle is the likeliest to have a trim
     for tried in (few[:1], few):
@@ -351,4 +411,4 @@ def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple
         raise InputError(
             "options", ", ".join(options), "must not hold arrays: vary the case's inputs instead"
         )
-    return model.dofs, len(held_coordinates(model)) + len(model.dofs)
+    return model.dofs

@@ -6,7 +6,7 @@ A design that cannot be, or a point that fails, has its reason and NaN; the rest
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,14 +14,16 @@ import numpy as np
 from proprotor import flutter_scan
 from proprotor.arrays import Array
 from proprotor.errors import InputError
+from proprotor.mode_names import moving
 from proprotor.modes import (
     coordinate_motion,
     coordinate_shares,
     decomposition,
     eigensystem,
+    eigenvalues,
     held_coordinates,
+    missing_roots,
     participation,
-    state_matrix,
 )
 from proprotor.sampling import AIRSPEED
 from proprotor.source_code import check_code
@@ -79,6 +81,7 @@ VARIABLES: dict[str, dict[str, Variable]] = {
         "flutter_frequency": Variable(
             DESIGN, (), float, "rad/s", "|Im s| of the mode that loses it; 0: divergence"
         ),
+        "flutter_mode": Variable(DESIGN, (), str, "", "what moves in it at that airspeed"),
         "flutter_coordinate": Variable(DESIGN, (), str, "", "coordinate that takes part in it most"),
         "flutter_warning": Variable(DESIGN, (), str, "", "what makes the flutter speed doubtful"),
         "flutter_note": Variable(DESIGN, (), str, "", "why there is no flutter speed"),
@@ -95,12 +98,15 @@ VARIABLES: dict[str, dict[str, Variable]] = {
         "mode_quality": Variable(
             POINT, ("state",), float, "1", "trust in the step from the airspeed before, 0 to 1"
         ),
+        "mode_name": Variable(POINT, ("state",), str, "", "what moves in it at the point"),
+        "mode_share": Variable(POINT, ("state",), float, "1", "participation of what its name says, 0 to 1"),
         "mode_coordinate": Variable(DESIGN, ("state",), str, "", "coordinate that takes part most at first"),
     },
 }
 ALWAYS = {
     "reason": Variable(POINT, (), str, "", "why a point failed"),
     "warning": Variable(POINT, (), str, "", "what makes a point doubtful"),
+    "missing": Variable(POINT, (), str, "", "why a point has fewer eigenvalues than others"),
 }
 
 _SCAN = {  # what the search for a flutter speed needs of every point, whether or not it is among the results
@@ -277,18 +283,28 @@ class Analysis:
 
     def _points(self, batch: Batch) -> dict[str, Array]:
         model = self._model(batch, batch.speeds)
-        found: dict[str, Array] = {name: getattr(model.trim, name) for name in ALWAYS}
+        found: dict[str, Array] = {name: getattr(model.trim, name) for name in ("reason", "warning")}
+        found["missing"] = missing_roots(model, self.states)
         if "trim" in self.quantities:
             found |= {name: getattr(model.trim, name) for name in VARIABLES["trim"]}
         if "modes" in self.quantities:
             found |= _followed(model, "vectors" in self.quantities)
         elif "vectors" in self.quantities:
-            found |= _eigenvalues_and_vectors(model, self.states)
+            found |= _eigenvalues_and_vectors(model)
         else:
-            found["eigenvalue"] = _eigenvalues(model, self.states)
+            found["eigenvalue"] = _eigenvalues(model)
+        found = {name: self._with_all_states(name, array) for name, array in found.items()}
         if {"least_stable", "flutter"} & set(self.quantities):
             found |= _least_stable(found["eigenvalue"])
         return found
+
+    def _with_all_states(self, name: str, found: Array) -> Array:
+        """An array over the states, which may be fewer in one batch than in others, with room for those of all."""
+        more = self.states - found.shape[-1]
+        if VARIABLE[name].dims[-1:] != ("state",) or not more:
+            return found
+        missing: Any = "" if found.dtype == object else np.nan
+        return np.pad(found, [*[(0, 0)] * (found.ndim - 1), (0, more)], constant_values=missing)
 
     # Flutter speed --------------------------------------------------------------------------------
 
@@ -332,102 +348,79 @@ class Analysis:
         return values, np.concatenate([reason for _, reason in halves])
 
     def _growth_of(self, model: LinearModel) -> dict[str, Array]:
-        return _least_stable(_eigenvalues(model, self.states))
+        return _least_stable(_eigenvalues(model))
 
     @staticmethod
     def _mode_at_boundary(model: LinearModel) -> dict[str, Array]:
-        """Frequency and main coordinate of the mode with the largest real part."""
+        """Frequency, name and main coordinate of the mode with the largest real part."""
         system = eigensystem(model)
         place = np.nan_to_num(_growth(system.values), nan=-np.inf).argmax(axis=-1)[..., None]
         shares = np.take_along_axis(participation(model, system), place[..., None], -1)[..., 0]
         frequency = np.abs(np.take_along_axis(system.values, place, -1)[..., 0].imag)
         main = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-1)]
+        names = moving(model, system.values, system.left, system.right).names
         return {
             "flutter_frequency": frequency,
+            "flutter_mode": np.take_along_axis(names, place, -1)[..., 0],
             "flutter_coordinate": main,
             "flutter_warning": model.trim.warning,
         }
 
 
-def _good_part(model: LinearModel) -> tuple[Array | None, LinearModel]:
-    """Which points have a trim, None for all of them, and the model there."""
-    good = np.asarray(model.trim.converged)
-    if good.all():
-        return None, model
-    parts = {name: getattr(model, name)[good] for name in ("M", "C", "K", "airspeed")}
-    return good, replace(model, **parts)
-
-
-def _at(good: Array | None, found: Array, shape: tuple[int, ...]) -> Array:
-    """What was found at the good points, in the shape of the batch, NaN at the others."""
-    if good is None:
-        return found
-    whole = np.full((*shape, *found.shape[1:]), np.nan, dtype=found.dtype)
-    whole[good] = found
-    return whole
-
-
-def _eigenvalues(model: LinearModel, states: int) -> Array:
-    """All eigenvalues (..., states), by |Im s| and the one above the real axis first; NaN at failed points."""
-    good, part = _good_part(model)
-    if good is not None and not good.any():
-        return np.full((*good.shape, states), np.nan, dtype=complex)
-    values = np.linalg.eigvals(state_matrix(part)).astype(complex, copy=False)
-    values = np.take_along_axis(values, _by_frequency(values), -1)
-    return _at(good, values, model.M.shape[:-2])
+def _eigenvalues(model: LinearModel) -> Array:
+    """All eigenvalues (..., states), by |Im s| and the one above the real axis first, NaN last and at failed points."""
+    values = eigenvalues(model)
+    return np.take_along_axis(values, _by_frequency(values), -1)
 
 
 def _by_frequency(values: Array) -> Array:
     return np.lexsort((values.real, values.imag < 0, np.abs(values.imag)), axis=-1)
 
 
-def _eigenvalues_and_vectors(model: LinearModel, states: int) -> dict[str, Array]:
+def _eigenvalues_and_vectors(model: LinearModel) -> dict[str, Array]:
     """The same with the motion of the coordinates (..., n, states), its largest component 1."""
-    good, part = _good_part(model)
-    n, shape = len(model.dofs), model.M.shape[:-2]
-    if good is not None and not good.any():
-        sizes = {"eigenvalue": (states,), "vector": (n, states)}
-        return {name: np.full((*shape, *size), np.nan, dtype=complex) for name, size in sizes.items()}
-    matrix = state_matrix(part)
-    flat = matrix.reshape(-1, *matrix.shape[-2:])
-    values, vectors = (
-        np.empty((len(flat), states), dtype=complex),
-        np.empty((len(flat), n, states), dtype=complex),
-    )
+    spectrum = decomposition(model)
+    ordered = np.take_along_axis(spectrum.values, _by_frequency(spectrum.values), -1)
+    return {"eigenvalue": ordered} | _vectors(model, spectrum.values, spectrum.right)
+
+
+def _vectors(model: LinearModel, values: Array, right: Array) -> dict[str, Array]:
+    """Motion of the coordinates (..., n, states) by frequency, a block of points at a time."""
+    n, held, states = len(model.dofs), held_coordinates(model), values.shape[-1]
+    flat, columns = values.reshape(-1, states), right.reshape(-1, states, states)
+    found = np.empty((len(flat), n, states), dtype=complex)
     for start in range(0, len(flat), _BLOCK):
         rows = slice(start, start + _BLOCK)
-        found, right = np.linalg.eig(flat[rows])
-        order = _by_frequency(found)
-        values[rows] = np.take_along_axis(found, order, -1)
-        shapes = coordinate_motion(held_coordinates(part), n, found, right)
-        vectors[rows] = _largest_one(np.take_along_axis(shapes, order[:, None, :], -1))
-    leading = matrix.shape[:-2]
-    return {
-        name: _at(good, array.reshape(*leading, *array.shape[1:]), shape)
-        for name, array in (("eigenvalue", values), ("vector", vectors))
-    }
+        shapes = coordinate_motion(held, n, flat[rows], columns[rows])
+        shapes = np.where(np.isnan(flat[rows])[:, None, :], np.nan, shapes)
+        order = _by_frequency(flat[rows])
+        found[rows] = _largest_one(np.take_along_axis(shapes, order[:, None, :], -1))
+    return {"vector": found.reshape(*values.shape[:-1], n, states)}
 
 
 def _followed(model: LinearModel, with_vectors: bool) -> dict[str, Array]:
     """Eigenvalues by frequency and followed along the airspeeds, and the motion of the coordinates if asked for."""
     spectrum = decomposition(model)
-    values, right = spectrum
-    held, n = held_coordinates(model), len(model.dofs)
+    values, right, left = spectrum.all_modes
     order = _by_frequency(values)
     places, quality, first = follow_designs(spectrum, order)
     designs = np.arange(len(values))
-    shares = coordinate_shares(held, n, *reversed(spectrum.at((designs, first)).all_modes[1:]))
+    moves = moving(model, values, left, right)
+    shares = coordinate_shares(
+        held_coordinates(model), len(model.dofs), left[designs, first], right[designs, first]
+    )
     main = np.take_along_axis(np.nan_to_num(shares).argmax(axis=-2), places[designs, first], -1)
+    followed = np.take_along_axis(values, places, -1)
+    none = np.isnan(followed[designs, first])
     found = {
         "eigenvalue": np.take_along_axis(values, order, -1),
-        "mode_eigenvalue": np.take_along_axis(values, places, -1),
-        "mode_quality": quality,
-        "mode_coordinate": np.where((first < 0)[:, None], "", np.array(model.dofs, dtype=object)[main]),
+        "mode_eigenvalue": followed,
+        "mode_quality": np.where(np.isnan(followed), np.nan, quality),
+        "mode_name": np.take_along_axis(moves.names, places, -1),
+        "mode_share": np.take_along_axis(moves.share, places, -1),
+        "mode_coordinate": np.where(none, "", np.array(model.dofs, dtype=object)[main]),
     }
-    if with_vectors:
-        shapes = coordinate_motion(held, n, values, right)
-        found["vector"] = _largest_one(np.take_along_axis(shapes, order[..., None, :], -1))
-    return found
+    return found | (_vectors(model, values, right) if with_vectors else {})
 
 
 def _largest_one(shapes: Array) -> Array:
@@ -440,19 +433,19 @@ def _largest_one(shapes: Array) -> Array:
 
 def _growth(values: Array) -> Array:
     """Real part of each eigenvalue; that of a root at zero does not count."""
-    size = np.abs(values)
+    size = np.nan_to_num(np.abs(values))
     return np.where(size <= _NEUTRAL * size.max(axis=-1, keepdims=True), -np.inf, values.real)
 
 
 def _least_stable(values: Array) -> dict[str, Array]:
     """Growth of the batch's points, damping and frequency of the mode damped least, from eigenvalues (..., states)."""
-    size = np.abs(values)
+    size = np.nan_to_num(np.abs(values))
     largest = size.max(axis=-1)
     counts = size > _NEUTRAL * largest[..., None]
     with np.errstate(all="ignore"):
         ratio = np.where(counts, -values.real / size, np.inf)
     place = ratio.argmin(axis=-1)[..., None]
-    failed = np.isnan(largest)
+    failed = np.isnan(values).all(axis=-1)
     growth = np.where(counts, values.real, -np.inf).max(axis=-1)
     return {
         "growth_rate": np.where(failed, np.nan, growth),

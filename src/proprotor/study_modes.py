@@ -38,7 +38,7 @@ def follow_designs(spectrum: Spectrum, start: Array) -> Followed:
     points = np.flatnonzero(good)
     same_design = np.diff(points // speeds) == 0
     before, after = points[:-1][same_design], points[1:][same_design]
-    flat = Spectrum(*(array.reshape(designs * speeds, *array.shape[2:]) for array in spectrum))
+    flat = Spectrum(*(array.reshape(designs * speeds, *array.shape[2:]) for array in spectrum[:2]))
     steps = link(flat, before, after)
     first = np.where(good.any(axis=1), good.argmax(axis=1), -1)
     places = start.reshape(-1, states).copy()

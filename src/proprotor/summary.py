@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from proprotor import stamp
+from proprotor.boundary_summary import least_told
 from proprotor.doubts import MARK, footnotes, marked, reasons_for_doubt
 from proprotor.provenance import reservations
 from proprotor.speed import KNOT
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.flutter import Boundary, Crossings, FlutterPoint
     from proprotor.model import LinearModel
+    from proprotor.support import NormalModes
 
 _RPM = math.pi / 30  # rad/s
 
@@ -28,9 +30,17 @@ def of_case(case: Case) -> str:
     lines = [
         f"Case {case.name}" + (f": {case.title}" if case.title else ""),
         f"  rotor: {rotor.n_blades} blades, radius {_range(np.asarray(rotor.radius))} m, {_range(speed)} rpm",
-        f"  support: {', '.join(case.support.names) or 'a rigid hub'}",
+        f"  support: {', '.join(case.support.names) or 'a rigid hub'}{_held(case.support)}",
     ]
     return "\n".join(lines + [f"  {sentence}" for sentence in reservations(case)])
+
+
+def _held(support: NormalModes) -> str:
+    """How the rotor was held when the modes were found with it on."""
+    if not support.includes_rotor:
+        return ""
+    shaft = "" if support.includes_rotor == "mass only" else f", shaft {support.shaft}"
+    return f"; found with the rotor on, {support.includes_rotor}{shaft}"
 
 
 def of_model(model: LinearModel) -> str:
@@ -59,6 +69,9 @@ def of_crossings(found: Crossings) -> str:
     """All boundaries of a line, which need not be airspeeds: SI."""
     low, high = found.searched
     lines = [f"{len(found.boundaries)} boundaries from {low:.6g} to {high:.6g}"]
+    if not found.boundaries and found.least.mode:
+        ratio, mode, position = found.least
+        lines[0] += f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
     lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
     options = [f"  {line}" for line in stamp.told_if_unusual(found.stamp)]
     return "\n".join(lines + list(_at_start(found)) + options)
@@ -69,6 +82,7 @@ def of_flutter_point(found: FlutterPoint) -> str:
     low, high = (f"{speed / KNOT:.4g}" for speed in found.searched)
     if math.isnan(found.speed):
         first = f"FlutterPoint: nothing becomes unstable between {low} and {high} kt"
+        first += f"; least damping {told}" if (told := least_told(found, "kt", KNOT)) else ""
     else:
         where = f"{marked(f'{found.speed / KNOT:.2f}', found.warning)} kt ({found.speed:.6g} m/s)"
         first = f"FlutterPoint: {where}, {found.kind} of {found.mode}, {found.frequency / math.tau:.4g} Hz"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from proprotor.datum import is_choice, told_choices
 from proprotor.errors import InputError
 
 if TYPE_CHECKING:
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from proprotor.arrays import Array
 
 HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
+INCLUDES_ROTOR = ("gimballed", "rigid", "mass only", True, False)
+SHAFT = ("held", "free")
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,14 +35,24 @@ class NormalModes:
     hub : array_like, shape (..., 6, n)
         Φ: displacement (x, y, z) and rotation (αx, αy, αz) of the hub per unit of each coordinate, in the
         inertial axes I, J, K of the rotor, K along the shaft.
-    includes_rotor : bool
-        True when `mass` was measured or computed with the rotor on, so that it already holds the
-        rotor's rigid-body share Φᵀ M_hub Φ, which must then not be counted a second time.
+    includes_rotor : "gimballed", "rigid", "mass only", True or False
+        How the rotor was held when `mass` was measured or computed with the rotor on, its blades locked or stiff: free
+        to tilt on its gimbal; as one body with its shaft; a point mass at the hub. Its share, which follows from
+        that, is taken off, lest it count twice. False: no rotor was on. True: "gimballed" for a rotor
+        with a gimbal, "rigid" for one without.
+    shaft : "held" or "free"
+        Whether the rotor could turn about its shaft then; a point mass does not ask.
+    shapes : array, shape (..., m, n), optional
+        The coordinates as motions of the structure that they stand for, where designs differ in them: what tells the
+        coordinates of one design in those of the next.
+    warning : array (...) of str, optional
+        What makes a design doubtful.
 
     Raises
     ------
     InputError
-        When sizes differ, a name is taken, or a matrix is not finite, not symmetric, or (mass) negative.
+        When sizes differ, a name is taken, or a matrix is not finite, not symmetric, or (mass) negative, and for an
+        unknown word.
     """
 
     names: Sequence[str]
@@ -47,7 +60,10 @@ class NormalModes:
     damping: Array
     stiffness: Array
     hub: Array
-    includes_rotor: bool
+    includes_rotor: bool | str
+    shaft: str = "held"
+    shapes: Array | None = None
+    warning: Array | None = None
 
     symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
 
@@ -55,6 +71,9 @@ class NormalModes:
         names = tuple(self.names)
         if len(set(names)) < len(names) or (not names and np.size(self.mass)):
             raise InputError("names", ", ".join(names), "must name each mode, all differently")
+        for field, choices in (("includes_rotor", INCLUDES_ROTOR), ("shaft", SHAFT)):
+            if not is_choice(getattr(self, field), choices):
+                raise InputError(field, getattr(self, field), f"must be {told_choices(choices)}")
         from proprotor.mode_names import check_support_names  # here, because it knows the rotor's coordinates
 
         check_support_names("names", names)
@@ -64,8 +83,8 @@ class NormalModes:
         for field in ("mass", "damping", "stiffness"):
             matrix = _finite(field, getattr(self, field), (n, n))
             turned = np.swapaxes(matrix, -1, -2)
-            tolerance = {"rtol": 1e-9, "atol": 1e-12 * np.abs(matrix).max(initial=0)}
-            if field in self.symmetric and not np.allclose(matrix, turned, **tolerance):
+            rounding = 1e-12 * np.abs(matrix).max(axis=(-2, -1), keepdims=True, initial=0)
+            if field in self.symmetric and not np.allclose(matrix, turned, rtol=1e-9, atol=rounding):
                 raise InputError(field, matrix.tolist(), "must be symmetric")
             object.__setattr__(self, field, matrix)
         if not _nowhere_negative(np.real(self.mass)):
@@ -95,7 +114,8 @@ class NormalModes:
         frequency: ArrayLike,
         damping_ratio: ArrayLike,
         hub: ArrayLike,
-        includes_rotor: bool,
+        includes_rotor: bool | str,
+        shaft: str = "held",
     ) -> NormalModes:
         """Uncoupled modes: stiffness m ω², damping 2 ζ ω m, with the whole generalised mass m.
 
@@ -107,7 +127,7 @@ class NormalModes:
             m in kg or kg m², ω in rad/s, ζ as a fraction of critical.
         hub : array_like, shape (..., 6, n)
             As for `NormalModes`, SI.
-        includes_rotor : bool
+        includes_rotor, shaft : bool or str, str
             As for `NormalModes`.
 
         Returns
@@ -132,6 +152,7 @@ class NormalModes:
             stiffness=_diagonal(m * omega**2),
             hub=np.asarray(hub),
             includes_rotor=includes_rotor,
+            shaft=shaft,
         )
 
 
@@ -141,7 +162,8 @@ def two_axis_pivot(
     stiffness: ArrayLike,
     damping: ArrayLike = (0.0, 0.0),
     *,
-    includes_rotor: bool,
+    includes_rotor: bool | str,
+    shaft: str = "held",
 ) -> NormalModes:
     """A rigid shaft that pitches and yaws about a point behind the hub, as a propeller in its nacelle does.
 
@@ -154,8 +176,8 @@ def two_axis_pivot(
     inertia, stiffness, damping : array_like, shape (..., 2)
         Of pitch and yaw about the pivot: kg m², N m/rad, N m s/rad (viscous; for hysteretic damping see
         `proprotor.structural_damping`).
-    includes_rotor : bool
-        Whether the inertias include the rotor's, its mass at the hub included.
+    includes_rotor, shaft : bool or str, str
+        How the inertias include the rotor's, its mass at the hub included: as for `NormalModes`.
 
     Returns
     -------
@@ -178,6 +200,7 @@ def two_axis_pivot(
         stiffness=_diagonal(_finite("stiffness", stiffness, (2,))),
         hub=hub,
         includes_rotor=includes_rotor,
+        shaft=shaft,
     )
 
 

@@ -109,7 +109,8 @@ def support_from_matrices(
     *,
     dofs: Sequence[str],
     hub: Mapping[str, str] | None = None,
-    includes_rotor: bool = False,
+    includes_rotor: bool | str = False,
+    shaft: str = "held",
     modes: int | None = None,
     damping_ratio: ArrayLike = 0.0,
     rotor_mass: float = 0.0,
@@ -126,8 +127,8 @@ def support_from_matrices(
         The n coordinates' names.
     hub : mapping of str to str, optional
         As for `read_npz`.
-    includes_rotor : bool
-        Whether the mass holds the rotor's rigid-body share.
+    includes_rotor, shaft : bool or str, str
+        How the mass holds the rotor's, as for `proprotor.support.NormalModes`.
     modes : int, optional
         How many of the lowest modes to keep, named mode_1 and so on; all coordinates when left out.
     damping_ratio : float or array
@@ -140,8 +141,11 @@ def support_from_matrices(
     Raises
     ------
     InputError
-        When sizes differ, an entry is not finite, a matrix is not symmetric, or a coordinate of the hub is missing.
+        When sizes differ, an entry is not finite, a matrix is not symmetric, a coordinate of the hub is missing, or a
+        rotor's mass is given beside the one that the mass includes.
     """
+    if includes_rotor and np.any(rotor_mass):
+        raise InputError("rotor_mass", rotor_mass, "must not be given where the mass includes the rotor")
     names = _names(dofs)
     matrices = {"mass": mass, "stiffness": stiffness} | ({} if damping is None else {"damping": damping})
     matrices = {name: _checked(name, matrix, len(names)) for name, matrix in matrices.items()}
@@ -158,8 +162,9 @@ def support_from_matrices(
         hub=motion,
         count=modes,
         damping_ratio=damping_ratio,
-        rotor_mass=0.0 if includes_rotor else rotor_mass,
+        rotor_mass=rotor_mass,
         includes_rotor=includes_rotor,
+        shaft=shaft,
         **matrices,
     ).support
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
@@ -48,6 +48,7 @@ def support_of(section: SupportSection, numbers: Mapping[str, Datum]) -> NormalM
 
 def _normal_modes(section: NormalModesSection, numbers: Mapping[str, Datum]) -> NormalModes:
     names = [mode.name for mode in section.modes]
+    own = _values(numbers, "support")
     modes = [_values(numbers, f"support.modes[{name}]") for name in names]
     hub = [_side_by_side(mode.get(axis, 0.0) for mode in modes) for axis in HUB_AXES]
     support = NormalModes.from_frequencies(
@@ -56,18 +57,19 @@ def _normal_modes(section: NormalModesSection, numbers: Mapping[str, Datum]) -> 
         frequency=_side_by_side(mode["frequency"] for mode in modes),
         damping_ratio=_side_by_side(mode["damping_ratio"] for mode in modes),
         hub=np.stack(np.broadcast_arrays(*hub), axis=-2),
-        includes_rotor=section.includes_rotor,
+        **own,
     )
     return _with_assumed_airloads(support, section, numbers)
 
 
 def _pivot(section: PivotSection, numbers: Mapping[str, Datum]) -> NormalModes:
     given = _values(numbers, "support")
-    pairs = {
+    pairs: dict[str, Any] = {
         name: _side_by_side(given.get(f"{axis}_{name}", 0.0) for axis in ("pitch", "yaw"))
         for name in ("inertia", "stiffness", "damping")
     }
-    return two_axis_pivot(given["distance"], **pairs, includes_rotor=section.includes_rotor)
+    held: dict[str, Any] = {name: given[name] for name in ("includes_rotor", "shaft") if name in given}
+    return two_axis_pivot(given["distance"], **pairs, **held)
 
 
 def _rigid(section: RigidSection, numbers: Mapping[str, Datum]) -> NormalModes:
@@ -80,7 +82,7 @@ def _matrices(section: MatricesSection, numbers: Mapping[str, Datum]) -> NormalM
     given = _values(numbers, "support")
     _must_be_real(given)
     read = read_matrix_market if section.file is None else read_npz
-    support = read(**given, hub=section.hub, includes_rotor=section.includes_rotor)
+    support = read(**given, hub=section.hub)
     return _with_assumed_airloads(support, section, numbers)
 
 
@@ -89,7 +91,7 @@ def _nastran(section: NastranSection, numbers: Mapping[str, Datum]) -> NormalMod
 
     given = _values(numbers, "support")
     _must_be_real(given)
-    support = nastran_modes(**given, hub=section.hub, includes_rotor=section.includes_rotor)
+    support = nastran_modes(**given, hub=section.hub)
     return _with_assumed_airloads(support, section, numbers)
 
 
@@ -118,7 +120,8 @@ def _one_beam_wing(given: dict[str, Any], downstop: bool) -> tuple[NormalModes, 
     every = given["damping_ratio"] if "damping_ratio" in given else given["loss_factor"] / 2
     ratios = {kind: given.get(f"{kind}_damping_ratio", every) for kind in _KINDS_OF_STRAIN} | {"axial": every}
     found = on_coordinates(structure, given.get("modes"), ratios, given["rotor_mass"])
-    return found.support, beam_strips(structure, found.shapes)
+    shapes = None if given.get("modes") is None else found.shapes
+    return replace(found.support, shapes=shapes), beam_strips(structure, found.shapes)
 
 
 def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[str, Datum]) -> NormalModes:
@@ -153,22 +156,51 @@ def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any
 
 
 def _stacked(made: Array) -> tuple[NormalModes, Strips]:
-    """One support and its strips, with the axes of the batch in front."""
+    """One support and its strips, with the axes of the batch in front.
+
+    Coordinates are in the order of the first design; each other design's are put there by their own names.
+    """
     from proprotor.wing_aerodynamics import Strips
 
     first, strips = made.flat[0]
     if not made.shape:
         return first, strips
 
-    def stack(parts: list[Array]) -> Array:
+    def stack(parts: list[Any]) -> Array:
         return np.stack(parts).reshape(*made.shape, *parts[0].shape)
 
+    ordered = [_in_order(support, own, first.names) for support, own in made.flat]
     matrices: dict[str, Any] = {
-        name: stack([getattr(support, name) for support, _ in made.flat])
+        name: stack([getattr(support, name) for support, _ in ordered])
         for name in ("mass", "damping", "stiffness", "hub")
     }
-    together = zip(*(strips for _, strips in made.flat), strict=True)
+    if first.shapes is not None:
+        matrices["shapes"] = stack([support.shapes for support, _ in ordered])
+        told = [_named_otherwise(support.names, first.names) for support, _ in made.flat]
+        matrices["warning"] = np.array(told, dtype=object).reshape(made.shape)
+    together = zip(*(own for _, own in ordered), strict=True)
     return replace(first, **matrices), Strips(*(stack(list(parts)) for parts in together))
+
+
+def _in_order(support: NormalModes, strips: Strips, names: Sequence[str]) -> tuple[NormalModes, Strips]:
+    """A support and its strips with coordinates in the order of names; those with other names fill what is left."""
+    if support.names == names:
+        return support, strips
+    own = list(support.names)
+    others = iter([place for place, name in enumerate(own) if name not in names])
+    places = [own.index(name) if name in own else next(others) for name in names]
+    square = {name: getattr(support, name)[np.ix_(places, places)] for name in support.symmetric}
+    along = {name: getattr(support, name)[:, places] for name in ("hub", "shapes")}
+    turned = strips._replace(rise=strips.rise[..., places], pitch=strips.pitch[..., places])
+    return replace(support, names=names, **square, **along), turned
+
+
+def _named_otherwise(own: Sequence[str], names: Sequence[str]) -> str:
+    """What to say of a design that has modes of other kinds than the first one."""
+    others = [name for name in own if name not in names]
+    missing = [name for name in names if name not in own]
+    told = [f"{name} is told as {place}" for name, place in zip(others, missing, strict=True)]
+    return f"the wing has other modes than in the first design: {', '.join(told)}" if told else ""
 
 
 def _must_be_real(given: Mapping[str, Any]) -> None:

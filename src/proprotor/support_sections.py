@@ -1,8 +1,8 @@
 """The section [support] of a deck, one set of fields for each kind.
 
 ``kind = "normal-modes"``
-    includes_rotor, whether the generalised masses hold the rotor's rigid-body share; a table
-    ``[[support.modes]]`` for each mode with name; coordinate, "length" or "angle"; generalized_mass,
+    includes_rotor and shaft, how the rotor was held when the modes were found with it on, see `proprotor.rotor_share`;
+    a table ``[[support.modes]]`` for each mode with name; coordinate, "length" or "angle"; generalized_mass,
     frequency, damping_ratio; and the motion of the hub per unit of the coordinate, x, y, z, alpha_x, alpha_y,
     alpha_z, zero where left out.
 ``kind = "beam-wing"``
@@ -13,13 +13,14 @@
     beam_damping_ratio, chord_damping_ratio, torsion_damping_ratio of those.
 ``kind = "matrices"``
     file, an .npz file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names: see
-    `proprotor.support_file`. A table hub; includes_rotor, rotor_mass, modes, damping_ratio, length_unit, mass_unit.
+    `proprotor.support_file`. A table hub; includes_rotor, shaft, rotor_mass, modes, damping_ratio, length_unit,
+    mass_unit.
 ``kind = "nastran"``
-    file, an .op2 file, and grid: see `proprotor.nastran`. subcase, a table hub, includes_rotor, modes, damping_ratio,
-    length_unit, mass_unit.
+    file, an .op2 file, and grid: see `proprotor.nastran`. subcase, a table hub, includes_rotor, shaft, modes,
+    damping_ratio, length_unit, mass_unit.
 ``kind = "pivot"``
     distance from pivot to hub; pitch_inertia, yaw_inertia, pitch_stiffness, yaw_stiffness, pitch_damping,
-    yaw_damping; includes_rotor.
+    yaw_damping; includes_rotor, shaft.
 ``kind = "rigid"``
     Nothing: the hub does not move.
 ``[support.wing_aerodynamics]``
@@ -45,6 +46,7 @@ from proprotor.deck_fields import (
     GeneralizedMass,
     HubDisplacement,
     HubRotation,
+    IncludesRotor,
     Inertia,
     InertiaOrNone,
     InertiaPerLength,
@@ -58,6 +60,7 @@ from proprotor.deck_fields import (
     PositiveLength,
     PositiveStiffness,
     Section,
+    Shaft,
     Sides,
     Size,
     Slope,
@@ -68,6 +71,12 @@ from proprotor.deck_fields import (
 from proprotor.deck_file import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
 from proprotor.errors import InputError
 from proprotor.support import HUB_AXES
+
+_HELD = (
+    "How the rotor, whose share is taken off, was held in these modes: tilting on its gimbal, as one body with the "
+    "shaft, a point mass at the hub; false where it was not on, true gimballed where there is a gimbal, else rigid."
+)
+_SHAFT = "Whether the rotor could turn about its shaft then, gimballed or rigid; held where left out."
 
 
 class WingAerodynamicsSection(Section):
@@ -114,7 +123,8 @@ class NormalModesSection(Section):
     """A support of normal modes, given by number."""
 
     kind: Literal["normal-modes"] = needed("Normal modes, a `[[support.modes]]` each.")
-    includes_rotor: bool = needed("Whether the generalised masses hold the rotor's rigid-body share.")
+    includes_rotor: IncludesRotor = needed(_HELD)
+    shaft: Shaft = optional(_SHAFT)
     modes: Annotated[list[ModeSection], Field(min_length=1)] = needed("One table for each mode.")
     wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none where left out.")
 
@@ -193,8 +203,11 @@ class MatricesSection(Section):
         'For each of x, y, z, alpha_x, alpha_y, alpha_z the coordinate of the hub, "-" before it where it points '
         "the other way; hub_x and so on where left out."
     )
-    includes_rotor: bool = needed("Whether the mass matrix holds the rotor's.")
-    rotor_mass: MassOrNone = optional("What the rotor model has at the hub; modes are those with it.")
+    includes_rotor: IncludesRotor = needed(_HELD)
+    shaft: Shaft = optional(_SHAFT)
+    rotor_mass: MassOrNone = optional(
+        "What the rotor model has at the hub; modes are those with it. Not where the matrix includes the rotor."
+    )
     modes: Size = optional("How many of the lowest modes to keep; all coordinates where left out.")
     damping_ratio: DampingRatio = optional(
         "Of every mode, of critical, where no damping matrix is given; 0 where left out."
@@ -226,7 +239,8 @@ class NastranSection(Section):
         'For each of x, y, z, alpha_x, alpha_y, alpha_z one of T1 to R3, "-" before it where it points the other '
         "way; aircraft axes where left out."
     )
-    includes_rotor: bool = needed("Whether the run had the rotor's mass at the hub.")
+    includes_rotor: IncludesRotor = needed(_HELD)
+    shaft: Shaft = optional(_SHAFT)
     modes: Size = optional("How many of the lowest modes; all where left out.")
     damping_ratio: DampingRatio = optional("Of every mode, of critical; 0 where left out.")
     length_unit: PositiveLength = optional("The run's unit of length; 1 m where left out.")
@@ -238,7 +252,8 @@ class PivotSection(Section):
     """A rigid shaft that pitches and yaws about a point behind the hub; dampings left out are 0."""
 
     kind: Literal["pivot"] = needed("A shaft on a pivot.")
-    includes_rotor: bool = needed("Whether the inertias hold the rotor's.")
+    includes_rotor: IncludesRotor = needed(_HELD)
+    shaft: Shaft = optional(_SHAFT)
     distance: Offset = needed("From the pivot forward to the hub.")
     pitch_inertia: Inertia = needed("About the pivot.")
     yaw_inertia: Inertia = needed("About the pivot.")

@@ -1,17 +1,18 @@
-"""Modes followed along a line of points, each one under its own name."""
+"""Modes along a line of points by what moves in them, each with the root that it is, followed from point to point."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor import stamp
 from proprotor.arrays import Array
+from proprotor.branches import Named, branches
 from proprotor.errors import InputError, unknown_name
-from proprotor.mode_names import SECOND, assign_names, name_list, name_shares, whirl
+from proprotor.mode_names import SECOND, Moving, moving, name_list, whirl
 from proprotor.model import LinearModel, batch_shape
 from proprotor.modes import (
     Eigensystem,
@@ -19,17 +20,20 @@ from proprotor.modes import (
     coordinate_shares,
     held_coordinates,
     mode_dataset,
+    with_azimuth,
 )
+from proprotor.needs import check_memory
 from proprotor.path import Line, Path, follow, path_of
 from proprotor.speed import in_metres_per_second
-from proprotor.tracking import Spectrum, link, side_by_side
+from proprotor.tracking import Modes, Spectrum, link, side_by_side
 
 if TYPE_CHECKING:
     import xarray
 
     from proprotor.case import Case
 
-ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where modes get their names, the first that has a trim
+ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where branches get labels, the first that has a trim
+_BYTES_PER_POINT = 120_000.0  # while modes are followed and boundaries found; measured with the XV-15
 _STRIDE = 0.02  # of the tip speed, between the first points of the way there
 
 
@@ -53,7 +57,7 @@ def sweep(
     rotor_speed: float | None = None,
     approach: Line | None = None,
 ) -> xarray.Dataset:
-    """Modes of a line of points, tracked and named.
+    """Modes of a line of points, named and followed.
 
     Parameters
     ----------
@@ -62,20 +66,23 @@ def sweep(
     line : Line, optional
         Airspeeds of the model by default; with its `linearize`, steps that do not tell which mode is which are divided.
     rotor_speed : float, optional
-        rad/s, where the modes get their names. Without it, regressive and progressive are told by the whirl in the
-        fixed frame alone.
+        rad/s, for the names of modes; that of the model by default. Without either, regressive and progressive are told
+        by the whirl in the fixed frame alone.
     approach : Line, optional
-        From the anchor, where modes get their names, to the point of the line that is nearest to it, both included:
-        names then do not depend on where the line begins and ends. Without it, or where it fails, they are given at
+        From the anchor, where branches get their labels, to the point of the line that is nearest to it, both included:
+        labels then do not depend on where the line begins and ends. Without it, or where it fails, they are given at
         the first point that works.
 
     Returns
     -------
     xarray.Dataset
-        As `LinearModel.modes`, with mode names (`proprotor.mode_names`) as coordinate and the same mode in the same
-        place at every point; whirl (-1 against the rotor to 1 with it, in the fixed frame); tracking_quality, the
-        trust in the steps that led to a point, 0 to 1. Attributes: eigen_solves, and named_at, where names were given;
-        the case and its options (`proprotor.stamp`).
+        As `LinearModel.modes`, with mode names as coordinate: what moves (`proprotor.mode_names`), at each point by
+        itself, so that a name passes from one root to another where they exchange their motions. share, how much of the
+        mode is that motion, 0 to 1; branch, which exact root has the name at a point, by its label where branches are
+        named (`proprotor.branches`); tracking_quality, the trust in that label, 0 to 1: the least of all steps from
+        there; whirl (-1 against the rotor to 1 with it, in the fixed frame). A step that does not tell roots apart is a
+        warning. Attributes: eigen_solves, named_at, where branches are named, and the case and its
+        options (`proprotor.stamp`).
 
     Raises
     ------
@@ -87,98 +94,118 @@ def sweep(
             "airspeed", f"array of shape {model.airspeed.shape}", "must be a list of speeds to sweep"
         )
     line = Line(model.airspeed) if line is None else line
-    points, n, held = len(model.airspeed), len(model.dofs), held_coordinates(model)
-    path = follow(model, line)
-    order = path.order(points)
+    points, path = len(model.airspeed), follow(model, line)
     named = state_names(model, line, path, rotor_speed, approach)
-    columns, modes = mode_columns(model.dofs, path, named)
-    values, right, left = path.spectrum.at(slice(points)).modes(order[:, columns])
-    # Of a pair that parts into two real roots the second is a mode only where it is real.
-    values = np.where(values.imag < 0, np.nan, values)
-    shapes = coordinate_motion(held, n, values, right)
-    data = mode_dataset(model, values, shapes, coordinate_shares(held, n, left, right), line)
+    spectrum = path.spectrum.at(slice(points))
+    values, right, left = spectrum.all_modes
+    found = moving(model, values, left, right, rotor_speed)
+    columns, modes = mode_columns(found, values)
+    data = _by_motion(model, line, Modes(values, right, left), columns)
     by_mode = data.eigenvalue.dims
-    sense = np.where(np.isnan(values), np.nan, whirl(model.dofs, held, values, left, right))
-    trust = np.where(np.isnan(path.spectrum.values[:points, :1]), np.nan, path.trust(points)[:, columns])
-    data["whirl"] = by_mode, sense, {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
-    data["tracking_quality"] = by_mode, trust, {"units": "1", "long_name": "trust in the steps to a point"}
+    followed = branches(path, named, points)
+    for name, told in (
+        ("share", (found.share, "participation of the motion that the mode is named after")),
+        ("branch", (followed.label, "exact root, by what moves in it where branches are named")),
+        ("tracking_quality", (followed.trust, "trust in the steps from there to the point")),
+    ):
+        values, meaning = told
+        data[name] = by_mode, _at_columns(values, columns), {"long_name": meaning}
+    data["branch"] = data.branch.astype(str)
+    data["warning"] = data.warning.dims, _joined(data.warning.values, followed.doubt), data.warning.attrs
     data.attrs |= {"eigen_solves": len(path.points) + named.eigen_solves, "named_at": named.told}
     return data.assign_coords(mode=modes)
 
 
-class Named(NamedTuple):
-    """Names of the states of one point of a path, in the order of its spectrum.
+def _by_motion(model: LinearModel, line: Line, every: Modes, columns: Array) -> xarray.Dataset:
+    """The dataset of the states in the columns (points, modes), with the sense in which they whirl."""
+    n, held, there = len(model.dofs), held_coordinates(model), columns >= 0
+    places = np.maximum(columns, 0)
+    modes = Spectrum(every.values, every.right).modes(places)
+    values = np.where(there, modes.values, np.nan)
+    shapes = coordinate_motion(held, n, values, modes.right)
+    shares = np.where(there[:, None, :], coordinate_shares(held, n, modes.left, modes.right), np.nan)
+    data = mode_dataset(model, values, shapes, shares, line)
+    sense = np.where(there, whirl(model, modes.values, modes.left, modes.right), np.nan)
+    told = {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
+    data["whirl"] = data.eigenvalue.dims, sense, told
+    return data
 
-    point : place of the point in the path; names : one for each state; told : where names were given;
-    eigen_solves : what that took beyond the path's own.
-    """
 
-    point: int
-    names: list[str]
-    told: str
-    eigen_solves: int
+def _at_columns(values: Array, columns: Array) -> Array:
+    """Of each point the values (points, states) of the states in its columns; nothing where it has none."""
+    nothing = "" if values.dtype == object else np.nan
+    return np.where(columns >= 0, np.take_along_axis(values, np.maximum(columns, 0), 1), nothing)
+
+
+def _joined(first: Array, second: Array) -> Array:
+    both = ["; ".join(filter(None, texts)) for texts in zip(first.tolist(), second.tolist(), strict=True)]
+    return np.array(both, dtype=str)
 
 
 def state_names(
     model: LinearModel, line: Line, path: Path, rotor_speed: float | None, approach: Line | None
 ) -> Named:
     """Names of states at the point nearest to the anchor, followed from there; else given at the first point."""
-    held = held_coordinates(model)
+    known = name_list(model.dofs)
     if not len(path.points):
-        return Named(0, [], "", 0)
+        return Named(0, known, np.empty(0, dtype=int), np.empty(0), "", 0)
     if approach is not None:
-        leg = follow(approach.models(approach.positions), approach)
-        ends = [0, len(approach.positions) - 1]
-        if len(leg.points) and [leg.points[0], leg.points[-1]] == ends:
+        near = approach.models(approach.positions)
+        # A shaft may hold the azimuth on one of the two lines only.
+        held = max(held_coordinates(model), held_coordinates(near), key=len)
+        leg = follow(near, approach, held)
+        last = len(approach.positions) - 1
+        if len(leg.points) and [leg.points[0], leg.points[-1]] == [0, last]:
             nearest = int(np.argmin(np.abs(path.positions[path.points] - approach.end)))
-            given = names_at(model.dofs, held, leg.spectrum, 0, rotor_speed)
-            successor = _same_point(leg, ends[1], path, int(path.points[nearest]))
-            names = {int(state): given[first] for first, state in zip(leg.places[0], successor, strict=True)}
+            here = path.spectrum.at([int(path.points[nearest])])
+            given = names_at(near, leg.spectrum, 0, rotor_speed)[leg.places[0]]
+            states = _same_point(leg, last, with_azimuth(here, model.dofs, len(held) + len(model.dofs)))
+            place, trust = np.empty_like(given), np.empty(len(given))
+            place[states], trust[states] = given, leg.quality.min(axis=0, initial=1)
+            own = here.values.shape[1]
             told = f"{approach.name} {approach.positions[0]:.6g} {approach.units}"
-            return Named(nearest, [names[state] for state in range(len(names))], told, len(leg.points))
+            return Named(nearest, known, place[:own], trust[:own], told, len(leg.points))
     first = int(path.points[0])
     told = f"{line.name} {float(line.positions[first]):.6g} {line.units}"
-    return Named(0, names_at(model.dofs, held, path.spectrum, first, rotor_speed), told, 0)
+    place = names_at(model, path.spectrum, first, rotor_speed)
+    return Named(0, known, place, np.ones(len(place)), told, 0)
 
 
-def _same_point(leg: Path, last: int, path: Path, point: int) -> Array:
-    """Which states of a point of a path the followed states of another path are at the same point."""
-    both = leg.spectrum.at([last]).joined(path.spectrum.at([point]))
+def _same_point(leg: Path, last: int, here: Spectrum) -> Array:
+    """Which states of a point, a spectrum (1, states), the followed states of a path are at the same point."""
+    both = leg.spectrum.at([last]).joined(here)
     successor = link(both, np.array([0]), np.array([1])).successor[0]
     states: Array = successor[leg.places[-1]]
     return states
 
 
-def names_at(
-    dofs: tuple[str, ...], held: list[int], spectrum: Spectrum, point: int, rotor_speed: float | None
-) -> list[str]:
+def names_at(model: LinearModel, spectrum: Spectrum, point: int, rotor_speed: float | None = None) -> Array:
+    """What moves in each state (states,) of a point of a line of models, by its place in `name_list`."""
     values, right, left = spectrum.at(point).all_modes
-    shares = name_shares(dofs, held, values, left, right, rotor_speed)
-    return assign_names(dofs, held, shares, values)
+    if rotor_speed is None and model.rotor_speed is not None:
+        rotor_speed = float(model.rotor_speed[point])
+    return moving(model, values, left, right, rotor_speed).place
 
 
-def mode_columns(dofs: tuple[str, ...], path: Path, named: Named) -> tuple[Array, list[str]]:
-    """Which followed states are modes, in the order of the coordinates, and what they are called.
+def mode_columns(found: Moving, values: Array) -> tuple[Array, list[str]]:
+    """Which state each mode is at each point (points, modes), -1 where there is none, and what the modes are called.
 
-    A state is a mode where it is in the upper half plane, or real; of each pair the one above is, and the other only if
-    it is real somewhere, as the second root.
+    In the order of the coordinates. A mode is the state of a pair that is above the real axis, or a real root. Two real
+    roots that have one name are two modes: the one that decays faster, or grows less, is the second root.
     """
-    if not len(path.points):  # no point worked: there are no modes
-        return np.empty(0, dtype=int), []
-    values = path.values
-    names = [named.names[state] for state in path.places[named.point]]
-    above, real = (values.imag > 0).sum(axis=0), (values.imag == 0).any(axis=0)
-    below = (values.imag < 0).sum(axis=0)
-    slow = np.abs(values).mean(axis=0)
     columns, modes = [], []
-    for name in name_list(dofs):
-        own = [c for c, called in enumerate(names) if called == name]
-        own.sort(key=lambda c: (below[c] - above[c], slow[c]))
-        for place, column in enumerate(own):
-            if place == 0 or real[column]:
-                columns.append(column)
-                modes.append(name + SECOND * (place > 0))
-    return np.array(columns, dtype=int), modes
+    counts = values.imag >= 0
+    for place, name in enumerate(found.known):
+        own = counts & (found.place == place)
+        for suffix in ("", SECOND):
+            if not own.any():
+                break
+            best = np.where(own, values.real, -np.inf).argmax(axis=1)
+            columns.append(np.where(own.any(axis=1), best, -1))
+            modes.append(name + suffix)
+            own[np.arange(len(own)), best] = False
+    stacked = np.stack(columns, axis=1) if columns else np.empty((len(values), 0), dtype=int)
+    return stacked, modes
 
 
 def sweep_case(
@@ -186,8 +213,9 @@ def sweep_case(
 ) -> xarray.Dataset:
     """Modes of a case along airspeeds, or along one input at one airspeed: see `sweep`.
 
-    Modes get their names at the case's own inputs and near cruise (`anchor_speed`), and are followed from there, so
-    that names are the same in any range. Steps that do not tell modes apart are divided.
+    Modes have their names by what moves at each point. Branches get their labels at the case's own inputs and near
+    cruise (`anchor_speed`), and are followed from there, in steps that are divided until they tell roots apart. So both
+    are the same in any range and for any step.
 
     Parameters
     ----------
@@ -218,11 +246,9 @@ def _sweep_of(
 ) -> xarray.Dataset:
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:  # points differ in more than their airspeed
-        return sweep(case.linearize(airspeeds, **options), rotor_speed=rotor_speed_of(case))
+        return sweep(case.linearize(airspeeds, **options))
     model = line.models(line.positions)
-    return sweep(
-        model, line, rotor_speed=rotor_speed_of(case), approach=approach_to(case, line, model, options)
-    )
+    return sweep(model, line, approach=approach_to(case, line, model, options))
 
 
 def line_of_case(
@@ -233,10 +259,12 @@ def line_of_case(
     Raises
     ------
     InputError
-        For airspeeds that do not form a line, more than one input, or an unknown one.
+        For airspeeds that do not form a line, more than one input, an unknown one, or points that do not fit into
+        memory.
     """
     speeds = in_metres_per_second(airspeeds)
     speeds = speeds if speeds.ndim else speeds.reshape(1)  # one speed is the shortest list
+    _check_points("airspeed", speeds.size)
     if vary is not None:
         return _line_of_input(case, speeds.reshape(-1), vary, options)
     if _is_batch(case, options):
@@ -244,6 +272,11 @@ def line_of_case(
     if speeds.ndim != 1:
         raise InputError("airspeed", f"array of shape {speeds.shape}", "must be a list of speeds to sweep")
     return Line(speeds, lambda speed: case.linearize(speed, **options))
+
+
+def _check_points(field: str, points: int) -> None:
+    size = _BYTES_PER_POINT * points
+    check_memory(field, f"{points} points", size, "following their modes", "take fewer points")
 
 
 def _line_of_input(
@@ -262,6 +295,7 @@ def _line_of_input(
     values = values_in_si(given, unit, path)
     if len(speed) != 1 or values.ndim != 1:
         raise InputError("vary", path, "needs a list of values, and one airspeed")
+    _check_points(path, values.size)
 
     def linearize(positions: Array) -> LinearModel:
         return case.vary({path: positions}).linearize(speed[0], **options)
@@ -306,7 +340,7 @@ def tip_speed(case: Case) -> float:
 
 
 def anchor_speed(case: Case, **options: Any) -> float | None:
-    """Airspeed in m/s at which the modes of a case get their names.
+    """Airspeed in m/s at which the branches of a case get their labels.
 
     Seven tenths of the tip speed, which is near cruise; less where there is no trim; None where there is none at all.
     """

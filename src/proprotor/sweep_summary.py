@@ -13,20 +13,27 @@ from proprotor.arrays import Array
 if TYPE_CHECKING:
     import xarray
 
+_BRIDGED, _NEARLY = (
+    2.0,
+    0.02,
+)  # of the way that both roots go, and of a root: a name that passes no farther goes on
 _ROUNDING = 1e-9  # of the largest eigenvalue: a real part within this of zero says nothing
 
 
 class UnstableRange(NamedTuple):
-    """Airspeeds between which a mode is unstable.
+    """Airspeeds between which a root is unstable.
 
     Attributes
     ----------
     mode : str
+        What moves in it at the first airspeed at which it is.
     start, stop : float
         m/s, by linear interpolation of Re s between neighbouring points of the sweep.
     open_start, open_stop : bool
-        Whether the mode is unstable at the first, or the last, point already, so that `start` or `stop`
+        Whether the root is unstable at the first, or the last, point already, so that `start` or `stop`
         is the end of the sweep and not a boundary.
+    branch : str
+        The exact root.
     """
 
     mode: str
@@ -34,6 +41,7 @@ class UnstableRange(NamedTuple):
     stop: float
     open_start: bool
     open_stop: bool
+    branch: str
 
 
 def damped_frequency(sweep: xarray.Dataset) -> Array:
@@ -55,20 +63,23 @@ def damping_percent(sweep: xarray.Dataset) -> Array:
 
 
 def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
-    """Ranges of airspeed in which a mode is unstable, by mode in the order of the sweep, then by airspeed.
+    """Ranges of airspeed in which a root is unstable, by mode in the order of the sweep, then by airspeed.
 
+    Roots are followed, whatever their names: where a name passes from a stable root to an unstable one nothing crosses.
     Boundaries are interpolated, so they are as good as the sweep is fine; failed points are passed over.
     """
-    airspeed, growth = sweep.airspeed.values, growth_rate(sweep)
+    airspeed, names = sweep.airspeed.values, sweep.mode.values.tolist()
+    growth, branch = growth_rate(sweep), sweep.branch.values
     ranges = []
-    for place, mode in enumerate(sweep.mode.values):
-        good = np.isfinite(growth[:, place])
-        for found in _ranges(airspeed[good], growth[good, place]):
-            ranges.append(UnstableRange(str(mode), *found))
-    return ranges
+    for label in dict.fromkeys(branch[growth > 0].tolist()):
+        points, places = np.nonzero((branch == label) & np.isfinite(growth))
+        for first, start, stop, before, beyond in _ranges(airspeed[points], growth[points, places]):
+            ranges.append(UnstableRange(names[places[first]], start, stop, before, beyond, label))
+    return sorted(ranges, key=lambda found: (names.index(found.mode), found.start))
 
 
-def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[float, float, bool, bool]]:
+def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[int, float, float, bool, bool]]:
+    """The first unstable point of each range, where it starts and stops, and whether these are ends of the sweep."""
     unstable = np.concatenate([[False], growth > 0, [False]])
     starts, ends = (
         np.flatnonzero(~unstable[:-1] & unstable[1:]),
@@ -78,12 +89,33 @@ def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[float, float, bool
         open_start, open_stop = first == 0, after == len(growth)
         start = airspeed[0] if open_start else _zero(airspeed, growth, first - 1)
         stop = airspeed[-1] if open_stop else _zero(airspeed, growth, after - 1)
-        yield float(start), float(stop), open_start, open_stop
+        yield first, float(start), float(stop), open_start, open_stop
 
 
 def _zero(airspeed: Array, growth: Array, i: int) -> float:
     """Where the line through points i and i + 1 is zero."""
     return float(airspeed[i] - growth[i] * (airspeed[i + 1] - airspeed[i]) / (growth[i + 1] - growth[i]))
+
+
+def leaps(sweep: xarray.Dataset) -> Array:
+    """Where a name passes to a root that lies elsewhere (points - 1, mode): a line drawn across would be no root.
+
+    Where two roots veer and exchange their motions they are near each other: from one point to the next, the name goes
+    no farther than twice as far as both roots do, or by 2 % of the root. Then the line of the name goes on.
+    """
+    values, branch = sweep.eigenvalue.values, sweep.branch.values
+    both = np.isfinite(values[:-1]) & np.isfinite(values[1:])
+    found = np.zeros(both.shape, dtype=bool)
+    for point, mode in np.argwhere(both & (branch[:-1] != branch[1:])):
+        here, there = values[point], values[point + 1]
+        ways = [
+            there[branch[point + 1] == branch[point, mode]] - here[mode],
+            there[mode] - here[branch[point] == branch[point + 1, mode]],
+        ]
+        moved = sum(float(np.abs(way).max(initial=0)) for way in ways)
+        reach = max(_BRIDGED * moved, _NEARLY * float(np.abs(here[mode])))
+        found[point, mode] = np.abs(there[mode] - here[mode]) > reach
+    return found
 
 
 def support_coordinates(sweep: xarray.Dataset) -> list[str]:

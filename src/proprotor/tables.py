@@ -15,6 +15,7 @@ from proprotor import units
 from proprotor.arrays import Array
 from proprotor.csv_text import csv_of
 from proprotor.doubts import doubtful_near, doubts_along, footnotes, marked
+from proprotor.mode_names import DOUBTFUL
 from proprotor.sweep_summary import (
     UnstableRange,
     damped_frequency,
@@ -105,6 +106,22 @@ class SweepTable:
         """A sentence on each warning of single airspeeds; their rows have a question mark."""
         return list(footnotes(doubts_along(self.airspeed, self.sweep.warning.values), self.unit))
 
+    def mixed(self) -> str:
+        """A sentence on modes in the name of which little moves at some airspeeds; empty where there are none."""
+        with np.errstate(invalid="ignore"):
+            low = self.sweep.share.values < DOUBTFUL
+        told = []
+        for place in np.flatnonzero(low.any(axis=0)):
+            speeds = self.airspeed[low[:, place]]
+            told.append(f"{self.sweep.mode.values[place]} {self._range(np.sort(speeds))}")
+        if not told:
+            return ""
+        return f"Mixed, less than a third of the mode is what its name says: {', '.join(told)}."
+
+    def _range(self, speeds: Array) -> str:
+        ends = f"{speeds[0]:g} {self.unit}", f"{speeds[-1]:g} {self.unit}"
+        return f"at {ends[0]}" if len(speeds) == 1 else f"from {ends[0]} to {ends[1]}"
+
     def _of_interest(self, count: int) -> list[int]:
         """Unstable modes, the support's, then those that move it the most; in the order of the sweep."""
         if self.failed.all():
@@ -181,6 +198,8 @@ class SweepTable:
             f"airspeed ({self.unit})": self.airspeed[i].item(),
             "airspeed (m/s)": self.sweep.airspeed.values[i].item(),
             "mode": mode,
+            "share of its motion": None if j is None else _finite(self.sweep.share.values[i, j]),
+            "branch": None if j is None else str(self.sweep.branch.values[i, j]) or None,
             "frequency (per rev)": None if j is None else _finite(self.frequency[i, j]),
             "damping (% of critical)": None if j is None else _finite(self.damping[i, j]),
             "Re s (rad/s)": _finite(s.real),

@@ -49,6 +49,8 @@ def print_sweep(case: Case, table: SweepTable, all_modes: bool = False) -> None:
         console.print(row, soft_wrap=True)
     for line in table.doubts():
         console.print(f"{MARK} {line}", style="yellow")
+    if mixed := table.mixed():
+        console.print(mixed)
     for line in table.verdict():
         console.print(line, style="bold")
 

@@ -21,7 +21,9 @@ import numpy as np
 from proprotor.arrays import Array
 
 _BLOCK = 64  # steps whose matrices stay in the cache
-_COUPLED = 0.01  # likeness of different modes below which they pass each other as strangers
+_COUPLED = (
+    1e-6  # likeness of different modes below which it is rounding, and they pass each other as strangers
+)
 POOR = 0.5  # quality of a step below which it is divided
 
 
@@ -52,23 +54,35 @@ class Modes(NamedTuple):
 
 
 class Spectrum(NamedTuple):
-    """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side."""
+    """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side.
+
+    A state that a point does not have, though others do, has a vector and no eigenvalue, NaN; a failed point has none.
+    shapes (..., m, k) are those of the first k coordinates where they differ from point to point, else None.
+    """
 
     values: Array
     right: Array
+    shapes: Array | None = None
 
     def at(self, points: Any) -> Spectrum:
         """Some of the points, by what an array is indexed with."""
-        return Spectrum(self.values[points], self.right[points])
+        shapes = None if self.shapes is None else self.shapes[points]
+        return Spectrum(self.values[points], self.right[points], shapes)
 
     def joined(self, other: Spectrum) -> Spectrum:
         """The points of both."""
-        return Spectrum(*(np.concatenate(parts) for parts in zip(self, other, strict=True)))
+        values, right = (
+            np.concatenate([getattr(part, of) for part in (self, other)]) for of in ("values", "right")
+        )
+        shapes = None
+        if self.shapes is not None and other.shapes is not None:
+            shapes = np.concatenate([self.shapes, other.shapes])
+        return Spectrum(values, right, shapes)
 
     @property
     def works(self) -> Array:
         """Which points have not failed."""
-        return np.asarray(np.isfinite(self.values).all(axis=-1))
+        return np.asarray(np.isfinite(self.values).any(axis=-1))
 
     @property
     def all_modes(self) -> Modes:
@@ -95,7 +109,7 @@ def left_vectors(values: Array, right: Array) -> Array:
     states = values.shape[-1]
     flat, vectors = values.reshape(-1, states), right.reshape(-1, states, states)
     left = np.full(vectors.shape, np.nan, dtype=complex)
-    good = np.flatnonzero(np.isfinite(flat).all(axis=-1))
+    good = np.flatnonzero(np.isfinite(flat).any(axis=-1))
     for start in range(0, len(good), _BLOCK):
         rows = _as_slice(good[start : start + _BLOCK])
         left[rows] = _left_block(flat[rows], vectors[rows])
@@ -132,7 +146,12 @@ def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
     mix by S while they are Δ apart are coupled by about S Δ: where they would come nearer to each other than that,
     they may have passed or may have turned away between the points, and the step does not tell. The conjugate of a
     state and its other half, where a pair parts into two real roots or two join, do not count as others.
+
+    A state that a point does not have is at no distance from any other: its likeness alone tells which it becomes
+    where the next point has it, and from there on it has an eigenvalue.
     """
+    if spectrum.shapes is not None:
+        return _link_in_common(spectrum, spectrum.shapes, before, after)
     states = spectrum.values.shape[-1]
     successor = np.full((len(before), states), -1)
     quality = np.empty((len(before), states))
@@ -146,6 +165,22 @@ def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
     for step in np.flatnonzero(successor[:, 0] < 0):
         successor[step], quality[step] = _link_alone(spectrum.at(before[step]), spectrum.at(after[step]))
     return Steps(successor, quality)
+
+
+def _link_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Array) -> Steps:
+    """Steps between points whose coordinates have different shapes, each in the coordinates of its earlier point."""
+    turn = np.linalg.pinv(shapes[before]) @ shapes[after]
+    states, count = spectrum.values.shape[-1], turn.shape[-1]
+    rates = (
+        states - (states + 1) // 2
+    )  # where they begin: all displacements, or all but the azimuth, stand before
+    right = spectrum.right[after]
+    for start in (0, rates):
+        places = slice(start, start + count)
+        right[:, places] = turn @ right[:, places]
+    first, last = spectrum.at(before), Spectrum(spectrum.values[after], right)
+    rows = np.arange(len(before))
+    return link(Spectrum(first.values, first.right).joined(last), rows, len(rows) + rows)
 
 
 class _Packed(NamedTuple):
@@ -163,10 +198,10 @@ class _Packed(NamedTuple):
 
     @classmethod
     def of(cls, spectrum: Spectrum, pairs: int) -> _Packed:
-        values, right = spectrum
+        values, right, _ = spectrum
         n, states = values.shape
         above = np.nonzero(values.imag > 0)[1].reshape(n, pairs)
-        real = np.nonzero(values.imag == 0)[1].reshape(n, states - 2 * pairs)
+        real = np.nonzero(~((values.imag > 0) | (values.imag < 0)))[1].reshape(n, states - 2 * pairs)
         places = np.concatenate([above, real], axis=1)
         vectors = np.take_along_axis(right, places[:, None, :], 2)
         columns = np.empty((n, states, states))
@@ -188,9 +223,9 @@ def _link_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> 
     else:
         first, last = (_Packed.of(spectrum.at(points), pairs) for points in (before, after))
     likeness = _packed_likeness(first, last, pairs)
-    scale = np.sqrt((first.values.real**2 + first.values.imag**2).max(axis=1))[:, None, None]
+    scale = np.sqrt(np.fmax.reduce(first.values.real**2 + first.values.imag**2, axis=1))[:, None, None]
     ends = np.concatenate([last.values[:, :pairs], last.values[:, :pairs].conj(), last.values[:, pairs:]], 1)
-    choice = (likeness - _size(first.values[:, :, None] - ends[:, None, :]) / scale).argmax(axis=2)
+    choice = (likeness - _distance(first.values[:, :, None], ends[:, None, :], scale)).argmax(axis=2)
     # Upper states go to pairs, real ones to real ones, each to another.
     target = np.where((choice >= pairs) & (choice < 2 * pairs), choice - pairs, choice)
     rows = np.arange(likeness.shape[1])
@@ -264,10 +299,11 @@ def _trust(likeness: Array, choice: Array, start: Array, end: Array) -> Array:
 
 
 def _index(mixing: Array, apart: Array, later: Array) -> Array:
-    """S max(|Δ1|, |Δ2|) / |Δmin|."""
+    """S max(|Δ1|, |Δ2|) / |Δmin|; 0 where one of the states is none of a point."""
     nearest = np.fmax(_nearest_to_zero(apart, later), 1e-300)
     with np.errstate(over="ignore"):
-        return mixing * np.maximum(np.abs(apart), np.abs(later)) / nearest
+        index = mixing * np.maximum(np.abs(apart), np.abs(later)) / nearest
+    return np.where(np.isnan(index), 0.0, index)
 
 
 def _link_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
@@ -276,7 +312,7 @@ def _link_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
 
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
     likeness = np.sqrt(_size((rows @ later_columns) * (later_rows @ columns).T))
-    distance = _size(start[:, None] - end) / np.abs(start).max()
+    distance = _distance(start[:, None], end, np.nanmax(np.abs(start)))
     gain = likeness - distance
     successor = linear_sum_assignment(np.where(np.isfinite(gain), gain, -1e300), maximize=True)[1]
     mixing = likeness[:, successor]
@@ -309,7 +345,7 @@ def side_by_side(values: Array) -> Array:
     for point, here in enumerate(values):
         high = np.flatnonzero(here.imag > 0)
         low = np.flatnonzero(here.imag < 0)
-        real = np.flatnonzero(~(here.imag != 0))
+        real = np.flatnonzero(~((here.imag > 0) | (here.imag < 0)))
         high = high[np.lexsort([here[high].imag, here[high].real])]
         low = low[np.lexsort([-here[low].imag, here[low].real])]
         order[point] = [*np.stack([high, low], axis=1).ravel(), *real]
@@ -320,6 +356,12 @@ def _size(numbers: Array) -> Array:
     """|z|, without the care that np.abs takes of the largest and smallest of numbers."""
     size: Array = np.sqrt(numbers.real**2 + numbers.imag**2)
     return size
+
+
+def _distance(start: Array, end: Array, scale: Array) -> Array:
+    """Distance of eigenvalues in parts of the largest; 0 from and to a state that a point does not have."""
+    distance = _size(start - end) / scale
+    return np.where(np.isnan(distance), 0.0, distance)
 
 
 def _nearest_to_zero(start: Array, end: Array) -> Array:
@@ -357,13 +399,13 @@ def keep_upper(values: Array) -> Array:
     order = np.tile(np.arange(values.shape[1]), (len(values), 1))
     if not len(values):
         return order
-    side = np.sign(values.imag)
+    side = np.sign(np.nan_to_num(values.imag))
     changes = np.flatnonzero((side[1:] != side[:-1]).any(axis=1)) + 1
     above = side[0] > 0
     for begin, end in pairwise([*changes, len(values)]):
         places, now = order[begin].copy(), values[begin]
         for low in np.flatnonzero(now.imag < 0):
-            high = int(np.argmin(np.abs(now - now[low].conj())))
+            high = int(np.nanargmin(np.abs(now - now[low].conj())))
             if above[low] > above[high] or (low < high and not above[low] and not above[high]):
                 places[[low, high]] = high, low
         order[begin:end] = places

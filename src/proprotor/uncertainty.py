@@ -13,6 +13,7 @@ from proprotor.arrays import Array
 from proprotor.doubts import reasons_for_doubt
 from proprotor.errors import InputError
 from proprotor.flutter_scan import STABLE, UNSTABLE
+from proprotor.needs import check_memory, need
 
 if TYPE_CHECKING:
     import xarray
@@ -154,12 +155,15 @@ def sobol_indices(
     Raises
     ------
     InputError
-        When the results are of no Saltelli sample, too many designs have no value, or all have the same.
+        When the results are of no Saltelli sample, too many designs have no value, or all have the same; when SALib is
+        not installed, or the resamples do not fit into memory.
     """
+    need("SALib", "of", "Sobol indices", "study")
     import xarray
     from SALib.analyze import sobol as salib_sobol
 
     sample = _saltelli_of(results)
+    _check_count("resamples", resamples, results.sizes.get("design", 0))
     names, second_order = sample["inputs"], sample["second_order"]
     block = len(names) * (2 if second_order else 1) + 2
     values, above, below = _one_a_design(results, of)
@@ -194,6 +198,12 @@ def sobol_indices(
     coordinates = {"input": names} | ({"other_input": names} if second_order else {})
     attributes = _attributes(results, of, warnings) | {"confidence": confidence}
     return xarray.Dataset(table, coordinates, attributes)
+
+
+def _check_count(field: str, count: int, designs: int) -> None:
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+        raise InputError(field, count, "must be a whole number above zero")
+    check_memory(field, count, 24.0 * count * designs, "the bootstrap")  # places, and two values at each
 
 
 def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array]:

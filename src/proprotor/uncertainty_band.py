@@ -13,6 +13,7 @@ from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.mode_following import follow_support_modes, support_names, support_share
 from proprotor.modes import eigensystem
+from proprotor.needs import check_memory
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from proprotor.modes import Eigensystem
 
 PERCENTILES = (5, 50, 95)
+_BYTES_PER_POINT = 200.0  # of what is kept: eigenvalues of the modes of a support, and their damping
 _CHUNK = 2500  # points analysed at once, for the sake of memory
 _OF_THE_SUPPORT = 0.1  # participation of the support from which on a mode counts for the boundary
 
@@ -195,8 +197,10 @@ def damping_band(
     Raises
     ------
     InputError
-        For a range of no number of the deck, or an option that does not exist.
+        For a range of no number of the deck, an option that does not exist, or more than there is memory for.
     """
+    points = float(count * len(airspeeds))
+    check_memory("count", count, _BYTES_PER_POINT * points, f"the damping of {points:.4g} points")
     values = sample(case, ranges, count, seed)
     size = max(1, _CHUNK // len(airspeeds))
     followed, least = [], []

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.errors import InputError, unknown_name
+from proprotor.needs import check_memory
 
 if TYPE_CHECKING:
     import pint
@@ -214,6 +215,7 @@ def _written_range(text: str, unit: str, field: str) -> NDArray[np.float64]:
     steps = (stop - start) / step * (1 + 1e-12)  # a hair more, so that 0:1:0.1 has its 1
     if steps > _MOST_VALUES:
         raise InputError(field, text, f"must have at most {_MOST_VALUES} values")
+    check_memory(field, text, 24 * steps, f"{steps:.4g} values", "take a larger step")
     return start + step * np.arange(int(steps) + 1, dtype=float)
 
 
@@ -255,8 +257,8 @@ def _steps(text: str, start: float, stop: float | None, step: float | None) -> N
     if _finite(text, step) <= 0 or stop < start:
         raise InputError("", text, "must rise from start to stop, start:stop:step, by a positive step")
     # a hair more than the quotient, so that 0:1:0.1 has its 1
-    n = _finite(text, (stop - start) / step) * (1 + 1e-12) + 1
-    if n > _MOST_SPEEDS:
+    n = (_finite(text, stop) - start) / step * (1 + 1e-12) + 1
+    if not n <= _MOST_SPEEDS:
         raise InputError("", text, f"must have at most {_MOST_SPEEDS} speeds")
     return start + step * np.arange(int(n), dtype=float)
 

@@ -114,6 +114,9 @@ class WingInAirstream(NormalModes):
             stiffness=self.stiffness + density * speed**2 * np.asarray(self.airload_stiffness),
             hub=self.hub,
             includes_rotor=self.includes_rotor,
+            shaft=self.shaft,
+            shapes=self.shapes,
+            warning=self.warning,
         )
 
 

@@ -49,7 +49,7 @@ alpha_x = "hub_alpha_x"
 alpha_y = "hub_alpha_y"
 alpha_z = "hub_alpha_z"
 [support.wing_aerodynamics]
-lift_slope = 5.7
+lift_slope = "5.7/rad"
 chord = "5 ft"
 elastic_axis = 0.35
 span = "16 ft"

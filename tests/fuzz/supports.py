@@ -14,7 +14,7 @@ import numpy as np
 from scipy.io import mmwrite
 from scipy.sparse import coo_array
 
-from proprotor.support import HUB_AXES
+from proprotor.support import HUB_AXES, INCLUDES_ROTOR, SHAFT
 from proprotor.support_file import read_matrix_market, read_npz
 from tests.fuzz.mutation import NUMBERS, other_lines, other_number, several, spoiled_bytes
 
@@ -68,7 +68,8 @@ def _options(rng: Random) -> dict[str, Any]:
     choices = {
         "modes": (1, 2, 6, 7, 100, 10**9),
         "damping_ratio": (0.01, [0.01, 0.02], 0.999, 1.0, -1.0, float("nan"), []),
-        "includes_rotor": (True, False),
+        "includes_rotor": (*INCLUDES_ROTOR, "loose", 1),
+        "shaft": (*SHAFT, "loose", None),
         "rotor_mass": (0.0, 100.0, 1e300, -1.0, float("nan"), float("inf")),
         "length_unit": (0.0254, 1e-300, 1e300, 0.0, -1.0, float("inf")),
         "mass_unit": (175.0, 1e-300, 1e300, 0.0, float("nan")),

@@ -15,7 +15,7 @@ from tests.mutation.inputs import Quantities, blade_quantities, natural_sizes, p
 from tests.mutation.one_blade import Point
 from tests.mutation.sections import POLYNOMIAL, section_derivatives
 from tests.oracles.motion import Motion
-from tests.oracles.nonlinear_rotor import blades, clock
+from tests.oracles.nonlinear_rotor import blades, clock, inertia_rows
 
 _BEYOND_FLAP, _BEYOND_LAG = np.array([0.0, 1.0, 1.0]), np.array([0.0, 0.0, 1.0])  # the three segments
 _MOTIONS = ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion")
@@ -171,6 +171,15 @@ def _balance() -> Iterator[Check]:
     told = "steady balance of the nonlinear rotor in vacuum"
     yield matrix_check(("trim", "residual"), told, quantities, rows[..., None], _moment_size())
     yield matrix_check(("trim", "jacobian"), told, quantities, slopes, _moment_size())
+    loads = np.array([_undeflected_inertia(p) for p in points()])
+    told = "steady inertia forces on the undeflected blade of the nonlinear rotor"
+    yield matrix_check(("trim", "precone_load"), told, quantities, loads[..., None], _moment_size())
+
+
+def _undeflected_inertia(point: Point) -> NDArray:
+    """Flap, lag and pitch moment (3,) of the steady inertia forces without coning, lag and elastic pitch."""
+    rows, _ = one_blade.steady_rows(inertia_rows, replace(point, trim=np.zeros_like(point.trim)))
+    return rows[:3]
 
 
 def _moment_size() -> NDArray:

@@ -30,7 +30,7 @@ from tests.oracles.nonlinear_rotor import (
     spring_rows,
 )
 from tests.oracles.random_rotors import Pair, random_rotor
-from tests.oracles.virtual_work import Aerodynamics, assembled, quadrature, virtual_nose_up_rotation
+from tests.oracles.virtual_work import Aerodynamics, assembled, nose_up_rotation, quadrature
 
 STEP = 1e-30
 ORDER = 3  # stations in a panel: both sides use the same, so they need not integrate well
@@ -199,7 +199,7 @@ def air_at(point: Point, r: NDArray, motion, drift=0.0) -> Air:
         axial=(velocity * motion.normal.value).sum(-1),
         radial=(velocity * motion.spanwise.value).sum(-1),
         pitch=pitch + np.interp(r, *point.air.twist),
-        spin=virtual_nose_up_rotation(motion),
+        spin=nose_up_rotation(motion),
         chord=np.interp(r, *point.air.chord),
         density=point.air.density,
         speed_of_sound=point.air.speed_of_sound,

@@ -16,6 +16,7 @@ from tests.mutation.sections import (
     coefficients_of,
     inflow,
     section_derivatives,
+    turn_incidence,
 )
 
 _COUNT = 12
@@ -58,6 +59,8 @@ def _quantities(air: Air) -> dict[str, NDArray]:
         "inflow_cosine": np.cos(angle),
         "inflow_sine": np.sin(angle),
         "angle_of_attack": alpha,
+        "turn_incidence": turn_incidence(air),
+        "lift_incidence": alpha + turn_incidence(air),
         "mach": speed / air.speed_of_sound,
     }
 
@@ -66,6 +69,7 @@ def _sections() -> Iterator[Check]:
     air = _some_air()
     quantities, loads = _quantities(air), section_derivatives(POLYNOMIAL, air)
     names = ("section_speed", "inflow_cosine", "inflow_sine", "angle_of_attack", "mach")
+    names += ("turn_incidence", "lift_incidence")
     expected = {name: quantities[name] for name in names}
     yield values_check(
         ("section", "air_at_section"), "speed and angle of two velocities", quantities, expected
@@ -96,7 +100,7 @@ def _segment_loads() -> Iterator[Check]:
     rng = np.random.default_rng(6)
     r, weight = rng.uniform(0.5, 3.5, _COUNT), rng.uniform(0.1, 0.3, _COUNT)
     forces, velocities = ("fx", "fn", "fd"), ("ut", "up", "ur")
-    absent = {"fx_ur", "fn_ur", "m_ur", "fx_spin", "fn_spin", "fd_spin"}  # no section load depends on these
+    absent = {"fx_ur", "fn_ur", "m_ur", "fd_spin"}  # no section load depends on these
     names = [f"{load}_{motion}" for load in (*forces, "m") for motion in (*velocities, "theta", "spin")]
     along: dict[str, Any] = {n: 0 * r if n in absent else rng.uniform(1, 2, _COUNT) for n in names}
     along |= {load: rng.uniform(1, 2, _COUNT) for load in (*forces, "m")}

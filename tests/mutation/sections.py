@@ -52,14 +52,21 @@ def inflow(air: Air) -> tuple[Any, Any, Any]:
     return np.sqrt(air.tangential**2 + air.axial**2), angle, air.pitch - angle
 
 
+def turn_incidence(air: Air, damped: float = 1.0) -> Any:
+    """What the rotation adds to the incidence half a chord behind the quarter chord."""
+    return damped * air.spin * air.chord / 2 / inflow(air)[0]
+
+
 def section_loads(airfoil: PolynomialAirfoil, air: Air, damped: float = 1.0) -> dict[str, Any]:
     """Force along i', n and d and nose-up moment, per length.
 
-    Lift is normal to the air in the section's plane, drag along the air, the part along the span included; thin
-    airfoils resist rotation with π/8 ρ c³ U per rad/s about the quarter chord.
+    Lift is normal to the air in the section's plane, drag along the air, the part along the span included. Thin
+    airfoils resist rotation with π/8 ρ c³ U per rad/s about the quarter chord, and lift by the incidence at 3/4 chord.
     """
     speed, angle, alpha = inflow(air)
-    lift, drag, moment = airfoil.coefficients(alpha, speed / air.speed_of_sound)
+    mach = speed / air.speed_of_sound
+    _, drag, moment = airfoil.coefficients(alpha, mach)
+    lift, _, _ = airfoil.coefficients(alpha + turn_incidence(air, damped), mach)
     area = 0.5 * air.density * air.chord
     return {
         "fx": area * speed**2 * (lift * np.sin(angle) + drag * np.cos(angle)),
@@ -81,13 +88,14 @@ def section_derivatives(airfoil: PolynomialAirfoil, air: Air, damped: float = 1.
 
 
 def coefficients_of(airfoil: PolynomialAirfoil, air: Air) -> dict[str, NDArray]:
-    """Coefficients of a section and their derivatives, by the names of the derivation."""
+    """Coefficients of a section that turns and their derivatives, by the names of the derivation."""
     speed, _, alpha = inflow(air)
-    mach = speed / air.speed_of_sound
+    mach, turned = speed / air.speed_of_sound, alpha + turn_incidence(air)
     steps = {"": (0.0, 0.0), "_alpha": (1j * STEP, 0.0), "_mach": (0.0, 1j * STEP)}
     found = {}
     for suffix, (da, dm) in steps.items():
-        values = airfoil.coefficients(alpha + da, mach + dm)
+        lift, _, _ = airfoil.coefficients(turned + da, mach + dm)
+        values = (lift, *airfoil.coefficients(alpha + da, mach + dm)[1:])
         for name, value in zip(("lift", "drag", "moment"), values, strict=True):
             found[f"{name}_coefficient{suffix}"] = np.imag(value) / STEP if suffix else value
     return found

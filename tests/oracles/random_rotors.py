@@ -36,7 +36,7 @@ class Pair:
         )
         return rotor, trim_coordinates(float(trim.coning), float(trim.lag), float(trim.elastic_pitch))
 
-    def air(self, airspeed, density, compressibility=True):
+    def air(self, airspeed, density, compressibility=True, section_damping=True):
         airfoil, radius = self.fields["airfoil"], self.fields["radius"]
         station, twist = tabulated(self.fields["twist"], radius, linear=True)
         return Aerodynamics(
@@ -52,6 +52,7 @@ class Pair:
             drag=airfoil.drag,
             moment=airfoil.moment,
             compressibility=compressibility,
+            section_damping=section_damping,
         )
 
 

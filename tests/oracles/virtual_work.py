@@ -38,6 +38,7 @@ class Aerodynamics:
     drag: float
     moment: float
     compressibility: bool = True
+    section_damping: bool = True
 
 
 def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=14):
@@ -55,12 +56,18 @@ def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=14):
 
 @dataclass(frozen=True)
 class Flow:
-    """The flow a section meets: speed U and inflow angle φ across the span, u_R along it."""
+    """The flow a section meets: speed U and inflow angle φ across the span, u_R along it, at the quarter chord.
+
+    The section's rotation about the span moves its 3/4 chord, half a chord aft, down through the air: the incidence
+    there makes the lift.
+    """
 
     speed: np.ndarray
     inflow: np.ndarray
     radial: np.ndarray
     angle_of_attack: np.ndarray
+    rotation: np.ndarray
+    lift_incidence: np.ndarray
     prandtl_glauert: np.ndarray | float
 
 
@@ -73,11 +80,15 @@ def section_flow(air, station, motion):
     assert (u_T.real > 0).all(), "reversed flow"
     speed, inflow = np.sqrt(u_T**2 + u_P**2), np.arctan(u_P / u_T)
     mach = speed / air.speed_of_sound
+    angle_of_attack = motion.pitch.value + np.interp(station, *air.twist) - inflow
+    rotation = air.section_damping * nose_up_rotation(motion)
     return Flow(
         speed=speed,
         inflow=inflow,
         radial=u_R,
-        angle_of_attack=motion.pitch.value + np.interp(station, *air.twist) - inflow,
+        angle_of_attack=angle_of_attack,
+        rotation=rotation,
+        lift_incidence=angle_of_attack + rotation * np.interp(station, *air.chord) / 2 / speed,
         prandtl_glauert=1 / np.sqrt(1 - mach**2) if air.compressibility else 1.0,
     )
 
@@ -86,7 +97,7 @@ def section_loads(air, station, motion):
     """Force and nose-up moment per length on every section, from its own velocity and pitch."""
     flow, chord = section_flow(air, station, motion), np.interp(station, *air.chord)
     pressure_chord = 0.5 * air.density * chord * flow.speed**2
-    lift_coefficient = air.lift_slope * flow.prandtl_glauert * (flow.angle_of_attack - air.zero_lift_angle)
+    lift_coefficient = air.lift_slope * flow.prandtl_glauert * (flow.lift_incidence - air.zero_lift_angle)
     lift, drag = pressure_chord * lift_coefficient, pressure_chord * air.drag
     radial_drag = 0.5 * air.density * chord * flow.speed * air.drag * flow.radial
     force = (
@@ -94,23 +105,24 @@ def section_loads(air, station, motion):
         + scaled(lift * np.cos(flow.inflow) - drag * np.sin(flow.inflow), motion.normal.value)
         - scaled(radial_drag, motion.spanwise.value)
     )
-    return force, pressure_chord * chord * air.moment * flow.prandtl_glauert
+    resistance = np.pi / 8 * air.density * chord**3 * flow.speed * flow.rotation
+    return force, pressure_chord * chord * air.moment * flow.prandtl_glauert - resistance
 
 
 def lift_slope_loads(air, station, motion, trim):
     """What a change of angle of attack alone does: c_lα in the flow and the axes of `trim`, nothing else."""
     flow, chord = section_flow(air, station, trim), np.interp(station, *air.chord)
-    change = section_flow(air, station, motion).angle_of_attack - flow.angle_of_attack
+    change = section_flow(air, station, motion).lift_incidence - flow.lift_incidence
     lift = 0.5 * air.density * chord * flow.speed**2 * air.lift_slope * flow.prandtl_glauert * change
     chordwise, normal = motion.chordwise.value, motion.normal.value
     force = scaled(lift * np.sin(flow.inflow), chordwise) + scaled(lift * np.cos(flow.inflow), normal)
     return force, 0.0 * lift
 
 
-def virtual_nose_up_rotation(virtual):
-    """The part about d of the rotation of the section axes, and the pitch of the section in them."""
-    axes_about_span = (virtual.normal.rate * virtual.chordwise.value).sum(-1)
-    return axes_about_span + virtual.pitch.rate
+def nose_up_rotation(motion):
+    """The part about d of the rate of the section axes, and the pitch rate of the section in them; virtual or real."""
+    axes_about_span = (motion.normal.rate * motion.chordwise.value).sum(-1)
+    return axes_about_span + motion.pitch.rate
 
 
 def airload_rows(air, rotor, q, time, order=14):
@@ -138,6 +150,6 @@ def assembled(rotor, station, q, time, motion, force, moment):
     rows[..., HUB_MOMENT] = about_hub.sum((-3, -2))
     virtual = virtual_displacements(rotor, station, q.value, time)
     work = (force[..., None, :, :, :] * virtual.position.rate).sum((-3, -2, -1))
-    pitching_work = (moment[..., None, :, :] * virtual_nose_up_rotation(virtual)).sum((-2, -1))
+    pitching_work = (moment[..., None, :, :] * nose_up_rotation(virtual)).sum((-2, -1))
     rows[..., GENERALISED] = work + pitching_work
     return rows

@@ -13,7 +13,7 @@ from click.shell_completion import CompletionItem
 from click.types import StringParamType
 
 from proprotor.errors import InputError
-from proprotor.options import CHOICES, LOCKABLE, Options
+from proprotor.options import CHOICES, LOCKABLE, Options, default_choice
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -124,7 +124,8 @@ def set_option(command: Command) -> Command:
         type=Setting(),
         metavar="FIELD=VALUE",
         help='A field of the deck to set first, such as rotor.precone="1.5 deg", operation.trim=windmill or '
-        '"support.modes[beam].frequency=3 Hz"; `proprotor describe` lists them. Repeatable.',
+        '"support.modes[beam].frequency=3 Hz"; `proprotor describe` lists them. Frequencies in /rev are those of the '
+        "deck's own rotor speed, and keep their hertz where another is set. Repeatable.",
     )(command)
 
 
@@ -232,8 +233,13 @@ def model_options(command: Command) -> Command:
 
 
 def in_order(options: dict[str, Any]) -> dict[str, Any]:
-    """The options of the model, in a fixed order; a structure that is not given is the deck's."""
+    """The options of the model, in a fixed order; a structure that is not given is the deck's.
+
+    Section damping that is not given stands as the model takes it, so that what is printed and written says it.
+    """
     found = {name: options[name] for name in (*CHOICES, *NUMBERS, "locked")}
+    if found["section_damping"] is None:
+        found["section_damping"] = default_choice("section_damping", found)
     return {name: value for name, value in found.items() if name != "structure" or value is not None}
 
 
@@ -242,7 +248,9 @@ def _model_option(name: str, choices: tuple[Any, ...], meaning: str) -> Option:
     declared: dict[str, Any] = {"default": choices[0], "show_default": True, "help": meaning}
     if name == "structure":
         declared |= {"default": None, "show_default": "coupled; tabulated where the deck has frequencies"}
-    if isinstance(choices[0], bool):
+    if name == "section_damping":
+        declared["show_default"] = "on; off with --equations published"
+    if isinstance(choices[-1], bool):
         return click.option(f"--{flag}/--no-{flag}", name, **declared)
     return click.option(f"--{flag}", name, type=click.Choice(choices), **declared)
 

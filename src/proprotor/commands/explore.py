@@ -17,6 +17,7 @@ from proprotor.commands.arguments import (
     settings_of,
 )
 from proprotor.errors import InputError
+from proprotor.needs import need
 from proprotor.waiting import waiting
 
 if TYPE_CHECKING:
@@ -64,10 +65,8 @@ def explore(
     from proprotor.flutter import scan_speeds
     from proprotor.units import speeds
 
-    try:
-        import bokeh  # noqa: F401
-    except ImportError:
-        raise InputError("explore", None, 'needs Bokeh: pip install "proprotor[explore]"') from None
+    need("bokeh", "explore", "the page", "explore")
+    need("tornado", "explore", "the page", "explore")
     options, given = in_order(options), settings_of(settings)
     airspeeds = None if speed is None else np.unique(speeds(speed, "--speed"))
     if airspeeds is not None and len(airspeeds) < 2:

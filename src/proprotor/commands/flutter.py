@@ -58,6 +58,7 @@ def flutter(
 
     Every boundary in the range is found, to rounding: flutter, where a pair of eigenvalues loses its damping, and
     divergence, where a real one does. The mechanism tells which modes take part in the motion there and how much.
+    Where no mode becomes unstable, the range that was searched is told, and the least damping in it with its mode.
 
     \b
     Examples:
@@ -99,6 +100,10 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
         "kind": found.kind or None,
         "warning": found.warning,
         "beyond the level at the lowest airspeed": list(found.unstable_at_start),
+        "least damping (% of critical)": 100 * found.least_damping,
+        "mode of the least damping": found.least_damping_mode or None,
+        "airspeed of the least damping (kt)": found.least_damping_speed / KNOT,
+        "airspeed of the least damping (m/s)": found.least_damping_speed,
         "boundaries": records,
         "doubts": output.doubts_as_data(found.doubts),
         "eigen-solves": found.eigen_solves,

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import math
-import os
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -14,12 +12,11 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from proprotor import stamp
+from proprotor import output_file, stamp
 from proprotor.commands.arguments import Command, Option
 from proprotor.doubts import MARK, Doubt, footnotes
 from proprotor.errors import InputError
 from proprotor.options import CHOICES, parse_options
-from proprotor.output_file import write_whole
 from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
@@ -157,18 +154,15 @@ def check_writable(option: str, path: str | None) -> None:
     InputError
         When the path is no place for a file.
     click.ClickException
-        When its folder is not there or may not be written to.
+        When no file can be made in its folder, or the one that is there may not be replaced.
     """
     if path is None:
         return
-    with told(option, path):
-        place = Path(path).resolve()
-        if place.exists() and not place.is_file():
-            raise InputError(option, path, "must be a file")
-        if not place.parent.is_dir():
-            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
-        if not os.access(place.parent, os.W_OK):
-            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+    try:
+        with told(option, path):
+            output_file.check_writable(path)
+    except InputError as error:
+        raise InputError(option, path, error.rule) from None
 
 
 def check_outputs(csv: str | None = None, plot: str | None = None) -> None:
@@ -197,7 +191,7 @@ def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes
     """
     try:
         with told(option, path):
-            write_whole(path, content if callable(content) else lambda file: file.write(content))
+            output_file.write_whole(path, content if callable(content) else lambda file: file.write(content))
     except InputError as error:
         raise InputError(option, path, error.rule) from None
     click.echo(f"Wrote {path}", err=True)

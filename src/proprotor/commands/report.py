@@ -134,12 +134,13 @@ def _date() -> str:
 
 def _deck_hash(name: str, settings: dict[str, str], case: Case) -> str:
     """SHA-256 of a deck with its base, what was set, and the content of the files that it names."""
+    from proprotor.datum import FilePath
     from proprotor.deck_file import read_tables
     from proprotor.deck_settings import with_settings
     from proprotor.fingerprint import fingerprint
 
     numbers = {
-        path: Path(number.si).read_bytes() if isinstance(number.si, str) else number.si
+        path: Path(number.si).read_bytes() if isinstance(number.si, FilePath) else number.si
         for path, number in case.given.items()
     }
     return fingerprint((with_settings(read_tables(name), settings), numbers))

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from proprotor.deck_file import read_tables
+from proprotor.datum import PerRevolution
+from proprotor.deck_file import as_one_file, read_tables
 from proprotor.deck_settings import with_settings
 from proprotor.deck_template import toml
 from proprotor.explore.inputs import slider_input
-from proprotor.options import CHOICES
+from proprotor.options import CHOICES, default_choice
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -21,7 +22,8 @@ def settings_of_values(case: Case, values: Mapping[str, float]) -> dict[str, str
     for path, value in values.items():
         slider = slider_input(case, path)
         number = f"{value / slider.factor:.12g}"
-        found[path] = number + ("" if slider.unit.startswith("/") else " " * bool(slider.unit)) + slider.unit
+        text = number + ("" if slider.unit.startswith("/") else " " * bool(slider.unit)) + slider.unit
+        found[path] = PerRevolution.of(text, slider.factor) if slider.unit == "/rev" else text
     return found
 
 
@@ -33,6 +35,8 @@ def altered_deck(
     options: Mapping[str, Any] | None = None,
 ) -> str:
     """A deck that alters another, with each changed number marked as assumed.
+
+    Frequencies keep their hertz: one per revolution is told in rad/s where the new deck has another rotor speed.
 
     Parameters
     ----------
@@ -53,10 +57,10 @@ def altered_deck(
         For a path that is no input.
     """
     changed = dict(settings or {}) | settings_of_values(case, values)
-    tables = with_settings(read_tables(base), changed)
+    tables = as_one_file(with_settings(read_tables(base), changed))
     lines = ["# Made by `proprotor explore`: what stands here replaces what the base has."]
     chosen = {name: value for name, value in (options or {}).items() if name in CHOICES}
-    flags = [_flag(name, value) for name, value in chosen.items() if value != CHOICES[name][0]]
+    flags = [_flag(name, value) for name, value in chosen.items() if value != default_choice(name, chosen)]
     if flags:
         lines.append(f"# Explored with {' '.join(flags)}")
     lines += [f"base = {toml(base)}", "", "[case]", f"name = {toml(_name(case.name))}"]

@@ -1,4 +1,4 @@
-"""The modes of a case along airspeeds as fast as a slider moves: followed and named, without the rest of a sweep."""
+"""The modes of a case along airspeeds as fast as a slider moves: named and followed, without the rest of a sweep."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.arrays import Array
+from proprotor.branches import Named, branches
+from proprotor.mode_names import moving, name_list
 from proprotor.model import LinearModel
-from proprotor.modes import held_coordinates
+from proprotor.modes import some_points
 from proprotor.path import Line, Path, follow
-from proprotor.sweep import ANCHORS, Named, mode_columns, names_at, rotor_speed_of, tip_speed
+from proprotor.sweep import ANCHORS, mode_columns, names_at, tip_speed
 from proprotor.sweep_summary import UnstableRange, unstable_ranges
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ class LiveModes:
     airspeed : array (points,)
         m/s.
     names : list of str
-        Of the modes, in the order of the coordinates.
+        Of the modes by what moves in them, in the order of the coordinates.
     eigenvalue : array (points, modes)
         rad/s; NaN at failed points.
     reason, warning : array (points,) of str
@@ -63,10 +65,9 @@ def live_modes(
 ) -> LiveModes:
     """Modes of a case, or of one with other inputs, along airspeeds.
 
-    Modes are those of `Case.sweep`: the same names, given at the same airspeed, and the same tracking, but for one
-    thing. Where a step does not tell modes apart, the matrices between its ends come from splines through those of
-    the points, which are smooth, and not from new trims. They only tell which mode is which: no number that is shown
-    comes from them.
+    Modes are those of `Case.sweep`, by the same names. The ends of unstable ranges need the roots followed. There,
+    where a step does not tell roots apart, the matrices between its ends come from splines through those of the points,
+    which are smooth, and not from new trims: no number that is shown comes from them.
 
     Parameters
     ----------
@@ -90,14 +91,15 @@ def live_modes(
     shown = np.searchsorted(positions, airspeeds)
     model = varied.linearize(positions, **options)
     path = follow(model, Line(positions, _between(model)))
-    named = _named(model, path, within, rotor_speed_of(varied))
-    columns, names = mode_columns(model.dofs, path, named)
-    order = path.order(len(positions))[:, columns]
-    found = np.take_along_axis(path.spectrum.values[: len(positions)], order, 1)[shown]
-    # Of a pair that parts into two real roots the second is a mode only where it is real.
-    found = np.where(found.imag < 0, np.nan, found)
+    followed = branches(path, _named(model, path, within), len(positions))
+    roots, right, left = path.spectrum.at(shown).all_modes
+    columns, names = mode_columns(moving(some_points(model, shown), roots, left, right), roots)
+    places = np.maximum(columns, 0)
+    found = np.where(columns >= 0, np.take_along_axis(roots, places, 1), np.nan)
+    labels = np.where(columns >= 0, np.take_along_axis(followed.label[shown], places, 1), "")
     reason, warning = model.trim.reason[shown], model.trim.warning[shown]
-    return LiveModes(airspeeds, names, found, reason, warning, _unstable(airspeeds, names, found))
+    unstable = _unstable(airspeeds, names, found, labels)
+    return LiveModes(airspeeds, names, found, reason, warning, unstable)
 
 
 def _between(model: LinearModel) -> Any:
@@ -112,25 +114,27 @@ def _between(model: LinearModel) -> Any:
 
     def linearize(positions: Array) -> LinearModel:
         M, C, K = np.moveaxis(spline(positions), 1, 0)
-        return replace(model, airspeed=positions, M=M, C=C, K=K, B=None, rotor=None)
+        parts: dict[str, Any] = dict.fromkeys(("B", "rotor", "rotor_speed", "shapes"))
+        return replace(model, airspeed=positions, M=M, C=C, K=K, **parts)
 
     return linearize
 
 
-def _named(model: LinearModel, path: Path, anchors: Array, rotor_speed: float | None) -> Named:
-    """Names at the first anchor that has a trim, or else at the first point that has."""
+def _named(model: LinearModel, path: Path, anchors: Array) -> Named:
+    """Labels of branches at the first anchor that has a trim, or else at the first point that has."""
+    known = name_list(model.dofs)
     if not len(path.points):
-        return Named(0, [], "", 0)
+        return Named(0, known, np.empty(0, dtype=int), np.empty(0), "", 0)
     at = path.positions[path.points]
     places = [int(np.flatnonzero(at == anchor)[0]) for anchor in anchors if anchor in at]
     place = places[0] if places else 0
-    names = names_at(model.dofs, held_coordinates(model), path.spectrum, int(path.points[place]), rotor_speed)
-    return Named(place, names, f"airspeed {at[place]:.6g} m/s", 0)
+    names = names_at(model, path.spectrum, int(path.points[place]))
+    return Named(place, known, names, np.ones(len(names)), f"airspeed {at[place]:.6g} m/s", 0)
 
 
-def _unstable(airspeeds: Array, names: list[str], eigenvalue: Array) -> list[UnstableRange]:
+def _unstable(airspeeds: Array, names: list[str], eigenvalue: Array, labels: Array) -> list[UnstableRange]:
     import xarray
 
     by_mode = ("airspeed", "mode")
-    data = {"eigenvalue": (by_mode, eigenvalue)}
+    data = {"eigenvalue": (by_mode, eigenvalue), "branch": (by_mode, labels)}
     return unstable_ranges(xarray.Dataset(data, coords={"airspeed": airspeeds, "mode": names}))

@@ -108,7 +108,7 @@ def slider_input(case: Case, path: str) -> SliderInput:
     if path not in known:
         raise InputError(path, None, unknown_name(path, known, "input"))
     number = known[path]
-    unit, factor = deck_unit(number, float(case.operation.rotor_speed))
+    unit, factor = deck_unit(number)
     value = float(f"{float(number.si) / factor:.10g}")  # free of the rounding of conversion
     low, high = (float(f"{end:.3g}") for end in _range(path, value, number.unit, factor))
     return SliderInput(

@@ -308,7 +308,9 @@ class ExplorePage:
 
 
 def _switch(case: Case, name: str, value: Any) -> Select:
-    kept = [choice for choice in CHOICES[name] if choice != "tabulated" or case.frequencies is not None]
+    kept = [choice for choice in CHOICES[name] if choice is not None]
+    if case.frequencies is None and "tabulated" in kept:
+        kept.remove("tabulated")
     choices: list[Any] = [_word(choice) for choice in kept]
     label = name.replace("_", " ")
     return Select(

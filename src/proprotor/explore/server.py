@@ -98,3 +98,4 @@ def serve(page: Callable[[Document], None], opened: socket.socket, ready: Callab
     finally:
         server.stop()
         http.stop()
+        loop.close(all_fds=True)

@@ -12,6 +12,7 @@ from proprotor.arrays import Array
 from proprotor.case import load_case
 from proprotor.doubts import MARK, doubts_along, footnotes
 from proprotor.figures.blade_state import BladeState, blade_state, on_rigid_hub
+from proprotor.figures.blade_state import AS_THE_PAPER, BladeState, blade_state, on_rigid_hub
 from proprotor.figures.published import PAPER_FREQUENCIES
 from proprotor.frequencies import BladeFrequencies
 from proprotor.input_ranges import RANGES
@@ -119,7 +120,7 @@ class Analyses:
 
     def options(self, deck: str, variant: str) -> dict[str, Any]:
         """Options of the model of a variant, see `VARIANTS`."""
-        return {"pitch": "coupling"} | VARIANTS[variant](self, deck)
+        return {"pitch": "coupling"} | AS_THE_PAPER | VARIANTS[variant](self, deck)
 
 
 def _kept_couplings(analyses: Analyses, deck: str) -> dict[str, Array]:
@@ -139,7 +140,7 @@ def own_frequencies(analyses: Analyses, deck: str) -> BladeFrequencies:
     )
 
 
-# What each variant changes of the model with couplings in place of the pitch equations.
+# What each variant changes of the paper's model: couplings in place of the pitch equations, no section damping.
 VARIANTS: dict[str, Callable[[Analyses, str], dict[str, Any]]] = {
     "couplings": lambda analyses, deck: {},
     "published equations": lambda analyses, deck: {"equations": "published"},

@@ -23,6 +23,7 @@ _PAIRS = {
     ("low cyclic lag", "high cyclic lag"): ("lag_1c", "lag_1s"),
     ("low gimbal", "high gimbal"): ("gimbal_1c", "gimbal_1s"),
 }
+AS_THE_PAPER: dict[str, Any] = {"section_damping": False}  # its sections turn without damping
 ROTOR_MODES = tuple(name for pair in _PAIRS for name in pair if name)
 
 
@@ -41,6 +42,8 @@ class BladeState(NamedTuple):
 def blade_state(case: Case, airspeed: ArrayLike) -> BladeState:
     """Trim, the couplings of Eqs. 36 and 37, and the uncoupled lag frequency √(K_ζζ/I_ζ + Ω² e S/I)/Ω.
 
+    Sections turn without damping, as in the paper.
+
     Parameters
     ----------
     case : Case
@@ -49,9 +52,10 @@ def blade_state(case: Case, airspeed: ArrayLike) -> BladeState:
     """
     airspeed = np.atleast_1d(airspeed)
     rotor, operation = case.rotor, case.operation
-    trim = rotor_model(rotor, operation, airspeed, pitch="coupling").trim
+    options = Options(pitch="coupling", **AS_THE_PAPER)
+    trim = rotor_model(rotor, operation, airspeed, pitch="coupling", **AS_THE_PAPER).trim
     quantities = rotor_quantities(rotor, operation, airspeed, airspeed.shape)
-    pool = with_trim(quantities, Options(pitch="coupling"), {name: getattr(trim, name) for name in UNKNOWNS})
+    pool = with_trim(quantities, options, {name: getattr(trim, name) for name in UNKNOWNS})
     centrifugal = rotor.lag_hinge_offset * rotor.lag_first_moment
     squared = centrifugal + pool["lag_lag_stiffness"] / operation.rotor_speed**2
     couplings = evaluate(pitch.couplings, pool)
@@ -71,8 +75,9 @@ def on_rigid_hub(case: Case, airspeed: Array, **options: Any) -> dict[str, Array
 
     Coning is the mode with most of the collective flap over all airspeeds; of the two with most of the cyclic lag, or
     of the gimbal, the one with the lower mean frequency is the low one. Locked coordinates have no modes.
+    Sections turn without damping, as in the paper, unless it is chosen.
     """
-    model = rotor_model(case.rotor, case.operation, airspeed, **options)
+    model = rotor_model(case.rotor, case.operation, airspeed, **AS_THE_PAPER | options)
     modes = sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB)))
     per_rev = modes.frequency.values / case.operation.rotor_speed
     found = {}

@@ -12,9 +12,9 @@ from proprotor.errors import InputError
 from proprotor.plots.canvas import along, axes_or_new, grid, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
 from proprotor.plots.frequency_and_damping import mark_failed
-from proprotor.plots.line_of_sweep import positions
+from proprotor.plots.line_of_sweep import positions, with_gaps
 from proprotor.plots.style import LABEL_SIZE, mode_styles
-from proprotor.sweep_summary import damped_frequency
+from proprotor.sweep_summary import damped_frequency, leaps
 
 if TYPE_CHECKING:
     import xarray
@@ -93,11 +93,12 @@ def plot_campbell(
 
 def _draw_modes(ax: Axes, sweep: xarray.Dataset, speeds: Array) -> list[Line2D]:
     hertz = damped_frequency(sweep) / (2 * np.pi)
-    spacing = max(1, len(speeds) // 7)
+    spacing, gaps = max(1, len(speeds) // 7), leaps(sweep)
     lines: list[Line2D] = []
     for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
         more: dict[str, Any] = {"markevery": (3 * place % spacing, spacing), "markersize": 5, "label": mode}
-        lines += ax.plot(speeds, hertz[:, place], **more, **style._asdict())
+        x, y = with_gaps(gaps[:, place], speeds, hertz[:, place])
+        lines += ax.plot(x, y, **more, **style._asdict())
     return lines
 
 

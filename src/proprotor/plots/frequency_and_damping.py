@@ -12,9 +12,9 @@ from proprotor.arrays import Array
 from proprotor.doubts import MARK
 from proprotor.plots.canvas import RIGHT, add_footer, along, axes_or_new, grid, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
-from proprotor.plots.line_of_sweep import Positions, positions
+from proprotor.plots.line_of_sweep import Positions, positions, with_gaps
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, along_airspeed, mode_styles
-from proprotor.sweep_summary import damped_frequency, damping_percent, unstable_ranges
+from proprotor.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
 
 if TYPE_CHECKING:
     import xarray
@@ -157,7 +157,7 @@ def plot_sweep(
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 9))
     figure.subplots_adjust(left=0.09, right=RIGHT, top=0.94, bottom=0.06, hspace=0.14)
     line = positions(sweep, unit)
-    told = "Broad lines: modes of the support, and modes that become unstable."
+    told = f"Broad lines: modes of the support, and modes that become unstable. {_gaps_told(sweep)}".strip()
     origin = (stamp.told(sweep.attrs), *(f"{MARK} {doubt}" for doubt in along(sweep, line)))
     add_footer(figure, " ".join(filter(None, (told, footer, *origin))))
     _draw_frequency(above, sweep, line, rotor_speed)
@@ -168,11 +168,12 @@ def plot_sweep(
 
 
 def _draw_modes(ax: Axes, sweep: xarray.Dataset, values: Array, line: Positions) -> list[Line2D]:
-    spacing = max(1, len(line.values) // 7)
+    spacing, gaps = max(1, len(line.values) // 7), leaps(sweep)
     lines: list[Line2D] = []
     for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
         more: dict[str, Any] = {"markevery": (3 * place % spacing, spacing), "markersize": 5}
-        lines += ax.plot(line.values, values[:, place], label=mode, **more, **style._asdict())
+        x, y = with_gaps(gaps[:, place], line.values, values[:, place])
+        lines += ax.plot(x, y, label=mode, **more, **style._asdict())
     mark_failed(ax, line.values[sweep.reason.values != ""], line.label)
     ax.margins(x=0)
     grid(ax)
@@ -198,6 +199,10 @@ def _mark_instability(ax: Axes, sweep: xarray.Dataset, line: Positions) -> None:
     ax.plot(np.array(places) / line.factor, np.zeros(len(places)), "o", **style)
     told = "unstable" + ("; circles: boundaries, interpolated" if places else "")
     ax.text(0.01, 0.015, told, transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3")
+
+
+def _gaps_told(sweep: xarray.Dataset) -> str:
+    return "Where a line is broken its motion passes to another root. " if leaps(sweep).any() else ""
 
 
 def _where(line: Positions) -> str:

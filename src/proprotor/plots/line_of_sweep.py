@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from proprotor.arrays import Array
 from proprotor.plots.input_names import short_name
 from proprotor.units import factor_to_si
@@ -41,6 +43,20 @@ def positions(sweep: xarray.Dataset, unit: str | None = None) -> Positions:
     """
     name = str(sweep.eigenvalue.dims[0])
     return axis_of(name, sweep[name].values, sweep[name].attrs.get("units", ""), unit)
+
+
+def with_gaps(leaps: Array, positions: Array, *values: Array) -> list[Array]:
+    """Positions and values (points,) with one more position, without values, wherever a name leaps to another root.
+
+    Parameters
+    ----------
+    leaps : array (points - 1,) of bool
+        Of one mode, see `proprotor.sweep_summary.leaps`.
+    positions, *values : array (points,)
+    """
+    at = np.flatnonzero(leaps)
+    middle = (positions[at] + positions[at + 1]) / 2
+    return [np.insert(positions, at + 1, middle), *(np.insert(of, at + 1, np.nan) for of in values)]
 
 
 def axis_of(name: str, values: Array, si_unit: str, unit: str | None = None) -> Positions:

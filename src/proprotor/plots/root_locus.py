@@ -9,9 +9,9 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.plots.canvas import along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
-from proprotor.plots.line_of_sweep import Positions, positions, written
+from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles
-from proprotor.sweep_summary import growth_rate
+from proprotor.sweep_summary import growth_rate, leaps
 
 if TYPE_CHECKING:
     import xarray
@@ -129,11 +129,12 @@ def _draw(
 ) -> list[Line2D]:
     lines: list[Line2D] = []
     sizes = np.linspace(_LARGEST, _SMALLEST, len(at))[::-1] ** 2  # one alone is large
-    broad = broad_modes(sweep)
+    broad, gaps = broad_modes(sweep), leaps(sweep)
     for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
         plain = style._replace(marker="")._asdict()
-        lines += ax.plot(real[:, place], imaginary[:, place], label=mode, markersize=4, **plain)
-        x, y = (_at(line.values, part[:, place], at) for part in (real, imaginary))
+        where, across, up = with_gaps(gaps[:, place], line.values, real[:, place], imaginary[:, place])
+        lines += ax.plot(across, up, label=mode, markersize=4, **plain)
+        x, y = (_at(where, part, at) for part in (across, up))
         more: dict[str, Any] = {"color": style.color, "zorder": 3, "linewidths": 0.6, "edgecolors": "white"}
         ax.scatter(x, y, s=sizes, **more)
         if mode in broad:
@@ -142,7 +143,7 @@ def _draw(
 
 
 def _at(positions: Array, values: Array, at: Array) -> Array:
-    """Values at round positions, linear between the points of the sweep; NaN beside failed ones."""
+    """Values at round positions, linear between the points of the sweep; NaN beside failed ones and gaps."""
     order = np.argsort(positions)
     return np.interp(at, positions[order], values[order])
 

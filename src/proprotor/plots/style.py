@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import cycle
 from typing import TYPE_CHECKING, NamedTuple
 
-from proprotor.sweep_summary import support_coordinates, unstable_ranges
+from proprotor.sweep_summary import growth_rate, support_coordinates
 
 if TYPE_CHECKING:
     import xarray
@@ -41,7 +41,8 @@ class ModeStyle(NamedTuple):
 
 def broad_modes(sweep: xarray.Dataset) -> set[str]:
     """Modes drawn in broad lines: the support's, and those that are unstable somewhere."""
-    return {*support_coordinates(sweep), *(found.mode for found in unstable_ranges(along_airspeed(sweep)))}
+    grows = (growth_rate(sweep) > 0).any(axis=0)
+    return {*support_coordinates(sweep), *sweep.mode.values[grows].tolist()}
 
 
 def mode_styles(sweep: xarray.Dataset) -> list[ModeStyle]:

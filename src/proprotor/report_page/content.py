@@ -11,6 +11,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.boundary_summary import boundary_record, mechanism_told, verdict
+from proprotor.datum import Datum, FilePath, as_toml
 from proprotor.doubts import MARK, footnotes, marked
 from proprotor.provenance import doubtful_inputs, reservations
 from proprotor.report_page import pictures
@@ -24,7 +25,6 @@ from proprotor.units import factor_to_si
 
 if TYPE_CHECKING:
     from proprotor.case import Case
-    from proprotor.datum import Datum
 
 _SPEEDS = 9  # in the tables of modes and of trim
 _ANGLES = ("collective", "coning", "lag", "elastic_pitch")  # of the trim
@@ -217,7 +217,7 @@ def _some(working: Array) -> list[int]:
     return places[chosen].tolist() if len(places) else []
 
 
-def _modes(table: SweepTable) -> Iterator[Table]:
+def _modes(table: SweepTable) -> Iterator[Table | Text]:
     at = _some(~table.failed)
     if not at:
         return
@@ -233,6 +233,8 @@ def _modes(table: SweepTable) -> Iterator[Table]:
             for place, mode in enumerate(table.sweep.mode.values)
         )
         yield Table(caption, ("mode", *speeds), rows, frozenset(speeds))
+    if mixed := table.mixed():
+        yield Text((mixed,))
 
 
 def _cell(value: float, form: str, marked: bool = False) -> str:
@@ -341,8 +343,10 @@ def _si(number: Datum) -> str:
     if number.r_over_R is not None:
         low, high = min(number.si), max(number.si)
         return f"{low:.6g} to {high:.6g} {number.unit}".strip() + ", see below"
-    if isinstance(number.si, str):
+    if isinstance(number.si, FilePath):
         return "a file"
+    if isinstance(number.si, bool | str):
+        return as_toml(number.si)
     return f"{number.si:.6g} {number.unit}".strip()
 
 

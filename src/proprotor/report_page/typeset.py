@@ -9,7 +9,7 @@ from datetime import date
 from importlib import resources
 from typing import Any
 
-from proprotor.errors import InputError
+from proprotor.needs import need
 from proprotor.report_page.document import Document, Picture
 
 
@@ -21,10 +21,7 @@ def check_typesetter() -> None:
     InputError
         When Typst is not installed.
     """
-    try:
-        import typst  # noqa: F401
-    except ImportError:
-        raise InputError("--pdf", None, 'needs Typst: pip install "proprotor[report]"') from None
+    need("typst", "--pdf", "a PDF", "report")
 
 
 def pdf_of(document: Document) -> bytes:

@@ -1,0 +1,41 @@
+"""`make verify` runs the numerical tests under the kernels that it says."""
+
+import subprocess
+
+import pytest
+
+from tests.verify import kernels
+
+
+def test_the_numerical_tests_are_there():
+    for name in kernels.NUMERICAL:
+        assert (kernels.ROOT / "tests" / f"test_{name}.py").is_file(), name
+
+
+@pytest.fixture
+def told(monkeypatch):
+    """Commands that would run, with the kernel that each asks for; the second kernel is one the processor lacks."""
+    asked = []
+
+    def run(command, *, env, **_):
+        asked.append((env["OPENBLAS_CORETYPE"], command))
+        return subprocess.CompletedProcess(command, int(env["OPENBLAS_CORETYPE"] == kernels.KERNELS[2]))
+
+    lacking = kernels.KERNELS[1]
+    monkeypatch.setattr(kernels, "core_in_force", lambda kernel: "Other" if kernel == lacking else kernel)
+    monkeypatch.setattr(kernels.subprocess, "run", run)
+    return asked
+
+
+def test_a_kernel_that_is_lacking_is_told_and_one_that_fails_fails(told, capsys):
+    assert kernels.main(["-n", "0"]) == 1
+    first, lacking, failing, last = kernels.KERNELS
+    assert [kernel for kernel, _ in told] == [first, failing, last]
+    assert all("tests/test_golden.py" in command and command[-2:] == ["-n", "0"] for _, command in told)
+    printed = capsys.readouterr().out
+    assert f"{lacking}: passed over, as this processor or OpenBLAS has Other in its place" in printed
+    assert printed.endswith(f"under {first}, {failing}, {last}; failed under {failing}\n")
+
+
+def test_a_kernel_that_nobody_has_is_not_in_force():
+    assert kernels.core_in_force("NoSuchKernel") != "NoSuchKernel"

@@ -1,0 +1,87 @@
+"""The numerical tests under several kernels of OpenBLAS, which round differently.
+
+    python -m tests.verify.kernels                (part of make verify)
+
+OpenBLAS has kernels for several kinds of processor and takes the best that a processor can. What holds under one may
+hang on its rounding: the sign of a root that is zero, the order of two that are equal. Here each kernel is asked for by
+name; one that this processor, or this build, does not have is told and passed over.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+# Of the widest instructions to the narrowest: AVX-512, AVX2, AVX; Zen is AVX2 with blocks of its own.
+KERNELS = ("SkylakeX", "Haswell", "Zen", "Sandybridge")
+# What compares eigenvalues, vectors and what is followed, found and counted from them. The other tests ask about text,
+# files, messages and single formulas, which no kernel computes; all of them together would take an hour.
+NUMERICAL = (
+    "attribution",
+    "design",
+    "flutter",
+    "golden",
+    "invariants",
+    "limits",
+    "mixed_batches",
+    "random_decks",
+    "scaling",
+    "sensitivity",
+    "stability_map",
+    "study",
+    "sweep",
+    "tracking",
+    "trim",
+    "trim_targets",
+)
+_CORE = re.compile(r"^Core: (\w+)$", re.MULTILINE)
+_TRIED = "import numpy; numpy.linalg.eigvals(numpy.random.default_rng(0).normal(size=(40, 40)))"
+
+
+def environment(kernel: str) -> dict[str, str]:
+    """Variables with which a process takes a kernel, on one thread."""
+    return os.environ | {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": "1"}
+
+
+def core_in_force(kernel: str) -> str:
+    """The kernel that a process has which asks for one; "" where it cannot work with it, or has no OpenBLAS."""
+    tried = subprocess.run(
+        [sys.executable, "-c", _TRIED],
+        env=environment(kernel) | {"OPENBLAS_VERBOSE": "2"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    found = _CORE.search(tried.stdout + tried.stderr)
+    return found[1] if found and not tried.returncode else ""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the tests under every kernel that there is; further arguments are those of pytest."""
+    given = sys.argv[1:] if arguments is None else arguments
+    files = [f"tests/test_{name}.py" for name in NUMERICAL]
+    failed, run = [], []
+    for kernel in KERNELS:
+        if (core := core_in_force(kernel)) != kernel:
+            print(
+                f"{kernel}: passed over, as this processor or OpenBLAS has {core or 'none'} in its place",
+                flush=True,
+            )
+            continue
+        print(f"{kernel}:", flush=True)
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *files, *given]
+        run.append(kernel)
+        if subprocess.run(command, env=environment(kernel), cwd=ROOT, check=False).returncode:
+            failed.append(kernel)
+    print(
+        f"numerical tests run under {', '.join(run) or 'no kernel'}; failed under {', '.join(failed) or 'none'}"
+    )
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
