@@ -11,7 +11,6 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.case import load_case
 from proprotor.doubts import MARK, doubts_along, footnotes
-from proprotor.figures.blade_state import BladeState, blade_state, on_rigid_hub
 from proprotor.figures.blade_state import AS_THE_PAPER, BladeState, blade_state, on_rigid_hub
 from proprotor.figures.published import PAPER_FREQUENCIES
 from proprotor.frequencies import BladeFrequencies
