@@ -27,6 +27,7 @@ from derive.inertia import dependent_inertias
 from derive.printed import TABLES
 from derive.printed.tables import PrintedTable
 from proprotor.arrays import Array
+from proprotor.branches import by_branch
 from proprotor.evaluation import evaluate
 from proprotor.model import HUB, rotor_quantities
 from proprotor.modes import eigensystem
@@ -231,8 +232,8 @@ def lag_frequency() -> Figure:
 
 def _regressive_lag(**options: Any) -> Array:
     model = pp.rotor_model(xv15().rotor, xv15().operation, LOW_SPEEDS, **options)
-    modes = sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB)))
-    per_rev: Array = modes.frequency.sel(mode="regressive lag").values / xv15().operation.rotor_speed
+    roots = by_branch(sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB))))
+    per_rev: Array = roots.frequency.sel(branch="regressive lag").values / xv15().operation.rotor_speed
     return per_rev
 
 

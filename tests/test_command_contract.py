@@ -204,6 +204,22 @@ def test_an_output_that_cannot_be_written_is_told_before_the_analysis(
     assert result.stderr == f"Error: {option} = {file}: must be a file\n"
 
 
+@pytest.mark.parametrize(("command", "arguments", "option", "file"), OUTPUTS)
+def test_a_file_named_minus_is_standard_output_or_refused(command, arguments, option, file):
+    """Tables are printed, nothing else with them; what is no text, or has its kind from its ending, needs a file."""
+    result = run(command, *arguments, option, "-")
+    assert list(Path().iterdir()) == []
+    if option != "--csv":
+        assert (result.exit_code, result.stdout) == (2, "") and " = -: must end in " in result.stderr
+        return
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert run(command, *arguments, "--csv", "x.csv").exit_code == 0
+    assert result.stdout == Path("x.csv").read_text()
+    result = run(command, *arguments, "--csv", "-", "--json")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == "Error: --csv = -: goes without --json: both would be printed\n"
+
+
 @pytest.mark.parametrize("name", ["my deck.toml", "Rotor-Blätter ψ.toml", 'it\'s "quoted".toml'])
 def test_names_of_files_may_have_spaces_and_any_letters(name):
     Path(name).write_text('base = "xv15"\n[case]\nname = "my"\n')

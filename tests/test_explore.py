@@ -281,7 +281,9 @@ async def handshake(address, origin):
     except HTTPClientError as error:
         return error.code
     opened.close()
-    while await opened.read_message() is not None:  # until the server has closed as well, and with it the socket
+    while (
+        await opened.read_message() is not None
+    ):  # until the server has closed as well, and with it the socket
         pass
     return 101
 

@@ -8,6 +8,7 @@ import datetime
 import decimal
 import enum
 import functools
+import importlib
 import math
 import operator
 import os
@@ -378,6 +379,27 @@ def test_a_fingerprint_is_the_same_in_another_process(tmp_path):
         )
         found.add(done.stdout)
     assert len(found) == 1
+
+
+def test_what_a_function_imports_as_it_runs_counts(tmp_path, monkeypatch):
+    """One's own module by what the function takes of it, an installed one by its version, imported yet or not."""
+    monkeypatch.syspath_prepend(tmp_path)
+    curve = with_globals(None, "lambda x: __import__")  # which is told apart from the statement
+    own = {"__name__": "script"}
+    exec("def curve(x):\n    import table_of_mine\n    return table_of_mine.scale", own)
+    with pytest.raises(InputError, match="an import of table_of_mine"):
+        fingerprint(own["curve"])
+    (tmp_path / "table_of_mine.py").write_text("scale, unused = 1.0, open")
+    found = []
+    for value in (1.0, 2.0, 1.0):
+        monkeypatch.setattr(importlib.import_module("table_of_mine"), "scale", value)
+        found.append(fingerprint(own["curve"]))
+    assert found[0] == found[2] != found[1]
+    del sys.modules["table_of_mine"]
+    exec("def curve(x):\n    import antigravity, tornado.websocket, colorsys\n    return x", own)
+    assert fingerprint(own["curve"]) == fingerprint(own["curve"])
+    with pytest.raises(InputError, match=r"a call of __import__\(\)"):
+        fingerprint(curve)
 
 
 # What cannot be told ------------------------------------------------------------------------------

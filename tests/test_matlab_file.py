@@ -121,3 +121,10 @@ def test_what_it_cannot_be(tmp_path):
     with pytest.raises(pp.InputError, match="results = list: must be a LinearModel or an"):
         save_matlab([1.0], tmp_path / "results.mat")
     assert not list(tmp_path.iterdir())
+
+
+def test_what_a_mat_file_cannot_hold_is_told_before_it_is_written(tmp_path):
+    large = xarray.Dataset({"x": ("point", np.broadcast_to(1.0, (2**28,)))})  # 2 GB, and no memory
+    with pytest.raises(pp.InputError, match=r"results = x: must be below 2 GB in a \.mat file"):
+        save_matlab(large, tmp_path / "x.mat")
+    assert list(tmp_path.iterdir()) == []

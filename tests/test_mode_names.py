@@ -13,6 +13,7 @@ from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
 from proprotor.boundary_lines import boundary_lines
+from proprotor.branches import by_branch
 from proprotor.explore.analysis import live_modes
 from proprotor.mode_motion import mode_motion
 from proprotor.mode_names import DOUBTFUL, motions, moving, name_list
@@ -435,3 +436,34 @@ def test_a_beam_wing_with_modes_of_other_kinds_says_so(wing):
     )
     study = pp.study(wing, {AXIAL: np.array([1.0, 5.0]) * wing.given[AXIAL].si}, 120.0, workers=1)
     assert "beam_3" in str(study.warning.values[1])
+
+
+# Roots --------------------------------------------------------------------------------------------------------------
+
+
+def test_a_sweep_by_branch_has_the_same_roots_each_in_one_place():
+    case = pp.load_case("xv15")
+    sweep = case.sweep("50:400:10kt")
+    roots_of = by_branch(sweep)
+    assert set(roots_of.branch.values) == {str(name) for name in np.unique(sweep.branch.values)}
+    for point in range(sweep.sizes["airspeed"]):
+        for place, branch in enumerate(sweep.branch.values[point]):
+            root = roots_of.isel(airspeed=point).sel(branch=branch)
+            assert root.eigenvalue.item() == sweep.eigenvalue.values[point, place]
+            assert root.name.item() == sweep.mode.values[place]
+    fine = case.sweep("50:400:1kt")
+    steps = np.abs(np.diff(by_branch(fine).eigenvalue.values, axis=0))
+    leap = np.nanmax(np.abs(np.diff(fine.eigenvalue.values, axis=0)))
+    assert np.nanmax(steps) < 0.1 * leap
+
+
+def test_a_step_of_no_quality_is_a_warning_of_a_study():
+    """Steps of 60 kt leave out where roots meet."""
+    case, speeds = pp.load_case("xv15"), np.array([60.0, 91.0, 122.0, 153.0, 184.0])
+    found = pp.study(case, {"rotor.precone": [0.03, 0.05]}, speeds, "modes", workers=1)
+    lost = (found.mode_quality <= 0).any("state")
+    assert lost.any() and not lost.all()
+    for design, point in np.ndindex(lost.shape):
+        assert ("which root is which" in str(found.warning.values[design, point])) == lost.values[
+            design, point
+        ]

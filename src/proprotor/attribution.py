@@ -42,7 +42,7 @@ def attribution(case: Case, airspeed: Any, mode: str | None = None, **options: A
     case : Case
     airspeed : float in m/s, text such as "300 kt", or pint quantity
     mode : str, optional
-        One mode by name; all by default.
+        One mode by what moves at the airspeed; all by default.
     **options
         See `proprotor.options.Options`.
 

@@ -11,16 +11,14 @@ from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.mode_names import moving
 from proprotor.modes import decomposition
-from proprotor.stability_map import AIRSPEED, largest_growth
+from proprotor.stability_map import AIRSPEED
 from proprotor.stamp import options_of
+from proprotor.tracking import Spectrum, conjugate, link
 
 if TYPE_CHECKING:
     import xarray
 
     from proprotor.case import Case
-
-_JUMP = 0.2  # of a frequency: more than that from one vertex to the next is another mode
-_DIVERGES = 1e-6  # of the rotor speed: a root this slow is real
 
 
 class BoundaryLine(NamedTuple):
@@ -50,7 +48,8 @@ def boundary_lines(
 ) -> list[BoundaryLine]:
     """The lines of a stability map by mode.
 
-    The mode of every vertex is told from the next by its frequency; its name is looked for at the middle of each line.
+    The root that is neutral at a vertex is followed to the next by its vectors; its name is looked for at the middle of
+    each line.
     Where one mode takes over from another, the step from the last vertex of the one belongs to the other.
 
     Parameters
@@ -77,16 +76,17 @@ def boundary_lines(
     airspeed = _airspeed_of(found, airspeed)
     names = [str(name) for name in found.axis.values]
     lines = []
-    for vertices, warning in _parted(found.boundary.values, found.boundary_warning.values):
-        frequency = _frequencies(case, names, vertices, airspeed, float(found.attrs["level"]), options)
-        for part in _same_mode(frequency, float(np.max(case.operation.rotor_speed))):
+    roots, warning = found.boundary_eigenvalue.values, found.boundary_warning.values
+    for places in _parted(found.boundary.values):
+        vertices, frequency = found.boundary.values[places], np.abs(roots[places].imag)
+        for part in _same_mode(case, names, vertices, roots[places], airspeed, options):
             middle = vertices[part][len(vertices[part]) // 2]
             mode = _mode_at(
                 case, names, middle, float(frequency[part][len(vertices[part]) // 2]), airspeed, options
             )
             drawn = slice(max(part.start - 1, 0), part.stop)
             x, y = vertices[drawn].T
-            lines.append(BoundaryLine(mode, x, y, frequency[drawn], warning[drawn]))
+            lines.append(BoundaryLine(mode, x, y, frequency[drawn], warning[places][drawn]))
     return lines
 
 
@@ -101,13 +101,13 @@ def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
     return None if own is None else float(own)
 
 
-def _parted(boundary: Array, warning: Array) -> Iterator[tuple[Array, Array]]:
-    """Lines (vertices, 2) of a boundary in which NaN parts them, with their warnings (vertices,)."""
+def _parted(boundary: Array) -> Iterator[Array]:
+    """Places (vertices,) of each line of a boundary in which NaN parts them."""
     good: Array = np.asarray(np.isfinite(boundary).all(axis=1))
     for part in np.split(np.arange(len(boundary)), np.flatnonzero(~good)):
         chosen = part[good[part]]
         if len(chosen):
-            yield boundary[chosen], warning[chosen]
+            yield chosen
 
 
 def _at(case: Case, names: list[str], point: Array, airspeed: Any) -> tuple[Case, Any]:
@@ -117,21 +117,28 @@ def _at(case: Case, names: list[str], point: Array, airspeed: Any) -> tuple[Case
     return case.vary(given), speed
 
 
-def _frequencies(
-    case: Case, names: list[str], vertices: Array, airspeed: Any, level: float, options: dict[str, Any]
-) -> Array:
+def _same_mode(
+    case: Case, names: list[str], vertices: Array, roots: Array, airspeed: Any, options: dict[str, Any]
+) -> Iterator[slice]:
+    """Stretches of vertices along which the root that is neutral at one is that which is neutral at the next."""
     varied, speed = _at(case, names, vertices, airspeed)
-    return np.asarray(largest_growth(varied.linearize(speed, **options), level)[1].imag)
-
-
-def _same_mode(frequency: Array, rotor_speed: float) -> Iterator[slice]:
-    """Stretches of vertices along which the frequency does not jump."""
-    larger = np.maximum(frequency[1:], frequency[:-1])
-    jumps = (
-        np.flatnonzero(np.abs(np.diff(frequency)) > np.maximum(_JUMP * larger, _DIVERGES * rotor_speed)) + 1
-    )
-    for start, stop in zip((0, *jumps), (*jumps, len(frequency)), strict=True):
+    spectrum = decomposition(varied.linearize(speed, **options))
+    state = _nearest_state(spectrum, roots)
+    before = np.arange(len(vertices) - 1)
+    works = spectrum.works & np.isfinite(roots)
+    good = before[works[:-1] & works[1:]]
+    same = np.zeros(len(before), dtype=bool)
+    after = link(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
+    same[good] = (after == state[good + 1]) | (after == conjugate(spectrum.values)[good + 1, state[good + 1]])
+    jumps = np.flatnonzero(~same) + 1
+    for start, stop in zip((0, *jumps), (*jumps, len(vertices)), strict=True):
         yield slice(int(start), int(stop))
+
+
+def _nearest_state(spectrum: Spectrum, roots: Array) -> Array:
+    apart = np.abs(spectrum.values - roots[:, None])
+    state: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=1)
+    return state
 
 
 def _mode_at(

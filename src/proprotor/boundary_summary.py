@@ -11,7 +11,7 @@ from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
     from proprotor.case import Case
-    from proprotor.flutter import Boundary, FlutterPoint
+    from proprotor.flutter import Boundary, Crossings, FlutterPoint
 
 COLUMNS = (
     "airspeed (kt)",
@@ -68,6 +68,18 @@ def least_told(found: FlutterPoint, unit: str, factor: float) -> str:
     return f"{100 * found.least_damping:.2g} % of critical: {where}"
 
 
+def failed_told(found: FlutterPoint | Crossings, unit: str, factor: float) -> Iterator[str]:
+    """Sentences on what of a scan could not be analysed, and why: where the range searched ends, and its gaps."""
+    for first, last, reason in found.failed:
+        low, high = f"{first / factor:.4g}", f"{last / factor:.4g}"
+        yield f"Not analysed: {low if low == high else f'{low} to {high}'} {unit}".rstrip() + f" ({reason})."
+
+
+def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:
+    """The same as plain data."""
+    return [{"from (m/s)": first, "to (m/s)": last, "reason": reason} for first, last, reason in found.failed]
+
+
 def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
     """Sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
     low, high = (speed / factor for speed in found.searched)
@@ -81,6 +93,7 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
     else:
         speed = marked(f"{found.speed / factor:.2f}", found.warning)
         yield f"Flutter speed {speed} {unit} ({found.mode}, {found.kind})."
+    yield from failed_told(found, unit, factor)
     if at is None:
         return
     count = modes_beyond(found, at)

@@ -9,14 +9,17 @@ the order of the coordinates.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.mode_names import SECOND
 from proprotor.path import Path
-from proprotor.tracking import POOR, conjugate
+from proprotor.tracking import NOT_TOLD, POOR, conjugate
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class Named(NamedTuple):
@@ -112,4 +115,39 @@ def _tell(doubt: Array, path: Path, label: Array, points: int) -> None:
     np.put_along_axis(by_place, path.order(points), path.trust(points), 1)
     for point in np.flatnonzero((by_place < POOR).any(axis=1) & (label != "").all(axis=1)):
         names = dict.fromkeys(label[point, by_place[point] < POOR])
-        doubt[point] = f"the step to here does not tell which root is which: {', '.join(names)}"
+        doubt[point] = f"{NOT_TOLD}: {', '.join(names)}"
+
+
+def by_branch(sweep: xarray.Dataset) -> xarray.Dataset:
+    """A sweep with an exact root, in place of a motion, in each place.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        Of `Case.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same numbers with the dimension ``branch`` in place of ``mode``; name (..., branch), what moves in a root at
+        a point. NaN where a root is not there: a second root is only where a pair has parted.
+    """
+    import xarray  # here, because it takes long to import
+
+    line, label = str(sweep.branch.dims[0]), sweep.branch.values
+    labels = [str(text) for text in dict.fromkeys(label.T[label.T != ""].tolist())]
+    is_there = label[:, :, None] == np.array(labels)
+    places = xarray.DataArray(is_there.argmax(axis=1), dims=(line, "branch"))
+    points = xarray.DataArray(np.arange(len(label)), dims=line)
+    there = xarray.DataArray(is_there.any(axis=1), dims=(line, "branch"))
+    by_mode = {
+        name: part for name, part in sweep.drop_vars("branch").data_vars.items() if "mode" in part.dims
+    }
+    found = {name: part.isel({line: points, "mode": places}) for name, part in by_mode.items()}
+    found["name"] = sweep.mode.isel(mode=places)
+    kept = {
+        name: part.drop_vars("mode", errors="ignore").where(there, "" if part.dtype.kind in "UO" else np.nan)
+        for name, part in found.items()
+    }
+    others = sweep.drop_vars([*by_mode, "branch", "mode"])
+    return others.assign(kept).assign_coords(branch=labels).assign_attrs(sweep.attrs)

@@ -1,34 +1,40 @@
-"""Crossings of a damping level along a path of followed modes: found, bracketed and closed in on.
+"""Crossings of a damping level along lines of models, all lines at once: found, bracketed and closed in on.
 
-Each mode has a growth G, and its exact derivative from matrices a complex step away. The cubic that has both at the
-ends of a step tells crossings within it, also of modes that dip and return between two points that look stable: where
-it comes nearer to the level than its error, an eigen-solve at its extremum settles the matter. Each bracketed crossing
-is found by Newton's method, started at the root of the cubic and kept in the bracket.
+The level is a damping ratio ζ0, and G = Re λ + ζ0 |λ| is positive where the damping -Re λ/|λ| is below it. Each root
+has G and its exact derivative at every point, from matrices a complex step away. Over a step from one point to the next
+a root is followed by its vectors, and the cubic that has values and slopes of both ends, in a band of its likely error,
+tells how often G changes its sign: `proprotor.steps`. Where that is not settled the step is parted at the point in
+question, until it is; the error of the cubic is known by then. Each crossing is found by Newton's method, started at
+the root of the cubic and kept in its bracket.
 
-The level is a damping ratio ζ0, and G = Re λ + ζ0 |λ| is positive where the damping -Re λ/|λ| is below it.
+Whether G has a sign is a matter of its error (`proprotor.root_error`). A root within it is neutral, and counts as not
+beyond the level; one that is neutral all along crosses nothing.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 
 from proprotor.arrays import Array
-from proprotor.cubic import hermite, hermite_extrema, hermite_root
-from proprotor.eigenvalue_derivatives import eigenvalue_change, with_changes
-from proprotor.modes import decomposition
-from proprotor.path import Line, Path
-from proprotor.tracking import Spectrum, link
+from proprotor.cubic import hermite_root
+from proprotor.eigenvalue_derivatives import eigenvalue_change, second_order_left, with_changes
+from proprotor.errors import InputError
+from proprotor.model import LinearModel
+from proprotor.modes import decomposition, held_coordinates, some_points
+from proprotor.root_error import growth, growth_error, refined_near
+from proprotor.steps import first_steps, parted, undecided
+from proprotor.tracking import Modes, Spectrum, link
 
-_ROUNDS = 6  # of eigen-solves at extrema
-_ITERATIONS = 40  # of Newton's method; with bisection as the last resort
+Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
+
+_ROUNDS = 16  # of parting: a step to its 65536th part
+_HALVINGS = 6  # of a step at whose other end nothing can be analysed
+_ITERATIONS = 60  # of Newton's method; with bisection as the last resort
 _CLOSE = 1e-9  # of the position: the last correction, after which the next is rounding
-NEUTRAL = 1e-9  # of the largest eigenvalue: growth that says nothing
-_SAFETY = 4.0  # the error of a cubic over one step is a sixteenth of that over two; a quarter is taken
-
-
-def growth(values: Array, level: float = 0.0) -> Array:
-    """G = Re λ + ζ0 |λ|, 1/s: positive where the damping ratio is below the level."""
-    return values.real + level * np.abs(values) if level else values.real
+_SURE = 4.0  # errors of the growth that a slope must make over a bracket to count
 
 
 def growth_rate(values: Array, changes: Array, level: float = 0.0) -> Array:
@@ -39,110 +45,274 @@ def growth_rate(values: Array, changes: Array, level: float = 0.0) -> Array:
     return changes.real + level * (values.conj() * changes).real / np.where(size > 0, size, 1)
 
 
-class Scan:
-    """A path with growth and its derivative at every point, into which points can be put."""
+class Points(NamedTuple):
+    """Points of lines: the roots of each, refined, and how they move.
 
-    def __init__(self, line: Line, path: Path, level: float) -> None:
-        self.line, self.level, self.path = line, level, path
-        self._changes = np.full(path.spectrum.values.shape, np.nan, dtype=complex)
-        if len(path.points):
-            model, changes = with_changes(line.models, path.positions[path.points])
-            here = path.spectrum.at(path.points).all_modes
-            self._changes[path.points] = eigenvalue_change(model, changes, here)
+    line, position (k,); spectrum; change (k, states), of each root by the position; growth, its change, `slope`, and
+    its error (k, states).
+    """
+
+    line: Array
+    position: Array
+    spectrum: Spectrum
+    change: Array
+    growth: Array
+    slope: Array
+    error: Array
+
+    def at(self, points: Array) -> Points:
+        """Some of the points."""
+        line, position, *rest = (part[points] for part in self._arrays)
+        return Points(line, position, self.spectrum.at(points), *rest)
+
+    def joined(self, other: Points) -> Points:
+        """The points of both."""
+        line, position, *rest = (
+            np.concatenate(parts) for parts in zip(self._arrays, other._arrays, strict=True)
+        )
+        return Points(line, position, self.spectrum.joined(other.spectrum), *rest)
 
     @property
-    def positions(self) -> Array:
-        """Of the points of the path (k,)."""
-        return self.path.positions[self.path.points]
-
-    def growths(self) -> tuple[Array, Array]:
-        """Growth and its derivative by the position, of the followed states (k, states)."""
-        changes = np.take_along_axis(self._changes[self.path.points], self.path.places, 1)
-        return growth(self.path.values, self.level), growth_rate(self.path.values, changes, self.level)
-
-    def put(self, after: Array, positions: Array) -> bool:
-        """Put points into steps; whether any of them could be analysed."""
-        found, changes = solved(self.line, positions)
-        works = found.works
-        if works.any():
-            self.path = self.path.with_points(after[works], positions[works], found.at(works))
-            self._changes = np.concatenate([self._changes, changes[works]])
-        return bool(works.any())
+    def _arrays(self) -> tuple[Array, ...]:
+        return self.line, self.position, self.change, self.growth, self.slope, self.error
 
 
-def solved(line: Line, positions: Array) -> tuple[Spectrum, Array]:
-    """Eigen-solves at positions (k,), with the derivative of every eigenvalue by the position (k, states)."""
-    model, changes = with_changes(line.models, positions)
-    found = decomposition(model)
-    return found, eigenvalue_change(model, changes, found.all_modes)
+class Solved(NamedTuple):
+    """What came of a number of eigen-solves.
+
+    points : those that work; works (k,), which of those asked for they are; reason (k,) of the others, and warning of
+    all; model, of any of them, for what all have in common; None where there is none.
+    """
+
+    points: Points | None
+    works: Array
+    reason: Array
+    warning: Array
+    model: LinearModel | None
 
 
-def _cubics(scan: Scan) -> tuple[Array, Array, Array]:
-    """Ends (4, steps, states) of the cubics of all steps, their likely errors, and whether a state counts in a step."""
-    x, (value, slope) = scan.positions, scan.growths()
-    length = np.diff(x)[:, None]
-    ends = np.stack([value[:-1], value[1:], slope[:-1] * length, slope[1:] * length])
-    error = np.zeros(value.shape)
-    if len(x) > 2:
-        whole = (x[2:] - x[:-2])[:, None]
-        over_two = np.stack([value[:-2], value[2:], slope[:-2] * whole, slope[2:] * whole])
-        error[1:-1] = np.abs(
-            hermite(((x[1:-1] - x[:-2]) / (x[2:] - x[:-2]))[:, None], over_two) - value[1:-1]
-        )
-    below = scan.path.values.imag < 0
-    return ends, np.maximum(error[:-1], error[1:]) / _SAFETY, ~(below[:-1] & below[1:])
+def solved(
+    models: Models,
+    line: Array,
+    position: Array,
+    level: float,
+    forgiving: bool = False,
+    states: int | None = None,
+) -> Solved:
+    """Eigen-solves at points of lines; where one of them cannot be had it spoils no other.
+
+    `states` says how many eigenvalues there is room for, where some points have fewer than others elsewhere.
+
+    Raises
+    ------
+    InputError
+        For an input that cannot be, unless `forgiving`: then it is the reason of its point.
+    """
+    try:
+        return _solved(models, line, position, level, states)
+    except np.linalg.LinAlgError as error:
+        told: Exception = error
+    except InputError as error:
+        if not forgiving:
+            raise
+        told = error
+    if len(line) == 1:
+        reason = np.array([" ".join(str(told).split("\n"))], dtype=object)
+        return Solved(None, np.array([False]), reason, np.array([""], dtype=object), None)
+    halves = [
+        solved(models, line[half], position[half], level, forgiving, states)
+        for half in np.array_split(np.arange(len(line)), 2)
+    ]
+    return _together(*halves)
 
 
-def settle(scan: Scan) -> None:
-    """Put points where a mode may cross the level twice within a step and neither end tells."""
-    for _ in range(_ROUNDS):
-        if len(scan.positions) < 2:
-            return
-        ends, error, counts = _cubics(scan)
-        steps, states = np.nonzero(counts & np.isfinite(ends).all(axis=0))
-        cubic, noise = ends[:, steps, states], error[steps, states]
-        at = hermite_extrema(cubic)
-        peak = hermite(at, cubic[:, :, None])
-        floor = NEUTRAL * np.nanmax(np.abs(scan.path.values), initial=0)
-        sides = np.where(np.abs(cubic[:2]) <= floor, 0.0, np.sign(cubic[:2]))
-        side = np.where(sides[0] != 0, sides[0], sides[1])
-        # An extremum beyond the level, or nearer to it than the cubic is exact, though neither end is beyond;
-        # with ends on either side, two extrema that are on the wrong ones. Neutral all along is no crossing.
-        hidden = (sides[0] * sides[1] >= 0)[:, None] & (side[:, None] * peak < noise[:, None] + floor)
-        order = hermite(np.sort(at, axis=1), cubic[:, :, None])
-        thrice = (sides[0] * sides[1] < 0) & (side * order[:, 0] < -noise) & (side * order[:, 1] > noise)
-        hidden = (hidden | thrice[:, None]) & (side != 0)[:, None]
-        which, extremum = np.nonzero(hidden & np.isfinite(at))
-        if not len(which):
-            return
-        step, first = np.unique(steps[which], return_index=True)  # one point in a step and round
-        share = np.clip(at[which, extremum][first], 0.02, 0.98)
-        x = scan.positions
-        if not scan.put(step, x[step] + share * (x[step + 1] - x[step])):
-            return
+def _together(one: Solved, other: Solved) -> Solved:
+    works, reason, warning = (
+        np.concatenate([getattr(one, name), getattr(other, name)]) for name in ("works", "reason", "warning")
+    )
+    if one.points is None or other.points is None:
+        some = other if one.points is None else one
+        return Solved(some.points, works, reason, warning, some.model)
+    return Solved(one.points.joined(other.points), works, reason, warning, one.model)
+
+
+def _solved(models: Models, line: Array, position: Array, level: float, states: int | None) -> Solved:
+    model, changes = with_changes(lambda x: models(line, x), position)
+    spectrum = decomposition(model, None if states is None else held_coordinates(model, states))
+    works = spectrum.works
+    reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
+    if not works.any():
+        return Solved(None, works, reason, warning, model)
+    part, some = some_points(model, works), spectrum.at(works)
+    modes = some.all_modes
+    left = second_order_left(part, modes.left)
+    found = refined_near(part, modes, left, level)
+    mass, damping, stiffness = (np.broadcast_to(change, model.K.shape)[works] for change in changes)
+    moved = Modes(found.values, modes.right, modes.left)
+    change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
+    points = Points(
+        line[works],
+        position[works],
+        Spectrum(found.values, some.right, some.shapes),
+        change,
+        growth(found.values, level),
+        growth_rate(found.values, change, level),
+        growth_error(found.error, level),
+    )
+    return Solved(points, works, reason, warning, model)
+
+
+class Search:
+    """Points and steps of lines, and the crossings in them.
+
+    Parameters
+    ----------
+    models : callable
+        Models at points of lines; takes complex positions and is analytic in them, or refuses them.
+    line, position : array (k,)
+        The points of all lines, in the order of their lines and rising along each.
+    level : float
+        Damping ratio.
+    names : bool
+        Whether steps are parted wherever they do not tell which root is which, and not only near the level.
+    onset_only : bool
+        Whether the lowest onset of each line is all that is wanted.
+    forgiving : bool
+        Whether an input that cannot be is the reason of its points, and not raised.
+    states : int, optional
+        Eigenvalues of a point with all that any point has; by default those of the points given.
+    """
+
+    def __init__(
+        self,
+        models: Models,
+        line: Array,
+        position: Array,
+        level: float = 0.0,
+        *,
+        names: bool = False,
+        onset_only: bool = False,
+        forgiving: bool = False,
+        states: int | None = None,
+    ) -> None:
+        self.models, self.level, self.names, self.onset_only = models, level, names, onset_only
+        self.forgiving = forgiving
+        self.scanned = solved(models, line, position, level, forgiving, states)
+        some = self.scanned.points
+        self.states = states if some is None else some.growth.shape[1]
+        self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
+        if self.scanned.points is not None:
+            self.points = self.scanned.points
+            self._reach_edges(line, position)
+            order = np.lexsort((self.points.position, self.points.line))
+            same = np.diff(self.points.line[order]) == 0
+            self.steps = first_steps(self.points.spectrum, order[:-1][same], order[1:][same])
+            self._settle()
+
+    def _reach_edges(self, line: Array, position: Array) -> None:
+        """Halve the steps from a point that works to one that does not: boundaries may lie there."""
+        works = self.scanned.works
+        edges = np.flatnonzero((line[1:] == line[:-1]) & (works[1:] != works[:-1]))
+        good, bad = (np.where(works[edges], edges + k, edges + 1 - k) for k in (0, 1))
+        line, good, bad = line[edges], position[good], position[bad]
+        for _ in range(_HALVINGS if len(line) else 0):
+            middle = (good + bad) / 2
+            found = solved(self.models, line, middle, self.level, self.forgiving, self.states)
+            good, bad = np.where(found.works, middle, good), np.where(found.works, bad, middle)
+            if found.points is not None:
+                self.points = self.points.joined(found.points)
+                np.add.at(self.solves, found.points.line, 1)
+
+    def _settle(self) -> None:
+        """Part steps until each tells how often every root crosses."""
+        for _ in range(_ROUNDS):
+            wanted = np.flatnonzero(self.steps.open & self._before_onset())
+            share = undecided(self.steps.at(wanted), self.points, self.names)
+            self.steps.open[wanted] = False
+            chosen = wanted[np.isfinite(share)]
+            if not len(chosen) or not self._part(chosen, share[np.isfinite(share)]):
+                break
+        order = np.lexsort((self.points.position[self.steps.before], self.points.line[self.steps.before]))
+        self.steps = self.steps.at(order)
+
+    def _before_onset(self) -> Array:
+        """Which steps are not beyond one, on their line, over which a root becomes unstable for certain."""
+        start = self.points.position[self.steps.before]
+        if not self.onset_only:
+            return np.ones(len(start), dtype=bool)
+        line = self.points.line[self.steps.before]
+        first = np.full(len(self.solves), np.inf)
+        certain = self.steps.onsets(self.points)
+        np.minimum.at(first, line[certain], start[certain])
+        return np.asarray(start <= first[line])
+
+    def _part(self, chosen: Array, share: Array) -> bool:
+        """Put a point into each of some steps; whether any could be analysed."""
+        x, line = self.points.position, self.points.line[self.steps.before[chosen]]
+        start, end = x[self.steps.before[chosen]], x[self.steps.after[chosen]]
+        at = start + share * (end - start)
+        between = solved(self.models, line, at, self.level, self.forgiving, self.states)
+        if between.points is None:
+            return False
+        self.points = self.points.joined(between.points)
+        np.add.at(self.solves, line[between.works], 1)
+        self.steps = parted(self.steps, chosen[between.works], self.points, len(x))
+        return True
+
+
+class Crossing(NamedTuple):
+    """One root through the level.
+
+    line; position; spectrum of its point, and the state of it that crosses; change of the root and slope of G by the
+    position; onset, whether it becomes unstable; start, the point of the search before it, and from_state, the state
+    there; value, of the root at the position; solves beyond the search.
+    """
+
+    line: int
+    position: float
+    spectrum: Spectrum
+    state: int
+    value: complex
+    change: complex
+    slope: float
+    onset: bool
+    start: int
+    from_state: int
+    solves: int
 
 
 class Brackets:
-    """Steps over which a followed state crosses, closed in on for all of them at once."""
+    """Steps over which a followed root crosses, closed in on for all of them at once.
 
-    def __init__(self, scan: Scan) -> None:
-        ends, _, counts = _cubics(scan)
-        floor = NEUTRAL * np.nanmax(np.abs(scan.path.values), initial=0)
-        side = np.where(np.abs(ends[:2]) <= floor, -1.0, np.sign(ends[:2]))
-        steps, self.states = np.nonzero(counts & (side[0] != side[1]) & np.isfinite(ends).all(axis=0))
-        path, x = scan.path, scan.positions
-        self.scan, self.count = scan, len(steps)
-        self.x = np.stack([x[steps], x[steps + 1]])
-        self.cubic = ends[:, steps, self.states]
-        self.value = np.where(np.abs(self.cubic[:2]) <= floor, -floor, self.cubic[:2])
-        self.onset = self.value[1] > 0
-        points = np.stack([path.points[steps], path.points[steps + 1]])
-        self.place = np.stack([path.places[steps, self.states], path.places[steps + 1, self.states]])
-        self.ends = [path.spectrum.at(row) for row in points]
-        self.found: dict[int, tuple[float, Spectrum, int, complex, float]] = {}
+    Parameters
+    ----------
+    search : Search
+    close : float, optional
+        The last correction of a position, in its unit; a billionth of it by default.
+    """
+
+    def __init__(self, search: Search, close: float | None = None) -> None:
+        steps, points = search.steps, search.points
+        self.models, self.level, self.forgiving = search.models, search.level, search.forgiving
+        self.states = search.states
+        rows, states, ends = steps.crossing(points)
+        if search.onset_only:
+            rows, states, ends = _lowest_onsets(rows, states, ends, points.line[steps.before])
+        self.start, self.from_state = steps.before[rows], states
+        self.count, self.line = len(rows), points.line[self.start]
+        last, to_state = steps.after[rows], steps.successor[rows, states]
+        self.x = np.stack([points.position[self.start], points.position[last]])
+        self.scale = np.abs(self.x).max(axis=0, initial=0)
+        self.near = np.full(self.count, close) if close else _CLOSE * self.scale
+        self.cubic = ends
+        self.onset = ends[1] > ends[0]
+        self.place = np.stack([states, to_state])
+        self.ends = [points.spectrum.at(self.start), points.spectrum.at(last)]
         self.solves = np.zeros(self.count, dtype=int)
+        self.found: dict[int, Crossing] = {}
+        self.lost: dict[int, str] = {}  # why those were not found that were not
 
-    def close(self) -> None:
+    def close(self) -> list[Crossing]:
         """Newton's method on every crossing, by the derivative at the last point, within the bracket."""
         active = np.arange(self.count)
         with np.errstate(all="ignore"):
@@ -150,45 +320,64 @@ class Brackets:
         guess = self.x[0] + share * (self.x[1] - self.x[0])
         for _ in range(_ITERATIONS):
             if not len(active):
-                return
-            position = guess[active]
-            spectrum, changes = solved(self.scan.line, position)
-            works = spectrum.works
-            active, position, changes = active[works], position[works], changes[works]
-            spectrum = spectrum.at(works)
-            place = self._place(active, position, spectrum)
+                break
+            tried = solved(
+                self.models, self.line[active], guess[active], self.level, self.forgiving, self.states
+            )
+            for row in np.flatnonzero(~tried.works):
+                self.lost[int(active[row])] = str(tried.reason[row])
+            if tried.points is None:
+                break
+            active, points = active[tried.works], tried.points
+            place = self._place(active, points)
             rows = np.arange(len(active))
-            value = growth(spectrum.values[rows, place], self.scan.level)
-            slope = growth_rate(spectrum.values[rows, place], changes[rows, place], self.scan.level)
+            value, slope, error = (part[rows, place] for part in (points.growth, points.slope, points.error))
             self.solves[active] += 1
             with np.errstate(all="ignore"):  # at a double root the slope has no bound
                 correction = -value / slope
-            scale = np.maximum(np.abs(self.x[0, active]), np.abs(self.x[1, active]))
-            done = np.abs(correction) <= _CLOSE * scale
-            done |= np.abs(self.x[1, active] - self.x[0, active]) <= 4e-16 * scale
-            for row in np.flatnonzero(done):
-                self.found[int(active[row])] = (
-                    position[row] + (correction[row] if np.isfinite(correction[row]) else 0.0),
-                    spectrum.at(row),
-                    int(place[row]),
-                    changes[row, place[row]],
-                    slope[row],
-                )
-            self._narrow(active, position, value, place, spectrum)
-            newton = position + correction
+            width = np.abs(self.x[1, active] - self.x[0, active])
+            # Within its error the growth says no more, if it is the slope that made it as small as that.
+            done = (np.abs(value) <= error) & (np.abs(slope) * width > _SURE * error)
+            done |= (np.abs(correction) <= self.near[active]) & (np.abs(value) > error)
+            done |= width <= 4e-16 * self.scale[active]
+            for one in np.flatnonzero(done).tolist():
+                self._keep(int(active[one]), points, one, int(place[one]), float(correction[one]))
+            beyond = value > error
+            self._narrow(active, beyond, points, place)
+            newton = points.position + correction
             low, high = self.x[:, active].min(axis=0), self.x[:, active].max(axis=0)
-            inside = (newton > low) & (newton < high)
+            inside = (newton > low) & (newton < high) & (np.abs(value) > error)
             guess[active] = np.where(inside, newton, (low + high) / 2)
             active = active[~done]
+        return list(self.found.values())
 
-    def _place(self, active: Array, position: Array, spectrum: Spectrum) -> Array:
+    def _keep(self, crossing: int, points: Points, row: int, place: int, correction: float) -> None:
+        low, high = self.x[:, crossing]
+        if not (np.isfinite(correction) and low <= points.position[row] + correction <= high):
+            correction = 0.0
+        slope = float(points.slope[row, place])
+        self.found[crossing] = Crossing(
+            int(self.line[crossing]),
+            float(points.position[row]) + correction,
+            points.spectrum.at(row),
+            place,
+            complex(points.spectrum.values[row, place] + correction * points.change[row, place]),
+            complex(points.change[row, place]),
+            slope,
+            slope > 0 if slope else bool(self.onset[crossing]),
+            int(self.start[crossing]),
+            int(self.from_state[crossing]),
+            int(self.solves[crossing]),
+        )
+
+    def _place(self, active: Array, points: Points) -> Array:
         """Which state of each trial point is the one that crosses, followed from the ends of the bracket.
 
         From the nearer end; where a pair parts into real roots between the ends, from the one that is of the trial's
         kind, since a pair does not tell which of two real roots it becomes.
         """
-        rows = np.arange(len(active))
-        nearer = np.argmin(np.abs(self.x[:, active] - position), axis=0)
+        rows, spectrum = np.arange(len(active)), points.spectrum
+        nearer = np.argmin(np.abs(self.x[:, active] - points.position), axis=0)
         places, alike = np.empty((2, len(active)), dtype=int), np.empty((2, len(active)), dtype=bool)
         for end, found in enumerate(self.ends):
             start = found.at(active)
@@ -200,13 +389,38 @@ class Brackets:
         followed: Array = places[chosen, rows]
         return followed
 
-    def _narrow(self, active: Array, position: Array, value: Array, place: Array, spectrum: Spectrum) -> None:
+    def _narrow(self, active: Array, beyond: Array, points: Points, place: Array) -> None:
         """The trial points take the place of the end on their side."""
-        end = (np.sign(value) != np.sign(self.value[0, active])).astype(int)
+        end = (beyond == self.onset[active]).astype(int)
         for row, crossing in enumerate(active):
             side = end[row]
-            self.x[side, crossing], self.value[side, crossing] = position[row], value[row]
-            self.place[side, crossing] = place[row]
-            for kept, new in zip(self.ends[side], spectrum, strict=True):
+            self.x[side, crossing], self.place[side, crossing] = points.position[row], place[row]
+            for kept, new in zip(self.ends[side], points.spectrum, strict=True):
                 if kept is not None and new is not None:
                     kept[crossing] = new[row]
+
+
+def each_once(found: list[Crossing]) -> list[Crossing]:
+    """Crossings by line and position, each root once."""
+    kept: list[Crossing] = []
+    for one in sorted(found, key=lambda one: (one.line, one.position)):
+        if not any(_same(one, other) for other in reversed(kept[-8:])):
+            kept.append(one)
+    return kept
+
+
+def _same(one: Crossing, other: Crossing) -> bool:
+    """Whether two are one: both states of a pair that parts within a step may be found to cross as the same root."""
+    near = abs(one.position - other.position) <= 1e-7 * max(abs(one.position), abs(other.position))
+    alike = abs(one.value - other.value) <= 1e-6 * max(1.0, abs(one.value))
+    return one.line == other.line and one.onset == other.onset and near and alike
+
+
+def _lowest_onsets(rows: Array, states: Array, ends: Array, line: Array) -> tuple[Array, Array, Array]:
+    """Of each line those onsets that lie in its first step with any."""
+    onset = ends[1] > ends[0]
+    rows, states, ends = rows[onset], states[onset], ends[:, onset]
+    first = np.full(int(line.max(initial=-1)) + 1, np.iinfo(int).max)
+    np.minimum.at(first, line[rows], rows)  # steps are in the order of their lines and positions
+    lowest = rows == first[line[rows]]
+    return rows[lowest], states[lowest], ends[:, lowest]

@@ -16,6 +16,14 @@ def hermite(t: Array, ends: Array) -> Array:
     return value
 
 
+def hermite_slope(t: Array, ends: Array) -> Array:
+    """Its slope per unit of t."""
+    value0, value1, slope0, slope1 = ends
+    rise = value1 - value0
+    slope: Array = slope0 + t * (6 * rise - 4 * slope0 - 2 * slope1 + 3 * t * (slope0 + slope1 - 2 * rise))
+    return slope
+
+
 def hermite_extrema(ends: Array) -> Array:
     """Where the cubics (4, m) have extrema within (0, 1): (m, 2), NaN where they have none."""
     value0, value1, slope0, slope1 = ends

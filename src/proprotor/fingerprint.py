@@ -16,10 +16,12 @@ import dataclasses
 import dis
 import functools
 import hashlib
+import importlib.util
 import pickle
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from types import (
     CodeType,
     EllipsisType,
@@ -360,6 +362,17 @@ def _is_installed(it: Any, module: str | None, name: str) -> bool:
     return found is it
 
 
+def _place(package: str) -> Path:
+    """Where a package is, whether or not it was imported; no place where there is none."""
+    if (module := sys.modules.get(package)) is not None:
+        return Path(getattr(module, "__file__", None) or next(iter(getattr(module, "__path__", ())), ""))
+    try:
+        found = importlib.util.find_spec(package)
+    except ValueError:  # of no name
+        return Path()
+    return Path((found and found.origin) or "")
+
+
 @functools.cache
 def _version(module: str) -> str | None:
     """The version of the package that a module was installed with; None where it was not, as a script of the user's."""
@@ -370,8 +383,7 @@ def _version(module: str) -> str | None:
         return ""
     if package in sys.stdlib_module_names:
         return None if package == "__main__" else ".".join(map(str, sys.version_info[:2]))
-    place = getattr(sys.modules.get(package), "__file__", None) or ""
-    if not {"site-packages", "dist-packages"} & set(place.replace("\\", "/").split("/")):
+    if not {"site-packages", "dist-packages"} & set(_place(package).parts):
         return None
     try:
         return metadata.version(package)

@@ -1,11 +1,12 @@
 """Stability boundaries of a case: where the damping of a mode passes a level, to rounding.
 
-Every crossing in a range is found, flutter and divergence, those between two points of the scan included:
+Every crossing in a range is looked for, flutter and divergence, those between two points of the scan included:
 `proprotor.crossings` says how.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,23 +16,21 @@ from numpy.typing import ArrayLike
 
 from proprotor import stamp, summary
 from proprotor.arrays import Array
-from proprotor.crossings import NEUTRAL, Brackets, Scan, growth, settle
+from proprotor.crossings import Brackets, Crossing, Points, Search, Solved, each_once
 from proprotor.doubts import Doubt, doubts_along
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
-from proprotor.least_damping import NOWHERE, LeastDamping, least_damping
-from proprotor.mode_names import Moving, moving, name_list
-from proprotor.model import LinearModel
-from proprotor.path import Line, Path, follow
+from proprotor.least_damping import NOWHERE, LeastDamping, least_damped
+from proprotor.mode_names import Moving, moving
+from proprotor.path import Line, Path
 from proprotor.speed import in_metres_per_second
 from proprotor.stamp import Stamp
-from proprotor.sweep import approach_to, line_of_case, names_at, state_names, tip_speed
-from proprotor.tracking import Spectrum
+from proprotor.sweep import approach_to, line_of_case, state_names, tip_speed
+from proprotor.tracking import Spectrum, Steps
 
 if TYPE_CHECKING:
     from proprotor.case import Case
 
-_REAL = 1e-9  # of the largest eigenvalue: a root with less imaginary part is real
 _TOLD = 0.05  # of a mode: the least participation that its mechanism names
 _RANGE = (0.2, 1.2, 51)  # of the tip speed: where boundaries are looked for, and at how many points
 
@@ -114,6 +113,8 @@ class FlutterPoint:
         What moves in the modes that are beyond the level at the lowest airspeed already.
     searched : tuple of float
         Lowest and highest airspeed that could be analysed, m/s.
+    failed : tuple of Failed
+        Airspeeds of the scan that could not be analysed, with the reason.
     eigen_solves : int
         All of them; `scan_solves` is what it took to bracket every boundary.
     scan_solves : int
@@ -145,6 +146,7 @@ class FlutterPoint:
     least_damping_speed: float = np.nan
     doubts: tuple[Doubt, ...] = ()
     stamp: Stamp = field(default_factory=dict)
+    failed: tuple[Failed, ...] = ()
 
     def __repr__(self) -> str:
         return summary.of_flutter_point(self)
@@ -169,6 +171,22 @@ class FlutterPoint:
         return self.speed / float(in_metres_per_second(airspeed)) - 1
 
 
+class Failed(NamedTuple):
+    """A stretch of a scan that could not be analysed.
+
+    Parameters
+    ----------
+    first, last : float
+        Between what works, or the ends of the scan: m/s or in SI units of the input.
+    reason : str
+        Why.
+    """
+
+    first: float
+    last: float
+    reason: str
+
+
 class Crossings(NamedTuple):
     """Boundaries along a line, with the modes beyond the level at its start.
 
@@ -177,9 +195,9 @@ class Crossings(NamedTuple):
     boundaries : tuple of Boundary
         By position.
     unstable_at_start : tuple of str
-        Modes beyond the level at the first position that could be analysed.
+        Modes beyond the level at the lowest position that could be analysed.
     searched : tuple of float
-        First and last position that could be analysed, m/s or in SI units of the input.
+        Lowest and highest position that could be analysed, m/s or in SI units of the input.
     scan_solves, eigen_solves : int
         What it took to bracket every boundary, and in all.
     least : LeastDamping
@@ -188,6 +206,9 @@ class Crossings(NamedTuple):
         What makes positions of the scan doubtful, and from where to where.
     stamp : mapping of str to str
         The case and the options in force, see `proprotor.stamp`; empty on a line that is of no case.
+    failed : tuple of Failed
+        Positions of the scan that could not be analysed, with the reason: why the range searched ends where it does, or
+        has gaps; then steps over which a mode crosses where no position for it could be found.
     """
 
     boundaries: tuple[Boundary, ...]
@@ -198,6 +219,7 @@ class Crossings(NamedTuple):
     least: LeastDamping = NOWHERE
     doubts: tuple[Doubt, ...] = ()
     stamp: Stamp = {}  # noqa: RUF012 - never changed
+    failed: tuple[Failed, ...] = ()
 
     def __repr__(self) -> str:
         return summary.of_crossings(self)
@@ -211,7 +233,7 @@ def find_crossings(
     Parameters
     ----------
     line : Line
-        With a `linearize` that takes complex positions and is analytic in them.
+        With a `linearize` that takes complex positions and is analytic in them; positions in any order.
     level : float
         Damping ratio that counts as the boundary.
     rotor_speed : float, optional
@@ -230,85 +252,158 @@ def find_crossings(
     """
     if not -1 < level < 1:
         raise InputError("level", level, "must be a damping ratio, between -1 and 1")
-    model = line.models(np.asarray(line.positions, dtype=float))
-    scan = Scan(line, follow(model, line), level)
-    settle(scan)
-    path = scan.path
-    if not len(path.points):
-        return Crossings((), (), (np.nan, np.nan), 0, 0)
-    named = state_names(model, line, path, rotor_speed, approach)
-    names = [named.names[state] for state in path.places[named.point]]
-    crossing = Brackets(scan) if len(path.points) > 1 else None
-    boundaries = []
-    if crossing is not None:
-        crossing.close()
-    if crossing is not None and crossing.found:
-        moves = _moving_at_crossings(crossing, rotor_speed)
-        for row, place in enumerate(crossing.found):
-            boundaries.append(_boundary(crossing, place, names, moves, row))
-    boundaries = _distinct(sorted(boundaries, key=lambda found: found.position))
-    scan_solves = len(path.points) + named.eigen_solves
+    line = rising(line)
+    positions = line.positions
+    search = Search(
+        lambda _, x: line.models(x), np.zeros(len(positions), dtype=int), positions, level, names=True
+    )
+    scanned = search.scanned
+    doubts = doubts_along(positions, scanned.warning)
+    if scanned.points is None:
+        failed = _failed(positions, scanned, np.empty(0))
+        return Crossings((), (), (np.nan, np.nan), 0, 0, doubts=doubts, failed=failed)
+    path, points = _path(search, positions), search.points
+    failed = _failed(positions, scanned, np.sort(points.position))
+    named = state_names(line.models(positions), line, path, rotor_speed, approach)
+    branches = [named.names[state] for state in path.places[named.point]]
+    brackets = Brackets(search)
+    found = each_once(brackets.close())
+    ends, least = _at_points(line, points, rotor_speed)
+    scan_solves = int(search.solves.sum()) + named.eigen_solves
     return Crossings(
-        tuple(boundaries),
-        _beyond(model, path, level, rotor_speed),
-        (float(scan.positions[0]), float(scan.positions[-1])),
+        tuple(_boundaries(found, [_branch(one, search, path, branches) for one in found], line, rotor_speed)),
+        ends,
+        (float(points.position.min()), float(points.position.max())),
         scan_solves,
-        scan_solves + (0 if crossing is None else int(crossing.solves.sum())),
-        least_damping(path, names),
+        scan_solves + int(brackets.solves.sum()),
+        least,
+        doubts,
+        failed=failed + _lost(brackets),
     )
 
 
-def _beyond(model: LinearModel, path: Path, level: float, rotor_speed: float | None) -> tuple[str, ...]:
-    """What moves in the modes that are beyond the level at the first point."""
-    first = int(path.points[0])
-    values = path.spectrum.values[first]
-    above = growth(values, level) > NEUTRAL * np.nanmax(np.abs(values))
-    names = np.array(name_list(model.dofs))[names_at(model, path.spectrum, first, rotor_speed)]
-    return tuple(dict.fromkeys(names[above & (values.imag >= 0)].tolist()))
+def rising(line: Line) -> Line:
+    """The line with each of its positions once, from the lowest to the highest."""
+    return replace(line, positions=np.unique(np.asarray(line.positions, dtype=float)), end=None)
 
 
-def _moving_at_crossings(crossing: Brackets, rotor_speed: float | None) -> Moving:
-    """What moves in all modes of every crossing."""
-    positions = np.array([position for position, *_ in crossing.found.values()])
-    spectra = [spectrum for _, spectrum, *_ in crossing.found.values()]
-    stacked = (np.stack([getattr(spectrum, part) for spectrum in spectra]) for part in ("values", "right"))
-    values, right, left = Spectrum(*stacked).all_modes
-    return moving(crossing.scan.line.models(positions), values, left, right, rotor_speed)
+def _at_points(line: Line, points: Points, rotor_speed: float | None) -> tuple[tuple[str, ...], LeastDamping]:
+    """What moves in the modes beyond the level at the lowest position, and in the one that is damped least."""
+    least = least_damped(points)
+    rows = np.array([int(points.position.argmin()), 0 if least is None else least[0]])
+    values, right, left = points.spectrum.at(rows).all_modes
+    names = moving(line.models(points.position[rows]), values, left, right, rotor_speed).names
+    above = (points.growth[rows[0]] > points.error[rows[0]]) & (values[0].imag >= 0)
+    beyond = tuple(dict.fromkeys(names[0, above].tolist()))
+    if least is None:
+        return beyond, NOWHERE
+    value = values[1, least[1]]
+    position = float(points.position[rows[1]])
+    return beyond, LeastDamping(float(-value.real / abs(value)), str(names[1, least[1]]), position)
 
 
-def _boundary(crossing: Brackets, place: int, names: list[str], moves: Moving, row: int) -> Boundary:
-    position, spectrum, state, change, slope = crossing.found[place]
-    value = complex(spectrum.values[state])
-    real = abs(value.imag) <= _REAL * np.nanmax(np.abs(spectrum.values))
-    shares = moves.shares[row, :, state]
+def _failed(positions: Array, scanned: Solved, works: Array) -> tuple[Failed, ...]:
+    """Stretches between points that work in which the scan failed, for one reason each.
+
+    positions (points,) of the scan; works, those of all points that could be analysed, rising.
+    """
+    found: list[Failed] = []
+    failed = set(np.flatnonzero(~scanned.works).tolist())
+    for place in sorted(failed):
+        here, told = float(positions[place]), str(scanned.reason[place])
+        above = works[np.searchsorted(works, here) :]
+        end = here if place + 1 in failed or not len(above) else float(above[0])
+        if place - 1 in failed and _without_numbers(found[-1].reason) == _without_numbers(told):
+            found[-1] = found[-1]._replace(last=end)
+            continue
+        below = works[: np.searchsorted(works, here)]
+        start = here if place - 1 in failed or not len(below) else float(below[-1])
+        found.append(Failed(start, end, told))
+    return tuple(found)
+
+
+def _lost(brackets: Brackets) -> tuple[Failed, ...]:
+    """Stretches over which a mode crosses the level, at positions that could not be analysed."""
+    ends = {k: np.sort(brackets.x[:, k]).tolist() for k in brackets.lost}
+    told = "a mode crosses the level where nothing can be analysed"
+    return tuple(
+        sorted({Failed(low, high, f"{told}: {brackets.lost[k]}") for k, (low, high) in ends.items()})
+    )
+
+
+def _without_numbers(reason: str) -> str:
+    return re.sub(r"[-+.\deE]*\d", "", reason)
+
+
+def _path(search: Search, positions: Array) -> Path:
+    """The points of a search of one line as a path: those of the scan, failed ones too, then those between them."""
+    points, works = search.points, np.flatnonzero(search.scanned.works)
+    between = np.arange(len(works), len(points.position))
+    place = np.concatenate([works, len(positions) + np.arange(len(between))])
+    count = len(positions) + len(between)
+    values, right, shapes = (
+        None if part is None else _in_places(part, place, count) for part in points.spectrum
+    )
+    assert values is not None and right is not None  # of points that work
+    spectrum = Spectrum(values, right, shapes)
+    order = np.argsort(points.position, kind="stable")
+    return Path(
+        spectrum,
+        place[order],
+        Steps(search.steps.successor, search.steps.quality),
+        np.concatenate([positions, points.position[between]]),
+    )
+
+
+def _in_places(part: Array, place: Array, count: int) -> Array:
+    """Rows at their places among so many, NaN at the others."""
+    whole = np.full((count, *part.shape[1:]), np.nan, dtype=part.dtype)
+    whole[place] = part
+    return whole
+
+
+def _branch(found: Crossing, search: Search, path: Path, branches: list[str]) -> str:
+    """Name of the root that crosses, as it is followed along the path."""
+    order = np.argsort(search.points.position, kind="stable")
+    point = int(np.flatnonzero(order == found.start)[0])
+    return branches[int(np.flatnonzero(path.places[point] == found.from_state)[0])]
+
+
+def _boundaries(
+    found: list[Crossing], branches: list[str], line: Line, rotor_speed: float | None
+) -> Iterator[Boundary]:
+    """The boundaries of crossings, with what moves there and what makes them doubtful."""
+    if not found:
+        return
+    model = line.models(np.array([one.position for one in found]))
+    spectra = Spectrum(
+        *(np.stack([getattr(one.spectrum, part) for one in found]) for part in ("values", "right"))
+    )
+    values, right, left = spectra.all_modes
+    moves = moving(model, values, left, right, rotor_speed)
+    for row, (one, branch, warning) in enumerate(
+        zip(found, branches, model.trim.warning.tolist(), strict=True)
+    ):
+        yield replace(_boundary(one, branch, moves, row), warning=str(warning))
+
+
+def _boundary(found: Crossing, branch: str, moves: Moving, row: int) -> Boundary:
+    value = found.value
+    shares = moves.shares[row, :, found.state]
     largest = [k for k in np.argsort(-shares) if shares[k] >= _TOLD]
     return Boundary(
-        position=float(position),
-        mode=str(moves.names[row, state]),
-        kind="divergence" if real else "flutter",
-        onset=bool(crossing.onset[place]) == bool(crossing.x[1, place] >= crossing.x[0, place]),
+        position=found.position,
+        mode=str(moves.names[row, found.state]),
+        kind="divergence" if value.imag == 0 else "flutter",
+        onset=found.onset,
         eigenvalue=value if value.imag >= 0 else value.conjugate(),
-        rate=float(slope),
-        eigenvalue_rate=complex(change if value.imag >= 0 else np.conj(change)),
+        rate=found.slope,
+        eigenvalue_rate=complex(found.change if value.imag >= 0 else np.conj(found.change)),
         mechanism={moves.known[k]: float(shares[k]) for k in largest},
-        defect=float(defect(spectrum.modes(np.array([state])))[0]),
-        eigen_solves=int(crossing.solves[place]),
-        branch=names[crossing.states[place]],
+        defect=float(defect(found.spectrum.modes(np.array([found.state])))[0]),
+        eigen_solves=found.solves,
+        branch=branch,
     )
-
-
-def _distinct(boundaries: list[Boundary]) -> list[Boundary]:
-    """Both states of a pair that parts within a step may be found to cross as the same root: it counts once."""
-    kept: list[Boundary] = []
-    for found in boundaries:
-        again = any(
-            abs(found.position - other.position) <= 1e-7 * abs(found.position)
-            and abs(found.eigenvalue - other.eigenvalue) <= 1e-6 * max(1.0, abs(found.eigenvalue))
-            for other in kept
-        )
-        if not again:
-            kept.append(found)
-    return kept
 
 
 def boundaries(
@@ -351,23 +446,12 @@ def boundaries(
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
-    model = line.models(line.positions)
-    near = approach_to(case, line, model, options)
+    line = rising(line)
+    near = approach_to(case, line, line.models(line.positions), options)
     found = find_crossings(line, level=level, approach=near)
-    doubts = doubts_along(np.asarray(line.positions), model.trim.warning)
     own = stamp.of_case(case, options)
-    return found._replace(
-        boundaries=tuple(_carrying(found.boundaries, line, level, own)), doubts=doubts, stamp=own
-    )
-
-
-def _carrying(found: tuple[Boundary, ...], line: Line, level: float, own: Stamp) -> Iterator[Boundary]:
-    """The boundaries with what makes each doubtful, and where they come from."""
-    if not found:
-        return
-    warnings = line.models(np.array([boundary.position for boundary in found])).trim.warning
-    for boundary, warning in zip(found, warnings.tolist(), strict=True):
-        yield replace(boundary, warning=str(warning), level=level, stamp=own)
+    carried = tuple(replace(boundary, level=level, stamp=own) for boundary in found.boundaries)
+    return found._replace(boundaries=carried, stamp=own)
 
 
 def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:
@@ -428,4 +512,5 @@ def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **op
         least_damping_speed=found.least.position,
         doubts=found.doubts,
         stamp=found.stamp,
+        failed=found.failed,
     )

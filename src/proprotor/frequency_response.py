@@ -6,11 +6,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import HUB, SWASHPLATE, LinearModel
 from proprotor.needs import check_memory
+from proprotor.root_error import roots
 from proprotor.state_space import LOADS, StateSpace
 from proprotor.units import values_in_si
 
@@ -77,7 +79,7 @@ def frequency_response(
             "response": (dims, response, unit),
             "magnitude": (dims, np.abs(response), unit),
             "phase": (dims, np.angle(response), {"units": "rad"}),
-            "stable": (leading, _stable(space.A)),
+            "stable": (leading, _stable(model)),
             "warning": (
                 leading,
                 model.trim.warning.astype(str),
@@ -172,12 +174,11 @@ def _solved(matrices: Array, loads: Array) -> Array:
         return solutions
 
 
-def _stable(system: Array) -> Array:
-    flat = system.reshape(-1, *system.shape[-2:])
-    stable = np.zeros(len(flat), dtype=bool)
-    for points, own in _alike(flat):
-        stable[points] = (np.linalg.eigvals(flat[points][:, own][:, :, own]).real < 0).all(axis=-1)
-    return stable.reshape(system.shape[:-2])
+def _stable(model: LinearModel) -> NDArray[np.bool_]:
+    """Whether every root decays, by more than its error."""
+    values, error = roots(model)
+    decays = (values.real < -error) | np.isnan(values)  # a state that a point does not have
+    return np.asarray(decays.all(axis=-1) & np.isfinite(values).any(axis=-1))
 
 
 def _unit_of(output: str) -> str:

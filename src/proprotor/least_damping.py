@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from proprotor.crossings import NEUTRAL
-
 if TYPE_CHECKING:
-    from proprotor.path import Path
+    from proprotor.crossings import Points
 
 
 class LeastDamping(NamedTuple):
@@ -24,26 +21,16 @@ class LeastDamping(NamedTuple):
 NOWHERE = LeastDamping(np.nan, "", np.nan)
 
 
-def least_damping(path: Path, names: Sequence[str]) -> LeastDamping:
-    """Return the least damping ratio -Re λ/|λ| of the followed modes, neutral ones left out.
+def least_damped(points: Points) -> tuple[int, int] | None:
+    """Return the point and the state with the least damping ratio -Re λ/|λ|; None where no point has a mode.
 
-    Parameters
-    ----------
-    path : Path
-        With a position for each of its points.
-    names : sequence of str
-        Of the followed states.
-
-    Returns
-    -------
-    LeastDamping
-        `NOWHERE` where no point has a mode.
+    Roots at zero within their error have no damping ratio and are left out.
     """
-    values = path.values
+    values = points.spectrum.values
     size = np.abs(values)
-    moves = (values.imag >= 0) & (size > NEUTRAL * size.max(initial=0))
+    moves = (values.imag >= 0) & (size > points.error)
     if not moves.any():
-        return NOWHERE
+        return None
     ratio = np.where(moves, -values.real, np.inf) / np.where(moves, size, 1)
-    point, state = map(int, np.unravel_index(np.argmin(ratio), ratio.shape))
-    return LeastDamping(float(ratio[point, state]), names[state], float(path.positions[path.points[point]]))
+    point, state = np.unravel_index(np.argmin(ratio), ratio.shape)
+    return int(point), int(state)

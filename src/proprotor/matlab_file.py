@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from proprotor.arrays import Array
 
+_LARGEST = 2**31 - 1  # bytes of a variable, which version 5 counts with 32 bits
 _LONGEST = 63  # characters of a name
 # fmt: off
 _KEYWORDS = frozenset([
@@ -53,7 +54,7 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
     Raises
     ------
     InputError
-        When the path is no such file or cannot be written, or the results are something else.
+        When the path is no such file or cannot be written, or the results are something else or too large for it.
     OSError
         When the file cannot be written.
     """
@@ -61,6 +62,11 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
 
     check_place(path, ".mat")
     content = _of_model(results) if isinstance(results, LinearModel) else _of_dataset(results)
+    for name, entry in content.items():
+        if getattr(entry, "nbytes", 0) > _LARGEST:
+            raise InputError(
+                "results", name, "must be below 2 GB in a .mat file: proprotor.save_results takes more"
+            )
     write_whole(
         path,
         lambda file: savemat(file, content, long_field_names=True, do_compression=True, oned_as="column"),

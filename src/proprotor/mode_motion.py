@@ -134,7 +134,7 @@ def mode_motion(
         One design.
     airspeed : float in m/s, text such as "300 kt", or pint quantity
     mode : str
-        By name.
+        By what moves at the airspeed.
     wing : WingSketch, optional
         What to draw; by default what the deck says of its wing, else the proportions of the XV-15.
     **options

@@ -109,7 +109,7 @@ def moving(
         rad/s; that of the model by default. Without either, regressive and progressive are told by the whirl in the
         fixed frame alone.
     """
-    held, states = held_coordinates(model), values.shape[-1]
+    held, states = held_coordinates(model, values.shape[-1]), values.shape[-1]
     given = model.rotor_speed if rotor_speed is None else rotor_speed
     speed = None if given is None else np.broadcast_to(np.abs(given), values.shape[:-1]).reshape(-1)
     flat = values.reshape(-1, states)
@@ -248,7 +248,7 @@ def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array
     of a propeller on a pivot: of the way the shaft's axis goes round, or where that does not tilt, the hub's centre.
     NaN for real roots, and where nothing goes round.
     """
-    held = held_coordinates(model)
+    held = held_coordinates(model, right.shape[-2])
     against, with_rotor = np.zeros(values.shape), np.zeros(values.shape)
     for motion in motions(model.dofs):
         if len(motion.places) == 2:
@@ -267,7 +267,7 @@ def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array
 def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, Array]:
     """Squares of what goes round against and with the rotor of the shaft's axis, or of the hub (..., modes)."""
     n = len(model.dofs)
-    shape = coordinate_motion(held_coordinates(model), n, values, right)
+    shape = coordinate_motion(held_coordinates(model, right.shape[-2]), n, values, right)
     if model.hub is not None:
         moved = np.asarray(model.hub) @ np.nan_to_num(shape)
     else:

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from proprotor.path import Line
 
-_NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping ratio
 _NO_SHAFT = "no shaft holds the azimuth: its rate has one root, where a shaft gives two"
 
 
@@ -78,9 +77,13 @@ def without_massless(model: LinearModel) -> LinearModel:
     return model if good.all() else replace(model, M=np.where(good[..., None, None], model.M, np.nan))
 
 
-def held_coordinates(model: LinearModel) -> list[int]:
-    """Places of the coordinates whose displacement is a state anywhere: all but an azimuth that no shaft holds."""
-    held = bool(model.shaft_holds_azimuth.any())
+def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]:
+    """Places of the coordinates whose displacement is a state anywhere: all but an azimuth that no shaft holds.
+
+    With the number of states of a larger batch, those of that batch.
+    """
+    n = len(model.dofs)
+    held = bool(model.shaft_holds_azimuth.any()) if states is None else states == 2 * n
     return [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or held]
 
 
@@ -239,11 +242,12 @@ def modes(model: LinearModel) -> xarray.Dataset:
     Returns
     -------
     xarray.Dataset
-        eigenvalue (rad/s), frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio, shape (complex,
-        largest component 1), dominant (name of the coordinate with the largest participation), name (what moves, see
-        `proprotor.mode_names`) and share (how much of the mode that is, 0 to 1); dimensions (..., mode) and dof. A real
-        root is a mode of its own, with frequency 0. Points with fewer modes end in NaN; where a batch has points with
-        fewer eigenvalues than others, missing tells why.
+        eigenvalue (rad/s), eigenvalue_error (rad/s, the bound on its rounding error, `proprotor.root_error`), frequency
+        (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio (NaN for a root at zero within its error), shape
+        (complex, largest component 1), dominant (name of the coordinate with the largest participation), name (what
+        moves, see `proprotor.mode_names`) and share (how much of the mode that is, 0 to 1); dimensions (..., mode) and
+        dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN; where a batch has
+        points with fewer eigenvalues than others, missing tells why.
 
     Raises
     ------
@@ -251,11 +255,13 @@ def modes(model: LinearModel) -> xarray.Dataset:
         When the mass matrix has no inverse, as that of a rotor alone may not.
     """
     from proprotor.mode_names import moving  # which needs the vectors of this module
+    from proprotor.root_error import errors_of  # here, because it is built on this module
 
     system = eigensystem(model)
     model = with_reasons(model) if model.hub is None else model
     values = system.values
     moves = moving(model, values, system.left, system.right)
+    error = errors_of(model, Spectrum(values, system.right))
     kept = np.where(values.imag >= 0, np.abs(values.imag), np.inf)
     order = np.argsort(kept, axis=-1, kind="stable")
     count = int(np.isfinite(kept).sum(axis=-1).max(initial=0))
@@ -264,7 +270,7 @@ def modes(model: LinearModel) -> xarray.Dataset:
     values = np.where(there, np.take_along_axis(values, order, -1), np.nan)
     shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
     shares = np.take_along_axis(participation(model, system), order[..., None, :], -1)
-    data = mode_dataset(model, values, shapes, shares)
+    data = mode_dataset(model, values, np.take_along_axis(error, order, -1), shapes, shares)
     by_mode = data.eigenvalue.dims
     names = np.where(there, np.take_along_axis(moves.names, order, -1), "").astype(str)
     data["name"] = by_mode, names, {"long_name": "what moves"}
@@ -274,9 +280,12 @@ def modes(model: LinearModel) -> xarray.Dataset:
 
 
 def mode_dataset(
-    model: LinearModel, values: Array, shapes: Array, shares: Array, line: Line | None = None
+    model: LinearModel, values: Array, error: Array, shapes: Array, shares: Array, line: Line | None = None
 ) -> xarray.Dataset:
-    """The dataset of `modes` from eigenvalues (..., mode), motions and participations (..., n, mode)."""
+    """The dataset of `modes` from eigenvalues and their errors (..., mode), motions and participations (..., n, mode).
+
+    A root at zero within its error has no damping ratio.
+    """
     import xarray  # here, because it takes long to import
 
     leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
@@ -284,15 +293,18 @@ def mode_dataset(
         leading = ("airspeed" if line is None else line.name,)
     by_mode = (*leading, "mode")
     with np.errstate(all="ignore"):
-        size = np.nan_to_num(np.abs(values))
-        neutral = size < _NEUTRAL * size.max(axis=-1, keepdims=True, initial=0)
-        ratio = np.where(neutral, np.nan, -values.real / np.abs(values))
+        ratio = np.where(np.abs(values) <= error, np.nan, -values.real / np.abs(values))
         largest = np.take_along_axis(shapes, np.abs(np.nan_to_num(shapes)).argmax(axis=-2)[..., None, :], -2)
         shapes = np.where(np.isnan(values)[..., None, :], np.nan, shapes / largest)
     dominant = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-2)]
     dominant = np.where(np.isnan(values), "", dominant)
     data = {
         "eigenvalue": (by_mode, values, {"units": "rad/s"}),
+        "eigenvalue_error": (
+            by_mode,
+            np.where(np.isnan(values), np.nan, error),
+            {"units": "rad/s", "long_name": "bound on the rounding error of the eigenvalue"},
+        ),
         "frequency": (
             by_mode,
             np.where(np.isnan(values), np.nan, np.abs(values.imag)),

@@ -447,6 +447,6 @@ def _check_power_of_two(size: int) -> None:
 def _check_size(field: str, given: object, designs: int, inputs: int) -> None:
     """Refuse more designs than there is memory for their inputs, before any are laid out."""
     if designs > _MOST_DESIGNS:
-        raise InputError(field, given, f"must make at most {_MOST_DESIGNS} designs")
+        raise InputError(field, given, f"must be at most {_MOST_DESIGNS} designs")
     size = float(_BYTES_OF_INPUT * designs * max(1, inputs))
     check_memory(field, given, size, f"the inputs of {designs:.4g} designs")

@@ -23,6 +23,7 @@ from proprotor.flutter import Boundary, flutter_point
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition
 from proprotor.named_modes import named_modes
+from proprotor.root_error import refined
 from proprotor.tracking import Modes
 
 if TYPE_CHECKING:
@@ -92,8 +93,8 @@ def sensitivity(
     airspeed : float in m/s, text such as "300 kt", or pint quantity
         Where damping or eigenvalues are; for the flutter speed optionally the airspeeds of the scan.
     mode : str, optional
-        One mode by name; all by default. For the flutter speed the first boundary of this mode, onset or not, instead
-        of the lowest onset of any.
+        One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary at which this
+        moves, onset or not, instead of the lowest onset of any.
     level : float
         Damping ratio that counts as the boundary of the flutter speed.
     **options
@@ -224,6 +225,7 @@ def at_boundary(
         "value": speed,
         "units": "m/s",
         "mode": boundary.mode,
+        "branch": boundary.branch,
         "level": level,
         "eigen_solves": eigen_solves + 1,
     }
@@ -242,8 +244,10 @@ def _of_modes(
     rates, exact = _rates(case, inputs, speed, modes, model, options)
     value, units = modes.values, "rad/s"
     if of == "damping":
-        value, units = -modes.values.real / np.abs(modes.values), "1"
-        rates = damping_rate(modes.values, rates)
+        root = refined(model, modes)
+        at_zero = np.abs(root.values) <= root.error
+        value, units = np.where(at_zero, np.nan, -modes.values.real / np.abs(modes.values)), "1"
+        rates = np.where(at_zero, np.nan, damping_rate(modes.values, rates))
     data = _dataset(inputs, ("input", "mode"), rates, units, exact).assign_coords(mode=names)
     data[of] = ("mode", value, {"units": units})
     data["defect"] = ("mode", defect(modes))

@@ -107,6 +107,8 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     (first, hub, _), *_ = placed.values()
     motion = np.pad(hub, ((0, 0), (0, len(names) - n)))
     told = {stamp.of_model(rotor.model).get("options") for rotor in rotors.values()}
+    # Of rotors with different options there is no one stamp.
+    origin = first.model.origin if len(told) == 1 else None
     coupled = replace(
         first.model,
         **matrices,
@@ -116,7 +118,7 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         rotor=None,
         mass_at_rest=None,
         shapes=None,
-        origin=first.model.origin if len(told) == 1 else None,  # rotors of different options have no one stamp
+        origin=origin,
     )
     return refused_where(refusal, coupled, support)
 

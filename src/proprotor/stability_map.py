@@ -1,7 +1,9 @@
 """Where in the plane of two inputs a case is stable, and the line between.
 
-A grid of points is evaluated as one batch. Where the largest growth changes sign between two neighbours of the grid,
-the crossing on the edge between them is found to rounding, all edges at once; marching squares joins them into lines.
+A grid of points is evaluated as one batch. Where one of two neighbours of the grid is stable and the other is not, the
+first onset on the way from the stable one is found as any boundary is (`proprotor.crossings`), all edges at once;
+marching squares joins them into lines. Two crossings on one edge, between neighbours that are both stable or both not,
+are finer than the grid.
 """
 
 from __future__ import annotations
@@ -15,11 +17,11 @@ from numpy.typing import ArrayLike
 
 from proprotor import stamp
 from proprotor.arrays import Array
-from proprotor.crossings import growth
+from proprotor.crossings import Brackets, Search
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import LinearModel
-from proprotor.modes import eigenvalues
 from proprotor.needs import check_memory
+from proprotor.root_error import growth, growth_error, roots
 from proprotor.speed import in_metres_per_second
 
 if TYPE_CHECKING:
@@ -30,9 +32,6 @@ if TYPE_CHECKING:
 AIRSPEED = "airspeed"
 _AT_ONCE = 4096  # points of one batch
 _BYTES_PER_POINT = 100.0  # of the grid: where it is, what was found there, and the line between
-_HALVINGS = 60
-_CLOSE = 1e-10  # of an edge
-_NEUTRAL = 1e-9  # of the largest eigenvalue: growth that says nothing
 
 Plane = Callable[[Array, Array], LinearModel]  # x and y (k,) to the models there
 Point = tuple[int, int]  # row and column in the grid
@@ -40,21 +39,25 @@ Edge = tuple[Point, Point]
 
 
 class Edges(NamedTuple):
-    """Edges of the grid on which the boundary crosses: the places of both ends and the crossing, (k, 2) each."""
+    """Edges of the grid that the boundary crosses: places of both ends and the crossing, (k, 2) each; its root (k,)."""
 
     first: Array
     last: Array
     crossing: Array
+    eigenvalue: Array
 
 
 def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
-    """Largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points."""
-    values = eigenvalues(model)
-    found, size = growth(values, level), np.nan_to_num(np.abs(values))
-    found = np.where(np.abs(found) <= _NEUTRAL * size.max(axis=-1, keepdims=True), 0.0, found)
+    """Largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points.
+
+    The growth of a root that is neutral within its error is zero.
+    """
+    values, error = roots(model, level)
+    found = growth(values, level)
+    found = np.where(np.abs(found) <= growth_error(error, level), 0.0, found)
     place = np.where(np.isnan(found), -np.inf, found).argmax(axis=-1)[..., None]
-    critical = np.take_along_axis(values, place, -1)[..., 0]
-    return np.take_along_axis(found, place, -1)[..., 0], critical.real + 1j * np.abs(critical.imag)
+    best, critical = (np.take_along_axis(part, place, -1)[..., 0] for part in (found, values))
+    return best, critical.real + 1j * np.abs(critical.imag)
 
 
 def stability_map(
@@ -85,8 +88,9 @@ def stability_map(
     xarray.Dataset
         growth (y, x), the largest Re λ + ζ0 |λ| of all modes, 1/s, positive where a mode is beyond the level; frequency
         of that mode, rad/s; reason of points that failed, warning of those that are doubtful. boundary (vertex, axis):
-        the line between, in lines parted by NaN; boundary_warning (vertex,), what makes it doubtful there. Attributes:
-        level, airspeed in m/s where it is given, eigen_solves, and the case and its options (`proprotor.stamp`).
+        the line between, in lines parted by NaN; boundary_eigenvalue (vertex,), the root that crosses there, rad/s;
+        boundary_warning (vertex,), what makes it doubtful there. Attributes: level, airspeed in m/s where it is given,
+        eigen_solves, and the case and its options (`proprotor.stamp`).
 
     Raises
     ------
@@ -111,7 +115,7 @@ def stability_map(
         np.concatenate(part).reshape(shape) for part in zip(*parts, strict=True)
     )
     edges, solves = _crossings(plane, x, y, largest, level)
-    found = _dataset(names, values, largest, value, _lines(edges, largest))
+    found = _dataset(names, values, largest, value, edges)
     for name, texts, meaning in (
         ("reason", reason, "why a point failed"),
         ("warning", warning, "what makes a point doubtful"),
@@ -183,54 +187,56 @@ def _warnings_at(plane: Plane, vertices: Array) -> Array:
 
 
 def _crossings(plane: Plane, x: Array, y: Array, largest: Array, level: float) -> tuple[Edges, int]:
-    """The boundary on the edges of the grid, by false position with halving (Illinois) on all of them at once."""
+    """The boundary on the edges of the grid: the first onset on the way from the stable end, on all of them at once."""
     unstable = largest > 0
     good = np.isfinite(largest)
     along_x = np.argwhere((unstable[:, 1:] != unstable[:, :-1]) & good[:, 1:] & good[:, :-1])
     along_y = np.argwhere((unstable[1:] != unstable[:-1]) & good[1:] & good[:-1])
     first = np.concatenate([along_x, along_y])
     last = np.concatenate([along_x + np.array([0, 1]), along_y + np.array([1, 0])])
-    start, end = (np.stack([x[place[:, 1]], y[place[:, 0]]], axis=1) for place in (first, last))
-    values = np.stack([largest[tuple(place.T)] for place in (first, last)])
-    low, high = np.zeros(len(first)), np.ones(len(first))
-    share, solves = np.full(len(first), 0.5), 0
-    active, side = np.arange(len(first)), np.full(len(first), -1)
-    for _ in range(_HALVINGS):
-        if not len(active):
-            break
-        previous = share[active]
-        share[active] = _between(low[active], high[active], values[:, active])
-        moved = np.abs(share[active] - previous)
-        at = start[active] + share[active, None] * (end[active] - start[active])
-        found, *_ = _evaluated(plane, at[:, 0], at[:, 1], level)
-        solves += len(active)
-        # A point that fails between two that do not ends the search on its edge.
-        works = np.isfinite(found)
-        active, found, moved = active[works], found[works], moved[works]
-        same = (found > 0) == (values[0, active] > 0)
-        # An end that stays twice running counts half, so that it does not stay for ever.
-        again = np.where(same == side[active], 0.5, 1.0)
-        side[active] = same
-        kept = values[:, active] * again
-        low[active] = np.where(same, share[active], low[active])
-        high[active] = np.where(same, high[active], share[active])
-        values[:, active] = np.where(same, found, kept[0]), np.where(same, kept[1], found)
-        active = active[(np.abs(found) > 0) & (moved > _CLOSE) & (high[active] - low[active] > _CLOSE)]
-    return Edges(first, last, start + share[:, None] * (end - start)), solves
+    turned = unstable[tuple(first.T)][:, None]
+    stable, other = np.where(turned, last, first), np.where(turned, first, last)
+    start, end = (np.stack([x[place[:, 1]], y[place[:, 0]]], axis=1) for place in (stable, other))
+    share, value = np.full(len(first), 0.5), np.full(len(first), complex(np.nan, np.nan))
+    solves = 0
+    for begin in range(0, len(first), _AT_ONCE // 2):
+        some = slice(begin, begin + _AT_ONCE // 2)
+        share[some], value[some], count = _onsets(plane, start[some], end[some], level)
+        solves += count
+    return Edges(first, last, start + share[:, None] * (end - start), value), solves
 
 
-def _between(low: Array, high: Array, values: Array) -> Array:
-    """Where the line through both values is zero, kept off the ends."""
-    width = high - low
-    with np.errstate(all="ignore"):
-        part = values[0] / (values[0] - values[1])
-    part = np.where(np.isfinite(part), part, 0.5)
-    between: Array = low + width * np.clip(part, 1e-9, 1 - 1e-9)
-    return between
+def _onsets(plane: Plane, start: Array, end: Array, level: float) -> tuple[Array, Array, int]:
+    """First onset on the straight way from each start to its end, as a share of it, the root there, and eigen-solves.
+
+    Where a point on the way cannot be analysed, the middle of what holds the onset.
+    """
+
+    def models(edge: Array, share: Array) -> LinearModel:
+        at = start[edge] + share[:, None] * (end[edge] - start[edge])
+        return plane(at[:, 0], at[:, 1])
+
+    count = len(start)
+    share, value = np.full(count, np.inf), np.full(count, complex(np.nan, np.nan))
+    if not count:
+        return share, value, 0
+    search = Search(
+        models, np.repeat(np.arange(count), 2), np.tile([0.0, 1.0], count), level, onset_only=True
+    )
+    if search.scanned.points is None:
+        return np.full(count, 0.5), value, 0
+    brackets = Brackets(search)
+    for one in brackets.close():
+        if one.position < share[one.line]:
+            share[one.line], value[one.line] = one.position, one.value.real + 1j * abs(one.value.imag)
+    for place in brackets.lost:
+        edge = brackets.line[place]
+        share[edge] = min(share[edge], brackets.x[:, place].mean())
+    return np.where(np.isfinite(share), share, 0.5), value, int(search.solves.sum() + brackets.solves.sum())
 
 
 def _lines(edges: Edges, largest: Array) -> Array:
-    """Crossings (vertices, 2) in the order of the lines they form, parted by NaN."""
+    """Places (vertices,) of crossings in the order of the lines they form, parted by -1."""
     place = {
         (tuple(first), tuple(last)): number
         for number, (first, last) in enumerate(zip(edges.first.tolist(), edges.last.tolist(), strict=True))
@@ -240,13 +246,13 @@ def _lines(edges: Edges, largest: Array) -> Array:
         for one, other in _in_cell(place, row, column, largest):
             neighbours[one].append(other)
             neighbours[other].append(one)
-    ordered: list[Array] = []
+    ordered: list[int] = []
     left = set(neighbours)
     while left:
         ends = [number for number in left if len(neighbours[number]) == 1]
         line = _walk(min(ends or left), neighbours, left)
-        ordered += [*edges.crossing[line], np.full(2, np.nan)]
-    return np.array(ordered[:-1]).reshape(-1, 2)
+        ordered += [*line, -1]
+    return np.array(ordered[:-1], dtype=int)
 
 
 def _walk(start: int, neighbours: Mapping[int, list[int]], left: set[int]) -> list[int]:
@@ -283,9 +289,13 @@ def _dataset(
     values: tuple[Array, Array],
     largest: Array,
     value: Array,
-    boundary: Array,
+    edges: Edges,
 ) -> xarray.Dataset:
     import xarray  # here, because it takes long to import
+
+    line = _lines(edges, largest)
+    vertices = np.where((line < 0)[:, None], np.nan, edges.crossing[line]) if len(line) else np.empty((0, 2))
+    root = np.where(line < 0, np.nan, edges.eigenvalue[line]) if len(line) else np.empty(0, dtype=complex)
 
     dims = names[::-1]
     frequency = np.where(np.isnan(largest), np.nan, value.imag)
@@ -293,7 +303,12 @@ def _dataset(
         {
             "growth": (dims, largest, {"units": "1/s", "long_name": "largest growth of all modes"}),
             "frequency": (dims, frequency, {"units": "rad/s", "long_name": "of the mode that grows most"}),
-            "boundary": (("vertex", "axis"), boundary),
+            "boundary": (("vertex", "axis"), vertices),
+            "boundary_eigenvalue": (
+                "vertex",
+                root,
+                {"units": "rad/s", "long_name": "root that is neutral there"},
+            ),
         },
         coords={names[0]: values[0], names[1]: values[1], "axis": list(names)},
     )

@@ -5,29 +5,29 @@ A design that cannot be, or a point that fails, has its reason and NaN; the rest
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from proprotor import flutter_scan
 from proprotor.arrays import Array
+from proprotor.crossings import Brackets, Crossing, Search
 from proprotor.errors import InputError
 from proprotor.mode_names import moving
 from proprotor.modes import (
     coordinate_motion,
     coordinate_shares,
     decomposition,
-    eigensystem,
     eigenvalues,
     held_coordinates,
     missing_roots,
-    participation,
 )
+from proprotor.root_error import error_near_zero
 from proprotor.sampling import AIRSPEED
 from proprotor.source_code import check_code
 from proprotor.study_modes import follow_designs
+from proprotor.tracking import NOT_TOLD, Spectrum
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -36,7 +36,9 @@ if TYPE_CHECKING:
 QUANTITIES = ("eigenvalue", "least_stable", "trim", "flutter", "vectors", "modes")
 ALONG_AIRSPEEDS = ("flutter", "modes")  # need all airspeeds of a design at once
 DEFAULT_QUANTITIES = QUANTITIES[:3]
-_NEUTRAL = 1e-12  # of the largest eigenvalue: a root at zero has no damping
+STABLE = "stable throughout"
+UNSTABLE = "unstable at the lowest airspeed"
+_TOLERANCE = 1e-5  # m/s, on a flutter speed
 _BLOCK = 64  # points whose vectors stay in the cache
 _BAD_INPUT = (InputError, np.linalg.LinAlgError)
 
@@ -76,7 +78,7 @@ VARIABLES: dict[str, dict[str, Variable]] = {
     },
     "flutter": {
         "flutter_speed": Variable(
-            DESIGN, (), float, "m/s", "lowest airspeed of the range at which stability is lost"
+            DESIGN, (), float, "m/s", "lowest airspeed of the range at which a mode becomes unstable"
         ),
         "flutter_frequency": Variable(
             DESIGN, (), float, "rad/s", "|Im s| of the mode that loses it; 0: divergence"
@@ -84,7 +86,12 @@ VARIABLES: dict[str, dict[str, Variable]] = {
         "flutter_mode": Variable(DESIGN, (), str, "", "what moves in it at that airspeed"),
         "flutter_coordinate": Variable(DESIGN, (), str, "", "coordinate that takes part in it most"),
         "flutter_warning": Variable(DESIGN, (), str, "", "what makes the flutter speed doubtful"),
-        "flutter_note": Variable(DESIGN, (), str, "", "why there is no flutter speed"),
+        "flutter_note": Variable(
+            DESIGN, (), str, "", "why there is no flutter speed, or that it is not the first instability"
+        ),
+        "flutter_least_damping": Variable(
+            DESIGN, (), float, "1", "lowest -Re s/|s| of all modes at the airspeeds of the range"
+        ),
     },
     "vectors": {
         "vector": Variable(
@@ -109,11 +116,7 @@ ALWAYS = {
     "missing": Variable(POINT, (), str, "", "why a point has fewer eigenvalues than others"),
 }
 
-_SCAN = {  # what the search for a flutter speed needs of every point, whether or not it is among the results
-    "growth_rate": VARIABLES["least_stable"]["growth_rate"],
-    "neutral_growth": Variable(POINT, (), float, "1/s", "growth that is rounding of a neutral root"),
-}
-VARIABLE = {name: it for of in (*VARIABLES.values(), ALWAYS, _SCAN) for name, it in of.items()}
+VARIABLE = {name: it for of in (*VARIABLES.values(), ALWAYS) for name, it in of.items()}
 
 
 def variables(quantities: tuple[str, ...]) -> dict[str, Variable]:
@@ -185,7 +188,7 @@ class Analysis:
     options: Mapping[str, Any] = field(default_factory=dict)
     dofs: tuple[str, ...] = ()
     states: int = 0
-    tolerance: float = flutter_scan.TOLERANCE
+    tolerance: float = _TOLERANCE
     code: str = ""
 
     def __call__(self, batch: Batch) -> dict[str, Array]:
@@ -200,22 +203,23 @@ class Analysis:
             check_code(self.code)
         found = self._blank(batch.shape)
         every = np.arange(batch.shape[0]), np.arange(batch.shape[1])
+        if "flutter" in self.quantities:
+            self._find_flutter(found, batch)
+        if self.quantities == ("flutter",):
+            return found
         try:
             self._put(found, *every, self._points(batch))
         except _BAD_INPUT:
             refused = self._refusals(batch)
             found["reason"][:] = refused[:, None]
             self._fill(found, batch, np.flatnonzero(refused == ""), every[1])
-        if "flutter" in self.quantities:
-            self._find_flutter(found, batch)
-        return {name: found[name] for name in variables(self.quantities)}
+        return found
 
     def _blank(self, shape: tuple[int, int]) -> dict[str, Array]:
         sizes = {"state": self.states, "dof": len(self.dofs)}
-        wanted = variables(self.quantities) | (_SCAN if "flutter" in self.quantities else {})
         return {
             name: empty(it, (*(shape if it.on == POINT else shape[:1]), *(sizes[dim] for dim in it.dims)))
-            for name, it in wanted.items()
+            for name, it in variables(self.quantities).items()
         }
 
     def _refusals(self, batch: Batch) -> Array:
@@ -289,13 +293,14 @@ class Analysis:
             found |= {name: getattr(model.trim, name) for name in VARIABLES["trim"]}
         if "modes" in self.quantities:
             found |= _followed(model, "vectors" in self.quantities)
+            found["warning"] = _with_doubt(found["warning"], found["mode_quality"])
         elif "vectors" in self.quantities:
             found |= _eigenvalues_and_vectors(model)
-        else:
+        elif {"eigenvalue", "least_stable"} & set(self.quantities):
             found["eigenvalue"] = _eigenvalues(model)
         found = {name: self._with_all_states(name, array) for name, array in found.items()}
-        if {"least_stable", "flutter"} & set(self.quantities):
-            found |= _least_stable(found["eigenvalue"])
+        if "least_stable" in self.quantities:
+            found |= _least_stable(model, found["eigenvalue"])
         return found
 
     def _with_all_states(self, name: str, found: Array) -> Array:
@@ -309,62 +314,109 @@ class Analysis:
     # Flutter speed --------------------------------------------------------------------------------
 
     def _find_flutter(self, found: dict[str, Array], batch: Batch) -> None:
-        scan = (found["growth_rate"], batch.speeds, found["reason"], found["neutral_growth"])
-        bracket = flutter_scan.brackets(*scan)
-        found["flutter_note"][:] = bracket.note
-        failure = np.full(batch.shape[0], "", dtype=object)
+        designs, speeds = batch.shape
+        refused = np.full(designs, "", dtype=object)
+        if batch.numbers:
+            try:
+                self.case.vary(batch.numbers)
+            except InputError:
+                refused = self._refusals(batch)
+        found["reason"][:] = refused[:, None]
+        rows = np.flatnonzero(refused == "")
+        search = Search(
+            lambda line, speed: self._model_of_each(batch.some(line), speed),
+            np.repeat(rows, speeds),
+            np.tile(np.asarray(batch.speeds, dtype=float), len(rows)),
+            onset_only=True,
+            forgiving=True,
+            states=self.states or None,
+        )
+        scanned = search.scanned
+        for name in ("reason", "warning"):
+            found[name][rows] = getattr(scanned, name).reshape(len(rows), speeds)
+        if scanned.model is not None and scanned.model.airspeed.size == scanned.works.size:
+            found["missing"][rows] = missing_roots(scanned.model, self.states).reshape(len(rows), speeds)
+        found["flutter_note"][:] = self._notes(found["reason"], batch, search)
+        if search.scanned.points is not None:
+            brackets = Brackets(search, self.tolerance)
+            first = _lowest(brackets.close())
+            for place, why in brackets.lost.items():
+                if brackets.line[place] not in first:
+                    found["flutter_note"][brackets.line[place]] = f"the search for its boundary failed: {why}"
+            _put_least_damping(found, search)
+            self._put_onsets(found, first, batch)
 
-        def growth(rows: Array, speeds: Array) -> Array:
-            values, failure[rows] = self._one_speed_each(batch.some(rows), speeds, self._growth_of)
-            return values.get("growth_rate", np.full(len(rows), np.nan))
+    def _model_of_each(self, batch: Batch, speeds: Array) -> LinearModel:
+        """Models of designs at an airspeed of its own each (designs,)."""
+        numbers = {name: values[:, 0] for name, values in batch.numbers.items()}
+        return (self.case.vary(numbers) if numbers else self.case).linearize(speeds, **self.options)
 
-        speed = flutter_scan.refine(bracket, growth, self.tolerance)
-        found["flutter_speed"][:] = speed
-        rows = np.flatnonzero(np.isfinite(speed))
-        if len(rows):
-            values, _ = self._one_speed_each(batch.some(rows), speed[rows], self._mode_at_boundary)
-            for name, array in values.items():
-                found[name][rows] = array
-        for row in np.flatnonzero(np.isnan(speed) & (bracket.note == "")):
-            found["flutter_note"][row] = failure[row] or "the search between two airspeeds did not converge"
-
-    def _one_speed_each(
-        self, batch: Batch, speeds: Array, analyse: Callable[[LinearModel], dict[str, Array]]
-    ) -> tuple[dict[str, Array], Array]:
-        """What an analysis finds for each design at an airspeed of its own (designs,), and why it failed."""
-        try:
-            model = self._model(batch, speeds[:, None])
-            return {name: array[:, 0] for name, array in analyse(model).items()}, model.trim.reason[:, 0]
-        except _BAD_INPUT as error:
-            if len(speeds) == 1:
-                return {}, np.array([self._told(batch, error)], dtype=object)
-        parts = np.array_split(np.arange(len(speeds)), 2)
-        halves = [self._one_speed_each(batch.some(part), speeds[part], analyse) for part in parts]
-        values: dict[str, Array] = {}
-        for part, (half, _) in zip(parts, halves, strict=True):
-            for name, array in half.items():
-                missing = "" if array.dtype == object else np.nan
-                values.setdefault(name, np.full(len(speeds), missing, dtype=array.dtype))[part] = array
-        return values, np.concatenate([reason for _, reason in halves])
-
-    def _growth_of(self, model: LinearModel) -> dict[str, Array]:
-        return _least_stable(_eigenvalues(model))
+    def _put_onsets(self, found: dict[str, Array], first: Mapping[int, Crossing], batch: Batch) -> None:
+        """Put the lowest onset of each design that has one in its place, with what moves there."""
+        if not first:
+            return
+        rows, onsets = np.array(list(first)), list(first.values())
+        model = self._model_of_each(batch.some(rows), np.array([one.position for one in onsets]))
+        spectra = (np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right"))
+        values, right, left = Spectrum(*spectra).all_modes
+        every, state = np.arange(len(rows)), np.array([one.state for one in onsets])
+        held = held_coordinates(model, values.shape[-1])
+        shares = coordinate_shares(held, len(model.dofs), left, right)[every, :, state]
+        found["flutter_speed"][rows] = [one.position for one in onsets]
+        found["flutter_frequency"][rows] = [abs(one.value.imag) for one in onsets]
+        found["flutter_mode"][rows] = moving(model, values, left, right).names[every, state]
+        found["flutter_coordinate"][rows] = np.array(model.dofs, dtype=object)[shares.argmax(axis=-1)]
+        found["flutter_warning"][rows] = model.trim.warning
+        stable = found["flutter_note"][rows] != UNSTABLE
+        found["flutter_note"][rows[stable]] = ""
 
     @staticmethod
-    def _mode_at_boundary(model: LinearModel) -> dict[str, Array]:
-        """Frequency, name and main coordinate of the mode with the largest real part."""
-        system = eigensystem(model)
-        place = np.nan_to_num(_growth(system.values), nan=-np.inf).argmax(axis=-1)[..., None]
-        shares = np.take_along_axis(participation(model, system), place[..., None], -1)[..., 0]
-        frequency = np.abs(np.take_along_axis(system.values, place, -1)[..., 0].imag)
-        main = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-1)]
-        names = moving(model, system.values, system.left, system.right).names
-        return {
-            "flutter_frequency": frequency,
-            "flutter_mode": np.take_along_axis(names, place, -1)[..., 0],
-            "flutter_coordinate": main,
-            "flutter_warning": model.trim.warning,
-        }
+    def _notes(reason: Array, batch: Batch, search: Search) -> Array:
+        """What there is to say of each design before any boundary is known."""
+        note = np.full(len(reason), "", dtype=object)
+        works, unstable = np.zeros(len(reason), dtype=bool), np.zeros(len(reason), dtype=bool)
+        if search.scanned.points is not None:
+            points = search.points
+            order = np.lexsort((points.position, points.line))
+            lines, place = np.unique(points.line[order], return_index=True)
+            first = order[place]
+            works[lines], unstable[lines] = True, (points.growth[first] > points.error[first]).any(axis=1)
+        for row, why in enumerate(reason):
+            failed = np.flatnonzero(why != "")
+            if not works[row]:
+                note[row] = why[0] or "no airspeed could be analysed"
+            elif unstable[row]:
+                note[row] = UNSTABLE
+            else:
+                note[row] = STABLE + _beyond(failed, batch.speeds, why)
+        return note
+
+
+def _beyond(failed: Array, airspeed: Array, reason: Array) -> str:
+    """What leaves open whether a design is stable."""
+    if not len(failed):
+        return ""
+    return f"; {len(failed)} airspeeds failed, at {airspeed[failed[0]]:.6g} m/s: {reason[failed[0]]}"
+
+
+def _lowest(found: list[Crossing]) -> dict[int, Crossing]:
+    """The lowest onset of each design that has one."""
+    first: dict[int, Crossing] = {}
+    for one in sorted(found, key=lambda one: one.position, reverse=True):
+        first[one.line] = one
+    return first
+
+
+def _put_least_damping(found: dict[str, Array], search: Search) -> None:
+    """Put the lowest damping ratio of each design at the airspeeds of the range in its place."""
+    scanned = search.scanned.points
+    assert scanned is not None  # of a search with points
+    values, size = scanned.spectrum.values, np.abs(scanned.spectrum.values)
+    with np.errstate(all="ignore"):
+        ratio = np.where(size > scanned.error, -values.real / size, np.inf).min(axis=1)
+    least = np.full(len(found["flutter_note"]), np.inf)
+    np.minimum.at(least, scanned.line, ratio)
+    found["flutter_least_damping"][:] = np.where(np.isfinite(least), least, np.nan)
 
 
 def _eigenvalues(model: LinearModel) -> Array:
@@ -423,6 +475,14 @@ def _followed(model: LinearModel, with_vectors: bool) -> dict[str, Array]:
     return found | (_vectors(model, values, right) if with_vectors else {})
 
 
+def _with_doubt(warning: Array, quality: Array) -> Array:
+    """Warnings (designs, speeds) with one more at points to which a step of no quality leads."""
+    joined = np.array(warning, dtype=object)
+    lost = (quality <= 0).any(axis=-1)
+    joined[lost] = [f"{text}; {NOT_TOLD}" if text else NOT_TOLD for text in joined[lost]]
+    return joined
+
+
 def _largest_one(shapes: Array) -> Array:
     """Columns divided by their largest component."""
     size = np.nan_to_num(shapes.real**2 + shapes.imag**2)
@@ -431,25 +491,21 @@ def _largest_one(shapes: Array) -> Array:
     return scaled
 
 
-def _growth(values: Array) -> Array:
-    """Real part of each eigenvalue; that of a root at zero does not count."""
-    size = np.nan_to_num(np.abs(values))
-    return np.where(size <= _NEUTRAL * size.max(axis=-1, keepdims=True), -np.inf, values.real)
+def _least_stable(model: LinearModel, values: Array) -> dict[str, Array]:
+    """Growth of the batch's points, damping and frequency of the mode damped least, from eigenvalues (..., states).
 
-
-def _least_stable(values: Array) -> dict[str, Array]:
-    """Growth of the batch's points, damping and frequency of the mode damped least, from eigenvalues (..., states)."""
-    size = np.nan_to_num(np.abs(values))
-    largest = size.max(axis=-1)
-    counts = size > _NEUTRAL * largest[..., None]
+    A root at zero within its error does not count, and the growth of one that is neutral is zero.
+    """
+    error = error_near_zero(model, values)
+    size = np.abs(values)
+    counts = size > error
     with np.errstate(all="ignore"):
         ratio = np.where(counts, -values.real / size, np.inf)
     place = ratio.argmin(axis=-1)[..., None]
     failed = np.isnan(values).all(axis=-1)
-    growth = np.where(counts, values.real, -np.inf).max(axis=-1)
+    growth = np.where(counts, np.where(np.abs(values.real) <= error, 0.0, values.real), -np.inf).max(axis=-1)
     return {
         "growth_rate": np.where(failed, np.nan, growth),
-        "neutral_growth": flutter_scan.NOT_UNSTABLE * largest,
         "damping_ratio": np.where(failed, np.nan, np.take_along_axis(ratio, place, -1)[..., 0]),
         "frequency": np.where(failed, np.nan, np.abs(np.take_along_axis(values.imag, place, -1)[..., 0])),
     }

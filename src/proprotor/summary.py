@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from proprotor import stamp
-from proprotor.boundary_summary import least_told
+from proprotor.boundary_summary import failed_told, least_told
 from proprotor.doubts import MARK, footnotes, marked, reasons_for_doubt
 from proprotor.provenance import reservations
 from proprotor.speed import KNOT
@@ -74,7 +74,7 @@ def of_crossings(found: Crossings) -> str:
         lines[0] += f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
     lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
     options = [f"  {line}" for line in stamp.told_if_unusual(found.stamp)]
-    return "\n".join(lines + list(_at_start(found)) + options)
+    return "\n".join([*lines, *_at_start(found), *_failed(found, "", 1.0), *options])
 
 
 def of_flutter_point(found: FlutterPoint) -> str:
@@ -95,7 +95,7 @@ def of_flutter_point(found: FlutterPoint) -> str:
     ]
     doubts = [f"  {MARK} {line}" for line in footnotes(found.doubts, "kt", KNOT)]
     options = [f"  {line}" for line in stamp.told_if_unusual(found.stamp)]
-    return "\n".join([first, *lines, *_at_start(found), *doubts, *options])
+    return "\n".join([first, *lines, *_at_start(found), *_failed(found, "kt", KNOT), *doubts, *options])
 
 
 def _position(boundary: Boundary) -> str:
@@ -113,6 +113,11 @@ def _event(boundary: Boundary) -> str:
 def _at_start(found: Crossings | FlutterPoint) -> Iterator[str]:
     if found.unstable_at_start:
         yield f"  from the start beyond the level: {', '.join(found.unstable_at_start)}"
+
+
+def _failed(found: Crossings | FlutterPoint, unit: str, factor: float) -> Iterator[str]:
+    for told in failed_told(found, unit, factor):
+        yield f"  {told}"
 
 
 def _range(values: np.ndarray) -> str:

@@ -45,8 +45,8 @@ class NormalModes:
     shapes : array, shape (..., m, n), optional
         The coordinates as motions of the structure that they stand for, where designs differ in them: what tells the
         coordinates of one design in those of the next.
-    warning : array (...) of str, optional
-        What makes a design doubtful.
+    warning : array of str, shape (...), optional
+        What makes a design doubtful, a text for each of many.
 
     Raises
     ------

@@ -164,7 +164,7 @@ def _stacked(made: Array) -> tuple[NormalModes, Strips]:
 
     first, strips = made.flat[0]
     if not made.shape:
-        return first, strips
+        return replace(first, shapes=None), strips
 
     def stack(parts: list[Any]) -> Array:
         return np.stack(parts).reshape(*made.shape, *parts[0].shape)

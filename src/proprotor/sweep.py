@@ -24,6 +24,7 @@ from proprotor.modes import (
 )
 from proprotor.needs import check_memory
 from proprotor.path import Line, Path, follow, path_of
+from proprotor.root_error import errors_of
 from proprotor.speed import in_metres_per_second
 from proprotor.tracking import Modes, Spectrum, link, side_by_side
 
@@ -100,7 +101,7 @@ def sweep(
     values, right, left = spectrum.all_modes
     found = moving(model, values, left, right, rotor_speed)
     columns, modes = mode_columns(found, values)
-    data = _by_motion(model, line, Modes(values, right, left), columns)
+    data = _by_motion(model, line, Modes(values, right, left), errors_of(model, spectrum), columns)
     by_mode = data.eigenvalue.dims
     followed = branches(path, named, points)
     for name, told in (
@@ -116,15 +117,15 @@ def sweep(
     return data.assign_coords(mode=modes)
 
 
-def _by_motion(model: LinearModel, line: Line, every: Modes, columns: Array) -> xarray.Dataset:
+def _by_motion(model: LinearModel, line: Line, every: Modes, error: Array, columns: Array) -> xarray.Dataset:
     """The dataset of the states in the columns (points, modes), with the sense in which they whirl."""
-    n, held, there = len(model.dofs), held_coordinates(model), columns >= 0
+    n, held, there = len(model.dofs), held_coordinates(model, every.right.shape[-2]), columns >= 0
     places = np.maximum(columns, 0)
     modes = Spectrum(every.values, every.right).modes(places)
     values = np.where(there, modes.values, np.nan)
     shapes = coordinate_motion(held, n, values, modes.right)
     shares = np.where(there[:, None, :], coordinate_shares(held, n, modes.left, modes.right), np.nan)
-    data = mode_dataset(model, values, shapes, shares, line)
+    data = mode_dataset(model, values, _at_columns(error, columns), shapes, shares, line)
     sense = np.where(there, whirl(model, modes.values, modes.left, modes.right), np.nan)
     told = {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
     data["whirl"] = data.eigenvalue.dims, sense, told
@@ -165,10 +166,11 @@ def state_names(
             own = here.values.shape[1]
             told = f"{approach.name} {approach.positions[0]:.6g} {approach.units}"
             return Named(nearest, known, place[:own], trust[:own], told, len(leg.points))
-    first = int(path.points[0])
+    start = int(np.flatnonzero(path.points < len(line.positions))[0])  # a point of the line, and none between
+    first = int(path.points[start])
     told = f"{line.name} {float(line.positions[first]):.6g} {line.units}"
     place = names_at(model, path.spectrum, first, rotor_speed)
-    return Named(0, known, place, np.ones(len(place)), told, 0)
+    return Named(start, known, place, np.ones(len(place)), told, 0)
 
 
 def _same_point(leg: Path, last: int, here: Spectrum) -> Array:
@@ -347,11 +349,6 @@ def anchor_speed(case: Case, **options: Any) -> float | None:
     speeds = tip_speed(case) * np.array(ANCHORS)
     works = np.flatnonzero(case.linearize(speeds, **options).trim.converged)
     return float(speeds[works[0]]) if len(works) else None
-
-
-def rotor_speed_of(case: Case) -> float | None:
-    """rad/s of a case that has one rotor speed."""
-    return float(case.operation.rotor_speed) if np.ndim(case.operation.rotor_speed) == 0 else None
 
 
 def _is_batch(case: Case, options: Mapping[str, Any]) -> bool:

@@ -13,12 +13,7 @@ from proprotor.arrays import Array
 if TYPE_CHECKING:
     import xarray
 
-_BRIDGED, _NEARLY = (
-    2.0,
-    0.02,
-)  # of the way that both roots go, and of a root: a name that passes no farther goes on
-_ROUNDING = 1e-9  # of the largest eigenvalue: a real part within this of zero says nothing
-
+_BRIDGED, _NEARLY = 2.0, 0.02  # of the way that both roots go, and of a root: a name that passes no farther goes on
 
 class UnstableRange(NamedTuple):
     """Airspeeds between which a root is unstable.
@@ -51,10 +46,9 @@ def damped_frequency(sweep: xarray.Dataset) -> Array:
 
 
 def growth_rate(sweep: xarray.Dataset) -> Array:
-    """Re s (airspeed, mode) in rad/s, exactly zero where it is zero but for rounding."""
+    """Re s (airspeed, mode) in rad/s, exactly zero where it is neutral: zero within the error of the root."""
     real = sweep.eigenvalue.values.real
-    largest = np.nanmax(np.abs(sweep.eigenvalue.values), initial=0)
-    return np.where(np.abs(real) <= _ROUNDING * largest, 0.0, real)
+    return np.where(np.abs(real) <= sweep.eigenvalue_error.values, 0.0, real)
 
 
 def damping_percent(sweep: xarray.Dataset) -> Array:

@@ -24,6 +24,7 @@ _BLOCK = 64  # steps whose matrices stay in the cache
 _COUPLED = (
     1e-6  # likeness of different modes below which it is rounding, and they pass each other as strangers
 )
+NOT_TOLD = "the step to here does not tell which root is which"
 POOR = 0.5  # quality of a step below which it is divided
 
 
@@ -311,7 +312,7 @@ def _link_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
-    likeness = np.sqrt(_size((rows @ later_columns) * (later_rows @ columns).T))
+    likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
     distance = _distance(start[:, None], end, np.nanmax(np.abs(start)))
     gain = likeness - distance
     successor = linear_sum_assignment(np.where(np.isfinite(gain), gain, -1e300), maximize=True)[1]
@@ -352,7 +353,7 @@ def side_by_side(values: Array) -> Array:
     return order
 
 
-def _size(numbers: Array) -> Array:
+def size_of(numbers: Array) -> Array:
     """|z|, without the care that np.abs takes of the largest and smallest of numbers."""
     size: Array = np.sqrt(numbers.real**2 + numbers.imag**2)
     return size
@@ -360,7 +361,7 @@ def _size(numbers: Array) -> Array:
 
 def _distance(start: Array, end: Array, scale: Array) -> Array:
     """Distance of eigenvalues in parts of the largest; 0 from and to a state that a point does not have."""
-    distance = _size(start - end) / scale
+    distance = size_of(start - end) / scale
     return np.where(np.isnan(distance), 0.0, distance)
 
 

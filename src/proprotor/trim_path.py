@@ -35,7 +35,8 @@ _WINDOWS = (1, 2, 4)  # parts of the whole path in λ, each with a P of its own,
 _POWER_STEPS, _TINY, _FLOOR = 8, 1e-300, 1e-9
 _FIRST_STEP, _SHORTEST_STEP = 0.25, 1e-6  # of λ
 _CAUTION = 0.8  # of the largest radius, which a step is made for
-_STEPS = 400
+_TURNING = 10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
+_STEPS = 1000
 _CORRECTIONS = 8
 _ARRIVED = 1e-7  # rad, the last correction
 _SEARCH = np.radians(1)  # between the angles among which the rigid blade's root is looked for
@@ -145,13 +146,13 @@ def _half_way(start: State, state: State) -> State:
 class Followed:
     """Where the path of each point led.
 
-    rigid (n,): whether the rigid blade has a root to start from; share (n,): λ reached, 1 at the trim; speed (n,): of
-    the angles there, rad per unit of λ; slopes there.
+    rigid (n,): whether the rigid blade has a root to start from; share (n,): λ reached, 1 at the trim; turned (n,):
+    whether the path turns back there; slopes there.
     """
 
     rigid: Array
     share: Array
-    speed: Array
+    turned: Array
     slopes: Slopes
 
     @property
@@ -164,7 +165,7 @@ def follow(balance: Balance, state: State, rows: Array, iterations: Array) -> Fo
     """Follow the path of each point from the undeflected blade, and leave its state where that led."""
     n, k = len(rows), len(balance.free)
     rigid = undeflected(balance, state, rows)
-    followed = Followed(rigid, np.zeros(n), np.zeros(n), Slopes.unknown(n, k))
+    followed = Followed(rigid, np.zeros(n), np.zeros(n, dtype=bool), Slopes.unknown(n, k))
     tangent, step = np.zeros((n, k)), np.full(n, _FIRST_STEP)
     active = np.flatnonzero(rigid)
     begun, *there = _correct(balance, state, rows[active], followed.share[active], iterations)
@@ -187,7 +188,9 @@ def follow(balance: Balance, state: State, rows: Array, iterations: Array) -> Fo
         _accept(followed, tangent, gained, *(part[good] for part in there))
         longer = np.clip(_CAUTION * _CONTRACTION / radius, 0.25, 2.0)
         step[active] *= np.where(good | (radius > _CONTRACTION), longer, 0.5)
-        active = active[(followed.share[active] < 1) & (step[active] >= _SHORTEST_STEP)]
+        ended = step[active] < _SHORTEST_STEP
+        followed.turned[active] = ended & (np.abs(tangent[active]).max(axis=-1) > _TURNING)
+        active = active[(followed.share[active] < 1) & ~ended]
     return followed
 
 
@@ -198,7 +201,6 @@ def _accept(
     followed.slopes.put(gained, Slopes(full, airloads))
     here = followed.slopes.of(gained).at(followed.share[gained])
     tangent[gained] = -solve(here, loads[..., None])[..., 0]
-    followed.speed[gained] = np.abs(tangent[gained]).max(axis=-1)
 
 
 def _correct(

@@ -32,10 +32,9 @@ _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below th
 _CLOSE_STEPS = 6
 _ROUNDING = 1e-15  # rad, of the step that would follow
 _INDUCED_SHARE = 0.05  # of the airspeed: above it the neglected induced velocity turns the inflow by degrees
-_NO_SPRING = 1e-90  # N m/rad
+_NO_SPRING = 1e-90  # of the other spring, or N m/rad
 _LARGEST_ANGLE = np.radians(20)  # of a blade that rigid hinges stand for
 _QUADRATURE = 1e-10  # error of the loads and their slopes, in themselves
-_TURNING = 10.0  # rad per unit of λ: faster than this the path turns back
 
 Found = tuple[Array, Linear, dict[str, Array]]  # work after a step, balance before it, doubts of the airfoil
 
@@ -95,7 +94,7 @@ class _Search:
     """Where the search for the trims stands, arrays of all points.
 
     start, state, before : unknowns where it began, where it is, and before the last step.
-    followed : which points have a path; others trim to what Newton finds from the undeflected blade.
+    followed : which points have a path; others trim to what Newton finds from the undeflected blade at all loads.
     ends : slopes at the end of the path, NaN where it is not yet known.
     last : what came with the last step, where all points had one step in common.
     """
@@ -115,7 +114,7 @@ class _Search:
         """Nothing found yet."""
         k = len(balance.free)
         start, state, before = (_start(balance, points) for _ in range(3))
-        followed = ~_articulated(balance, points)
+        followed = ~_unheld(balance, points)
         ends = Slopes.unknown(points, k)
         reason, iterations = _before_trim(balance, points), np.zeros(points, dtype=int)
         return cls(balance, start, state, before, followed, ends, reason, iterations)
@@ -260,11 +259,8 @@ def _ended(found: Followed, target: Target) -> Array:
     reason = np.full(len(found.share), "", dtype=object)
     for place in np.flatnonzero(~found.arrived):
         at = f"at {np.floor(1000 * found.share[place]) / 10:.1f} % of airloads and precone's load"
-        turns = found.speed[place] > _TURNING
-        told = f"turns back {at}: no trim belongs to it" if turns else f"was lost {at}"
-        reason[place] = (
-            f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
-        )
+        told = f"turns back {at}: no trim belongs to it" if found.turned[place] else f"was lost {at}"
+        reason[place] = f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
     return reason
 
 
@@ -338,18 +334,14 @@ def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:
     return [place for place, name in enumerate(UNKNOWNS) if free[name]]
 
 
-def _articulated(balance: Balance, points: int) -> Array:
-    """Which points (points,) have blades that no spring holds, or a lag hinge that nothing holds."""
+def _unheld(balance: Balance, points: int) -> Array:
+    """Which points (points,) have a lag hinge at the centre without a spring: without airloads nothing holds it."""
     quantities, options = balance.quantities, balance.options
-    if options.frequencies is not None:
+    if "lag" in options.locked or options.frequencies is not None:
         return np.zeros(points, dtype=bool)
-    hinges = [name for name in ("flap", "lag") if name not in options.locked]
-    springs = [np.real(quantities[f"{name}_stiffness"]) for name in hinges]
-    limp = np.logical_and.reduce([stiffness <= _NO_SPRING for stiffness in springs]) if hinges else False
-    if "lag" in hinges:
-        arm = np.real(quantities["lag_hinge_offset"]) * np.real(quantities["lag_first_moment"])
-        limp = limp | ((springs[-1] <= _NO_SPRING) & (arm == 0))
-    return np.broadcast_to(limp, (points,))
+    arm = np.real(quantities["lag_hinge_offset"]) * np.real(quantities["lag_first_moment"])
+    limp = np.real(quantities["lag_stiffness"]) <= _NO_SPRING * np.maximum(np.real(quantities["flap_stiffness"]), 1)
+    return np.broadcast_to(limp & (arm == 0), (points,))
 
 
 def _before_trim(balance: Balance, points: int) -> Array:

@@ -12,8 +12,8 @@ from proprotor import stamp
 from proprotor.arrays import Array
 from proprotor.doubts import reasons_for_doubt
 from proprotor.errors import InputError
-from proprotor.flutter_scan import STABLE, UNSTABLE
 from proprotor.needs import check_memory, need
+from proprotor.study_batch import STABLE, UNSTABLE
 
 if TYPE_CHECKING:
     import xarray
@@ -218,7 +218,8 @@ def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array
     notes = np.full(values.shape, "", dtype=object)
     if of.startswith("flutter_") and "flutter_note" in results:
         notes = results["flutter_note"].values
-    return (values.values.astype(float), notes == STABLE, notes == UNSTABLE)
+    found = values.values.astype(float)
+    return found, notes == STABLE, (notes == UNSTABLE) & np.isnan(found)
 
 
 def _range(results: xarray.Dataset) -> tuple[float, float]:

@@ -103,3 +103,15 @@ def test_both_packages_are_imported_from_the_environment(python, tmp_path):
         assert Path(file).is_relative_to(python.parents[1])
     assert version
     assert shape == "(15, 15)"
+
+
+def test_results_are_kept_in_files_without_any_extra(python, tmp_path):
+    code = (
+        "import importlib.util, proprotor as pp;"
+        "print([name for name in ('SALib', 'dask', 'control', 'bokeh') if importlib.util.find_spec(name)]);"
+        "case = pp.load_case('xv15'); found = case.sweep([80.0, 90.0]); pp.save_results(found, 'sweep.nc');"
+        "print(pp.load_results('sweep.nc').equals(found));"
+        "pp.study(case, {'rotor.precone': [0.03, 0.04]}, 100.0, checkpoint='kept', workers=2)"
+    )
+    assert run(python, tmp_path, "python", "-c", code).splitlines() == ["[]", "True"]
+    assert (tmp_path / "kept" / "manifest.json").is_file()

@@ -55,20 +55,20 @@ def attribution(
       proprotor attribution xv15 --speed "380 kt" --mode chord
       proprotor attribution xv15 --speed "380 kt" --plot chord.png --csv chord.csv
     """
-    output.check_outputs(csv, plot)
+    output.check_outputs(csv, plot, as_json=as_json)
     options, airspeed = in_order(options), one_speed(speed)
     loaded = loaded_case(case, settings)
     with waiting("Analysing"):
         found = _one_mode(loaded.attribution(airspeed, mode, **options))
     records = _records(found)
     if csv:
-        output.write("--csv", csv, csv_of(records, _COLUMNS, found.attrs))
+        output.write_csv(csv, csv_of(records, _COLUMNS, found.attrs))
     if plot:
         output.write_plot(plot, loaded, lambda: _draw(found))
     if as_json:
         head = output.about(loaded, options, settings_of(settings))
         output.print_json(head | _document(found, records, airspeed))
-    else:
+    elif csv != output.STANDARD_OUTPUT:
         _print(loaded, found, records, speed)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from operator import methodcaller
 from pathlib import Path
@@ -17,6 +18,7 @@ from proprotor.output_file import write_whole
 if TYPE_CHECKING:
     from rich.progress import Progress
 
+_KINDS = ("png", "csv")
 _BAND_WORK = 10  # a sample takes about as long as so many figures
 
 
@@ -63,7 +65,7 @@ def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed:
     wanted = sorted(set(numbers)) or NUMBERS
     for number in wanted:
         check_number(number)
-    folder = _folder(out)
+    folder = _folder(out, wanted)
     bands = decks_with_bands(wanted) if samples else ()
     with _progress() as progress:
         task = progress.add_task("Analysing", total=len(wanted) + _BAND_WORK * len(bands))
@@ -72,27 +74,31 @@ def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed:
             progress.update(task, description=f"Figure {number}")
             content = make_figure(number, analyses)
             with output.told("--out", str(folder)):
-                write_whole(folder / f"figure-{number:02}.png", partial(save, content))
-                write_whole(folder / f"figure-{number:02}.csv", methodcaller("write", csv_of(content)))
+                write_whole(_place(folder, number, "png"), partial(save, content))
+                write_whole(_place(folder, number, "csv"), methodcaller("write", csv_of(content)))
             progress.advance(task)
     told = "1 figure" if len(wanted) == 1 else f"{len(wanted)} figures"
     click.echo(f"Wrote {told} to {folder}, a .png and a .csv each", err=True)
     if as_json:
-        names = {
-            number: [str(folder / f"figure-{number:02}.{kind}") for kind in ("png", "csv")]
-            for number in wanted
-        }
+        names = {number: [str(_place(folder, number, kind)) for kind in _KINDS] for number in wanted}
         output.print_json({"samples": samples, "step (kt)": step, "seed": seed, "figures": names})
 
 
-def _folder(out: str) -> Path:
+def _folder(out: str, numbers: Sequence[int]) -> Path:
+    """The folder of the figures, in which each of them can be written."""
     folder = Path(out)
     if folder.exists() and not folder.is_dir():
         raise InputError("--out", out, "must be a folder")
     with output.told("--out", out):
         folder.mkdir(parents=True, exist_ok=True)
-    output.check_writable("--out", str(folder / "figure.png"))
+    for number in numbers:
+        for kind in _KINDS:
+            output.check_writable("--out", str(_place(folder, number, kind)))
     return folder
+
+
+def _place(folder: Path, number: int, kind: str) -> Path:
+    return folder / f"figure-{number:02}.{kind}"
 
 
 def _progress() -> Progress:

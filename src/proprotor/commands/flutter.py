@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.boundary_summary import COLUMNS, boundary_record, mechanism_told, modes_beyond, verdict
+from proprotor.boundary_summary import (
+    COLUMNS,
+    boundary_record,
+    failed_records,
+    failed_told,
+    mechanism_told,
+    modes_beyond,
+    verdict,
+)
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
@@ -56,9 +64,10 @@ def flutter(
 
     CASE is a bundled case (see `proprotor cases`) or a TOML file that describes one.
 
-    Every boundary in the range is found, to rounding: flutter, where a pair of eigenvalues loses its damping, and
-    divergence, where a real one does. The mechanism tells which modes take part in the motion there and how much.
-    Where no mode becomes unstable, the range that was searched is told, and the least damping in it with its mode.
+    Boundaries are sought in the whole range, between the airspeeds of the scan too, and settled to rounding: flutter,
+    where a pair of eigenvalues loses its damping, and divergence, where a real one does. The mechanism tells which
+    modes take part in the motion there and how much. Where no mode becomes unstable, the range that was searched is
+    told, and the least damping in it with its mode. Airspeeds that could not be analysed are told with the reason.
 
     \b
     Examples:
@@ -68,7 +77,7 @@ def flutter(
     """
     from proprotor.units import speeds
 
-    output.check_outputs(csv)
+    output.check_outputs(csv, as_json=as_json)
     options, damping = in_order(options), level_of(level)
     airspeeds = None if scan is None else speeds(scan, "--scan")
     at = None if speed is None else one_speed(speed)
@@ -80,11 +89,11 @@ def flutter(
     records = [boundary_record(boundary, loaded) for boundary in found.boundaries]
     if csv:
         rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
-        output.write("--csv", csv, csv_of(rows, COLUMNS, found.stamp))
+        output.write_csv(csv, csv_of(rows, COLUMNS, found.stamp))
     if as_json:
         head = output.about(loaded, options, settings_of(settings))
         output.print_json(head | _document(found, records, at))
-    else:
+    elif csv != output.STANDARD_OUTPUT:
         _print(loaded, found, at, unit_of(scan or speed or "kt"))
     if not math.isfinite(found.searched[0]):
         raise click.exceptions.Exit(1)
@@ -94,6 +103,7 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
     document = {
         "level (damping ratio)": found.level,
         "searched (m/s)": list(found.searched),
+        "not analysed": failed_records(found),
         "flutter speed (kt)": found.speed / KNOT,
         "flutter speed (m/s)": found.speed,
         "mode": found.mode or None,
@@ -122,10 +132,12 @@ def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None
     from proprotor.units import factor_to_si
 
     output.print_head(case, found.stamp)
+    factor = factor_to_si(unit, unit, "m/s")
     if not math.isfinite(found.searched[0]):
         output.console().print("No airspeed could be analysed.", style="bold")
+        for line in failed_told(found, unit, factor):
+            output.console().print(line)
         return
-    factor = factor_to_si(unit, unit, "m/s")
     if found.boundaries:
         columns = (unit, "Hz", "/rev", "mode", "kind", "", "mechanism")
         rows = (_row(boundary_record(boundary, case), factor) for boundary in found.boundaries)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.terminal import PlainConsole
 
+STANDARD_OUTPUT = "-"  # as the file of an option: print instead, as other programs have it
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
 _NARROWEST = 30  # characters of a wrapped column
 
@@ -36,7 +37,8 @@ def output_options(*, csv: str = "", plot: str = "") -> Option:
         json_help = "Print everything as JSON instead of the table."
         command = click.option("--json", "as_json", is_flag=True, help=json_help)(command)
         if csv:
-            command = click.option("--csv", metavar="FILE", help=csv)(command)
+            csv_help = f"{csv} - prints it instead of the table."
+            command = click.option("--csv", metavar="FILE", help=csv_help)(command)
         if plot:
             command = click.option("--plot", metavar="FILE", help=f"{plot}: a .png, .pdf or .svg file.")(
                 command
@@ -165,18 +167,35 @@ def check_writable(option: str, path: str | None) -> None:
         raise InputError(option, path, error.rule) from None
 
 
-def check_outputs(csv: str | None = None, plot: str | None = None) -> None:
+def check_outputs(csv: str | None = None, plot: str | None = None, *, as_json: bool) -> None:
     """Refuse `--csv` and `--plot` that cannot be written, or a figure of another kind, before anything is analysed.
 
     Raises
     ------
     InputError, click.ClickException
-        As `check_writable`; for a figure whose name does not end in .png, .pdf or .svg.
+        As `check_writable`; for a figure whose name does not end in .png, .pdf or .svg; for CSV and JSON on one
+        standard output.
     """
+    if as_json and csv == STANDARD_OUTPUT:
+        raise InputError("--csv", csv, "goes without --json: both would be printed")
     if plot and Path(plot).suffix.lower() not in FIGURE_FORMATS:
         raise InputError("--plot", plot, f"must end in {', '.join(FIGURE_FORMATS)}")
-    check_writable("--csv", csv)
+    check_writable("--csv", None if csv == STANDARD_OUTPUT else csv)
     check_writable("--plot", plot)
+
+
+def write_csv(path: str, content: bytes) -> None:
+    """Write the file of `--csv`, or print it.
+
+    Raises
+    ------
+    InputError, click.ClickException
+        As `write`.
+    """
+    if path == STANDARD_OUTPUT:
+        click.echo(content, nl=False)
+    else:
+        write("--csv", path, content)
 
 
 def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes) -> None:

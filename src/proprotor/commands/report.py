@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.boundary_summary import boundary_record
+from proprotor.boundary_summary import boundary_record, failed_records
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
@@ -151,6 +151,7 @@ def _told(case: Case, found: Findings, document: Document, places: list[str]) ->
         "written": places,
         "date": document.date,
         "searched (m/s)": list(found.flutter.searched),
+        "not analysed": failed_records(found.flutter),
         "flutter speed (m/s)": found.flutter.speed,
         "mode": found.flutter.mode or None,
         "warning": found.flutter.warning,

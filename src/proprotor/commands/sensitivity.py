@@ -85,7 +85,7 @@ def sensitivity(
       proprotor sensitivity xv15 --of damping --speed "300 kt" --mode chord
       proprotor sensitivity xv15 --wrt rotor.precone --wrt rotor.control_stiffness --json
     """
-    output.check_outputs(csv, plot)
+    output.check_outputs(csv, plot, as_json=as_json)
     options, damping = in_order(options), level_of(level)
     where = _where(of, speed, scan, damping)
     loaded = loaded_case(case, settings)
@@ -94,13 +94,13 @@ def sensitivity(
     found = _one_mode(found)
     records = sensitivity_records(loaded, found, of)
     if csv:
-        output.write("--csv", csv, csv_of(records, list(records[0]), found.attrs))
+        output.write_csv(csv, csv_of(records, list(records[0]), found.attrs))
     if plot:
         output.write_plot(plot, loaded, lambda: _draw(found, top))
     if as_json:
         head = output.about(loaded, options, settings_of(settings))
         output.print_json(head | _document(found, records, of))
-    else:
+    elif csv != output.STANDARD_OUTPUT:
         _print(loaded, found, records, of, top)
 
 

@@ -85,7 +85,7 @@ def stability_map(
       proprotor map xv15 --speed "350 kt" --x "support.modes[beam].frequency=2:5:0.1 Hz"
         --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
     """
-    output.check_outputs(csv, plot)
+    output.check_outputs(csv, plot, as_json=as_json)
     options, damping = in_order(options), level_of(level)
     airspeed = None if speed is None else one_speed(speed)
     loaded = loaded_case(case, settings)
@@ -99,14 +99,14 @@ def stability_map(
         found = loaded.stability_map(values, airspeed=airspeed, level=damping, **options)
     if csv:
         records = list(_records(found, axes))
-        output.write("--csv", csv, csv_of(records, list(records[0]), found.attrs))
+        output.write_csv(csv, csv_of(records, list(records[0]), found.attrs))
     if plot:
         output.write_plot(plot, loaded, lambda: _draw(found, axes))
     if as_json:
         output.print_json(
             output.about(loaded, options, settings_of(settings)) | _document(found, axes, airspeed)
         )
-    else:
+    elif csv != output.STANDARD_OUTPUT:
         _print(loaded, found, axes)
     if not np.isfinite(found.growth.values).any():
         raise click.exceptions.Exit(1)

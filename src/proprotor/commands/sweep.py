@@ -59,20 +59,20 @@ def sweep(
       proprotor sweep xv15 --speed 50:400:5kt --set rotor.precone="1.5 deg"
       proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
     """
-    output.check_outputs(csv, plot)
+    output.check_outputs(csv, plot, as_json=as_json)
     options = in_order(options)
     with waiting("Analysing"):
         loaded, table = _analysed(case, settings, speed, options)
     # Files first: a reader of the table, such as `head`, may leave early.
     if csv:
-        output.write("--csv", csv, table.csv())
+        output.write_csv(csv, table.csv())
     if plot:
         suffix = Path(plot).suffix
         with waiting("Drawing"):
             output.write("--plot", plot, lambda file: _draw(loaded, table, file, suffix))
     if as_json:
         output.print_json(output.about(loaded, options, settings_of(settings)) | _document(table))
-    else:
+    elif csv != output.STANDARD_OUTPUT:
         from proprotor.terminal import print_sweep
 
         print_sweep(loaded, table, all_modes)

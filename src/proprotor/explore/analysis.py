@@ -14,6 +14,7 @@ from proprotor.mode_names import moving, name_list
 from proprotor.model import LinearModel
 from proprotor.modes import some_points
 from proprotor.path import Line, Path, follow
+from proprotor.root_error import error_near_zero
 from proprotor.sweep import ANCHORS, mode_columns, names_at, tip_speed
 from proprotor.sweep_summary import UnstableRange, unstable_ranges
 
@@ -98,7 +99,9 @@ def live_modes(
     found = np.where(columns >= 0, np.take_along_axis(roots, places, 1), np.nan)
     labels = np.where(columns >= 0, np.take_along_axis(followed.label[shown], places, 1), "")
     reason, warning = model.trim.reason[shown], model.trim.warning[shown]
-    unstable = _unstable(airspeeds, names, found, labels)
+    error = error_near_zero(some_points(model, shown), roots)
+    error = np.where(columns >= 0, np.take_along_axis(error, places, 1), np.nan)
+    unstable = _unstable(airspeeds, names, found, labels, error)
     return LiveModes(airspeeds, names, found, reason, warning, unstable)
 
 
@@ -132,9 +135,15 @@ def _named(model: LinearModel, path: Path, anchors: Array) -> Named:
     return Named(place, known, names, np.ones(len(names)), f"airspeed {at[place]:.6g} m/s", 0)
 
 
-def _unstable(airspeeds: Array, names: list[str], eigenvalue: Array, labels: Array) -> list[UnstableRange]:
+def _unstable(
+    airspeeds: Array, names: list[str], eigenvalue: Array, labels: Array, error: Array
+) -> list[UnstableRange]:
     import xarray
 
     by_mode = ("airspeed", "mode")
-    data = {"eigenvalue": (by_mode, eigenvalue), "branch": (by_mode, labels)}
+    data = {
+        "eigenvalue": (by_mode, eigenvalue),
+        "branch": (by_mode, labels),
+        "eigenvalue_error": (by_mode, error),
+    }
     return unstable_ranges(xarray.Dataset(data, coords={"airspeed": airspeeds, "mode": names}))

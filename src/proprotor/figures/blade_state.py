@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from proprotor_equations import pitch
 
 from proprotor.arrays import Array
+from proprotor.branches import by_branch
 from proprotor.evaluation import evaluate
 from proprotor.model import HUB, rotor_model, rotor_quantities
 from proprotor.options import Options
@@ -73,12 +74,12 @@ def blade_state(case: Case, airspeed: ArrayLike) -> BladeState:
 def on_rigid_hub(case: Case, airspeed: Array, **options: Any) -> dict[str, Array]:
     """Frequencies per rev (points,), in the fixed frame, of `ROTOR_MODES`; NaN at failed points.
 
-    Coning is the mode with most of the collective flap over all airspeeds; of the two with most of the cyclic lag, or
-    of the gimbal, the one with the lower mean frequency is the low one. Locked coordinates have no modes.
-    Sections turn without damping, as in the paper, unless it is chosen.
+    Modes are roots here, followed over all airspeeds. Coning is that with most of the collective flap; of the two with
+    most of the cyclic lag, or of the gimbal, the one with the lower mean frequency is the low one. Locked coordinates
+    have no modes. Sections turn without damping, as in the paper, unless it is chosen.
     """
     model = rotor_model(case.rotor, case.operation, airspeed, **AS_THE_PAPER | options)
-    modes = sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB)))
+    modes = by_branch(sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB))))
     per_rev = modes.frequency.values / case.operation.rotor_speed
     found = {}
     for (low, high), coordinates in _PAIRS.items():

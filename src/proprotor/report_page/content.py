@@ -149,7 +149,7 @@ def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterat
     if not math.isfinite(found.flutter.searched[0]):
         yield Text(("No airspeed could be analysed, so nothing is known of boundaries.",))
         return
-    yield Text((f"All crossings of zero damping between {low} and {high} {unit}, to rounding.",))
+    yield Text((f"Crossings of zero damping between {low} and {high} {unit}, to rounding.",))
     if not found.flutter.boundaries:
         yield Text(("There is none.",))
         return
