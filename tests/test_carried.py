@@ -632,3 +632,21 @@ def test_the_page_of_the_explorer_tells_the_options_as_they_are_switched():
     page.options["pitch"] = "rigid"
     page.update()
     assert "Options: pitch rigid, locked gimbal." in page.foot.text
+
+
+def test_that_nothing_flutters_is_as_doubtful_as_the_airspeeds_that_say_so():
+    speeds = ("--scan", "300:350:10kt", "--speed", "345 kt", *SET, "--locked", "lag")
+    result = CliRunner().invoke(main, ["flutter", "xv15", *speeds], env={"COLUMNS": "200"})
+    assert "No mode becomes unstable between 300 and 350? kt." in result.stdout, result.stdout
+    assert re.search(r"The least damping there is [\d.]+\?? % of critical", result.stdout)
+    assert "? Doubtful" in result.stdout and MACH in result.stdout
+    document = json.loads(CliRunner().invoke(main, ["flutter", "xv15", *speeds, "--json"]).stdout)
+    assert document["flutter speed (m/s)"] is None and MACH in str(document["doubts"])
+
+
+@pytest.mark.parametrize("name", pp.list_cases())
+def test_modes_of_a_sweep_have_names_of_their_own(name):
+    case = pp.load_case(name)
+    tip = float(case.operation.rotor_speed) * float(case.rotor.radius)
+    names = case.sweep(tip * np.linspace(0.3, 0.9, 7)).mode.values.tolist()
+    assert len(set(names)) == len(names)
