@@ -101,7 +101,8 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
         return
     count = modes_beyond(found, at)
     if count is None:
-        yield f"{at / factor:.4g} {unit} lies outside the range searched, {low} to {high} {unit}."
+        ends = " to ".join(f"{end / factor:.4g}" for end in found.searched)
+        yield f"{at / factor:.4g} {unit} lies outside the range searched, {ends} {unit}."
     elif count:
         here = marked(f"{at / factor:.4g}", doubt_at(found.doubts, at))
         yield f"At {here} {unit} {count} mode{'s are' if count > 1 else ' is'} {beyond}."

@@ -35,9 +35,7 @@ _WINDOWS = (1, 2, 4)  # parts of the whole path in λ, each with a P of its own,
 _POWER_STEPS, _TINY, _FLOOR = 8, 1e-300, 1e-9
 _FIRST_STEP, _SHORTEST_STEP = 0.25, 1e-6  # of λ
 _CAUTION = 0.8  # of the largest radius, which a step is made for
-_TURNING = (
-    10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
-)
+_TURNING = 10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
 _STEPS = 1000
 _CORRECTIONS = 8
 _ARRIVED = 1e-7  # rad, the last correction

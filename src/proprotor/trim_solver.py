@@ -260,9 +260,7 @@ def _ended(found: Followed, target: Target) -> Array:
     for place in np.flatnonzero(~found.arrived):
         at = f"at {np.floor(1000 * found.share[place]) / 10:.1f} % of airloads and precone's load"
         told = f"turns back {at}: no trim belongs to it" if found.turned[place] else f"was lost {at}"
-        reason[place] = (
-            f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
-        )
+        reason[place] = f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
     return reason
 
 
@@ -342,9 +340,7 @@ def _unheld(balance: Balance, points: int) -> Array:
     if "lag" in options.locked or options.frequencies is not None:
         return np.zeros(points, dtype=bool)
     arm = np.real(quantities["lag_hinge_offset"]) * np.real(quantities["lag_first_moment"])
-    limp = np.real(quantities["lag_stiffness"]) <= _NO_SPRING * np.maximum(
-        np.real(quantities["flap_stiffness"]), 1
-    )
+    limp = np.real(quantities["lag_stiffness"]) <= _NO_SPRING * np.maximum(np.real(quantities["flap_stiffness"]), 1)
     return np.broadcast_to(limp & (arm == 0), (points,))
 
 
