@@ -295,7 +295,7 @@ def test_another_case_or_airspeed_is_refused():
     with pytest.raises(pp.InputError, match=r"^airspeed = 300 kt: is one of the axes of the map"):
         boundary_lines(CASE, carried_map(), airspeed="300 kt")
     axes = {"rotor.precone": "0:2:1 deg", "rotor.airfoil.lift_slope": [5.0, 6.0]}
-    found = CASE.stability_map(axes, airspeed="380 kt")
+    found = CASE.stability_map(axes, airspeed="380 kt", **UNDAMPED)
     assert boundary_lines(CASE, found, airspeed="380 kt")[0].mode == boundary_lines(CASE, found)[0].mode
     with pytest.raises(pp.InputError, match=r"^airspeed = 300 kt: must be 195.489 m/s, that of the map"):
         boundary_lines(CASE, found, airspeed="300 kt")
@@ -406,22 +406,26 @@ def test_boundaries_are_as_doubtful_as_the_airspeeds_they_lie_at():
     point = DOUBTFUL.flutter_point(**UNDAMPED)
     assert point.warning and len({bool(boundary.warning) for boundary in point.boundaries}) == 2
     for boundary in point.boundaries:
-        assert boundary.warning == DOUBTFUL.linearize(boundary.position).trim.warning
-    (doubt,) = point.doubts
-    scan = DOUBTFUL.linearize(flutter.scan_speeds(DOUBTFUL))
-    assert (doubt.low, doubt.high) == tuple(scan.airspeed[scan.trim.warning != ""][[0, -1]])
+        assert boundary.warning == DOUBTFUL.linearize(boundary.position, **UNDAMPED).trim.warning
+    scan = DOUBTFUL.linearize(flutter.scan_speeds(DOUBTFUL), **UNDAMPED)
+    for doubt in point.doubts:
+        told = np.array([doubt.text in text for text in scan.trim.warning])
+        assert (doubt.low, doubt.high) == tuple(scan.airspeed[told][[0, -1]])
+    assert any(MACH in doubt.text for doubt in point.doubts)
     vertices = found("stability_map", DOUBTFUL, **UNDAMPED)
     for at, warning in zip(vertices.boundary.values, vertices.boundary_warning.values, strict=True):
         if np.isfinite(at).all():
             varied = DOUBTFUL.vary({"rotor.precone": at[1]})
-            assert warning == varied.linearize(at[0]).trim.warning.item()
+            assert warning == varied.linearize(at[0], **UNDAMPED).trim.warning.item()
         else:
             assert warning == ""
     results = found("study", DOUBTFUL, **UNDAMPED)
     for design in range(2):
         varied = DOUBTFUL.vary({"rotor.precone": float(results["rotor.precone"][design])})
         speed = float(results.flutter_speed[design])
-        assert results.flutter_warning.values[design] == varied.linearize(speed).trim.warning.item()
+        assert (
+            results.flutter_warning.values[design] == varied.linearize(speed, **UNDAMPED).trim.warning.item()
+        )
 
 
 SHOWN = {
@@ -628,3 +632,21 @@ def test_the_page_of_the_explorer_tells_the_options_as_they_are_switched():
     page.options["pitch"] = "rigid"
     page.update()
     assert "Options: pitch rigid, locked gimbal." in page.foot.text
+
+
+def test_that_nothing_flutters_is_as_doubtful_as_the_airspeeds_that_say_so():
+    speeds = ("--scan", "300:350:10kt", "--speed", "345 kt", *SET, "--locked", "lag")
+    result = CliRunner().invoke(main, ["flutter", "xv15", *speeds], env={"COLUMNS": "200"})
+    assert "No mode becomes unstable between 300 and 350? kt." in result.stdout, result.stdout
+    assert re.search(r"The least damping there is [\d.]+\?? % of critical", result.stdout)
+    assert "? Doubtful" in result.stdout and MACH in result.stdout
+    document = json.loads(CliRunner().invoke(main, ["flutter", "xv15", *speeds, "--json"]).stdout)
+    assert document["flutter speed (m/s)"] is None and MACH in str(document["doubts"])
+
+
+@pytest.mark.parametrize("name", pp.list_cases())
+def test_modes_of_a_sweep_have_names_of_their_own(name):
+    case = pp.load_case(name)
+    tip = float(case.operation.rotor_speed) * float(case.rotor.radius)
+    names = case.sweep(tip * np.linspace(0.3, 0.9, 7)).mode.values.tolist()
+    assert len(set(names)) == len(names)

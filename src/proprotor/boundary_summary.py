@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from proprotor.doubts import marked
+from proprotor.doubts import doubt_at, marked
 from proprotor.speed import KNOT
 
 if TYPE_CHECKING:
@@ -64,8 +64,11 @@ def least_told(found: FlutterPoint, unit: str, factor: float) -> str:
     """Return the least damping of a search, with its mode and airspeed; "" where there was no mode."""
     if math.isnan(found.least_damping):
         return ""
-    where = f"{found.least_damping_mode} at {found.least_damping_speed / factor:.4g} {unit}"
-    return f"{100 * found.least_damping:.2g} % of critical: {where}"
+    speed = found.least_damping_speed
+    where = f"{found.least_damping_mode} at {speed / factor:.4g} {unit}"
+    return (
+        f"{marked(f'{100 * found.least_damping:.2g}', doubt_at(found.doubts, speed))} % of critical: {where}"
+    )
 
 
 def failed_told(found: FlutterPoint | Crossings, unit: str, factor: float) -> Iterator[str]:
@@ -82,12 +85,12 @@ def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:
 
 def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
     """Sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
-    low, high = (speed / factor for speed in found.searched)
+    low, high = (marked(f"{at / factor:.4g}", doubt_at(found.doubts, at)) for at in found.searched)
     beyond = f"below {100 * found.level:g} % of critical" if found.level else "unstable"
     if found.unstable_at_start:
-        yield f"Already {beyond} at {low:.4g} {unit}: {', '.join(found.unstable_at_start)}."
+        yield f"Already {beyond} at {low} {unit}: {', '.join(found.unstable_at_start)}."
     if math.isnan(found.speed):
-        yield f"No mode becomes {beyond} between {low:.4g} and {high:.4g} {unit}."
+        yield f"No mode becomes {beyond} between {low} and {high} {unit}."
         if told := least_told(found, unit, factor):
             yield f"The least damping there is {told}."
     else:
@@ -98,9 +101,11 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
         return
     count = modes_beyond(found, at)
     if count is None:
-        yield f"{at / factor:.4g} {unit} lies outside the range searched, {low:.4g} to {high:.4g} {unit}."
+        ends = " to ".join(f"{end / factor:.4g}" for end in found.searched)
+        yield f"{at / factor:.4g} {unit} lies outside the range searched, {ends} {unit}."
     elif count:
-        yield f"At {at / factor:.4g} {unit} {count} mode{'s are' if count > 1 else ' is'} {beyond}."
+        here = marked(f"{at / factor:.4g}", doubt_at(found.doubts, at))
+        yield f"At {here} {unit} {count} mode{'s are' if count > 1 else ' is'} {beyond}."
     if not math.isnan(found.speed):
         margin = marked(f"{100 * found.margin(at):+.1f}", found.warning)
         yield f"Margin at {at / factor:.4g} {unit}: {margin} % of that airspeed."

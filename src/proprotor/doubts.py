@@ -67,6 +67,11 @@ def doubtful_near(positions: Array, warnings: Array, at: float) -> bool:
     return bool((warnings[np.isin(positions, near)] != "").any())
 
 
+def doubt_at(doubts: Iterable[Doubt], position: float) -> str:
+    """What makes a position doubtful by the doubts along its line; empty where nothing does."""
+    return "; ".join(doubt.text for doubt in doubts if doubt.low <= position <= doubt.high)
+
+
 def marked(number: str, warning: object) -> str:
     """A number as it is shown: with a question mark where there is a warning."""
     return f"{number}{MARK}" if warning else number

@@ -11,7 +11,7 @@ import numpy as np
 
 from proprotor import stamp
 from proprotor.boundary_summary import failed_told, least_told
-from proprotor.doubts import MARK, footnotes, marked, reasons_for_doubt
+from proprotor.doubts import MARK, doubt_at, footnotes, marked, reasons_for_doubt
 from proprotor.provenance import reservations
 from proprotor.speed import KNOT
 
@@ -79,7 +79,7 @@ def of_crossings(found: Crossings) -> str:
 
 def of_flutter_point(found: FlutterPoint) -> str:
     """The flutter speed, and the other boundaries of the range."""
-    low, high = (f"{speed / KNOT:.4g}" for speed in found.searched)
+    low, high = (marked(f"{at / KNOT:.4g}", doubt_at(found.doubts, at)) for at in found.searched)
     if math.isnan(found.speed):
         first = f"FlutterPoint: nothing becomes unstable between {low} and {high} kt"
         first += f"; least damping {told}" if (told := least_told(found, "kt", KNOT)) else ""

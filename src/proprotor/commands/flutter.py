@@ -31,7 +31,7 @@ from proprotor.commands.arguments import (
     unit_of,
 )
 from proprotor.csv_text import csv_of
-from proprotor.doubts import marked
+from proprotor.doubts import doubt_at, marked
 from proprotor.errors import InputError
 from proprotor.speed import KNOT
 from proprotor.waiting import waiting
@@ -114,6 +114,7 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
         "mode of the least damping": found.least_damping_mode or None,
         "airspeed of the least damping (kt)": found.least_damping_speed / KNOT,
         "airspeed of the least damping (m/s)": found.least_damping_speed,
+        "warning of the least damping": doubt_at(found.doubts, found.least_damping_speed),
         "boundaries": records,
         "doubts": output.doubts_as_data(found.doubts),
         "eigen-solves": found.eigen_solves,

@@ -35,16 +35,12 @@ class _OwnPages(BokehTornado):
         return super().find_handler(request, **more)
 
     def _is_own(self, request: Any) -> bool:
-        origin = request.headers.get("Origin")
-        return (
-            request.host in self.names
-            and (origin is None or origin in {f"http://{name}" for name in self.names})
-            # From another port of this machine is "same-site"; what a reader has typed is "none".
-            and request.headers.get("Sec-Fetch-Site", "none") in ("none", "same-origin")
-            and not request.path.startswith(
-                "/autoload"
-            )  # Bokeh's script for foreign pages, which has a session
-        )
+        if request.host not in self.names or request.path.startswith("/autoload"):
+            return False  # the latter is Bokeh's script for foreign pages, which has a session
+        if (origin := request.headers.get("Origin")) is not None:
+            return origin in {f"http://{name}" for name in self.names}
+        # From another port of this machine is "same-site"; what a reader has typed is "none".
+        return request.headers.get("Sec-Fetch-Site", "none") in ("none", "same-origin")
 
 
 def listen(port: int) -> socket.socket:

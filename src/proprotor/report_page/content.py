@@ -12,7 +12,7 @@ import numpy as np
 from proprotor.arrays import Array
 from proprotor.boundary_summary import boundary_record, mechanism_told, verdict
 from proprotor.datum import Datum, FilePath, as_toml
-from proprotor.doubts import MARK, footnotes, marked
+from proprotor.doubts import MARK, doubt_at, footnotes, marked
 from proprotor.provenance import doubtful_inputs, reservations
 from proprotor.report_page import pictures
 from proprotor.report_page.analyses import Findings
@@ -145,7 +145,9 @@ def _at(found: Findings, unit: str, factor: float) -> str:
 
 
 def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterator[Table | Text]:
-    low, high = (f"{speed / factor:.4g}" for speed in found.flutter.searched)
+    low, high = (
+        marked(f"{at / factor:.4g}", doubt_at(found.flutter.doubts, at)) for at in found.flutter.searched
+    )
     if not math.isfinite(found.flutter.searched[0]):
         yield Text(("No airspeed could be analysed, so nothing is known of boundaries.",))
         return
