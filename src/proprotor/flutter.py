@@ -163,9 +163,7 @@ class Crossings(NamedTuple):
         return summary.of_crossings(self)
 
 
-def find_crossings(
-    line: Line, *, level: float = 0.0, rotor_speed: float | None = None, approach: Line | None = None
-) -> Crossings:
+def find_crossings(line: Line, *, level: float = 0.0, approach: Line | None = None) -> Crossings:
     """All crossings of a damping level along a line, with exact positions.
 
     Parameters
@@ -174,8 +172,6 @@ def find_crossings(
         With a `linearize` that takes complex positions and is analytic in them.
     level : float
         Damping ratio that counts as the boundary.
-    rotor_speed : float, optional
-        rad/s, for the names of modes; that of the models by default.
     approach : Line, optional
         From where modes get their names: see `proprotor.sweep.sweep`.
 
@@ -196,43 +192,43 @@ def find_crossings(
     path = scan.path
     if not len(path.points):
         return Crossings((), (), (np.nan, np.nan), 0, 0)
-    named = state_names(model, line, path, rotor_speed, approach)
+    named = state_names(model, line, path, approach)
     names = [named.names[state] for state in path.places[named.point]]
     crossing = Brackets(scan) if len(path.points) > 1 else None
     boundaries = []
     if crossing is not None:
         crossing.close()
     if crossing is not None and crossing.found:
-        moves = _moving_at_crossings(crossing, rotor_speed)
+        moves = _moving_at_crossings(crossing)
         for row, place in enumerate(crossing.found):
             boundaries.append(_boundary(crossing, place, names, moves, row))
     boundaries = _distinct(sorted(boundaries, key=lambda found: found.position))
     scan_solves = len(path.points) + named.eigen_solves
     return Crossings(
         tuple(boundaries),
-        _beyond(model, path, level, rotor_speed),
+        _beyond(model, path, level),
         (float(scan.positions[0]), float(scan.positions[-1])),
         scan_solves,
         scan_solves + (0 if crossing is None else int(crossing.solves.sum())),
     )
 
 
-def _beyond(model: LinearModel, path: Path, level: float, rotor_speed: float | None) -> tuple[str, ...]:
+def _beyond(model: LinearModel, path: Path, level: float) -> tuple[str, ...]:
     """What moves in the modes that are beyond the level at the first point."""
     first = int(path.points[0])
     values = path.spectrum.values[first]
     above = growth(values, level) > NEUTRAL * np.abs(values).max()
-    names = np.array(name_list(model.dofs))[names_at(model, path.spectrum, first, rotor_speed)]
+    names = np.array(name_list(model.dofs))[names_at(model, path.spectrum, first)]
     return tuple(dict.fromkeys(names[above & (values.imag >= 0)].tolist()))
 
 
-def _moving_at_crossings(crossing: Brackets, rotor_speed: float | None) -> Moving:
+def _moving_at_crossings(crossing: Brackets) -> Moving:
     """What moves in all modes of every crossing."""
     positions = np.array([position for position, *_ in crossing.found.values()])
     spectra = [spectrum for _, spectrum, *_ in crossing.found.values()]
     stacked = (np.stack([getattr(spectrum, part) for spectrum in spectra]) for part in ("values", "right"))
     values, right, left = Spectrum(*stacked).all_modes
-    return moving(crossing.scan.line.models(positions), values, left, right, rotor_speed)
+    return moving(crossing.scan.line.models(positions), values, left, right)
 
 
 def _boundary(crossing: Brackets, place: int, names: list[str], moves: Moving, row: int) -> Boundary:

@@ -73,8 +73,6 @@ class LinearModel:
         Hub motion in the coordinates; None for a model whose first six coordinates are the hub's own.
     rotor : LinearModel, optional
         The rotor alone of a rotor on a support, from which the hub loads follow.
-    rotor_speed : array (...), optional
-        rad/s; None for matrices from elsewhere that do not tell it.
     shapes : array (..., m, k), optional
         Of the first k coordinates, those of a support that other designs have in other shapes: see
         `proprotor.support.NormalModes`.
@@ -89,7 +87,6 @@ class LinearModel:
     B: Array | None = None
     hub: Array | None = None
     rotor: LinearModel | None = None
-    rotor_speed: Array | None = None
     shapes: Array | None = None
 
     def __repr__(self) -> str:
@@ -245,11 +242,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    per_point: dict[str, Any] = {
-        name: np.broadcast_to(value, shape)
-        for name, value in (("airspeed", speed), ("rotor_speed", np.real(operation.rotor_speed)))
-    }
-    model = LinearModel(**parts, **per_point, dofs=coordinates, trim=shaped)
+    model = LinearModel(**parts, dofs=coordinates, trim=shaped, airspeed=np.broadcast_to(speed, shape))
     return model if dofs == coordinates else model.submodel(dofs)
 
 

@@ -119,7 +119,6 @@ def rigid_propeller(
         dofs=HUB,
         trim=_unloaded(speed.shape),
         airspeed=speed,
-        rotor_speed=omega,
     )
 
 

@@ -357,7 +357,7 @@ def _good_part(model: LinearModel) -> tuple[Array | None, LinearModel]:
     good = np.asarray(model.trim.converged)
     if good.all():
         return None, model
-    names = ("M", "C", "K", "airspeed", "rotor_speed", "shapes")
+    names = ("M", "C", "K", "airspeed", "shapes")
     parts = {name: getattr(model, name)[good] for name in names if getattr(model, name) is not None}
     return good, replace(model, **parts)
 

@@ -19,6 +19,7 @@ from proprotor.modes import (
     coordinate_shares,
     held_coordinates,
     mode_dataset,
+    some_points,
 )
 from proprotor.path import Line, Path, follow, path_of
 from proprotor.speed import in_metres_per_second
@@ -55,7 +56,6 @@ def sweep(
     model: LinearModel,
     line: Line | None = None,
     *,
-    rotor_speed: float | None = None,
     approach: Line | None = None,
 ) -> xarray.Dataset:
     """Modes of a line of points, named and followed.
@@ -66,9 +66,6 @@ def sweep(
         One point for each position of the line.
     line : Line, optional
         Airspeeds of the model by default; with its `linearize`, steps that do not tell which mode is which are divided.
-    rotor_speed : float, optional
-        rad/s, for the names of modes; that of the model by default. Without either, regressive and progressive are told
-        by the whirl in the fixed frame alone.
     approach : Line, optional
         From the anchor, where branches get their labels, to the point of the line that is nearest to it, both included:
         labels then do not depend on where the line begins and ends. Without it, or where it fails, they are given at
@@ -95,10 +92,10 @@ def sweep(
         )
     line = Line(model.airspeed) if line is None else line
     points, path = len(model.airspeed), follow(model, line)
-    named = state_names(model, line, path, rotor_speed, approach)
+    named = state_names(model, line, path, approach)
     spectrum = path.spectrum.at(slice(points))
     values, right, left = spectrum.all_modes
-    found = moving(model, values, left, right, rotor_speed)
+    found = moving(model, values, left, right)
     columns, modes = mode_columns(found, values)
     data = _by_motion(model, line, Modes(values, right, left), columns)
     by_mode = data.eigenvalue.dims
@@ -142,9 +139,7 @@ def _joined(first: Array, second: Array) -> Array:
     return np.array(both, dtype=str)
 
 
-def state_names(
-    model: LinearModel, line: Line, path: Path, rotor_speed: float | None, approach: Line | None
-) -> Named:
+def state_names(model: LinearModel, line: Line, path: Path, approach: Line | None) -> Named:
     """Names of states at the point nearest to the anchor, followed from there; else given at the first point."""
     known = name_list(model.dofs)
     if not len(path.points):
@@ -155,7 +150,7 @@ def state_names(
         last = len(approach.positions) - 1
         if len(leg.points) and [leg.points[0], leg.points[-1]] == [0, last]:
             nearest = int(np.argmin(np.abs(path.positions[path.points] - approach.end)))
-            given = names_at(near, leg.spectrum, 0, rotor_speed)[leg.places[0]]
+            given = names_at(near, leg.spectrum, 0)[leg.places[0]]
             states = _same_point(leg, last, path, int(path.points[nearest]))
             place, trust = np.empty_like(given), np.empty(len(given))
             place[states], trust[states] = given, leg.quality.min(axis=0, initial=1)
@@ -163,7 +158,7 @@ def state_names(
             return Named(nearest, known, place, trust, told, len(leg.points))
     first = int(path.points[0])
     told = f"{line.name} {float(line.positions[first]):.6g} {line.units}"
-    place = names_at(model, path.spectrum, first, rotor_speed)
+    place = names_at(model, path.spectrum, first)
     return Named(0, known, place, np.ones(len(place)), told, 0)
 
 
@@ -175,12 +170,10 @@ def _same_point(leg: Path, last: int, path: Path, point: int) -> Array:
     return states
 
 
-def names_at(model: LinearModel, spectrum: Spectrum, point: int, rotor_speed: float | None = None) -> Array:
+def names_at(model: LinearModel, spectrum: Spectrum, point: int) -> Array:
     """What moves in each state (states,) of a point of a line of models, by its place in `name_list`."""
     values, right, left = spectrum.at(point).all_modes
-    if rotor_speed is None and model.rotor_speed is not None:
-        rotor_speed = float(model.rotor_speed[point])
-    return moving(model, values, left, right, rotor_speed).place
+    return moving(some_points(model, point), values, left, right).place
 
 
 def mode_columns(found: Moving, values: Array) -> tuple[Array, list[str]]:
