@@ -226,7 +226,7 @@ def test_whirl_in_the_fixed_frame_and_in_the_rotating_one(ratio):
         structure="tabulated",
         frequencies=pp.BladeFrequencies(flap=ratio, lag=2.0),
     ).submodel(("flap_0", "flap_1c", "flap_1s"))
-    modes = sweep(model, rotor_speed=OMEGA).isel(airspeed=0)
+    modes = sweep(model).isel(airspeed=0)
     assert modes.mode.values.tolist() == ["coning", "regressive flap", "progressive flap"]
     np.testing.assert_allclose(
         modes.frequency / OMEGA, [ratio, abs(ratio - 1), ratio + 1], rtol=1e-9, atol=1e-9

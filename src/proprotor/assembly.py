@@ -148,8 +148,6 @@ def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
         name: None if matrix is None else np.broadcast_to(matrix, (*shape, *matrix.shape[-2:]))
         for name, matrix in matrices.items()
     }
-    speeds: dict[str, Any] = {
-        name: None if speed is None else np.broadcast_to(speed, shape)
-        for name, speed in (("airspeed", model.airspeed), ("rotor_speed", model.rotor_speed))
-    }
-    return replace(model, **matrices, **speeds, trim=model.trim.broadcast(shape))
+    return replace(
+        model, **matrices, trim=model.trim.broadcast(shape), airspeed=np.broadcast_to(model.airspeed, shape)
+    )

@@ -225,9 +225,7 @@ class Crossings(NamedTuple):
         return summary.of_crossings(self)
 
 
-def find_crossings(
-    line: Line, *, level: float = 0.0, rotor_speed: float | None = None, approach: Line | None = None
-) -> Crossings:
+def find_crossings(line: Line, *, level: float = 0.0, approach: Line | None = None) -> Crossings:
     """All crossings of a damping level along a line, with exact positions.
 
     Parameters
@@ -236,8 +234,6 @@ def find_crossings(
         With a `linearize` that takes complex positions and is analytic in them; positions in any order.
     level : float
         Damping ratio that counts as the boundary.
-    rotor_speed : float, optional
-        rad/s, for the names of modes; that of the models by default.
     approach : Line, optional
         From where modes get their names: see `proprotor.sweep.sweep`.
 
@@ -264,14 +260,14 @@ def find_crossings(
         return Crossings((), (), (np.nan, np.nan), 0, 0, doubts=doubts, failed=failed)
     path, points = _path(search, positions), search.points
     failed = _failed(positions, scanned, np.sort(points.position))
-    named = state_names(line.models(positions), line, path, rotor_speed, approach)
+    named = state_names(line.models(positions), line, path, approach)
     branches = [named.names[state] for state in path.places[named.point]]
     brackets = Brackets(search)
     found = each_once(brackets.close())
-    ends, least = _at_points(line, points, rotor_speed)
+    ends, least = _at_points(line, points)
     scan_solves = int(search.solves.sum()) + named.eigen_solves
     return Crossings(
-        tuple(_boundaries(found, [_branch(one, search, path, branches) for one in found], line, rotor_speed)),
+        tuple(_boundaries(found, [_branch(one, search, path, branches) for one in found], line)),
         ends,
         (float(points.position.min()), float(points.position.max())),
         scan_solves,
@@ -287,12 +283,12 @@ def rising(line: Line) -> Line:
     return replace(line, positions=np.unique(np.asarray(line.positions, dtype=float)), end=None)
 
 
-def _at_points(line: Line, points: Points, rotor_speed: float | None) -> tuple[tuple[str, ...], LeastDamping]:
+def _at_points(line: Line, points: Points) -> tuple[tuple[str, ...], LeastDamping]:
     """What moves in the modes beyond the level at the lowest position, and in the one that is damped least."""
     least = least_damped(points)
     rows = np.array([int(points.position.argmin()), 0 if least is None else least[0]])
     values, right, left = points.spectrum.at(rows).all_modes
-    names = moving(line.models(points.position[rows]), values, left, right, rotor_speed).names
+    names = moving(line.models(points.position[rows]), values, left, right).names
     above = (points.growth[rows[0]] > points.error[rows[0]]) & (values[0].imag >= 0)
     beyond = tuple(dict.fromkeys(names[0, above].tolist()))
     if least is None:
@@ -369,9 +365,7 @@ def _branch(found: Crossing, search: Search, path: Path, branches: list[str]) ->
     return branches[int(np.flatnonzero(path.places[point] == found.from_state)[0])]
 
 
-def _boundaries(
-    found: list[Crossing], branches: list[str], line: Line, rotor_speed: float | None
-) -> Iterator[Boundary]:
+def _boundaries(found: list[Crossing], branches: list[str], line: Line) -> Iterator[Boundary]:
     """The boundaries of crossings, with what moves there and what makes them doubtful."""
     if not found:
         return
@@ -380,7 +374,7 @@ def _boundaries(
         *(np.stack([getattr(one.spectrum, part) for one in found]) for part in ("values", "right"))
     )
     values, right, left = spectra.all_modes
-    moves = moving(model, values, left, right, rotor_speed)
+    moves = moving(model, values, left, right)
     for row, (one, branch, warning) in enumerate(
         zip(found, branches, model.trim.warning.tolist(), strict=True)
     ):

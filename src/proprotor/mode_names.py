@@ -11,13 +11,13 @@ Which branch is which is another question, answered by following roots: `proprot
 The share that a mode has in its own name says how much the name is worth: near 1 nothing else moves, below one third
 something else may move more.
 
-Progressive and regressive are meant as the blades see it. A cyclic motion of frequency ν in the rotating frame appears
-in the fixed frame at ν + 1 per revolution, whirling with the rotor, when it runs round the rotor forwards, and at
-|ν - 1| when it runs backwards; the latter whirls against the rotor in the fixed frame for ν > 1 and with it, but slower
-than the blades, for ν < 1. So a mode is progressive where its eigenvector whirls with the rotor faster than the rotor,
-and regressive otherwise. How it whirls in the fixed frame is another number, `whirl`. From one to the other,
-β_1c + i β_1s is what whirls with the rotor and β_1c - i β_1s what whirls against it, for s = iω, ω > 0 and an azimuth
-that grows with rotation (β = β_1c cos ψ + β_1s sin ψ).
+A cyclic motion alone has two modes. In the rotating frame they have one frequency ν and run round the rotor forwards,
+progressive, or backwards, regressive; in the fixed frame they appear at ν + 1 and at |ν - 1| per revolution. The first
+whirls with the rotor there; the second against it for ν > 1, and with it, but slower than the blades, for ν < 1. A mode
+of the whole system is progressive by as much of the one as takes part in it, and regressive by as much of the other:
+motion and rate of β_1c + i β_1s are the sum of both. How a mode whirls in the fixed frame is another number, `whirl`.
+There β_1c + i β_1s is what whirls with the rotor and β_1c - i β_1s what whirls against it, for s = iω, ω > 0 and an
+azimuth that grows with rotation (β = β_1c cos ψ + β_1s sin ψ).
 """
 
 from __future__ import annotations
@@ -29,13 +29,12 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.model import HUB, ROTOR_SPEED, LinearModel, reactionless_coordinates
-from proprotor.modes import coordinate_motion, held_coordinates
+from proprotor.modes import coordinate_motion, held_coordinates, some_points
 from proprotor.printable import unprintable
 
 _COLLECTIVE = {"flap": "coning"}
@@ -92,40 +91,33 @@ class Moving(NamedTuple):
         return share
 
 
-def moving(
-    model: LinearModel, values: Array, left: Array, right: Array, rotor_speed: ArrayLike | None = None
-) -> Moving:
+def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Moving:
     """What moves in each mode of each point: a function of the point alone.
 
     Parameters
     ----------
     model : LinearModel
-        With leading axes (...) that broadcast to those of the eigenvalues.
+        Of these points (...).
     values : array (..., states)
         All eigenvalues, rad/s, each pair side by side.
     left, right : array (..., states, states)
         Left vectors in rows, right ones in columns, left @ right = 1: `proprotor.tracking.Spectrum.all_modes`.
-    rotor_speed : float or array (...), optional
-        rad/s; that of the model by default. Without either, regressive and progressive are told by the whirl in the
-        fixed frame alone.
     """
-    held, states = held_coordinates(model, values.shape[-1]), values.shape[-1]
-    given = model.rotor_speed if rotor_speed is None else rotor_speed
-    speed = None if given is None else np.broadcast_to(np.abs(given), values.shape[:-1]).reshape(-1)
-    flat = values.reshape(-1, states)
     known = name_list(model.dofs)
-    place = np.full(flat.shape, -1)
-    shares = np.full((len(flat), len(known), states), np.nan)
-    exists = np.isfinite(flat)
-    good = np.flatnonzero(exists.any(axis=-1))
-    if len(good):
-        rows, vectors = (part.reshape(-1, states, states)[good] for part in (left, right))
-        own = None if speed is None else speed[good]
-        # A state that a point does not have, though others do, stands as a root at zero while names are given.
-        roots = np.where(exists[good], flat[good], 0)
-        shares[good] = name_shares(model.dofs, held, roots, rows, vectors, own)
-        place[good] = assign_names(model.dofs, held, shares[good], roots)
-    return Moving(known, place.reshape(values.shape), shares.reshape(*values.shape[:-1], *shares.shape[1:]))
+    place, exists = np.full(values.shape, -1), np.isfinite(values)
+    good = np.asarray(exists.any(axis=-1))
+    # A state that a point does not have, though others do, stands as a root at zero while names are given.
+    roots = np.where(exists, values, 0)
+    if good.all():  # the usual case, without copies
+        shares = name_shares(model, roots, left, right)
+    else:
+        shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
+        if good.any():
+            some = some_points(model, good)
+            shares[good] = name_shares(some, roots[good], left[good], right[good])
+    held = held_coordinates(model, values.shape[-1])
+    place[good] = assign_names(model.dofs, held, shares[good], roots[good])
+    return Moving(known, place, shares)
 
 
 def motions(dofs: tuple[str, ...]) -> list[Motion]:
@@ -283,33 +275,69 @@ def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, 
     return against, with_rotor
 
 
-def name_shares(
-    dofs: tuple[str, ...],
-    held: list[int],
-    values: Array,
-    left: Array,
-    right: Array,
-    rotor_speed: ArrayLike | None,
-) -> Array:
-    """Share of each name in each state (..., names, states); sums to 1 over the names."""
-    columns = []
-    limit = np.inf if rotor_speed is None else np.abs(np.asarray(rotor_speed, dtype=float))[..., None]
-    faster, below = np.abs(values.imag) > limit, values.imag < 0
-    for motion in motions(dofs):
+def name_shares(model: LinearModel, values: Array, left: Array, right: Array) -> Array:
+    """Share of each name in each state (..., names, states); sums to 1 over the names.
+
+    Parameters
+    ----------
+    model : LinearModel
+        With leading axes (...) that broadcast to those of the vectors.
+    values : array (..., states)
+        Eigenvalues, rad/s.
+    left, right : array (..., states, states)
+        Left vectors in rows, right ones in columns.
+    """
+    held, columns = held_coordinates(model, right.shape[-2]), []
+    for motion in motions(model.dofs):
         if len(motion.places) == 1:
             places = _states(motion.places[0], held, right.shape[-2])
             columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
             continue
-        against, with_rotor = whirl_shares(motion, held, left, right)
-        # The conjugate of a state whirls as the state does.
-        against, with_rotor = np.where(below, with_rotor, against), np.where(below, against, with_rotor)
-        if rotor_speed is None:
-            columns += [against, with_rotor]
-        else:
-            columns += [against + np.where(faster, 0, with_rotor), np.where(faster, with_rotor, 0)]
+        whole = sum(whirl_shares(motion, held, left, right))
+        progressive = _progressive_part(model, motion, held, left, right)
+        columns += [whole * (1 - progressive), whole * progressive]
     sums = np.stack(columns, axis=-2)
     shares: Array = sums / sums.sum(axis=-2, keepdims=True)
     return shares
+
+
+def _progressive_part(
+    model: LinearModel, motion: Motion, held: list[int], left: Array, right: Array
+) -> Array:
+    """How much of a cyclic motion is the progressive one of its two uncoupled modes, in each state (..., states).
+
+    Alone, z = β_1c + i β_1s has the roots s_p and s_r. Its displacement and rate are the sums z = p + r and
+    ż = s_p p + s_r r of both modes, so that p = (ż - s_r z) / (s_p - s_r) and r = (s_p z - ż) / (s_p - s_r); the
+    conjugate of z has the conjugates of both.
+    """
+    faster, slower = _uncoupled_roots(model, motion)
+    cosine, sine = (_states(place, held, right.shape[-2]) for place in motion.places)
+    progressive, regressive = np.zeros(()), np.zeros(())
+    for turn, p, r in ((1j, faster, slower), (-1j, faster.conj(), slower.conj())):
+        p, r = p[..., None], r[..., None]
+        z, rate = (right[..., c, :] + turn * right[..., s, :] for c, s in zip(cosine, sine, strict=True))
+        of_z, of_rate = (left[..., :, c] - turn * left[..., :, s] for c, s in zip(cosine, sine, strict=True))
+        progressive = progressive + np.abs((of_z + p * of_rate) * (rate - r * z))
+        regressive = regressive + np.abs((of_z + r * of_rate) * (p * z - rate))
+    total = progressive + regressive
+    return np.where(total > 0, progressive / np.where(total > 0, total, 1), 0.5)
+
+
+def _uncoupled_roots(model: LinearModel, motion: Motion) -> tuple[Array, Array]:
+    """Roots (...) of a cyclic motion with all else held, alike in all directions: that of the progressive mode first.
+
+    In the rotating frame they are σ ± iν. Seen from the fixed frame the rotor's speed is added to both.
+    """
+    c, s = motion.places
+    mass, damping, stiffness = (
+        (matrix[..., c, c] + matrix[..., s, s]) / 2 - 0.5j * (matrix[..., c, s] - matrix[..., s, c])
+        for matrix in (np.real(getattr(model, name)) for name in "MCK")
+    )
+    with np.errstate(all="ignore"):
+        spread = np.sqrt(damping**2 - 4 * mass * stiffness)
+        both = np.stack([-damping + spread, -damping - spread]) / (2 * mass)
+    ahead = both[0].imag >= both[1].imag
+    return np.where(ahead, both[0], both[1]), np.where(ahead, both[1], both[0])
 
 
 def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> Array:

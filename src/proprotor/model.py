@@ -80,8 +80,6 @@ class LinearModel:
     mass_at_rest : array (..., 6, 6) or (..., 8, 8), optional
         Of a rotor alone: its mass matrix at rest with locked blades on the hub's coordinates and, where it has a
         gimbal, that gimbal's (`MASS_AT_REST`), whatever the options. A support whose masses include the rotor needs it.
-    rotor_speed : array (...), optional
-        rad/s; None for matrices from elsewhere that do not tell it.
     shapes : array (..., m, k), optional
         Of the first k coordinates, those of a support that other designs have in other shapes: see
         `proprotor.support.NormalModes`.
@@ -99,7 +97,6 @@ class LinearModel:
     hub: Array | None = None
     rotor: LinearModel | None = None
     mass_at_rest: Array | None = None
-    rotor_speed: Array | None = None
     shapes: Array | None = None
     origin: Origin | None = None
 
@@ -259,15 +256,11 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
     }
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
-    per_point: dict[str, Any] = {
-        name: np.broadcast_to(value, shape)
-        for name, value in (("airspeed", speed), ("rotor_speed", np.real(operation.rotor_speed)))
-    }
     model = LinearModel(
         **parts,
-        **per_point,
         dofs=coordinates,
         trim=shaped,
+        airspeed=np.broadcast_to(speed, shape),
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice),
     )

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from types import EllipsisType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -197,13 +197,11 @@ def _real(model: LinearModel) -> LinearModel:
     return replace(model, M=model.M.real, C=model.C.real, K=model.K.real)
 
 
-def some_points(model: LinearModel, points: Array) -> LinearModel:
+def some_points(model: LinearModel, points: Any) -> LinearModel:
     """M, C and K of a model at some of its points."""
     parts = {name: getattr(model, name)[points] for name in "MCK"}
-    for name in ("rotor_speed", "shapes"):
-        whole = getattr(model, name)
-        parts[name] = None if whole is None else whole[points]
-    return replace(model, **parts, B=None, hub=None, rotor=None)
+    shapes = None if model.shapes is None else model.shapes[points]
+    return replace(model, **parts, B=None, hub=None, rotor=None, shapes=shapes)
 
 
 def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:

@@ -50,7 +50,8 @@ def named_modes(case: Case, airspeed: Any, mode: str | None, options: Mapping[st
         raise InputError("airspeed", airspeed, model.trim.reason.item())
     spectrum = decomposition(model)
     values, right, left = spectrum.all_modes
-    columns, names = mode_columns(moving(model, values[None], left[None], right[None]), values[None])
+    found = moving(model, values, left, right)
+    columns, names = mode_columns(found._replace(place=found.place[None]), values[None])
     if mode is not None and mode not in names:
         raise InputError("mode", mode, unknown_name(mode, names, "mode"))
     chosen = np.array([names.index(name) for name in (names if mode is None else [mode])])

@@ -121,7 +121,6 @@ def rigid_propeller(
         trim=_unloaded(speed.shape),
         airspeed=speed,
         mass_at_rest=inertia.copy(),
-        rotor_speed=omega,
     )
 
 

@@ -20,6 +20,7 @@ from proprotor.modes import (
     coordinate_shares,
     held_coordinates,
     mode_dataset,
+    some_points,
     with_azimuth,
 )
 from proprotor.needs import check_memory
@@ -55,7 +56,6 @@ def sweep(
     model: LinearModel,
     line: Line | None = None,
     *,
-    rotor_speed: float | None = None,
     approach: Line | None = None,
 ) -> xarray.Dataset:
     """Modes of a line of points, named and followed.
@@ -66,9 +66,6 @@ def sweep(
         One point for each position of the line.
     line : Line, optional
         Airspeeds of the model by default; with its `linearize`, steps that do not tell which mode is which are divided.
-    rotor_speed : float, optional
-        rad/s, for the names of modes; that of the model by default. Without either, regressive and progressive are told
-        by the whirl in the fixed frame alone.
     approach : Line, optional
         From the anchor, where branches get their labels, to the point of the line that is nearest to it, both included:
         labels then do not depend on where the line begins and ends. Without it, or where it fails, they are given at
@@ -96,10 +93,10 @@ def sweep(
         )
     line = Line(model.airspeed) if line is None else line
     points, path = len(model.airspeed), follow(model, line)
-    named = state_names(model, line, path, rotor_speed, approach)
+    named = state_names(model, line, path, approach)
     spectrum = path.spectrum.at(slice(points))
     values, right, left = spectrum.all_modes
-    found = moving(model, values, left, right, rotor_speed)
+    found = moving(model, values, left, right)
     columns, modes = mode_columns(found, values)
     data = _by_motion(model, line, Modes(values, right, left), errors_of(model, spectrum), columns)
     by_mode = data.eigenvalue.dims
@@ -143,9 +140,7 @@ def _joined(first: Array, second: Array) -> Array:
     return np.array(both, dtype=str)
 
 
-def state_names(
-    model: LinearModel, line: Line, path: Path, rotor_speed: float | None, approach: Line | None
-) -> Named:
+def state_names(model: LinearModel, line: Line, path: Path, approach: Line | None) -> Named:
     """Names of states at the point nearest to the anchor, followed from there; else given at the first point."""
     known = name_list(model.dofs)
     if not len(path.points):
@@ -159,7 +154,7 @@ def state_names(
         if len(leg.points) and [leg.points[0], leg.points[-1]] == [0, last]:
             nearest = int(np.argmin(np.abs(path.positions[path.points] - approach.end)))
             here = path.spectrum.at([int(path.points[nearest])])
-            given = names_at(near, leg.spectrum, 0, rotor_speed)[leg.places[0]]
+            given = names_at(near, leg.spectrum, 0)[leg.places[0]]
             states = _same_point(leg, last, with_azimuth(here, model.dofs, len(held) + len(model.dofs)))
             place, trust = np.empty_like(given), np.empty(len(given))
             place[states], trust[states] = given, leg.quality.min(axis=0, initial=1)
@@ -169,7 +164,7 @@ def state_names(
     start = int(np.flatnonzero(path.points < len(line.positions))[0])  # a point of the line, and none between
     first = int(path.points[start])
     told = f"{line.name} {float(line.positions[first]):.6g} {line.units}"
-    place = names_at(model, path.spectrum, first, rotor_speed)
+    place = names_at(model, path.spectrum, first)
     return Named(start, known, place, np.ones(len(place)), told, 0)
 
 
@@ -181,12 +176,10 @@ def _same_point(leg: Path, last: int, here: Spectrum) -> Array:
     return states
 
 
-def names_at(model: LinearModel, spectrum: Spectrum, point: int, rotor_speed: float | None = None) -> Array:
+def names_at(model: LinearModel, spectrum: Spectrum, point: int) -> Array:
     """What moves in each state (states,) of a point of a line of models, by its place in `name_list`."""
     values, right, left = spectrum.at(point).all_modes
-    if rotor_speed is None and model.rotor_speed is not None:
-        rotor_speed = float(model.rotor_speed[point])
-    return moving(model, values, left, right, rotor_speed).place
+    return moving(some_points(model, point), values, left, right).place
 
 
 def mode_columns(found: Moving, values: Array) -> tuple[Array, list[str]]:

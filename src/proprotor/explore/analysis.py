@@ -117,7 +117,7 @@ def _between(model: LinearModel) -> Any:
 
     def linearize(positions: Array) -> LinearModel:
         M, C, K = np.moveaxis(spline(positions), 1, 0)
-        parts: dict[str, Any] = dict.fromkeys(("B", "rotor", "rotor_speed", "shapes"))
+        parts: dict[str, Any] = dict.fromkeys(("B", "rotor", "shapes"))
         return replace(model, airspeed=positions, M=M, C=C, K=K, **parts)
 
     return linearize
