@@ -30,7 +30,7 @@ from proprotor.tracking import Modes, Spectrum, link
 
 Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
 
-_ROUNDS = 16  # of parting: a step to its 65536th part
+_ROUNDS = 20  # of parting
 _HALVINGS = 6  # of a step at whose other end nothing can be analysed
 _ITERATIONS = 60  # of Newton's method; with bisection as the last resort
 _CLOSE = 1e-9  # of the position: the last correction, after which the next is rounding

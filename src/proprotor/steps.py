@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 _UNSEEN = 0.5  # of the bend: error of a cubic that nothing was compared with
 _SEEN = 0.1  # and after it was
 _SAFETY = 4.0  # the error of a cubic over half a step is a sixteenth; a quarter is taken
-_DEEPEST_POOR = 9  # halvings of a step whose roots cannot be told apart: of 20 kt, to 0.04 kt
+_FOR_NAMES = 7  # halvings of a step whose roots cannot be told apart: of 5 kt, to 0.04 kt
+_NEAR_LEVEL = 15  # and where one of them comes near the level: of 70 kt, to 0.002 kt
 _GRID = np.linspace(0.0, 1.0, 17)[1:-1]
 _EDGE = 0.04  # of a step: a new point stays that far from its ends
 
@@ -144,8 +145,9 @@ def undecided(steps: Steps, points: Points, names: bool) -> Array:
     for one, place in zip(row[np.isfinite(open_at)], open_at[np.isfinite(open_at)], strict=True):
         if np.isnan(share[one]):  # one point in a step and round
             share[one] = place
-    poor = (steps.quality < POOR) & (counts if names else counts & near)
-    share[poor.any(axis=1) & (steps.depth < _DEEPEST_POOR)] = 0.5
+    poor = (steps.quality < POOR) & counts
+    deepest = np.where((poor & near).any(axis=1), _NEAR_LEVEL, _FOR_NAMES if names else 0)
+    share[poor.any(axis=1) & (steps.depth < deepest)] = 0.5
     return share
 
 
