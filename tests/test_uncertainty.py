@@ -14,9 +14,9 @@ import xarray as xr
 import proprotor as pp
 from proprotor import sampling
 from proprotor.errors import InputError
-from proprotor.study_batch import STABLE, UNSTABLE
 from proprotor.results_file import load_results, save_results
 from proprotor.study import study
+from proprotor.study_batch import STABLE, UNSTABLE
 from proprotor.uncertainty import distribution, share_below, sobol_indices
 
 A, B = 7.0, 0.1

@@ -61,23 +61,23 @@ class Steps:
     def ends(self, points: Points) -> Array:
         """Growth at both ends, and both slopes times the length of the step (4, steps, states)."""
         length = (points.position[self.after] - points.position[self.before])[:, None]
-        value, slope = (self._later(part) for part in (points.growth, points.slope))
+        value, slope = (self.later(part) for part in (points.growth, points.slope))
         return np.stack(
             [points.growth[self.before], value, points.slope[self.before] * length, slope * length]
         )
 
     def errors(self, points: Points) -> Array:
         """Error of the growth at both ends (2, steps, states)."""
-        return np.stack([points.error[self.before], self._later(points.error)])
+        return np.stack([points.error[self.before], self.later(points.error)])
 
     def counts(self, points: Points) -> Array:
         """Which states are not the conjugates of others."""
         values = points.spectrum.values
-        return ~((values[self.before].imag < 0) & (self._later(values).imag < 0))
+        return ~((values[self.before].imag < 0) & (self.later(values).imag < 0))
 
     def sides(self, points: Points) -> Array:
         """On which side of the level roots are at both ends (2, steps, states); 0 where they are neutral."""
-        value = np.stack([points.growth[self.before], self._later(points.growth)])
+        value = np.stack([points.growth[self.before], self.later(points.growth)])
         return np.where(np.abs(value) <= self.errors(points), 0.0, np.sign(value))
 
     def crossing(self, points: Points) -> tuple[Array, Array, Array]:
@@ -92,7 +92,8 @@ class Steps:
         certain = (sides[0] < 0) & (sides[1] > 0) & (self.quality >= POOR)
         return np.flatnonzero((certain & self.counts(points)).any(axis=1))
 
-    def _later(self, part: Array) -> Array:
+    def later(self, part: Array) -> Array:
+        """What states (points, states) have at the later end, in the places of the earlier one (steps, states)."""
         return np.take_along_axis(part[self.after], self.successor, 1)
 
 
@@ -124,8 +125,12 @@ def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:
     )
 
 
-def undecided(steps: Steps, points: Points, names: bool) -> Array:
-    """Where each step is to be parted (steps,), as a share of it; NaN where it is settled."""
+def undecided(steps: Steps, points: Points, names: bool, trust: float = 1.0) -> Array:
+    """Where each step is to be parted (steps,), as a share of it; NaN where it is settled.
+
+    With `names` also where roots far from the level cannot be told apart. The less the trust in the cubics, the wider
+    their bands.
+    """
     share = np.full(len(steps.before), np.nan)
     if not len(share):
         return share
@@ -133,6 +138,7 @@ def undecided(steps: Steps, points: Points, names: bool) -> Array:
     rise = ends[1] - ends[0]
     bend = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
     width = np.where(np.isnan(steps.wrong), _UNSEEN * bend, np.fmax(steps.wrong, _SEEN * bend))
+    width = width / trust
     counts = counts & (sides != 0).any(axis=0)  # neutral all along is no crossing
     near = _may_reach(steps, points, ends, sides, width)
     looked = np.flatnonzero((counts & near).any(axis=1))
@@ -154,7 +160,7 @@ def undecided(steps: Steps, points: Points, names: bool) -> Array:
 def _may_reach(steps: Steps, points: Points, ends: Array, sides: Array, width: Array) -> Array:
     """Which roots come as near to the level as they move over the step, or cross it."""
     values = points.spectrum.values
-    move = np.abs(steps._later(values) - values[steps.before])
+    move = np.abs(steps.later(values) - values[steps.before])
     reach = move + width + np.abs(ends[2:]).max(axis=0)
     return np.asarray((np.abs(ends[:2]).min(axis=0) <= reach) | (sides[0] * sides[1] < 0))
 

@@ -333,7 +333,7 @@ class Analysis:
         note = np.full(len(reason), "", dtype=object)
         works, unstable = np.zeros(len(reason), dtype=bool), np.zeros(len(reason), dtype=bool)
         if search.scanned.points is not None:
-            points = search.points
+            points = search.first_points
             order = np.lexsort((points.position, points.line))
             lines, place = np.unique(points.line[order], return_index=True)
             first = order[place]
@@ -365,7 +365,7 @@ def _lowest(found: list[Crossing]) -> dict[int, Crossing]:
 
 
 def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], search: Search) -> None:
-    points, model = search.points, search.scanned.model
+    points, model = search.first_points, search.scanned.model
     size = np.abs(points.spectrum.values)
     with np.errstate(all="ignore"):
         ratio = np.where(size > points.error, -points.spectrum.values.real / size, np.inf).min(axis=1)
