@@ -87,6 +87,12 @@ class Reference:
                 found += self._along(knots[start:stop], values[start:stop], step)
         return sorted(found)
 
+    def confirms(self, one: Signed) -> bool:
+        """Whether the number of roots beyond the level changes at a place, where no sweep reached it."""
+        ends = growth(self.values(np.array([one[0] - FINE / 4, one[0] + FINE / 4])), self.level)
+        counts = (ends > 0).sum(axis=1)
+        return bool(np.isfinite(ends).all() and (counts[1] > counts[0] if one[1] else counts[1] < counts[0]))
+
     def _along(self, knots: np.ndarray, values: np.ndarray, step: float) -> list[Signed]:
         placed, clear = followed(values)
         value = growth(placed, self.level)
@@ -272,7 +278,8 @@ def main() -> None:
             case = load(Path(folder), flight, modes)
             level = LEVELS[number % len(LEVELS)]
             line = scan_speeds(case) / KNOT
-            reference = Reference(case, level).crossings(line[0], line[-1])
+            dense = Reference(case, level)
+            reference = dense.crossings(line[0], line[-1])
             for name, speeds in scans(case).items():
                 told = case.flutter_point(speeds, level=level)
                 low, high = (speed / KNOT for speed in told.searched)
@@ -282,6 +289,9 @@ def main() -> None:
                     one for one in reference if not any(a - APART <= one[0] <= b + APART for a, b in gaps)
                 ]
                 verdict = compare(found, reference, known, low, high)
+                verdict = verdict._replace(
+                    invented=[one for one in verdict.invented if not dense.confirms(one)]
+                )
                 totals.setdefault(name, []).append((verdict, told.eigen_solves))
                 if verdict.missed or verdict.invented:
                     console.print(number, name, level, "missed", verdict.missed, "invented", verdict.invented)
