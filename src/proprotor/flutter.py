@@ -214,7 +214,7 @@ def find_crossings(
     """
     if not -1 < level < 1:
         raise InputError("level", level, "must be a damping ratio, between -1 and 1")
-    line = rising(line)
+    line = _rising(line)
     positions = line.positions
     search = Search(
         lambda _, x: line.models(x), np.zeros(len(positions), dtype=int), positions, level, names=True
@@ -242,7 +242,7 @@ def find_crossings(
     )
 
 
-def rising(line: Line) -> Line:
+def _rising(line: Line) -> Line:
     """The line with each of its positions once, from the lowest to the highest."""
     return replace(line, positions=np.unique(np.asarray(line.positions, dtype=float)), end=None)
 
@@ -378,7 +378,7 @@ def boundaries(
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
-    line = rising(line)
+    line = _rising(line)
     near = approach_to(case, line, line.models(line.positions), options)
     return find_crossings(line, level=level, rotor_speed=rotor_speed_of(case), approach=near)
 
