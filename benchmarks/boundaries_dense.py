@@ -15,6 +15,7 @@ import tempfile
 import time
 import warnings
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -33,7 +34,7 @@ APART = 0.01  # kt: boundaries nearer to each other than that are left out
 DOUBTFUL = 1e-9  # rad/s: growth whose sign double precision may not tell
 NEUTRAL = 1e-12  # of |λ|: growth, in 50 digits, that the rounding of the matrices themselves makes
 AGREES = 1e-3  # kt
-MANY = 20  # points at which a root is in doubt: if five of them are neutral, all are
+MANY = 6  # points at which a root in doubt is looked at first
 LEVELS = (0.0, 0.02)
 Signed = tuple[float, bool]  # position in kt, and whether a root becomes unstable
 
@@ -86,17 +87,20 @@ class Reference:
                 found += self._along(knots[start:stop], values[start:stop], step)
         return sorted(found)
 
+    def confirms(self, one: Signed) -> bool:
+        """Whether the number of roots beyond the level changes at a place, where no sweep reached it."""
+        ends = growth(self.values(np.array([one[0] - FINE / 4, one[0] + FINE / 4])), self.level)
+        counts = (ends > 0).sum(axis=1)
+        return bool(np.isfinite(ends).all() and (counts[1] > counts[0] if one[1] else counts[1] < counts[0]))
+
     def _along(self, knots: np.ndarray, values: np.ndarray, step: float) -> list[Signed]:
         placed, clear = followed(values)
         value = growth(placed, self.level)
         sign = np.sign(value)
         for state, doubtful in enumerate((np.abs(value) < DOUBTFUL).T):
             points = np.flatnonzero(doubtful)
-            some = points[np.linspace(0, len(points) - 1, 5).astype(int)] if len(points) > MANY else points
-            signs = [self._sign(knots[point], placed[point, state]) for point in some]
-            if len(some) < len(points) and any(signs):
-                some, signs = points, [self._sign(knots[point], placed[point, state]) for point in points]
-            sign[points if not any(signs) else some, state] = 0 if not any(signs) else signs
+            if len(points):
+                sign[points, state] = self._signs(knots[points], placed[points, state])
         upper = (placed.imag >= 0)[:-1] | (placed.imag >= 0)[1:]
         beyond = sign > 0
         steps, states = np.nonzero(upper & (beyond[:-1] != beyond[1:]))
@@ -125,6 +129,21 @@ class Reference:
         ends = value[step : step + 2, state]
         share = 0.5 if ends[0] == ends[1] else np.clip(ends[0] / (ends[0] - ends[1]), 0, 1)
         return float(knots[step] + share * (knots[step + 1] - knots[step])), bool(sign[step + 1, state] > 0)
+
+    def _signs(self, knots: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Signs of a root in doubt along points: between two that have the same, all have it."""
+        signs = np.full(len(knots), np.nan)
+        some = np.unique(np.linspace(0, len(knots) - 1, MANY).astype(int))
+        while len(some):
+            signs[some] = [self._sign(knots[point], values[point]) for point in some]
+            known = np.flatnonzero(np.isfinite(signs))
+            some = np.array([], dtype=int)
+            for first, last in pairwise(known.tolist()):
+                if signs[first] == signs[last]:
+                    signs[first:last] = signs[first]
+                elif last > first + 1:
+                    some = np.append(some, (first + last) // 2)
+        return signs
 
     def _sign(self, knot: float, value: complex) -> float:
         exact = exact_root(self.case.linearize(knot * KNOT), value)
@@ -259,14 +278,20 @@ def main() -> None:
             case = load(Path(folder), flight, modes)
             level = LEVELS[number % len(LEVELS)]
             line = scan_speeds(case) / KNOT
-            reference = Reference(case, level).crossings(line[0], line[-1])
+            dense = Reference(case, level)
+            reference = dense.crossings(line[0], line[-1])
             for name, speeds in scans(case).items():
                 told = case.flutter_point(speeds, level=level)
                 low, high = (speed / KNOT for speed in told.searched)
                 found = [(b.position / KNOT, b.onset) for b in told.boundaries]
                 gaps = [(first / KNOT, last / KNOT) for first, last, _ in told.failed]
-                known = [one for one in reference if not any(a - APART <= one[0] <= b + APART for a, b in gaps)]
+                known = [
+                    one for one in reference if not any(a - APART <= one[0] <= b + APART for a, b in gaps)
+                ]
                 verdict = compare(found, reference, known, low, high)
+                verdict = verdict._replace(
+                    invented=[one for one in verdict.invented if not dense.confirms(one)]
+                )
                 totals.setdefault(name, []).append((verdict, told.eigen_solves))
                 if verdict.missed or verdict.invented:
                     console.print(number, name, level, "missed", verdict.missed, "invented", verdict.invented)

@@ -25,7 +25,10 @@ def exact_roots(model, near):
                 whole, slope = M * root**2 + C * root + K, M * (2 * root) + C
                 for place in set(range(n)) - set(held):
                     for row in range(n):
-                        whole[row, place], slope[row, place] = M[row, place] * root + C[row, place], M[row, place]
+                        whole[row, place], slope[row, place] = (
+                            M[row, place] * root + C[row, place],
+                            M[row, place],
+                        )
                 try:
                     factors, order = mpmath.mp.LU_decomp(whole)
                 except ZeroDivisionError:  # upon the root
@@ -43,7 +46,9 @@ def exact_roots(model, near):
 
 def distances(exact, values):
     with mpmath.workdps(60):
-        return np.array([float(abs(one - mpmath.mpc(complex(value)))) for one, value in zip(exact, values, strict=True)])
+        return np.array(
+            [float(abs(one - mpmath.mpc(complex(value)))) for one, value in zip(exact, values, strict=True)]
+        )
 
 
 def random_model(seed, spring, heavy):

@@ -25,15 +25,16 @@ from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition, held_coordinates, some_points
 from proprotor.root_error import growth, growth_error, refined_near
-from proprotor.steps import first_steps, parted, undecided
+from proprotor.steps import Steps, first_steps, parted, undecided
 from proprotor.tracking import Modes, Spectrum, link
 
 Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
 
-_ROUNDS = 16  # of parting: a step to its 65536th part
+_ROUNDS = 20  # of parting
 _HALVINGS = 6  # of a step at whose other end nothing can be analysed
 _ITERATIONS = 60  # of Newton's method; with bisection as the last resort
 _CLOSE = 1e-9  # of the position: the last correction, after which the next is rounding
+_TRUST = 0.5  # in cubics whose slopes are differences
 _SURE = 4.0  # errors of the growth that a slope must make over a bracket to count
 
 
@@ -98,10 +99,12 @@ def solved(
     level: float,
     forgiving: bool = False,
     states: int | None = None,
+    plain: bool = False,
 ) -> Solved:
     """Eigen-solves at points of lines; where one of them cannot be had it spoils no other.
 
-    `states` says how many eigenvalues there is room for, where some points have fewer than others elsewhere.
+    `states` says how many eigenvalues there is room for, where some points have fewer than others elsewhere. Without
+    derivatives, which are NaN, if `plain`: for a little more than half of the cost.
 
     Raises
     ------
@@ -109,7 +112,7 @@ def solved(
         For an input that cannot be, unless `forgiving`: then it is the reason of its point.
     """
     try:
-        return _solved(models, line, position, level, states)
+        return _solved(models, line, position, level, states, plain)
     except np.linalg.LinAlgError as error:
         told: Exception = error
     except InputError as error:
@@ -120,7 +123,7 @@ def solved(
         reason = np.array([" ".join(str(told).split("\n"))], dtype=object)
         return Solved(None, np.array([False]), reason, np.array([""], dtype=object), None)
     halves = [
-        solved(models, line[half], position[half], level, forgiving, states)
+        solved(models, line[half], position[half], level, forgiving, states, plain)
         for half in np.array_split(np.arange(len(line)), 2)
     ]
     return _together(*halves)
@@ -136,20 +139,28 @@ def _together(one: Solved, other: Solved) -> Solved:
     return Solved(one.points.joined(other.points), works, reason, warning, one.model)
 
 
-def _solved(models: Models, line: Array, position: Array, level: float, states: int | None) -> Solved:
-    model, changes = with_changes(lambda x: models(line, x), position)
+def _solved(
+    models: Models, line: Array, position: Array, level: float, states: int | None, plain: bool
+) -> Solved:
+    model, changes = (
+        (models(line, position), None) if plain else with_changes(lambda x: models(line, x), position)
+    )
     spectrum = decomposition(model, None if states is None else held_coordinates(model, states))
     works = spectrum.works
     reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
     if not works.any():
         return Solved(None, works, reason, warning, model)
     part, some = some_points(model, works), spectrum.at(works)
-    modes = some.all_modes
-    left = second_order_left(part, modes.left)
-    found = refined_near(part, modes, left, level)
-    mass, damping, stiffness = (np.broadcast_to(change, model.K.shape)[works] for change in changes)
-    moved = Modes(found.values, modes.right, modes.left)
-    change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
+    if changes is None:
+        found = refined_near(part, some, level)
+        change = np.full(found.values.shape, complex(np.nan))
+    else:
+        modes = some.all_modes
+        left = second_order_left(part, modes.left)
+        found = refined_near(part, some, level, left)
+        mass, damping, stiffness = (np.broadcast_to(one, model.K.shape)[works] for one in changes)
+        moved = Modes(found.values, modes.right, modes.left)
+        change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
     points = Points(
         line[works],
         position[works],
@@ -197,17 +208,47 @@ class Search:
     ) -> None:
         self.models, self.level, self.names, self.onset_only = models, level, names, onset_only
         self.forgiving = forgiving
-        self.scanned = solved(models, line, position, level, forgiving, states)
+        self.scanned = solved(models, line, position, level, forgiving, states, plain=onset_only)
         some = self.scanned.points
         self.states = states if some is None else some.growth.shape[1]
         self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
         if self.scanned.points is not None:
             self.points = self.scanned.points
             self._reach_edges(line, position)
+            self.first_points = self.points
             order = np.lexsort((self.points.position, self.points.line))
             same = np.diff(self.points.line[order]) == 0
             self.steps = first_steps(self.points.spectrum, order[:-1][same], order[1:][same])
+            if onset_only:
+                self._screen()
             self._settle()
+
+    def _screen(self) -> None:
+        """Keep the steps that may hold the lowest onset, and solve their ends with derivatives.
+
+        Differences from point to point stand for derivatives; with them the cubics are trusted half as much.
+        """
+        points, steps = with_differences(self.points, self.steps, self.level), self.steps
+        asked = np.isfinite(undecided(steps, points, names=False, trust=_TRUST))
+        asked[steps.crossing(points)[0]] = True
+        kept = steps.at(np.flatnonzero(asked & self._before_onset()))
+        ends = np.unique(np.concatenate([kept.before, kept.after]))
+        if not len(ends):
+            self.steps = kept
+            return
+        exact = solved(
+            self.models, points.line[ends], points.position[ends], self.level, self.forgiving, self.states
+        )
+        if exact.points is None:
+            self.steps = kept.at(np.array([], dtype=int))
+            return
+        np.add.at(self.solves, exact.points.line, 1)
+        place = np.full(len(points.position), -1)
+        place[ends[exact.works]] = np.arange(len(exact.points.position))
+        before, after = place[kept.before], place[kept.after]
+        both = (before >= 0) & (after >= 0)
+        self.points = exact.points
+        self.steps = first_steps(exact.points.spectrum, before[both], after[both])
 
     def _reach_edges(self, line: Array, position: Array) -> None:
         """Halve the steps from a point that works to one that does not: boundaries may lie there."""
@@ -217,7 +258,9 @@ class Search:
         line, good, bad = line[edges], position[good], position[bad]
         for _ in range(_HALVINGS if len(line) else 0):
             middle = (good + bad) / 2
-            found = solved(self.models, line, middle, self.level, self.forgiving, self.states)
+            found = solved(
+                self.models, line, middle, self.level, self.forgiving, self.states, plain=self.onset_only
+            )
             good, bad = np.where(found.works, middle, good), np.where(found.works, bad, middle)
             if found.points is not None:
                 self.points = self.points.joined(found.points)
@@ -258,6 +301,21 @@ class Search:
         np.add.at(self.solves, line[between.works], 1)
         self.steps = parted(self.steps, chosen[between.works], self.points, len(x))
         return True
+
+
+def with_differences(points: Points, steps: Steps, level: float) -> Points:
+    """The points with differences to their neighbours in place of derivatives."""
+    values = points.spectrum.values
+    length = (points.position[steps.after] - points.position[steps.before])[:, None]
+    rate = (steps.later(values) - values[steps.before]) / length
+    there = np.empty(rate.shape, dtype=complex)
+    np.put_along_axis(there, steps.successor, rate, 1)
+    sums, weights = np.zeros(values.shape, dtype=complex), np.zeros((len(values), 1))
+    for place, part in ((steps.before, rate), (steps.after, there)):  # the nearer neighbour counts more
+        np.add.at(sums, place, part / length)
+        np.add.at(weights, place, 1 / length)
+    change = sums / np.where(weights > 0, weights, 1)
+    return points._replace(change=change, slope=growth_rate(values, change, level))
 
 
 class Crossing(NamedTuple):

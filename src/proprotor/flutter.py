@@ -248,7 +248,7 @@ def find_crossings(line: Line, *, level: float = 0.0, approach: Line | None = No
     """
     if not -1 < level < 1:
         raise InputError("level", level, "must be a damping ratio, between -1 and 1")
-    line = rising(line)
+    line = _rising(line)
     positions = line.positions
     search = Search(
         lambda _, x: line.models(x), np.zeros(len(positions), dtype=int), positions, level, names=True
@@ -278,7 +278,7 @@ def find_crossings(line: Line, *, level: float = 0.0, approach: Line | None = No
     )
 
 
-def rising(line: Line) -> Line:
+def _rising(line: Line) -> Line:
     """The line with each of its positions once, from the lowest to the highest."""
     return replace(line, positions=np.unique(np.asarray(line.positions, dtype=float)), end=None)
 
@@ -440,7 +440,7 @@ def boundaries(
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:
         raise InputError("case", case.name, "must be one design: give one input to vary")
-    line = rising(line)
+    line = _rising(line)
     near = approach_to(case, line, line.models(line.positions), options)
     found = find_crossings(line, level=level, approach=near)
     own = stamp.of_case(case, options)

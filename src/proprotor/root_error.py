@@ -82,16 +82,19 @@ def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refi
     return Refined(np.where(better, values + correction, values), error)
 
 
-def refined_near(model: LinearModel, modes: Modes, left: Array, level: float = 0.0) -> Refined:
-    """The same at points (k,) where a root is near a level; elsewhere roots as they are, with an error of zero.
+def refined_near(
+    model: LinearModel, spectrum: Spectrum, level: float = 0.0, left: Array | None = None
+) -> Refined:
+    """The same of points (k,) that work, where a root is near a level; elsewhere roots as they are, with no error.
 
-    Farther from the level than a millionth of the largest root no error reaches.
+    Farther from the level than a millionth of the largest root no error reaches. `left` of `second_order_left`, where
+    it is known.
     """
-    values, error = modes.values.copy(), np.zeros(modes.values.shape)
+    values, error = spectrum.values.copy(), np.zeros(spectrum.values.shape)
     near = _any_near(growth(values, level), values)
     if near.any():
-        some = Modes(*(part[near] for part in modes))
-        values[near], error[near] = refined(some_points(model, near), some, left[near])
+        modes, rows = spectrum.at(near).all_modes, None if left is None else left[near]
+        values[near], error[near] = refined(some_points(model, near), modes, rows)
     return Refined(values, error)
 
 

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 _UNSEEN = 0.5  # of the bend: error of a cubic that nothing was compared with
 _SEEN = 0.1  # and after it was
 _SAFETY = 4.0  # the error of a cubic over half a step is a sixteenth; a quarter is taken
-_DEEPEST_POOR = 9  # halvings of a step whose roots cannot be told apart: of 20 kt, to 0.04 kt
+_FOR_NAMES = 7  # halvings of a step whose roots cannot be told apart: of 5 kt, to 0.04 kt
+_NEAR_LEVEL = 15  # and where one of them comes near the level: of 70 kt, to 0.002 kt
 _GRID = np.linspace(0.0, 1.0, 17)[1:-1]
 _EDGE = 0.04  # of a step: a new point stays that far from its ends
 
@@ -60,23 +61,23 @@ class Steps:
     def ends(self, points: Points) -> Array:
         """Growth at both ends, and both slopes times the length of the step (4, steps, states)."""
         length = (points.position[self.after] - points.position[self.before])[:, None]
-        value, slope = (self._later(part) for part in (points.growth, points.slope))
+        value, slope = (self.later(part) for part in (points.growth, points.slope))
         return np.stack(
             [points.growth[self.before], value, points.slope[self.before] * length, slope * length]
         )
 
     def errors(self, points: Points) -> Array:
         """Error of the growth at both ends (2, steps, states)."""
-        return np.stack([points.error[self.before], self._later(points.error)])
+        return np.stack([points.error[self.before], self.later(points.error)])
 
     def counts(self, points: Points) -> Array:
         """Which states are not the conjugates of others."""
         values = points.spectrum.values
-        return ~((values[self.before].imag < 0) & (self._later(values).imag < 0))
+        return ~((values[self.before].imag < 0) & (self.later(values).imag < 0))
 
     def sides(self, points: Points) -> Array:
         """On which side of the level roots are at both ends (2, steps, states); 0 where they are neutral."""
-        value = np.stack([points.growth[self.before], self._later(points.growth)])
+        value = np.stack([points.growth[self.before], self.later(points.growth)])
         return np.where(np.abs(value) <= self.errors(points), 0.0, np.sign(value))
 
     def crossing(self, points: Points) -> tuple[Array, Array, Array]:
@@ -91,7 +92,8 @@ class Steps:
         certain = (sides[0] < 0) & (sides[1] > 0) & (self.quality >= POOR)
         return np.flatnonzero((certain & self.counts(points)).any(axis=1))
 
-    def _later(self, part: Array) -> Array:
+    def later(self, part: Array) -> Array:
+        """What states (points, states) have at the later end, in the places of the earlier one (steps, states)."""
         return np.take_along_axis(part[self.after], self.successor, 1)
 
 
@@ -123,8 +125,12 @@ def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:
     )
 
 
-def undecided(steps: Steps, points: Points, names: bool) -> Array:
-    """Where each step is to be parted (steps,), as a share of it; NaN where it is settled."""
+def undecided(steps: Steps, points: Points, names: bool, trust: float = 1.0) -> Array:
+    """Where each step is to be parted (steps,), as a share of it; NaN where it is settled.
+
+    With `names` also where roots far from the level cannot be told apart. The less the trust in the cubics, the wider
+    their bands.
+    """
     share = np.full(len(steps.before), np.nan)
     if not len(share):
         return share
@@ -132,6 +138,7 @@ def undecided(steps: Steps, points: Points, names: bool) -> Array:
     rise = ends[1] - ends[0]
     bend = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
     width = np.where(np.isnan(steps.wrong), _UNSEEN * bend, np.fmax(steps.wrong, _SEEN * bend))
+    width = width / trust
     counts = counts & (sides != 0).any(axis=0)  # neutral all along is no crossing
     near = _may_reach(steps, points, ends, sides, width)
     looked = np.flatnonzero((counts & near).any(axis=1))
@@ -144,15 +151,16 @@ def undecided(steps: Steps, points: Points, names: bool) -> Array:
     for one, place in zip(row[np.isfinite(open_at)], open_at[np.isfinite(open_at)], strict=True):
         if np.isnan(share[one]):  # one point in a step and round
             share[one] = place
-    poor = (steps.quality < POOR) & (counts if names else counts & near)
-    share[poor.any(axis=1) & (steps.depth < _DEEPEST_POOR)] = 0.5
+    poor = (steps.quality < POOR) & counts
+    deepest = np.where((poor & near).any(axis=1), _NEAR_LEVEL, _FOR_NAMES if names else 0)
+    share[poor.any(axis=1) & (steps.depth < deepest)] = 0.5
     return share
 
 
 def _may_reach(steps: Steps, points: Points, ends: Array, sides: Array, width: Array) -> Array:
     """Which roots come as near to the level as they move over the step, or cross it."""
     values = points.spectrum.values
-    move = np.abs(steps._later(values) - values[steps.before])
+    move = np.abs(steps.later(values) - values[steps.before])
     reach = move + width + np.abs(ends[2:]).max(axis=0)
     return np.asarray((np.abs(ends[:2]).min(axis=0) <= reach) | (sides[0] * sides[1] < 0))
 

@@ -376,7 +376,7 @@ class Analysis:
         note = np.full(len(reason), "", dtype=object)
         works, unstable = np.zeros(len(reason), dtype=bool), np.zeros(len(reason), dtype=bool)
         if search.scanned.points is not None:
-            points = search.points
+            points = search.first_points
             order = np.lexsort((points.position, points.line))
             lines, place = np.unique(points.line[order], return_index=True)
             first = order[place]
