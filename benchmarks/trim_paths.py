@@ -14,7 +14,7 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,7 +169,9 @@ def main(rotors: int = 10_000) -> None:
     found = compare(rotors // len(KINDS))
     counts = {kind: Counter(verdict.tolist()) for kind, (*_, verdict) in found.items()}
     names = sorted(set().union(*counts.values()))
-    table = Table("", *KINDS, title=f"{rotors} random rotors, {time.process_time() - start:.0f} s of processor time")
+    table = Table(
+        "", *KINDS, title=f"{rotors} random rotors, {time.process_time() - start:.0f} s of processor time"
+    )
     for name in names:
         table.add_row(name, *(str(counts[kind][name]) for kind in KINDS))
     Console(width=120).print(table)

@@ -203,7 +203,9 @@ class Balance:
     def precone_load(self, rows: Array) -> Array:
         """What precone adds to the residual (n, k) of the undeflected blade."""
         load = np.zeros((len(rows), len(self.free)))
-        load[:, self.hinged] = evaluate(equations.precone_load, take(self.quantities, rows))[..., self.free[: sum(self.hinged)], 0]
+        load[:, self.hinged] = evaluate(equations.precone_load, take(self.quantities, rows))[
+            ..., self.free[: sum(self.hinged)], 0
+        ]
         return load
 
     def take_step(self, state: State, rows: Array, step: Array) -> None:

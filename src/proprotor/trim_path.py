@@ -6,12 +6,13 @@ starts from the rigid blade's root nearest the direction of the air.
 
 Most trims need no path, for a bound tells that they are its end. With J_λ(x) the slopes at a share λ, P the inverse of
 their mean over a step in λ and x, and N the largest |P J_λ(x) - 1| in the step entry by entry, Newton's iteration with
-P contracts for every λ of the step where N has a spectral radius below one: then each λ has one equilibrium within reach,
-and these are one curve without a turn. The share of the airloads makes J linear in λ, so that the step's ends hold the
-extremes. Where the blade is, its precone included, J is known at both ends; it is taken to change twice as much within
-reach of the path as between them, and the radius may be one half at most.
+P contracts for every λ of the step where N has a spectral radius below one: then each λ has one equilibrium within
+reach, and these are one curve without a turn. The share of the airloads makes J linear in λ, so that the step's ends
+hold the extremes. Where the blade is, its precone included, J is known at both ends; it is taken to change twice as
+much within reach of the path as between them, and the radius may be one half at most.
 
-The other points are followed in steps of λ, each of a length that the same bound allows.
+The other points are followed in steps of λ, each of a length that the same bound allows. Where a path turns back, P
+grows without limit and the steps shrink to nothing.
 """
 
 from __future__ import annotations
@@ -26,14 +27,17 @@ from proprotor.arrays import Array
 from proprotor.trim import UNKNOWNS
 from proprotor.trim_balance import Balance, Slopes, State, copy_state, newton_step, solve
 
-FARTHEST = np.radians(60)  # of the collective from the direction of the air: a blade turned farther is another branch
+# Of the collective from the direction of the air: a blade turned farther is another branch.
+FARTHEST = np.radians(60)
 _CONTRACTION = 0.5  # largest spectral radius of N
 _REACH = 2.0  # change of slopes within reach of the path, in that between the ends of a step
 _WINDOWS = (1, 2, 4)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
 _POWER_STEPS, _TINY, _FLOOR = 8, 1e-300, 1e-9
 _FIRST_STEP, _SHORTEST_STEP = 0.25, 1e-6  # of λ
 _CAUTION = 0.8  # of the largest radius, which a step is made for
-_TURNING = 10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
+_TURNING = (
+    10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
+)
 _STEPS = 1000
 _CORRECTIONS = 8
 _ARRIVED = 1e-7  # rad, the last correction
@@ -43,7 +47,13 @@ _SHARP = 1e-12  # rad, of the rigid blade's root
 
 
 def contraction(
-    sprung: Array, before: Slopes, after: Slopes, share: Array, to: Array, windows: int = 1, between: Slopes | None = None
+    sprung: Array,
+    before: Slopes,
+    after: Slopes,
+    share: Array,
+    to: Array,
+    windows: int = 1,
+    between: Slopes | None = None,
 ) -> Array:
     """Spectral radius (n,) of N in a step: up to one half the path leads from one equilibrium to the other, unturned.
 
@@ -64,7 +74,9 @@ def contraction(
     def radius(rows: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
         start, half = share[rows], (to - share)[rows] / (2 * windows)
         middles = (start + (2 * window + 1) * half for window in range(windows))
-        return np.maximum.reduce([_radius(_moved(before, after, between, half, middle)) for middle in middles])
+        radii = [_radius(_moved(before, after, between, half, middle)) for middle in middles]
+        largest: Array = np.maximum.reduce(radii)
+        return largest
 
     return _by_moments_or_angles(sprung, radius, before, after, *(() if between is None else (between,)))
 
@@ -107,13 +119,11 @@ def _radius(matrix: Array) -> Array:
     for _ in range(_POWER_STEPS):
         weight = matrix @ weight
         weight = weight / np.maximum(weight.max(axis=1, keepdims=True), _TINY) + _FLOOR
-    ratio: Array = (matrix @ weight / weight)[..., 0]
-    return ratio.max(axis=1, initial=0.0)
+    bound: Array = (matrix @ weight / weight)[..., 0].max(axis=1, initial=0.0)
+    return bound
 
 
-def at_end(
-    balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array
-) -> Array:
+def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
     """Whether the bound tells that points (n,) with these slopes at the start and here are at the path's end."""
     smooth = isinstance(balance.sections.airfoil, Airfoil)
     between = None if smooth else balance.near(_half_way(start, state), rows, share=0.5).slopes
@@ -150,7 +160,8 @@ class Followed:
     @property
     def arrived(self) -> Array:
         """Which points (n,) have come to all of the loads."""
-        return self.rigid & (self.share == 1)
+        arrived: Array = self.rigid & (self.share == 1)
+        return arrived
 
 
 def follow(balance: Balance, state: State, rows: Array, iterations: Array) -> Followed:
@@ -295,7 +306,12 @@ def _closing(balance: Balance, state: State, rows: Array, pitch: Array) -> Array
 
 
 def _root_between(
-    balance: Balance, state: State, rows: Array, air: Array, ends: tuple[Array, Array], values: tuple[Array, Array]
+    balance: Balance,
+    state: State,
+    rows: Array,
+    air: Array,
+    ends: tuple[Array, Array],
+    values: tuple[Array, Array],
 ) -> Array:
     """Root (n,) of the closing row between two angles from the air's with values of different sign (Illinois)."""
     (a, b), (at_a, at_b) = ends, values

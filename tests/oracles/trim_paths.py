@@ -1,8 +1,8 @@
 """The path from the undeflected blade to the trim, followed in small steps of its length, many rotors at once.
 
 Written from the geometry of one blade: point masses, springs in series, sections in the air by plain quadrature, and
-slopes by differences. A share λ multiplies precone, and the airloads in flap, lag and pitch. The path's own length is the parameter, so that a path that turns back is followed around its turn and seen
-to do so.
+slopes by differences. A share λ multiplies precone, and the airloads in flap, lag and pitch. The path's own length is
+the parameter, so that a path that turns back is followed around its turn and seen to do so.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -60,7 +60,9 @@ class Blades:
 
 def arms(blades, r):
     """ρβ and ρζ of radii (n, s)."""
-    return (np.maximum(r - hinge[:, None], 0) for hinge in (blades.flap_hinge_offset, blades.lag_hinge_offset))
+    return (
+        np.maximum(r - hinge[:, None], 0) for hinge in (blades.flap_hinge_offset, blades.lag_hinge_offset)
+    )
 
 
 def inertia(blades, state):
@@ -81,9 +83,12 @@ def springs(blades, state):
     """Flap, lag and pitch moments (n, 3) of hinge springs, control system and propeller moment."""
     turn = state[:, PITCH] + state[:, COLLECTIVE] + blades.structural_pitch_offset
     inboard = [
-        (1 - getattr(blades, f"{n}_outboard_fraction")) / getattr(blades, f"{n}_stiffness") for n in ("flap", "lag")
+        (1 - getattr(blades, f"{n}_outboard_fraction")) / getattr(blades, f"{n}_stiffness")
+        for n in ("flap", "lag")
     ]
-    flat, edge = (getattr(blades, f"{n}_outboard_fraction") / getattr(blades, f"{n}_stiffness") for n in ("flap", "lag"))
+    flat, edge = (
+        getattr(blades, f"{n}_outboard_fraction") / getattr(blades, f"{n}_stiffness") for n in ("flap", "lag")
+    )
     c, s = np.cos(turn), np.sin(turn)
     flap_flap, lag_lag = inboard[0] + flat * c**2 + edge * s**2, inboard[1] + flat * s**2 + edge * c**2
     flap_lag = (flat - edge) * s * c
@@ -92,10 +97,14 @@ def springs(blades, state):
     flap_moment = (lag_lag * coning - flap_lag * lag) / determinant
     lag_moment = (flap_flap * lag - flap_lag * coning) / determinant
     # The energy ½ mᵀ F m of moments m falls as the flexibility F grows.
-    growth = (flat - edge) * (np.sin(2 * turn) * (lag_moment**2 - flap_moment**2) / 2 + np.cos(2 * turn) * flap_moment * lag_moment)
+    growth = (flat - edge) * (
+        np.sin(2 * turn) * (lag_moment**2 - flap_moment**2) / 2 + np.cos(2 * turn) * flap_moment * lag_moment
+    )
     pitch = state[:, PITCH] + state[:, COLLECTIVE]
     propeller = blades.pitch_inertia * blades.rotor_speed**2 * np.sin(pitch) * np.cos(pitch)
-    return np.stack([flap_moment, lag_moment, blades.control_stiffness * state[:, PITCH] + propeller - growth], axis=1)
+    return np.stack(
+        [flap_moment, lag_moment, blades.control_stiffness * state[:, PITCH] + propeller - growth], axis=1
+    )
 
 
 def sections(blades):
@@ -103,7 +112,9 @@ def sections(blades):
     root, tip = blades.root_cutout, blades.radius
     first, second = (np.maximum(root, hinge) for hinge in (blades.flap_hinge_offset, blades.lag_hinge_offset))
     shares = np.linspace(0, 1, _PANELS + 1) ** 1.5
-    edges = np.concatenate([np.stack([root, first], 1), second[:, None] + (tip - second)[:, None] * shares], axis=1)
+    edges = np.concatenate(
+        [np.stack([root, first], 1), second[:, None] + (tip - second)[:, None] * shares], axis=1
+    )
     node, weight = np.polynomial.legendre.leggauss(_POINTS)
     half, start = np.diff(edges, axis=1)[..., None] / 2, edges[:, :-1, None]
     n = len(root)
@@ -112,7 +123,11 @@ def sections(blades):
 
 def airloads(blades, state, r, weight):
     """Work (n, 5) of the airloads of one blade in flap, lag, pitch, azimuth, and along the shaft."""
-    b = {f.name: getattr(blades, f.name)[..., None] for f in fields(blades) if f.name not in ("closing", "station", "mass")}
+    b = {
+        f.name: getattr(blades, f.name)[..., None]
+        for f in fields(blades)
+        if f.name not in ("closing", "station", "mass")
+    }
     coning, lag, elastic, collective = (state[:, place, None] for place in range(4))
     flap_arm, lag_arm = arms(blades, r)
     flapped, lagged = r > b["flap_hinge_offset"], r > b["lag_hinge_offset"]
@@ -183,7 +198,7 @@ def linear(blades, state, share, grid):
 
 
 def rigid_start(blades, grid):
-    """State (n, 4) without loads: a rigid blade whose torque or thrust is linear in its pitch, and the control system."""
+    """State (n, 4) without loads: a rigid blade, whose torque or thrust is linear in its pitch, and control system."""
     state = np.zeros((len(blades.radius), 4))
     pitch = np.arctan2(blades.airspeed, 0.75 * blades.rotor_speed * blades.radius)
     moment = blades.pitch_inertia * blades.rotor_speed**2
@@ -291,7 +306,9 @@ def corrected(blades, start, way, length, grid):
         right = np.column_stack([left, along])
         fit = np.isfinite(right).all(1) & np.isfinite(slopes).all((1, 2))
         step = np.full_like(here, np.nan)
-        step[fit] = np.linalg.solve(bordered(slopes[fit], by_share[fit], way[fit]), right[fit, :, None])[..., 0]
+        step[fit] = np.linalg.solve(bordered(slopes[fit], by_share[fit], way[fit]), right[fit, :, None])[
+            ..., 0
+        ]
         here = here - step
         size = np.abs(step).max(1)
         if not (size > 1e-9).any():
