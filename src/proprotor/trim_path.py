@@ -31,14 +31,14 @@ from proprotor.trim_balance import Balance, Slopes, State, copy_state, newton_st
 FARTHEST = np.radians(60)
 _CONTRACTION = 0.5  # largest spectral radius of N
 _REACH = 2.0  # change of slopes within reach of the path, in that between the ends of a step
-_WINDOWS = (1, 2, 4)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
-_POWER_STEPS, _TINY, _FLOOR = 8, 1e-300, 1e-9
+_WINDOWS = (1, 4, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
+_POWER_STEPS, _FLOOR = 8, 1e-9
 _FIRST_STEP, _SHORTEST_STEP = 0.25, 1e-6  # of λ
 _CAUTION = 0.8  # of the largest radius, which a step is made for
 _TURNING = (
     10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
 )
-_STEPS = 1000
+_STEPS = 400
 _CORRECTIONS = 8
 _ARRIVED = 1e-7  # rad, the last correction
 _SEARCH = np.radians(1)  # between the angles among which the rigid blade's root is looked for
@@ -71,11 +71,12 @@ def contraction(
         Half-way, for section models whose slopes may do there what they don't at the ends.
     """
 
-    def radius(rows: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
-        start, half = share[rows], (to - share)[rows] / (2 * windows)
-        middles = (start + (2 * window + 1) * half for window in range(windows))
-        radii = [_radius(_moved(before, after, between, half, middle)) for middle in middles]
-        largest: Array = np.maximum.reduce(radii)
+    def radius(rows: Array, *slopes: Slopes) -> Array:
+        n, half = len(rows), (to - share)[rows] / (2 * windows)
+        middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
+        again = np.tile(np.arange(n), windows)  # all windows at once
+        moved = _moved(half[again], middles.ravel(), *(part.of(again) for part in slopes))
+        largest: Array = _radius(moved).reshape(windows, n).max(axis=0)
         return largest
 
     return _by_moments_or_angles(sprung, radius, before, after, *(() if between is None else (between,)))
@@ -101,7 +102,7 @@ def _by_moments_or_angles(sprung: Array, radius: Callable[..., Array], *slopes: 
     return found
 
 
-def _moved(before: Slopes, after: Slopes, between: tuple[Slopes, ...], half: Array, middle: Array) -> Array:
+def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
     """N (n, k, k) of a window in λ about its middle, and half as long as it is."""
     mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
     change = Slopes(*((b - a) / 2 for a, b in zip(before, after, strict=True)))
@@ -117,8 +118,7 @@ def _radius(matrix: Array) -> Array:
     """Bound (n,) of the spectral radius of matrices (n, k, k) without negative entries (Collatz and Wielandt)."""
     weight = np.ones((*matrix.shape[:2], 1))
     for _ in range(_POWER_STEPS):
-        weight = matrix @ weight
-        weight = weight / np.maximum(weight.max(axis=1, keepdims=True), _TINY) + _FLOOR
+        weight = matrix @ weight + _FLOOR * weight
     bound: Array = (matrix @ weight / weight)[..., 0].max(axis=1, initial=0.0)
     return bound
 
