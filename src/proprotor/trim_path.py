@@ -52,8 +52,10 @@ def contraction(
     after: Slopes,
     share: Array,
     to: Array,
+    *,
     windows: int = 1,
     between: Slopes | None = None,
+    enough: float = _CONTRACTION,
 ) -> Array:
     """Spectral radius (n,) of N in a step: up to one half the path leads from one equilibrium to the other, unturned.
 
@@ -69,6 +71,8 @@ def contraction(
         Parts of the step in λ in which the bound has to hold, each with a P of its own.
     between : Slopes, optional
         Half-way, for section models whose slopes may do there what they don't at the ends.
+    enough : float
+        Radius above which angles are tried where moments do not serve.
     """
 
     def radius(rows: Array, *slopes: Slopes) -> Array:
@@ -79,7 +83,8 @@ def contraction(
         largest: Array = _radius(moved).reshape(windows, n).max(axis=0)
         return largest
 
-    return _by_moments_or_angles(sprung, radius, before, after, *(() if between is None else (between,)))
+    slopes = (before, after) if between is None else (before, after, between)
+    return _by_moments_or_angles(sprung, radius, *slopes, enough=enough)
 
 
 def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
@@ -92,11 +97,13 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
     return near
 
 
-def _by_moments_or_angles(sprung: Array, radius: Callable[..., Array], *slopes: Slopes) -> Array:
-    """The smaller spectral radius (n,) of those by moments and, where that is too large, by angles."""
+def _by_moments_or_angles(
+    sprung: Array, radius: Callable[..., Array], *slopes: Slopes, enough: float = _CONTRACTION
+) -> Array:
+    """The smaller spectral radius (n,) of those by moments and, where that is not small enough, by angles."""
     rows = np.arange(len(slopes[0].full))
     found = radius(rows, *(part.by_moments(sprung) for part in slopes))
-    rows = np.flatnonzero(~(found <= _CONTRACTION))
+    rows = np.flatnonzero(~(found <= enough))
     if len(rows):
         found[rows] = np.fmin(found[rows], radius(rows, *(part.of(rows) for part in slopes)))
     return found
@@ -132,7 +139,9 @@ def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state:
     for windows in _WINDOWS:
         ends = np.zeros(len(left)), np.ones(len(left))
         middle = None if between is None else between.of(left)
-        radius = contraction(balance.sprung, before.of(left), after.of(left), *ends, windows, middle)
+        radius = contraction(
+            balance.sprung, before.of(left), after.of(left), *ends, windows=windows, between=middle
+        )
         found[left] = radius <= _CONTRACTION
         left = left[~found[left]]
         if not len(left):
@@ -183,7 +192,7 @@ def follow(balance: Balance, state: State, rows: Array, iterations: Array) -> Fo
         balance.take_step(trial, here, (share - to)[:, None] * tangent[active])
         good, *there = _correct(balance, trial, here, to, iterations)
         ends = followed.slopes.of(active), Slopes(*there[:2])
-        radius = contraction(balance.sprung, *ends, share, to)
+        radius = contraction(balance.sprung, *ends, share, to, enough=0.0)
         good &= radius <= _CONTRACTION
         gained = active[good]
         copy_state(trial, rows[gained], onto=state)
