@@ -30,7 +30,7 @@ ARTICULATED = 0.1  # of the rotors
 MASSES = 6  # of each blade
 TURNED = "turns back"
 LIMITS = ("beyond 90 deg", "trim with this", "no windmilling trim")  # what fails on any branch
-FOLDED = np.radians(75)  # coning or lag of a blade that is no rotor's any more
+FOLDED = np.radians(75)  # angles of a blade that is no rotor's any more: there paths are long and steps short
 AGREEMENT = 1e-8  # rad
 _BLOCK = 250  # rotors whose sections stay in the cache
 
@@ -142,7 +142,7 @@ def verdicts(trim: pp.Trim, ends: Ends) -> NDArray:
     state = np.stack([trim.coning, trim.lag, trim.elastic_pitch, trim.collective], axis=1)
     apart = np.abs(state - ends.state).max(axis=1)
     limits = np.array([any(text in reason for text in LIMITS) for reason in trim.reason])
-    folded = ~trim.converged & ~ends.arrived & (np.abs(ends.state[:, :3]).max(axis=1) > FOLDED)
+    folded = ~trim.converged & (np.abs(ends.state[:, :3]).max(axis=1) > FOLDED)
     turned = np.array([TURNED in reason for reason in trim.reason])
     cases = {
         "same trim": trim.converged & ends.arrived & (apart <= AGREEMENT),
