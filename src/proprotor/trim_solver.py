@@ -198,11 +198,11 @@ class _Search:
         again = np.flatnonzero((self.reason == "") & self.followed & ~done)
         if not len(again):
             return
-        self.last = None
         found = self._follow(self.balance, again)
         self.reason[again] = _ended(found, self.balance.target)
         arrived = again[found.arrived]
         done = self._newton_steps(arrived)
+        self.last = None  # of some points alone
         self.reason[arrived[~done[arrived]]] = (
             "the trim at the end of the path from the undeflected blade was lost: Newton did not stay near it"
         )
