@@ -78,7 +78,9 @@ def test_a_soft_rotor_trims_to_the_end_of_its_path():
     trim = soft_trim(np.array(list(ENDS)))
     assert trim.converged.all()
     found = np.stack([getattr(trim, name) for name in ANGLES], axis=-1)
-    assert np.abs(found - np.array(list(ENDS.values()))).max() < 2e-8  # the digits given, and those of the collective
+    assert (
+        np.abs(found - np.array(list(ENDS.values()))).max() < 2e-8
+    )  # the digits given, and those of the collective
 
 
 def test_the_trim_of_a_soft_rotor_is_smooth_in_the_collective():
@@ -122,7 +124,11 @@ def test_random_rotors_trim_to_the_end_of_their_path_or_say_why_not(compared):
 
 def test_a_failed_or_doubtful_point_is_alone_what_it_is_in_company(compared):
     rotors, trim, _ = compared
-    places = [*np.flatnonzero([TURNED in reason for reason in trim.reason])[:1], *np.argsort(-trim.iterations)[-2:], 0]
+    places = [
+        *np.flatnonzero([TURNED in reason for reason in trim.reason])[:1],
+        *np.argsort(-trim.iterations)[-2:],
+        0,
+    ]
     for place in places:
         own = {
             entry.name: getattr(rotors.rotor, entry.name)[place]
