@@ -25,7 +25,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from proprotor import blade_airloads, model, modes, sampling, study_workers, trim_solver
+from proprotor import blade_airloads, model, modes, sampling, study_workers, trim_balance
 from proprotor import case as case_module
 from proprotor.modes import state_matrix
 from proprotor.study import BATCH, study
@@ -48,7 +48,7 @@ INPUTS = {
 PARTS = {
     "numbers of the deck to rotor and support": [(pp.Case, "vary")],
     "stations along the blade": [(blade_airloads.BladeSections, "of")],
-    "trim: section loads": [(trim_solver, "load_moments")],
+    "trim: section loads": [(trim_balance, "load_moments")],
     "trim: the rest": [(model, "solve_trim")],
     "blade matrices and airloads": [(model, "_blade_matrices")],
     "blades to rotor": [(model, "_fixed_frame")],
@@ -133,7 +133,7 @@ def evaluations(case: pp.Case, points: int) -> dict[tuple[int, str], list[float]
     """Processor time of each evaluation of the section loads in the trim of one batch, by stations and kind, s."""
     numbers = plan(points).resolve(pp.design_inputs(case)).values
     airspeed = numbers.pop("airspeed")
-    genuine, found = trim_solver.load_moments, defaultdict(list)
+    genuine, found = trim_balance.load_moments, defaultdict(list)
 
     def timed(sections: Any, segments: Any, **wanted: Any) -> Any:
         start = time.process_time()
@@ -142,7 +142,7 @@ def evaluations(case: pp.Case, points: int) -> dict[tuple[int, str], list[float]
         found[sections.quadrature.stations.shape[-1], kind].append(time.process_time() - start)
         return moments
 
-    with mock.patch.object(trim_solver, "load_moments", timed):
+    with mock.patch.object(trim_balance, "load_moments", timed):
         case.vary(numbers).linearize(airspeed)
     return found
 

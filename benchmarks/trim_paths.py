@@ -30,6 +30,7 @@ ARTICULATED = 0.1  # of the rotors
 MASSES = 6  # of each blade
 TURNED = "turns back"
 LIMITS = ("beyond 90 deg", "trim with this", "no windmilling trim")  # what fails on any branch
+FOLDED = np.radians(75)  # angles of a blade that is no rotor's any more: there paths are long and steps short
 AGREEMENT = 1e-8  # rad
 _BLOCK = 250  # rotors whose sections stay in the cache
 
@@ -141,6 +142,7 @@ def verdicts(trim: pp.Trim, ends: Ends) -> NDArray:
     state = np.stack([trim.coning, trim.lag, trim.elastic_pitch, trim.collective], axis=1)
     apart = np.abs(state - ends.state).max(axis=1)
     limits = np.array([any(text in reason for text in LIMITS) for reason in trim.reason])
+    folded = ~trim.converged & (np.abs(ends.state[:, :3]).max(axis=1) > FOLDED)
     turned = np.array([TURNED in reason for reason in trim.reason])
     cases = {
         "same trim": trim.converged & ends.arrived & (apart <= AGREEMENT),
@@ -148,7 +150,7 @@ def verdicts(trim: pp.Trim, ends: Ends) -> NDArray:
         "both turn back": turned & ends.turned,
         "TRIM WHERE THE PATH TURNS BACK": trim.converged & ends.turned,
         "TURNS BACK WHERE THE PATH ARRIVES": turned & ends.arrived,
-        "beyond what angles mean": limits,
+        "beyond what angles mean": limits | folded,
         "trim where the path is lost": trim.converged & ~ends.arrived & ~ends.turned,
     }
     return np.select(list(cases.values()), list(cases), "lost")
@@ -169,7 +171,9 @@ def main(rotors: int = 10_000) -> None:
     found = compare(rotors // len(KINDS))
     counts = {kind: Counter(verdict.tolist()) for kind, (*_, verdict) in found.items()}
     names = sorted(set().union(*counts.values()))
-    table = Table("", *KINDS, title=f"{rotors} random rotors, {time.process_time() - start:.0f} s of processor time")
+    table = Table(
+        "", *KINDS, title=f"{rotors} random rotors, {time.process_time() - start:.0f} s of processor time"
+    )
     for name in names:
         table.add_row(name, *(str(counts[kind][name]) for kind in KINDS))
     Console(width=120).print(table)

@@ -4,8 +4,8 @@ Unknowns are coning, lag, elastic pitch and, for a windmilling rotor, the collec
 Jacobian is made of the same entries as the blade's stiffness matrix: elastic pitch and collective add up to the
 section's pitch, and only the control system tells them apart.
 
-The path from the undeflected blade to the trim multiplies the airloads and the steady centrifugal load of precone by
-one number from 0 to 1; centrifugal stiffness and springs stay whole.
+The path from the undeflected blade to the trim multiplies precone and the airloads by one number from 0 to 1;
+centrifugal stiffness and springs stay whole. Its direction takes the load of precone on the undeflected blade.
 """
 
 from __future__ import annotations

@@ -6,12 +6,13 @@ starts from the rigid blade's root nearest the direction of the air.
 
 Most trims need no path, for a bound tells that they are its end. With J_λ(x) the slopes at a share λ, P the inverse of
 their mean over a step in λ and x, and N the largest |P J_λ(x) - 1| in the step entry by entry, Newton's iteration with
-P contracts for every λ of the step where N has a spectral radius below one: then each λ has one equilibrium within reach,
-and these are one curve without a turn. The share of the airloads makes J linear in λ, so that the step's ends hold the
-extremes. Where the blade is, its precone included, J is known at both ends; it is taken to change twice as much within
-reach of the path as between them, and the radius may be one half at most.
+P contracts for every λ of the step where N has a spectral radius below one: then each λ has one equilibrium within
+reach, and these are one curve without a turn. The share of the airloads makes J linear in λ, so that the step's ends
+hold the extremes. Where the blade is, its precone included, J is known at both ends; it is taken to change twice as
+much within reach of the path as between them, and the radius may be one half at most.
 
-The other points are followed in steps of λ, each of a length that the same bound allows.
+The other points are followed in steps of λ, each of a length that the same bound allows. Where a path turns back, P
+grows without limit and the steps shrink to nothing.
 """
 
 from __future__ import annotations
@@ -26,17 +27,18 @@ from proprotor.arrays import Array
 from proprotor.trim import UNKNOWNS
 from proprotor.trim_balance import Balance, Slopes, State, copy_state, newton_step, solve
 
-FARTHEST = np.radians(
-    60
-)  # of the collective from the direction of the air: a blade turned farther is another branch
+# Of the collective from the direction of the air: a blade turned farther is another branch.
+FARTHEST = np.radians(60)
 _CONTRACTION = 0.5  # largest spectral radius of N
 _REACH = 2.0  # change of slopes within reach of the path, in that between the ends of a step
-_WINDOWS = (1, 2, 4)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
-_POWER_STEPS, _TINY, _FLOOR = 8, 1e-300, 1e-9
+_WINDOWS = (1, 4, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
+_POWER_STEPS, _FLOOR = 8, 1e-9
 _FIRST_STEP, _SHORTEST_STEP = 0.25, 1e-6  # of λ
 _CAUTION = 0.8  # of the largest radius, which a step is made for
-_TURNING = 10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
-_STEPS = 1000
+_TURNING = (
+    10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
+)
+_STEPS = 400
 _CORRECTIONS = 8
 _ARRIVED = 1e-7  # rad, the last correction
 _SEARCH = np.radians(1)  # between the angles among which the rigid blade's root is looked for
@@ -50,8 +52,10 @@ def contraction(
     after: Slopes,
     share: Array,
     to: Array,
+    *,
     windows: int = 1,
     between: Slopes | None = None,
+    enough: float = _CONTRACTION,
 ) -> Array:
     """Spectral radius (n,) of N in a step: up to one half the path leads from one equilibrium to the other, unturned.
 
@@ -67,16 +71,20 @@ def contraction(
         Parts of the step in λ in which the bound has to hold, each with a P of its own.
     between : Slopes, optional
         Half-way, for section models whose slopes may do there what they don't at the ends.
+    enough : float
+        Radius above which angles are tried where moments do not serve.
     """
 
-    def radius(rows: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
-        start, half = share[rows], (to - share)[rows] / (2 * windows)
-        middles = (start + (2 * window + 1) * half for window in range(windows))
-        return np.maximum.reduce(
-            [_radius(_moved(before, after, between, half, middle)) for middle in middles]
-        )
+    def radius(rows: Array, *slopes: Slopes) -> Array:
+        n, half = len(rows), (to - share)[rows] / (2 * windows)
+        middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
+        again = np.tile(np.arange(n), windows)  # all windows at once
+        moved = _moved(half[again], middles.ravel(), *(part.of(again) for part in slopes))
+        largest: Array = _radius(moved).reshape(windows, n).max(axis=0)
+        return largest
 
-    return _by_moments_or_angles(sprung, radius, before, after, *(() if between is None else (between,)))
+    slopes = (before, after) if between is None else (before, after, between)
+    return _by_moments_or_angles(sprung, radius, *slopes, enough=enough)
 
 
 def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
@@ -89,17 +97,19 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
     return near
 
 
-def _by_moments_or_angles(sprung: Array, radius: Callable[..., Array], *slopes: Slopes) -> Array:
-    """The smaller spectral radius (n,) of those by moments and, where that is too large, by angles."""
+def _by_moments_or_angles(
+    sprung: Array, radius: Callable[..., Array], *slopes: Slopes, enough: float = _CONTRACTION
+) -> Array:
+    """The smaller spectral radius (n,) of those by moments and, where that is not small enough, by angles."""
     rows = np.arange(len(slopes[0].full))
     found = radius(rows, *(part.by_moments(sprung) for part in slopes))
-    rows = np.flatnonzero(~(found <= _CONTRACTION))
+    rows = np.flatnonzero(~(found <= enough))
     if len(rows):
         found[rows] = np.fmin(found[rows], radius(rows, *(part.of(rows) for part in slopes)))
     return found
 
 
-def _moved(before: Slopes, after: Slopes, between: tuple[Slopes, ...], half: Array, middle: Array) -> Array:
+def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
     """N (n, k, k) of a window in λ about its middle, and half as long as it is."""
     mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
     change = Slopes(*((b - a) / 2 for a, b in zip(before, after, strict=True)))
@@ -115,10 +125,9 @@ def _radius(matrix: Array) -> Array:
     """Bound (n,) of the spectral radius of matrices (n, k, k) without negative entries (Collatz and Wielandt)."""
     weight = np.ones((*matrix.shape[:2], 1))
     for _ in range(_POWER_STEPS):
-        weight = matrix @ weight
-        weight = weight / np.maximum(weight.max(axis=1, keepdims=True), _TINY) + _FLOOR
-    ratio: Array = (matrix @ weight / weight)[..., 0]
-    return ratio.max(axis=1, initial=0.0)
+        weight = matrix @ weight + _FLOOR * weight
+    bound: Array = (matrix @ weight / weight)[..., 0].max(axis=1, initial=0.0)
+    return bound
 
 
 def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
@@ -130,7 +139,9 @@ def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state:
     for windows in _WINDOWS:
         ends = np.zeros(len(left)), np.ones(len(left))
         middle = None if between is None else between.of(left)
-        radius = contraction(balance.sprung, before.of(left), after.of(left), *ends, windows, middle)
+        radius = contraction(
+            balance.sprung, before.of(left), after.of(left), *ends, windows=windows, between=middle
+        )
         found[left] = radius <= _CONTRACTION
         left = left[~found[left]]
         if not len(left):
@@ -158,7 +169,8 @@ class Followed:
     @property
     def arrived(self) -> Array:
         """Which points (n,) have come to all of the loads."""
-        return self.rigid & (self.share == 1)
+        arrived: Array = self.rigid & (self.share == 1)
+        return arrived
 
 
 def follow(balance: Balance, state: State, rows: Array, iterations: Array) -> Followed:
@@ -180,7 +192,7 @@ def follow(balance: Balance, state: State, rows: Array, iterations: Array) -> Fo
         balance.take_step(trial, here, (share - to)[:, None] * tangent[active])
         good, *there = _correct(balance, trial, here, to, iterations)
         ends = followed.slopes.of(active), Slopes(*there[:2])
-        radius = contraction(balance.sprung, *ends, share, to)
+        radius = contraction(balance.sprung, *ends, share, to, enough=0.0)
         good &= radius <= _CONTRACTION
         gained = active[good]
         copy_state(trial, rows[gained], onto=state)

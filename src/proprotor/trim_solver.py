@@ -198,11 +198,11 @@ class _Search:
         again = np.flatnonzero((self.reason == "") & self.followed & ~done)
         if not len(again):
             return
-        self.last = None
         found = self._follow(self.balance, again)
         self.reason[again] = _ended(found, self.balance.target)
         arrived = again[found.arrived]
         done = self._newton_steps(arrived)
+        self.last = None  # of some points alone
         self.reason[arrived[~done[arrived]]] = (
             "the trim at the end of the path from the undeflected blade was lost: Newton did not stay near it"
         )
@@ -260,7 +260,9 @@ def _ended(found: Followed, target: Target) -> Array:
     for place in np.flatnonzero(~found.arrived):
         at = f"at {np.floor(1000 * found.share[place]) / 10:.1f} % of airloads and precone's load"
         told = f"turns back {at}: no trim belongs to it" if found.turned[place] else f"was lost {at}"
-        reason[place] = f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
+        reason[place] = (
+            f"the path from the undeflected blade {told}" if found.rigid[place] else _failure(target)
+        )
     return reason
 
 
@@ -340,7 +342,9 @@ def _unheld(balance: Balance, points: int) -> Array:
     if "lag" in options.locked or options.frequencies is not None:
         return np.zeros(points, dtype=bool)
     arm = np.real(quantities["lag_hinge_offset"]) * np.real(quantities["lag_first_moment"])
-    limp = np.real(quantities["lag_stiffness"]) <= _NO_SPRING * np.maximum(np.real(quantities["flap_stiffness"]), 1)
+    limp = np.real(quantities["lag_stiffness"]) <= _NO_SPRING * np.maximum(
+        np.real(quantities["flap_stiffness"]), 1
+    )
     return np.broadcast_to(limp & (arm == 0), (points,))
 
 
@@ -429,16 +433,17 @@ def _doubtful_blades(balance: Balance, here: Linear) -> dict[str, Array]:
 def _diverges(stiffness: Array) -> Array:
     """Which matrices (n, k, k) have a real eigenvalue below zero by more than its error.
 
-    Without a sign change in its characteristic polynomial a matrix has none; the others' are computed. The error is that
-    of the entries, each known to the quadrature's error in itself, times the condition of the eigenvalue.
+    Where the sums of its principal minors are all positive a matrix (k up to 3) has none; those of the others are
+    computed. The error is that of the entries, each known to the quadrature's error in itself, times the condition of
+    the eigenvalue.
     """
     k = stiffness.shape[-1]
     found = np.zeros(len(stiffness), dtype=bool)
     trace = np.trace(stiffness, axis1=1, axis2=2)
     minors = (trace**2 - (stiffness * stiffness.swapaxes(1, 2)).sum(axis=(1, 2))) / 2
-    coefficients = (trace, minors, np.linalg.det(stiffness))[: max(k - 1, 0)] + (np.linalg.det(stiffness),)
-    suspect = np.flatnonzero(~(np.minimum.reduce(coefficients) > 0)) if k else found.nonzero()[0]
-    if not len(suspect):
+    sums = [trace, minors, np.linalg.det(stiffness)][:k]  # the last of k is the determinant
+    suspect = np.flatnonzero(~np.logical_and.reduce([part > 0 for part in sums]))
+    if not k or not len(suspect):
         return found
     matrix = stiffness[suspect]
     values, right = np.linalg.eig(matrix)

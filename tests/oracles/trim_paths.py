@@ -1,8 +1,8 @@
 """The path from the undeflected blade to the trim, followed in small steps of its length, many rotors at once.
 
 Written from the geometry of one blade: point masses, springs in series, sections in the air by plain quadrature, and
-slopes by differences. A share λ multiplies precone, and the airloads in flap, lag and pitch. The path's own length is the parameter, so that a path that turns back is followed around its turn and seen
-to do so.
+slopes by differences. A share λ multiplies precone, and the airloads in flap, lag and pitch. The path's own length is
+the parameter, so that a path that turns back is followed around its turn and seen to do so.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -198,7 +198,7 @@ def linear(blades, state, share, grid):
 
 
 def rigid_start(blades, grid):
-    """State (n, 4) without loads: a rigid blade whose torque or thrust is linear in its pitch, and the control system."""
+    """State (n, 4) without loads: a rigid blade, whose torque or thrust is linear in its pitch, and control system."""
     state = np.zeros((len(blades.radius), 4))
     pitch = np.arctan2(blades.airspeed, 0.75 * blades.rotor_speed * blades.radius)
     moment = blades.pitch_inertia * blades.rotor_speed**2
