@@ -13,7 +13,8 @@ from proprotor.arrays import Array
 if TYPE_CHECKING:
     import xarray
 
-_BRIDGED, _NEARLY = 2.0, 0.02  # of the way that both roots go, and of a root: a name that passes no farther goes on
+# Of the way that both roots go, and of a root: a name that passes no farther goes on.
+_BRIDGED, _NEARLY = 2.0, 0.02
 
 class UnstableRange(NamedTuple):
     """Airspeeds between which a root is unstable.
