@@ -173,7 +173,8 @@ class Crossings(NamedTuple):
         What it took to bracket every boundary, and in all.
     failed : tuple of Failed
         Positions of the scan that could not be analysed, with the reason: why the range searched ends where it does, or
-        has gaps; then steps over which a mode crosses where no position for it could be found.
+        has gaps; then stretches over which a mode passes the level where it cannot be followed, as in a jump of the
+        trim.
     """
 
     boundaries: tuple[Boundary, ...]
@@ -270,7 +271,7 @@ def _failed(positions: Array, scanned: Solved, works: Array) -> tuple[Failed, ..
 def _lost(brackets: Brackets) -> tuple[Failed, ...]:
     """Stretches over which a mode crosses the level, at positions that could not be analysed."""
     ends = {k: np.sort(brackets.x[:, k]).tolist() for k in brackets.lost}
-    told = "a mode crosses the level where nothing can be analysed"
+    told = "a mode passes the level where it cannot be followed"
     return tuple(
         sorted({Failed(low, high, f"{told}: {brackets.lost[k]}") for k, (low, high) in ends.items()})
     )
