@@ -422,8 +422,8 @@ class Brackets:
         """Which state of each trial point is the one that crosses, followed from the ends of the bracket.
 
         From the nearer end; where that does not tell it from others, as where two roots fall into one, from the end
-        that is beyond the level. Where a pair parts into real roots between the ends, from the one that is of the trial's
-        kind, since a pair does not tell which of two real roots it becomes.
+        that is beyond the level. Where a pair parts into real roots between the ends, from the one that is of the
+        trial's kind, since a pair does not tell which of two real roots it becomes.
         """
         rows, spectrum = np.arange(len(active)), points.spectrum
         nearer = np.argmin(np.abs(self.x[:, active] - points.position), axis=0)
