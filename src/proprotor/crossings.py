@@ -31,6 +31,7 @@ from proprotor.tracking import POOR, Modes, Spectrum, link
 Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
 
 _ROUNDS = 20  # of parting
+_MOST_SOLVES = 1000  # of a line, after which no more of its steps are parted
 _HALVINGS = 6  # of a step at whose other end nothing can be analysed
 _ITERATIONS = 60  # of Newton's method; with bisection as the last resort
 _CLOSE = 1e-9  # of the position: the last correction, after which the next is rounding
@@ -203,6 +204,9 @@ class Search:
     ) -> None:
         self.models, self.level, self.names, self.onset_only = models, level, names, onset_only
         self.forgiving = forgiving
+        self.unsettled: list[
+            Steps
+        ] = []  # of lines on which nothing settles, as where the trim jumps to and fro
         self.scanned = solved(models, line, position, level, forgiving, plain=onset_only)
         self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
         if self.scanned.points is not None:
@@ -261,8 +265,12 @@ class Search:
             wanted = np.flatnonzero(self.steps.open & self._before_onset())
             share = undecided(self.steps.at(wanted), self.points, self.names)
             self.steps.open[wanted] = False
-            chosen = wanted[np.isfinite(share)]
-            if not len(chosen) or not self._part(chosen, share[np.isfinite(share)]):
+            line = self.points.line[self.steps.before[wanted]]
+            left = np.isfinite(share) & (self.solves[line] > _MOST_SOLVES)
+            for one in np.flatnonzero(left).tolist():
+                self.unsettled.append(self.steps.at(wanted[one : one + 1]))
+            chosen = np.isfinite(share) & ~left
+            if not chosen.any() or not self._part(wanted[chosen], share[chosen]):
                 break
         order = np.lexsort((self.points.position[self.steps.before], self.points.line[self.steps.before]))
         self.steps = self.steps.at(order)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from proprotor import summary
 from proprotor.arrays import Array
-from proprotor.crossings import Brackets, Crossing, Search, Solved, each_once
+from proprotor.crossings import JUMPS, Brackets, Crossing, Search, Solved, each_once
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
 from proprotor.mode_names import name_list, name_shares
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 _TOLD = 0.05  # of a mode: the least participation that its mechanism names
+_TOGETHER = 1e-3  # of a position: stretches that cannot be followed and lie nearer to each other are one
 _RANGE = (0.2, 1.2, 51)  # of the tip speed: where boundaries are looked for, and at how many points
 
 
@@ -239,7 +240,7 @@ def find_crossings(
         (float(points.position.min()), float(points.position.max())),
         scan_solves,
         scan_solves + int(brackets.solves.sum()),
-        failed + _lost(brackets),
+        failed + _lost(search, brackets),
     )
 
 
@@ -268,13 +269,23 @@ def _failed(positions: Array, scanned: Solved, works: Array) -> tuple[Failed, ..
     return tuple(found)
 
 
-def _lost(brackets: Brackets) -> tuple[Failed, ...]:
-    """Stretches over which a mode crosses the level, at positions that could not be analysed."""
-    ends = {k: np.sort(brackets.x[:, k]).tolist() for k in brackets.lost}
+def _lost(search: Search, brackets: Brackets) -> tuple[Failed, ...]:
+    """Stretches over which a mode passes the level, or may, and cannot be followed; neighbouring ones as one."""
     told = "a mode passes the level where it cannot be followed"
-    return tuple(
-        sorted({Failed(low, high, f"{told}: {brackets.lost[k]}") for k, (low, high) in ends.items()})
-    )
+    x = search.points.position
+    found = []
+    for k, why in brackets.lost.items():
+        low, high = np.sort(brackets.x[:, k]).tolist()
+        found.append(Failed(low, high, f"{told}: {why}"))
+    for step in search.unsettled:
+        found.append(Failed(float(x[step.before[0]]), float(x[step.after[0]]), f"{told}: {JUMPS}"))
+    joined: list[Failed] = []
+    for one in sorted(found):
+        if joined and one.first <= joined[-1].last + _TOGETHER * abs(one.first):
+            joined[-1] = joined[-1]._replace(last=max(one.last, joined[-1].last))
+        else:
+            joined.append(one)
+    return tuple(joined)
 
 
 def _without_numbers(reason: str) -> str:
