@@ -121,6 +121,22 @@ def test_a_boundary_next_to_where_analysis_ends_is_found():
     assert found.failed == ((found.searched[1], 6.0, "fails here"),) and 2.96 < found.searched[1] <= 3.0
 
 
+def test_a_jump_of_the_model_is_told_and_is_no_boundary():
+    """Damping 1 that is -1 from 3.3 on: nothing crosses zero, and it says where it passes it."""
+
+    def matrices(x):
+        return (
+            np.eye(1),
+            np.where(np.real(x) < 3.3, 1.0, -1.0) * np.eye(1) + 0 * x,
+            (100.0 + 0 * x) * np.eye(1),
+        )
+
+    found = crossings(matrices, np.arange(0.0, 11.0, 2.0))
+    assert found.boundaries == ()
+    (failed,) = found.failed
+    assert failed.first == pytest.approx(3.3, rel=1e-12) and "jumps" in failed.reason
+
+
 # Neutral -------------------------------------------------------------------------------------------
 
 
