@@ -205,10 +205,11 @@ def test_along_a_shaft_a_root_begins_where_the_shaft_does(own, stiffness):
         roots = found.eigenvalue.sel(mode=["rotor speed", "rotor speed, second root"]).values
         free, softest = stiffness.index(0.0), stiffness.index(10.0)
         assert np.isfinite(roots[softest]).all()
-        (kept,) = np.flatnonzero(np.isfinite(roots[free].real))
+        (kept,) = roots[free][np.isfinite(roots[free].real)]
         # A soft spring and a damper: the new root is the stiffness over what holds the speed, next to nothing.
-        assert abs(roots[softest, kept] / roots[free, kept] - 1) < 1e-3
-        assert abs(roots[softest, 1 - kept]) < 1e-3 * abs(roots[free, kept])
+        new, old = sorted(roots[softest], key=abs)
+        assert abs(old / kept - 1) < 1e-3
+        assert abs(new) < 1e-3 * abs(kept)
         assert (found.missing.values != "").tolist() == (np.array(stiffness) == 0).tolist()
 
 

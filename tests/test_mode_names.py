@@ -35,6 +35,9 @@ def random_case(seed):
         path for path, number in case.given.items() if path.endswith(SPRINGS) and np.ndim(number.si) == 0
     ]
     values = {path: float(case.given[path].si) * 2 ** rng.uniform(-1.5, 1.5) for path in springs}
+    # The wing's masses hold those of the rotor, whatever its blades are.
+    masses = [path for path in case.given if path.endswith("generalized_mass")]
+    values |= {path: 5 * float(case.given[path].si) for path in masses}
     values["operation.rotor_speed"] = float(case.operation.rotor_speed) * 2 ** rng.uniform(-1.3, 0.3)
     case = case.vary(values)
     return replace(case, rotor=replace(case.rotor, n_blades=int(rng.choice([3, 4, 5]))))

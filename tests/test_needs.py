@@ -316,7 +316,7 @@ def test_a_limit_on_the_process_counts():
     """As batch systems set it: without the check these ten thousand speeds end in a MemoryError."""
     done = subprocess.run([sys.executable, "-c", LIMITED], capture_output=True, text=True)
     assert re.fullmatch(
-        r"airspeed = 10001 points: following their modes would take 1\.2 GB of memory, and 0\.4 GB are free: "
+        r"airspeed = 10001 points: following their modes would take 2\.3 GB of memory, and 0\.4 GB are free: "
         r"take fewer points\n",
         done.stdout,
     ), done.stderr

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import unicodedata
 
-# Controls, formats such as those that turn the direction of text round, halves of characters, ends of lines.
-_NEVER = ("Cc", "Cf", "Cs", "Zl", "Zp")
+# Controls, formats such as those that turn the direction of text round, halves of characters, characters without a
+# known shape, ends of lines.
+_NEVER = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 
 
 def unprintable(text: str) -> str:
@@ -18,4 +19,4 @@ def printable(text: str, keep: str = "") -> str:
     """A text with a space for each character that may not be shown, except those to keep."""
     if text.isprintable():
         return text
-    return "".join(c if c in keep or unicodedata.category(c) not in _NEVER else " " for c in text)
+    return "".join(c if c in keep or c.isprintable() else " " for c in text)

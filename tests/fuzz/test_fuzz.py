@@ -7,6 +7,7 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 
+import click
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -164,7 +165,7 @@ def _kind(use):
 
 FAULTS = {
     "fault": lambda folder: 1 / 0,
-    "bad message": lambda folder: _refuse("must be\nwhole"),
+    "bad message": lambda folder: _refuse_without_field("must be whole"),
     "accepted": lambda folder: (folder / "out" / "result").write_text("x"),
     "refused": lambda folder: _refuse("must be whole"),
 }
@@ -172,6 +173,10 @@ FAULTS = {
 
 def _refuse(rule):
     raise InputError("field", None, rule)
+
+
+def _refuse_without_field(rule):
+    raise click.ClickException(rule)
 
 
 @pytest.mark.parametrize("outcome", FAULTS)
