@@ -349,9 +349,9 @@ def test_a_limit_of_a_control_group_counts(tmp_path, monkeypatch, version):
 
 SIZES = {
     "linearize": (lambda: CASE.linearize(np.linspace(60, 200, 4000)), 4000, 36_000),
-    "sweep": (lambda: CASE.sweep(np.linspace(60, 200, 1000)), 1000, 120_000),
-    "boundaries": (lambda: CASE.boundaries(np.linspace(60, 200, 1000)), 1000, 120_000),
-    "sweep of a wing": (lambda: pp.load_case("xv15-wing").sweep(np.linspace(60, 200, 1000)), 1000, 120_000),
+    "sweep": (lambda: CASE.sweep(np.linspace(60, 200, 1000)), 1000, 230_000),
+    "boundaries": (lambda: CASE.boundaries(np.linspace(60, 200, 1000)), 1000, 230_000),
+    "sweep of a wing": (lambda: pp.load_case("xv15-wing").sweep(np.linspace(60, 200, 1000)), 1000, 230_000),
 }
 
 

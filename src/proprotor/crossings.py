@@ -26,15 +26,18 @@ from proprotor.model import LinearModel
 from proprotor.modes import decomposition, held_coordinates, some_points
 from proprotor.root_error import growth, growth_error, refined_near
 from proprotor.steps import Steps, first_steps, parted, undecided
-from proprotor.tracking import Modes, Spectrum, link
+from proprotor.tracking import POOR, Modes, Spectrum, link
 
 Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
 
 _ROUNDS = 20  # of parting
+_MOST_SOLVES = 1000  # of a line, after which no more of its steps are parted
 _HALVINGS = 6  # of a step at whose other end nothing can be analysed
 _ITERATIONS = 60  # of Newton's method; with bisection as the last resort
 _CLOSE = 1e-9  # of the position: the last correction, after which the next is rounding
 _TRUST = 0.5  # in cubics whose slopes are differences
+_JUMP = 1e-6  # of a root and of 1 rad/s: growth that is left where a bracket has collapsed upon a jump
+JUMPS = "the model jumps, as from one trim to another"
 _SURE = 4.0  # errors of the growth that a slope must make over a bracket to count
 
 
@@ -208,6 +211,8 @@ class Search:
     ) -> None:
         self.models, self.level, self.names, self.onset_only = models, level, names, onset_only
         self.forgiving = forgiving
+        # Steps of lines on which nothing settles, as where the trim jumps to and fro.
+        self.unsettled: list[Steps] = []
         self.scanned = solved(models, line, position, level, forgiving, states, plain=onset_only)
         some = self.scanned.points
         self.states = states if some is None else some.growth.shape[1]
@@ -272,8 +277,12 @@ class Search:
             wanted = np.flatnonzero(self.steps.open & self._before_onset())
             share = undecided(self.steps.at(wanted), self.points, self.names)
             self.steps.open[wanted] = False
-            chosen = wanted[np.isfinite(share)]
-            if not len(chosen) or not self._part(chosen, share[np.isfinite(share)]):
+            line = self.points.line[self.steps.before[wanted]]
+            left = np.isfinite(share) & (self.solves[line] > _MOST_SOLVES)
+            for one in np.flatnonzero(left).tolist():
+                self.unsettled.append(self.steps.at(wanted[one : one + 1]))
+            chosen = np.isfinite(share) & ~left
+            if not chosen.any() or not self._part(wanted[chosen], share[chosen]):
                 break
         order = np.lexsort((self.points.position[self.steps.before], self.points.line[self.steps.before]))
         self.steps = self.steps.at(order)
@@ -397,8 +406,12 @@ class Brackets:
             # Within its error the growth says no more, if it is the slope that made it as small as that.
             done = (np.abs(value) <= error) & (np.abs(slope) * width > _SURE * error)
             done |= (np.abs(correction) <= self.near[active]) & (np.abs(value) > error)
-            done |= width <= 4e-16 * self.scale[active]
-            for one in np.flatnonzero(done).tolist():
+            collapsed = ~done & (width <= 4e-16 * self.scale[active])
+            size = np.abs(points.spectrum.values[rows, place])
+            jumps = collapsed & (np.abs(value) > np.fmax(error, _JUMP * (1 + size)))
+            self.lost |= dict.fromkeys(active[jumps].tolist(), JUMPS)
+            done |= collapsed
+            for one in np.flatnonzero(done & ~jumps).tolist():
                 self._keep(int(active[one]), points, one, int(place[one]), float(correction[one]))
             beyond = value > error
             self._narrow(active, beyond, points, place)
@@ -431,19 +444,22 @@ class Brackets:
     def _place(self, active: Array, points: Points) -> Array:
         """Which state of each trial point is the one that crosses, followed from the ends of the bracket.
 
-        From the nearer end; where a pair parts into real roots between the ends, from the one that is of the trial's
-        kind, since a pair does not tell which of two real roots it becomes.
+        From the nearer end; where that does not tell it from others, as where two roots fall into one, from the end
+        that is beyond the level. Where a pair parts into real roots between the ends, from the one that is of the
+        trial's kind, since a pair does not tell which of two real roots it becomes.
         """
         rows, spectrum = np.arange(len(active)), points.spectrum
         nearer = np.argmin(np.abs(self.x[:, active] - points.position), axis=0)
         places, alike = np.empty((2, len(active)), dtype=int), np.empty((2, len(active)), dtype=bool)
+        trust = np.empty((2, len(active)))
         for end, found in enumerate(self.ends):
             start = found.at(active)
-            successor = link(start.joined(spectrum), rows, len(active) + rows).successor
+            successor, quality = link(start.joined(spectrum), rows, len(active) + rows)
             own = self.place[end, active]
-            places[end] = successor[rows, own]
+            places[end], trust[end] = successor[rows, own], quality[rows, own]
             alike[end] = (start.values[rows, own].imag == 0) == (spectrum.values[rows, places[end]].imag == 0)
-        chosen = np.where(alike[0] == alike[1], nearer, alike[1].astype(int))
+        surest = np.where(trust[nearer, rows] >= POOR, nearer, self.onset[active].astype(int))
+        chosen = np.where(alike[0] == alike[1], surest, alike[1].astype(int))
         followed: Array = places[chosen, rows]
         return followed
 

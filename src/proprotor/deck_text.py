@@ -28,7 +28,7 @@ def plain_text(tables: dict[str, Any], told: Callable[[Place, Any], str]) -> dic
     """
     plain: dict[str, Any] = _on_one_line(tables, ())
     problems = [
-        InputError(told(place, tables), text, f"must be printable text, without {code}")
+        InputError(told(_of_number(place), tables), text, f"must be printable text, without {code}")
         for place, text in _texts(plain, ())
         if (code := unprintable(text))
     ]
@@ -36,6 +36,11 @@ def plain_text(tables: dict[str, Any], told: Callable[[Place, Any], str]) -> dic
         first, *others = problems
         raise InputError(first.field, first.value, first.rule, others)
     return plain
+
+
+def _of_number(place: Place) -> Place:
+    """The place of a number that is written as a table, for that of the text within the table."""
+    return place[:-1] if place[-1:] == ("value",) else place
 
 
 def _on_one_line(entry: Any, place: Place) -> Any:

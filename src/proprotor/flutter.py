@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from proprotor import stamp, summary
 from proprotor.arrays import Array
-from proprotor.crossings import Brackets, Crossing, Points, Search, Solved, each_once
+from proprotor.crossings import JUMPS, Brackets, Crossing, Points, Search, Solved, each_once
 from proprotor.doubts import Doubt, doubts_along
 from proprotor.eigenvalue_derivatives import defect
 from proprotor.errors import InputError
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 _TOLD = 0.05  # of a mode: the least participation that its mechanism names
+_TOGETHER = 1e-3  # of a position: stretches that cannot be followed and lie nearer to each other are one
 _RANGE = (0.2, 1.2, 51)  # of the tip speed: where boundaries are looked for, and at how many points
 
 
@@ -208,7 +209,8 @@ class Crossings(NamedTuple):
         The case and the options in force, see `proprotor.stamp`; empty on a line that is of no case.
     failed : tuple of Failed
         Positions of the scan that could not be analysed, with the reason: why the range searched ends where it does, or
-        has gaps; then steps over which a mode crosses where no position for it could be found.
+        has gaps; then stretches over which a mode passes the level where it cannot be followed, as in a jump of the
+        trim.
     """
 
     boundaries: tuple[Boundary, ...]
@@ -274,7 +276,7 @@ def find_crossings(line: Line, *, level: float = 0.0, approach: Line | None = No
         scan_solves + int(brackets.solves.sum()),
         least,
         doubts,
-        failed=failed + _lost(brackets),
+        failed=failed + _lost(search, brackets),
     )
 
 
@@ -318,13 +320,23 @@ def _failed(positions: Array, scanned: Solved, works: Array) -> tuple[Failed, ..
     return tuple(found)
 
 
-def _lost(brackets: Brackets) -> tuple[Failed, ...]:
-    """Stretches over which a mode crosses the level, at positions that could not be analysed."""
-    ends = {k: np.sort(brackets.x[:, k]).tolist() for k in brackets.lost}
-    told = "a mode crosses the level where nothing can be analysed"
-    return tuple(
-        sorted({Failed(low, high, f"{told}: {brackets.lost[k]}") for k, (low, high) in ends.items()})
-    )
+def _lost(search: Search, brackets: Brackets) -> tuple[Failed, ...]:
+    """Stretches over which a mode passes the level, or may, and cannot be followed; neighbouring ones as one."""
+    told = "a mode passes the level where it cannot be followed"
+    x = search.points.position
+    found = []
+    for k, why in brackets.lost.items():
+        low, high = np.sort(brackets.x[:, k]).tolist()
+        found.append(Failed(low, high, f"{told}: {why}"))
+    for step in search.unsettled:
+        found.append(Failed(float(x[step.before[0]]), float(x[step.after[0]]), f"{told}: {JUMPS}"))
+    joined: list[Failed] = []
+    for one in sorted(found):
+        if joined and one.first <= joined[-1].last + _TOGETHER * abs(one.first):
+            joined[-1] = joined[-1]._replace(last=max(one.last, joined[-1].last))
+        else:
+            joined.append(one)
+    return tuple(joined)
 
 
 def _without_numbers(reason: str) -> str:

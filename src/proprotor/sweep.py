@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where branches get labels, the first that has a trim
-_BYTES_PER_POINT = 120_000.0  # while modes are followed and boundaries found; measured with the XV-15
+_BYTES_PER_POINT = 230_000.0  # while modes are followed and boundaries found; measured with wings of beams
 _STRIDE = 0.02  # of the tip speed, between the first points of the way there
 
 
