@@ -21,6 +21,7 @@ from proprotor.explore.inputs import first_inputs, slider_input
 from proprotor.explore.page import ExplorePage
 from proprotor.flutter import scan_speeds
 from proprotor.options import Options
+from proprotor.sweep_summary import leaps
 from tests.explore_server import serving
 
 KT = 1852 / 3600
@@ -112,6 +113,21 @@ def test_lines_are_in_the_units_of_the_axes(case, speeds):
 
 
 # Sliders ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_line_is_broken_where_its_name_leaps_to_another_root(case):
+    """As in a plot of the same sweep: near 380 kt regressive lag passes from 8 % of critical to 80 %."""
+    speeds = np.arange(350, 401, 5) * KT
+    found = live_modes(case, speeds)
+    columns = curves(found, 48.0, KT)
+    sweep = case.sweep(speeds)
+    leaping = leaps(sweep)
+    assert leaping.any()
+    for place, mode in enumerate(found.names):
+        of_sweep = sweep.mode.values.tolist().index(mode)
+        gaps = columns["airspeed"][place][np.isnan(columns["damping"][place])]
+        between = speeds[np.flatnonzero(leaping[:, of_sweep])] / KT + 2.5
+        np.testing.assert_allclose(gaps, between, rtol=1e-6, err_msg=mode)
 
 
 @pytest.mark.parametrize("name", pp.list_cases())

@@ -16,9 +16,11 @@ from proprotor.modes import some_points
 from proprotor.path import Line, Path, follow
 from proprotor.root_error import error_near_zero
 from proprotor.sweep import ANCHORS, mode_columns, names_at, tip_speed
-from proprotor.sweep_summary import UnstableRange, unstable_ranges
+from proprotor.sweep_summary import UnstableRange, leaps, unstable_ranges
 
 if TYPE_CHECKING:
+    import xarray
+
     from proprotor.case import Case
 
 
@@ -38,6 +40,8 @@ class LiveModes:
         Why a point failed, or is doubtful; empty where it is neither.
     unstable : list of UnstableRange
         Their ends are interpolated between the points.
+    leaps : array (points - 1, modes) of bool
+        Where a name passes to a root that lies elsewhere, see `proprotor.sweep_summary.leaps`.
     """
 
     airspeed: Array
@@ -46,6 +50,7 @@ class LiveModes:
     reason: Array
     warning: Array
     unstable: list[UnstableRange]
+    leaps: Array
 
     @property
     def flutter(self) -> UnstableRange | None:
@@ -101,8 +106,8 @@ def live_modes(
     reason, warning = model.trim.reason[shown], model.trim.warning[shown]
     error = error_near_zero(some_points(model, shown), roots)
     error = np.where(columns >= 0, np.take_along_axis(error, places, 1), np.nan)
-    unstable = _unstable(airspeeds, names, found, labels, error)
-    return LiveModes(airspeeds, names, found, reason, warning, unstable)
+    sweep = _as_sweep(airspeeds, names, found, labels, error)
+    return LiveModes(airspeeds, names, found, reason, warning, unstable_ranges(sweep), leaps(sweep))
 
 
 def _between(model: LinearModel) -> Any:
@@ -135,9 +140,10 @@ def _named(model: LinearModel, path: Path, anchors: Array) -> Named:
     return Named(place, known, names, np.ones(len(names)), f"airspeed {at[place]:.6g} m/s", 0)
 
 
-def _unstable(
+def _as_sweep(
     airspeeds: Array, names: list[str], eigenvalue: Array, labels: Array, error: Array
-) -> list[UnstableRange]:
+) -> xarray.Dataset:
+    """What the summary of a sweep needs of one."""
     import xarray
 
     by_mode = ("airspeed", "mode")
@@ -146,4 +152,4 @@ def _unstable(
         "branch": (by_mode, labels),
         "eigenvalue_error": (by_mode, error),
     }
-    return unstable_ranges(xarray.Dataset(data, coords={"airspeed": airspeeds, "mode": names}))
+    return xarray.Dataset(data, coords={"airspeed": airspeeds, "mode": names})

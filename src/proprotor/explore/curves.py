@@ -9,6 +9,7 @@ from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.explore.analysis import LiveModes
 from proprotor.mode_names import SECOND, name_list
+from proprotor.plots.line_of_sweep import with_gaps
 from proprotor.plots.style import COLOURS
 
 _DASHES = ("solid", "dashed", "dotted")
@@ -16,7 +17,7 @@ _ROTOR_NAMES = frozenset(name_list(FIXED_COORDINATES))  # of modes; what has ano
 
 
 def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str, list[Any]]:
-    """Columns of a source of lines, a row for each mode.
+    """Columns of a source of lines, a row for each mode; a line is broken where its name leaps to another root.
 
     Parameters
     ----------
@@ -30,13 +31,12 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
     turns = found.eigenvalue / rotor_speed
     unstable = {one.mode for one in found.unstable}
     broad = [name in unstable or name.removesuffix(SECOND) not in _ROTOR_NAMES for name in found.names]
-    airspeed = (found.airspeed / speed_unit).astype(np.float32)
+    values = zip(found.leaps.T, found.damping.T, turns.real.T, np.abs(turns.imag).T, strict=True)
+    lines = [with_gaps(leaps, found.airspeed / speed_unit, *of_mode) for leaps, *of_mode in values]
+    axes = ("airspeed", "damping", "growth", "frequency")
     return {
         "mode": found.names,
-        "airspeed": [airspeed] * count,
-        "damping": list(found.damping.T.astype(np.float32)),
-        "growth": list(turns.real.T.astype(np.float32)),
-        "frequency": list(np.abs(turns.imag).T.astype(np.float32)),
+        **{axis: [line[place].astype(np.float32) for line in lines] for place, axis in enumerate(axes)},
         "colour": [COLOURS[place % len(COLOURS)] for place in range(count)],
         "dash": [_DASHES[place // len(COLOURS) % len(_DASHES)] for place in range(count)],
         "width": [3.0 if one else 1.5 for one in broad],
