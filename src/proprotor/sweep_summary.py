@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 # Of the way that both roots go, and of a root: a name that passes no farther goes on.
 _BRIDGED, _NEARLY = 2.0, 0.02
 
+
 class UnstableRange(NamedTuple):
     """Airspeeds between which a root is unstable.
 
