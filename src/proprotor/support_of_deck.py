@@ -145,13 +145,19 @@ _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
 
 
 def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any]) -> Any:
-    """What `build` makes of each design of a batch, in an array of the batch's shape."""
+    """What `build` makes of each design of a batch, in an array of the batch's shape.
+
+    Designs that are alike are built once: a search asks for one design at many airspeeds.
+    """
     varied = {name: value for name, value in given.items() if isinstance(value, np.ndarray)}
-    shape = np.broadcast_shapes(*(value.shape for value in varied.values()))
-    spread = {name: np.broadcast_to(value, shape) for name, value in varied.items()}
-    made = np.empty(shape, dtype=object)
-    for place in np.ndindex(shape):
-        made[place] = build(dict(given) | {name: float(value[place]) for name, value in spread.items()})
+    spread = np.broadcast_arrays(*varied.values())
+    made = np.empty(np.broadcast_shapes(*(value.shape for value in spread)), dtype=object)
+    built: dict[tuple[float, ...], Any] = {}
+    for place in np.ndindex(made.shape):
+        design = tuple(float(value[place]) for value in spread)
+        if design not in built:
+            built[design] = build(dict(given) | dict(zip(varied, design, strict=True)))
+        made[place] = built[design]
     return made
 
 
