@@ -40,7 +40,9 @@ def random_case(seed):
     values |= {path: 5 * float(case.given[path].si) for path in masses}
     values["operation.rotor_speed"] = float(case.operation.rotor_speed) * 2 ** rng.uniform(-1.3, 0.3)
     case = case.vary(values)
-    return replace(case, rotor=replace(case.rotor, n_blades=int(rng.choice([3, 4, 5]))))
+    # More blades may weigh more than the modes that were measured with three: these are of a wing without rotor.
+    wing = replace(case.support, includes_rotor=False)
+    return replace(case, rotor=replace(case.rotor, n_blades=int(rng.choice([3, 4, 5]))), support=wing)
 
 
 def slow_four_blades():
@@ -459,16 +461,59 @@ def test_a_sweep_over_the_chord_stiffness_follows_the_roots_where_beam_and_chord
 
 
 def test_a_beam_wing_with_modes_of_other_kinds_says_so(wing):
-    """With a stiff axis the sixth mode is a third one of the beam: it stands under the name of the first design's."""
+    """With a stiff axis the sixth mode is a third one of the beam: it stands under the name of the case's own."""
     varied = wing.vary({AXIAL: np.array([1.0, 5.0]) * wing.given[AXIAL].si})
     assert "beam_3" in wing.vary({AXIAL: 5.0 * float(wing.given[AXIAL].si)}).support.names
     warning = varied.linearize(120.0).trim.warning
     assert (
         warning[0] == ""
-        and warning[1] == "the wing has other modes than in the first design: beam_3 is told as axial"
+        and warning[1] == "the wing has other modes than in the case's own design: beam_3 is told as axial"
     )
     study = pp.study(wing, {AXIAL: np.array([1.0, 5.0]) * wing.given[AXIAL].si}, 120.0, workers=1)
     assert "beam_3" in str(study.warning.values[1])
+
+
+def test_designs_of_a_beam_wing_flutter_in_company_as_they_do_alone(wing):
+    """Whichever is the first of a batch, and of those that the search for a boundary still asks for."""
+    stiffness, speeds = np.array([0.15, 1.0]) * wing.given[CHORD].si, np.arange(80.0, 200.0, 10.0)
+    expected = {}
+    for value in stiffness:
+        point = wing.vary({CHORD: float(value)}).flutter_point(speeds, section_damping=False)
+        first = next(found for found in point.boundaries if found.onset)
+        expected[value] = point.mode, max(first.mechanism, key=first.mechanism.get), point.speed
+    assert {mode for mode, *_ in expected.values()} == {"beam", "chord"}
+    for order in (stiffness, stiffness[::-1]):
+        found = pp.study(wing, {CHORD: order}, speeds, ("flutter",), workers=1, section_damping=False)
+        for place, value in enumerate(order):
+            mode, moves_most, speed = expected[value]
+            assert found.flutter_mode.values[place] == mode
+            assert found.flutter_coordinate.values[place] == moves_most
+            assert found.flutter_speed.values[place] == pytest.approx(speed, abs=1e-4)
+
+
+def test_vectors_of_a_study_are_those_of_the_coordinates_they_stand_under(wing):
+    stiffness = np.array([0.15, 1.0]) * wing.given[CHORD].si
+    found = pp.study(wing, {CHORD: stiffness}, 120.0, ("eigenvalue", "vectors"), workers=1)
+    for place, value in enumerate(stiffness):
+        alone = wing.vary({CHORD: float(value)}).linearize(120.0).modes()
+        for root, shape in zip(alone.eigenvalue.values, alone["shape"], strict=True):
+            if root.imag < 1.0:
+                continue
+            state = int(np.abs(found.eigenvalue.values[place] - root).argmin())
+            own = found.vector[place].isel(state=state)
+            for name in ("beam", "chord"):  # a shape of the wing has either sign
+                assert abs(own.sel(dof=name).item()) == pytest.approx(
+                    abs(shape.sel(dof=name).item()), abs=1e-6
+                )
+
+
+def test_branches_of_a_beam_wing_have_the_labels_of_the_anchor_wherever_a_line_begins(wing):
+    own = float(wing.given[CHORD].si)
+    options = {"rotor_speed": "constant"}
+    along = wing.sweep(120.0, {CHORD: own * np.array([0.3, 1.0])}, **options)
+    alone = wing.sweep([120.0], **options)
+    for mode in ("beam", "chord"):
+        assert along.branch.sel(mode=mode).values[1] == alone.branch.sel(mode=mode).values[0]
 
 
 # Roots --------------------------------------------------------------------------------------------------------------

@@ -347,8 +347,10 @@ def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] 
     return assemble(deck, {path: _per_second(n, deck.operation.rotor_speed.si) for path, n in _numbers(deck)})
 
 
-def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
+def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = ()) -> Case:
     """The case of a deck with these numbers by path, which may be arrays of many designs or complex.
+
+    `names` of the support's coordinates are the order in which designs of a beam wing have them.
 
     Raises
     ------
@@ -373,7 +375,7 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum]) -> Case:
         train = None if deck.drive_train is None else DriveTrain(**_values(numbers, "drive_train"))
     with _told_as_written("support", numbers):
         at_rest = mass_at_rest(rotor)
-        support = settled(support_of(deck.support, numbers), at_rest)
+        support = settled(support_of(deck.support, numbers, names), at_rest)
         doubts = spring_warnings(support, at_rest, rotor.gimbal_stiffness)
     return Case(
         name=deck.case.name,

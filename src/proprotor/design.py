@@ -83,7 +83,7 @@ def vary(case: Case, values: Mapping[str, Any]) -> Case:
         number = _number(path, value, known[path].unit)
         written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
         numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
-    return assemble(_deck_of(case), numbers)
+    return assemble(_deck_of(case), numbers, tuple(case.support.names))
 
 
 def _deck_of(case: Case) -> Deck:

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 _KINDS_OF_STRAIN = ("beam", "chord", "torsion")
 
 
-def support_of(section: SupportSection, numbers: Mapping[str, Datum]) -> NormalModes:
+def support_of(
+    section: SupportSection, numbers: Mapping[str, Datum], names: tuple[str, ...] = ()
+) -> NormalModes:
     """The support of a section of a deck.
 
     Parameters
@@ -37,12 +39,16 @@ def support_of(section: SupportSection, numbers: Mapping[str, Datum]) -> NormalM
     numbers : mapping of str to Datum
         The deck's numbers by path, perhaps arrays of many designs, or complex. Those of the structure of a beam
         wing, and the units of a file, must be real.
+    names : tuple of str
+        The order of the coordinates of many designs of a beam wing, by default that of the first design.
 
     Raises
     ------
     InputError
         When a number or a file is not that of a support.
     """
+    if section.kind == "beam-wing":
+        return _beam_wing(section, numbers, names)
     return _BUILDERS[section.kind](section, numbers)
 
 
@@ -95,12 +101,13 @@ def _nastran(section: NastranSection, numbers: Mapping[str, Datum]) -> NormalMod
     return _with_assumed_airloads(support, section, numbers)
 
 
-def _beam_wing(section: BeamWingSection, numbers: Mapping[str, Datum]) -> NormalModes:
+def _beam_wing(section: BeamWingSection, numbers: Mapping[str, Datum], names: tuple[str, ...]) -> NormalModes:
     from proprotor.wing_aerodynamics import WingAerodynamics, in_airstream
 
     given = _values(numbers, "support")
     _must_be_real(given)
-    support, strips = _stacked(_each_design(given, lambda one: _one_beam_wing(one, section.downstop)))
+    made = _each_design(given, lambda one: _one_beam_wing(one, section.downstop))
+    support, strips = _stacked(made, names or made.flat[0][0].names)
     if section.wing_aerodynamics is None:
         return support
     airloads = _values(numbers, "support.wing_aerodynamics")
@@ -136,7 +143,6 @@ def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[
 
 _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
     "normal-modes": _normal_modes,
-    "beam-wing": _beam_wing,
     "matrices": _matrices,
     "nastran": _nastran,
     "pivot": _pivot,
@@ -145,20 +151,26 @@ _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
 
 
 def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any]) -> Any:
-    """What `build` makes of each design of a batch, in an array of the batch's shape."""
+    """What `build` makes of each design of a batch, in an array of the batch's shape.
+
+    Designs that are alike are built once: a search asks for one design at many airspeeds.
+    """
     varied = {name: value for name, value in given.items() if isinstance(value, np.ndarray)}
-    shape = np.broadcast_shapes(*(value.shape for value in varied.values()))
-    spread = {name: np.broadcast_to(value, shape) for name, value in varied.items()}
-    made = np.empty(shape, dtype=object)
-    for place in np.ndindex(shape):
-        made[place] = build(dict(given) | {name: float(value[place]) for name, value in spread.items()})
+    spread = np.broadcast_arrays(*varied.values())
+    made = np.empty(np.broadcast_shapes(*(value.shape for value in spread)), dtype=object)
+    built: dict[tuple[float, ...], Any] = {}
+    for place in np.ndindex(made.shape):
+        design = tuple(float(value[place]) for value in spread)
+        if design not in built:
+            built[design] = build(dict(given) | dict(zip(varied, design, strict=True)))
+        made[place] = built[design]
     return made
 
 
-def _stacked(made: Array) -> tuple[NormalModes, Strips]:
+def _stacked(made: Array, names: tuple[str, ...]) -> tuple[NormalModes, Strips]:
     """One support and its strips, with the axes of the batch in front.
 
-    Coordinates are in the order of the first design; each other design's are put there by their own names.
+    The coordinates of each design are put in the order of the names, so that it is the same in every batch.
     """
     from proprotor.wing_aerodynamics import Strips
 
@@ -169,17 +181,17 @@ def _stacked(made: Array) -> tuple[NormalModes, Strips]:
     def stack(parts: list[Any]) -> Array:
         return np.stack(parts).reshape(*made.shape, *parts[0].shape)
 
-    ordered = [_in_order(support, own, first.names) for support, own in made.flat]
+    ordered = [_in_order(support, own, names) for support, own in made.flat]
     matrices: dict[str, Any] = {
         name: stack([getattr(support, name) for support, _ in ordered])
         for name in ("mass", "damping", "stiffness", "hub")
     }
     if first.shapes is not None:
         matrices["shapes"] = stack([support.shapes for support, _ in ordered])
-        told = [_named_otherwise(support.names, first.names) for support, _ in made.flat]
+        told = [_named_otherwise(support.names, names) for support, _ in made.flat]
         matrices["warning"] = np.array(told, dtype=object).reshape(made.shape)
     together = zip(*(own for _, own in ordered), strict=True)
-    return replace(first, **matrices), Strips(*(stack(list(parts)) for parts in together))
+    return replace(first, names=names, **matrices), Strips(*(stack(list(parts)) for parts in together))
 
 
 def _in_order(support: NormalModes, strips: Strips, names: Sequence[str]) -> tuple[NormalModes, Strips]:
@@ -196,11 +208,11 @@ def _in_order(support: NormalModes, strips: Strips, names: Sequence[str]) -> tup
 
 
 def _named_otherwise(own: Sequence[str], names: Sequence[str]) -> str:
-    """What to say of a design that has modes of other kinds than the first one."""
+    """What to say of a design that has modes of other kinds than the case's own design."""
     others = [name for name in own if name not in names]
     missing = [name for name in names if name not in own]
     told = [f"{name} is told as {place}" for name, place in zip(others, missing, strict=True)]
-    return f"the wing has other modes than in the first design: {', '.join(told)}" if told else ""
+    return f"the wing has other modes than in the case's own design: {', '.join(told)}" if told else ""
 
 
 def _must_be_real(given: Mapping[str, Any]) -> None:
