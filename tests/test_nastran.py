@@ -4,6 +4,7 @@ import io
 import sys
 import warnings
 from contextlib import redirect_stdout
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ import proprotor as pp
 from proprotor.beam_wing import beam_structure, beam_wing
 from proprotor.errors import InputError
 from proprotor.modal_reduction import lowest_modes
-from proprotor.nastran import _names_of_older_numpy, nastran_modes
+from proprotor.nastran import _names_of_older_numpy, _one_subcase, nastran_modes
 from tests.test_beam_wing import furthest, on_the_rotor, with_rotor, xv15_wing
 
 SINGLE = 1e-6  # the file holds single precision
@@ -206,3 +207,11 @@ def test_modes_with_the_rotors_mass_on(tmp_path):
     support = read(path, includes_rotor=True, mass_unit=1 / INCH**2)
     assert support.includes_rotor
     np.testing.assert_allclose(np.diag(support.mass), 1, rtol=SINGLE)
+
+
+def test_complex_eigenvectors_are_refused_and_real_ones_beside_them_kept():
+    complex_ones = SimpleNamespace(isubcase=1, eigrs=[0.1], eigis=[2.0])
+    real_ones = SimpleNamespace(isubcase=2, eigns=[4.0])
+    with pytest.raises(InputError, match="has complex eigenvectors alone"):
+        _one_subcase({1: complex_ones}, None, "wing.op2")
+    assert _one_subcase({1: complex_ones, 2: real_ones}, None, "wing.op2") is real_ones

@@ -152,7 +152,12 @@ def _names_of_older_numpy() -> Iterator[None]:
 def _one_subcase(eigenvectors: Mapping[Any, Any], subcase: int | None, path: Any) -> Any:
     if not eigenvectors:
         raise InputError("file", str(path), "has no real eigenvectors: ask Nastran for DISPLACEMENT(PLOT)")
-    numbers = {getattr(vectors, "isubcase", key): vectors for key, vectors in eigenvectors.items()}
+    real = {key: vectors for key, vectors in eigenvectors.items() if hasattr(vectors, "eigns")}
+    if not real:
+        raise InputError(
+            "file", str(path), "has complex eigenvectors alone: ask Nastran for real ones (SOL 103)"
+        )
+    numbers = {getattr(vectors, "isubcase", key): vectors for key, vectors in real.items()}
     if subcase is None:
         if len(numbers) > 1:
             raise InputError("subcase", None, f"must be given: the file has {', '.join(map(str, numbers))}")
