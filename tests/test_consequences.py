@@ -114,8 +114,6 @@ def test_the_lowest_boundary_is_that_of_the_search_which_follows_each_root(optio
 def test_motion_that_is_handed_from_root_to_root_is_no_boundary():
     case = consequences.with_flap_hub_inertia(printed.TABLES[0].values["I_βα"] * consequences.SLUG_FT2)
     damping = case.sweep(consequences.SPEEDS, **consequences.AS_THE_PAPER).damping_ratio.values
-    first = round(
-        (consequences.boundary(case) - 100) / 5 - 0.5
-    )  # the step of the grid with the lowest boundary
+    first = np.searchsorted(consequences.SPEEDS / consequences.KNOT, consequences.boundary(case)) - 1
     unstable = (damping < 0).sum(axis=1)
     assert unstable[first + 1] > unstable[first] and (np.diff(unstable[: first + 1]) <= 0).all()
