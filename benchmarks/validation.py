@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.progress import track
 
 from benchmarks.claims import VERDICTS, WING, Claim, all_claims, mode_boundaries, told
@@ -58,9 +59,18 @@ class Row(NamedTuple):
         """5, 50 and 95 %."""
         return (self.band.boundary_percentiles() / KNOT).tolist()
 
+    def unstable_by(self, speed: float) -> NDArray:
+        """Return which designs of the sample have a boundary at or below a speed, bool (designs,)."""
+        return self.band.boundaries() / KNOT <= speed
+
     def share_below(self, speed: float) -> float:
-        """Of the sample, what is unstable at a speed."""
-        return float(np.mean(self.band.boundaries() / KNOT <= speed))
+        """Return the share of the sample with a boundary at or below a speed."""
+        return float(np.mean(self.unstable_by(speed)))
+
+    def least_damping(self, speed: float) -> float:
+        """Return the least damping of those designs up to that speed, % of critical."""
+        to_there = self.band.airspeed / KNOT <= speed
+        return 100 * float(np.nanmin(self.band.least_damping[self.unstable_by(speed)][:, to_there]))
 
     @property
     def label(self) -> str:
@@ -117,6 +127,8 @@ def _boundary_section(rows: list[Row]) -> Iterator[str]:
     yield ""
     yield f"The lowest speed at which a mode that moves the wing is neutral. Published: {low:.0f} to {high:.0f} kt:"
     yield "; ".join(f"{speed:.0f} ({source})" for source, speed in XV15_FLUTTER.items()) + "."
+    yield "Sections turn without damping, as in the paper, but where a row says that they have it. Pitch equations with"
+    yield "section damping are what `proprotor flutter xv15` has by default."
     yield ""
     head = (
         "mass integrals",
@@ -159,8 +171,7 @@ def _boundary_words(rows: list[Row]) -> Iterator[str]:
     inside = "reaches into" if first <= high else "ends above"
     yield f"- The nominal boundary is {min(nominal) - high:.0f} to {max(nominal) - low:.0f} kt above published ones."
     yield f"- The 5 to 95 % band {inside} them; {min(share):.0%} to {max(share):.0%} of the samples become unstable at"
-    yield f"  {high:.0f} kt or below. With pitch equations these are pitch modes of soft controls that meet torsion"
-    yield "  below 200 kt and are neutral to hundredths of a percent; the pitch damping of sections keeps them stable."
+    yield from _early_words([row for row in rows if row.share_below(high)], high)
     yield "- So the doubtful inputs, as judged here, do not explain the difference unless they conspire. What the"
     yield "  model leaves out (more than one elastic bending mode, measured wing modes, sweep, airfoil tables) is"
     yield "  discussed in [xv15.md](xv15.md)."
@@ -168,11 +179,25 @@ def _boundary_words(rows: list[Row]) -> Iterator[str]:
     yield "  inconsistent integrals are not the reason."
 
 
+def _early_words(early: list[Row], high: float) -> Iterator[str]:
+    """Say which models have designs that are unstable at published speeds, from where on, and how much."""
+    if not early:
+        yield f"  {high:.0f} kt or below."
+        return
+    speeds = np.concatenate([row.band.boundaries()[row.unstable_by(high)] for row in early]) / KNOT
+    models = " and ".join(dict.fromkeys(row.pitch for row in early))
+    worst = -min(row.least_damping(high) for row in early)
+    yield f"  {high:.0f} kt or below, all of them with {models}: pitch modes of soft controls, where they meet torsion,"
+    yield f"  unstable from {speeds.min():.0f} to {speeds.max():.0f} kt on by {worst:.1f} % of critical at most."
+    yield "  The damping of turning sections keeps them stable."
+
+
 def _figures_section() -> Iterator[str]:
     yield "## Figures"
     yield ""
     yield "Axes are the paper's, extended below zero damping, and upwards where a curve needs it. Each figure has its"
-    yield "numbers beside it as CSV. The model of the paper's figures has couplings in place of the pitch equations."
+    yield "numbers beside it as CSV. The model of the paper's figures has couplings in place of the pitch equations"
+    yield "and no damping of turning sections (`section_damping=False`)."
     yield "In the lower half of the airspeeds a wing mode is the one with most of the wing's motion: where a rotor mode"
     yield "meets it, as the low-frequency lag mode does chord bending at 130 kt, the line passes from one branch to the"
     yield "other."
@@ -189,6 +214,7 @@ def _claims_section(claims: list[Claim]) -> Iterator[str]:
     yield "## Claims of the text"
     yield ""
     yield "In words of this page. Verdicts follow from the number by rules in `benchmarks/claims.py`."
+    yield "No number here has section damping."
     yield ""
     yield from _table(("where", "the paper says", "here", ""), (tuple(claim) for claim in claims))
     yield ""

@@ -32,6 +32,7 @@ from derive.printed import TABLES
 from derive.printed.notation import TIME
 from derive.published import DROPPED_TERMS, PUBLISHED
 from proprotor import model as runtime
+from proprotor.branches import by_branch
 from proprotor.equation_set import EQUATION_SETS, EquationSet
 
 _FLAP, _LAG = (BLADE_COORDINATES.index(name) for name in ("flap", "lag"))
@@ -50,8 +51,11 @@ def xv15() -> pp.Case:
 
 
 def modes_of(case: pp.Case | None = None, **options: Any) -> xarray.Dataset:
-    """Modes of the XV-15, or of another case, over `SPEEDS`; without section damping where nothing else is chosen."""
-    return (case or xv15()).sweep(SPEEDS, **AS_THE_PAPER | options)
+    """Return the roots of the XV-15, or another case, over `SPEEDS`; no section damping where nothing else is chosen.
+
+    By branch, for what moves is handed from root to root, and its damping then jumps.
+    """
+    return by_branch((case or xv15()).sweep(SPEEDS, **AS_THE_PAPER | options))
 
 
 def boundary(case: pp.Case | None = None, **options: Any) -> float:
@@ -60,9 +64,9 @@ def boundary(case: pp.Case | None = None, **options: Any) -> float:
 
 
 def boundaries(modes: xarray.Dataset) -> dict[str, float]:
-    """Lowest speed at which each mode loses its damping, kt; modes that do not lose it are left out."""
+    """Lowest speed at which each root loses its damping, kt; roots that do not lose it are left out."""
     found: dict[str, float] = {}
-    for name, damping in zip(modes.mode.values.tolist(), modes.damping_ratio.values.T, strict=True):
+    for name, damping in zip(modes.branch.values.tolist(), modes.damping_ratio.values.T, strict=True):
         for i in np.flatnonzero((damping[:-1] > 0) & (damping[1:] <= 0))[:1]:
             speeds = SPEEDS[[i + 1, i]] / KNOT
             found[name] = float(np.interp(0, [damping[i + 1], damping[i]], speeds))
@@ -231,7 +235,7 @@ def printed_flap_hub_inertia() -> tuple[str, float, float]:
 
 def least_damping_at_best(case: pp.Case) -> float:
     """Damping ratio of the worst mode where it is best; below zero, the case is unstable at every speed."""
-    return float(modes_of(case).damping_ratio.min("mode").max())
+    return float(modes_of(case).damping_ratio.min("branch").max())
 
 
 # Consequences of conflicts, by equation or table; those of absent terms are `without` each.

@@ -257,7 +257,7 @@ def published_and_consistent() -> Figure:
 
 
 def _draw_damping(ax: Axes, modes: xarray.Dataset, label: str, color: str, style: str) -> None:
-    damping = 100 * modes.damping_ratio.sel(mode="chord").values
+    damping = 100 * modes.damping_ratio.sel(branch="chord").values
     ax.plot(SPEEDS / KNOT, damping, style, color=color, label=label, linewidth=2)
 
 
@@ -331,8 +331,8 @@ def gimbal_question() -> Figure:
     )
     for label, equations, color, style in variants:
         modes = consequences.modes_of(equations=equations)
-        for ax, mode in zip(axes, ("chord", "regressive flap"), strict=True):
-            damping = 100 * modes.damping_ratio.sel(mode=mode).values
+        for ax, branch in zip(axes, ("chord", "regressive flap"), strict=True):
+            damping = 100 * modes.damping_ratio.sel(branch=branch).values
             ax.plot(SPEEDS / KNOT, damping, style, color=color, label=label, linewidth=2)
     for ax, mode in zip(axes, ("Wing chord", "Regressive flap against the gimbal"), strict=True):
         _titled(ax, mode, "Airspeed (kt)", "Damping (% of critical)")

@@ -54,7 +54,7 @@ def test_boundaries_are_told_by_mode():
     of = consequences.boundaries(modes)
     assert consequences.lowest(of) == min(of.values()) == consequences.boundary()
     name = min(of, key=of.get)
-    damping = modes.damping_ratio.sel(mode=name)
+    damping = modes.damping_ratio.sel(branch=name)
     speeds = consequences.SPEEDS / consequences.KNOT
     assert float(damping[speeds <= of[name]].min()) > 0 > float(damping[speeds > of[name]][0])
     assert np.isnan(consequences.lowest({})) and consequences.in_knots(np.nan) == "none below 520 kt"
@@ -102,3 +102,18 @@ def test_the_search_for_a_blade_does_not_stop_at_the_grid():
     grid = np.linspace(0.19, 0.26, 8)
     implied = table_audit.implied_offset(v, "ζ")
     assert min(table_audit.misfit(v, table_audit.INTEGRALS, offset, implied) for offset in grid) > 1
+
+
+@pytest.mark.parametrize("options", [{}, {"equations": "published"}, {"pitch": "coupling"}])
+def test_the_lowest_boundary_is_that_of_the_search_which_follows_each_root(options):
+    found = consequences.xv15().flutter_point(consequences.SPEEDS, **consequences.AS_THE_PAPER | options)
+    first = min(one.position for one in found.boundaries if one.onset)
+    assert consequences.boundary(**options) * consequences.KNOT == pytest.approx(first, abs=0.1)
+
+
+def test_motion_that_is_handed_from_root_to_root_is_no_boundary():
+    case = consequences.with_flap_hub_inertia(printed.TABLES[0].values["I_βα"] * consequences.SLUG_FT2)
+    damping = case.sweep(consequences.SPEEDS, **consequences.AS_THE_PAPER).damping_ratio.values
+    first = np.searchsorted(consequences.SPEEDS / consequences.KNOT, consequences.boundary(case)) - 1
+    unstable = (damping < 0).sum(axis=1)
+    assert unstable[first + 1] > unstable[first] and (np.diff(unstable[: first + 1]) <= 0).all()

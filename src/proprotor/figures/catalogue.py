@@ -26,6 +26,7 @@ from proprotor.stamp import deck_fingerprint
 from proprotor.uncertainty_band import boundary
 
 _DAMPING = "Modal damping"
+_UNDAMPED = "Sections turn without damping, as in the paper (section_damping=False)."
 _PERCENT = "% of critical"
 _BELOW_ZERO = -2.0  # of the damping axes, where the paper's begin at zero
 _TITLES = {"beam": "wing vertical bending", "chord": "wing chordwise bending", "torsion": "wing torsion"}
@@ -161,7 +162,12 @@ def _boundary_told(knots: Array, damping: Array, end: float, warnings: Array) ->
 
 def _reservations(analyses: Analyses, deck: str) -> dict[str, Any]:
     case = analyses.case(deck)
-    notes = [*reservations(case), *analyses.doubts(deck), f"Case {case.name} ({deck_fingerprint(case)})."]
+    notes = [
+        _UNDAMPED,
+        *reservations(case),
+        *analyses.doubts(deck),
+        f"Case {case.name} ({deck_fingerprint(case)}).",
+    ]
     if deck != XV15:  # the XV-15's warning is on its mass integrals, which do not move the boundary
         notes.insert(0, case.warnings[0])
     statuses = {number.status for number in case.sources.values()}
