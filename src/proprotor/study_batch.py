@@ -323,6 +323,9 @@ class Analysis:
                 refused = self._refusals(batch)
         found["reason"][:] = refused[:, None]
         rows = np.flatnonzero(refused == "")
+        if not len(rows):
+            found["flutter_note"][:] = refused
+            return
         search = Search(
             lambda line, speed: self._model_of_each(batch.some(line), speed),
             np.repeat(rows, speeds),
