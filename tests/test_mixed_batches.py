@@ -164,6 +164,36 @@ def test_a_study_finds_for_a_design_what_it_finds_for_it_alone(seed):
         assert np.isnan(here.mode_quality.values[np.isnan(here.mode_eigenvalue.values.real)]).all()
 
 
+def test_designs_with_and_without_a_shaft_flutter_in_company_as_they_do_alone():
+    """Also where one of them meets a bad input, by which the batch is searched in parts."""
+    stiffness, speeds = [0.0, 1e4], np.arange(140.0, 260.0, 10.0)
+    options = {"structure": "tabulated", "pitch": "coupling", "section_damping": False}
+
+    def tabulated(gap):
+        def flap(speed):
+            return np.where((speed > gap[0]) & (speed < gap[1]), -1.0, 1.85)
+
+        return pp.BladeFrequencies(against="airspeed", at=[0, 300], flap=flap, lag=1.2)
+
+    alone = [
+        CASE.vary({SHAFT: value}).flutter_point(speeds, frequencies=tabulated((0.0, 0.0)), **options)
+        for value in stiffness
+    ]
+    assert all(np.isfinite(point.speed) for point in alone)
+    for gap in ((0.0, 0.0), (145.0, 155.0)):
+        found = pp.study(
+            CASE, {SHAFT: stiffness}, speeds, "flutter", frequencies=tabulated(gap), workers=1, **options
+        )
+        for place, point in enumerate(alone):
+            assert found.flutter_speed.values[place] == pytest.approx(point.speed, abs=1e-4)
+            assert found.flutter_mode.values[place] == point.mode
+        works = found.reason.values == ""
+        assert not works.all() if gap[1] else works.all()
+        without = "no shaft holds the azimuth"
+        assert all(str(told).startswith(without) for told in found.missing.values[0][works[0]])
+        assert not (found.missing.values[1] != "").any()
+
+
 def test_a_batch_of_designs_that_are_alike_tells_of_nothing_missing():
     for stiffness in ([0.0, 0.0], [1e4, 2e4]):
         assert "missing" not in CASE.vary({SHAFT: stiffness}).linearize(SPEED).modes()

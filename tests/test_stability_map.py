@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from proprotor.boundary_lines import boundary_lines
 from proprotor.stability_map import Edges, _lines, largest_growth, stability_map
 from tests.known_systems import linear_model
 
@@ -110,3 +111,17 @@ def test_the_level_shifts_the_growth():
 def test_what_cannot_be_mapped_is_told(case, axes, options, message):
     with pytest.raises(pp.InputError, match=message):
         stability_map(case, axes, **options)
+
+
+def test_the_lines_of_a_damping_level_are_named_after_the_modes_that_have_it():
+    """The root at the level has a real part, by which another may be nearer to the imaginary axis."""
+    case, level = pp.load_case("xv15"), -0.1
+    axes = {"airspeed": np.linspace(160.0, 280.0, 8), "rotor.precone": np.deg2rad([1.0, 1.5, 2.0])}
+    lines = boundary_lines(case, case.stability_map(axes, level=level))
+    assert lines
+    for line in lines:
+        middle = len(line.x) // 2
+        modes = case.vary({"rotor.precone": line.y[middle]}).sweep([line.x[middle]]).isel(airspeed=0)
+        found = modes.sel(mode=line.mode)
+        assert found.damping_ratio.item() == pytest.approx(level, rel=1e-6)
+        assert found.frequency.item() == pytest.approx(line.frequency[middle], rel=1e-6)

@@ -324,6 +324,17 @@ def test_a_design_whose_search_meets_a_bad_input_spoils_no_other():
         assert np.array_equal(found[name].values[~expected], whole[name].values[~expected]), name
 
 
+@pytest.mark.parametrize("quantities", ["flutter", "modes", "eigenvalue", ("flutter", "least_stable")])
+def test_a_batch_of_nothing_but_bad_inputs_says_why(quantities):
+    found = study(CASE, {PRECONE: [2.0, 3.0]}, [120.0, 140.0], quantities, workers=1)
+    for place, precone in enumerate((2.0, 3.0)):
+        with pytest.raises(InputError) as refused:
+            CASE.vary({PRECONE: precone})
+        reason = " ".join(str(refused.value).split("\n"))
+        assert (found.reason.values[place] == reason).all()
+        assert "flutter" not in quantities or found.flutter_note.values[place] == reason
+
+
 def test_an_airspeed_of_one_design_that_is_none_spoils_no_other():
     inputs = {PRECONE: [0.04, 0.05, 0.03], "airspeed": [120.0, -1.0, 140.0]}
     found = study(CASE, sampling.points(inputs))

@@ -9,16 +9,18 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.errors import InputError
-from proprotor.mode_names import moving
+from proprotor.mode_names import name_list
 from proprotor.modes import decomposition
 from proprotor.stability_map import AIRSPEED
 from proprotor.stamp import options_of
+from proprotor.sweep import names_at
 from proprotor.tracking import Spectrum, conjugate, link
 
 if TYPE_CHECKING:
     import xarray
 
     from proprotor.case import Case
+    from proprotor.model import LinearModel
 
 
 class BoundaryLine(NamedTuple):
@@ -75,15 +77,16 @@ def boundary_lines(
     options = options_of(found.attrs, case, options)
     airspeed = _airspeed_of(found, airspeed)
     names = [str(name) for name in found.axis.values]
-    lines = []
     roots, warning = found.boundary_eigenvalue.values, found.boundary_warning.values
+    lines = []
     for places in _parted(found.boundary.values):
         vertices, frequency = found.boundary.values[places], np.abs(roots[places].imag)
-        for part in _same_mode(case, names, vertices, roots[places], airspeed, options):
-            middle = vertices[part][len(vertices[part]) // 2]
-            mode = _mode_at(
-                case, names, middle, float(frequency[part][len(vertices[part]) // 2]), airspeed, options
-            )
+        model = _model_at(case, names, vertices, airspeed, options)
+        spectrum = decomposition(model)
+        state = _nearest_state(spectrum, roots[places])
+        for part in _same_mode(spectrum, state, np.isfinite(roots[places])):
+            middle = (part.start + part.stop) // 2
+            mode = name_list(model.dofs)[names_at(model, spectrum, middle)[state[middle]]]
             drawn = slice(max(part.start - 1, 0), part.stop)
             x, y = vertices[drawn].T
             lines.append(BoundaryLine(mode, x, y, frequency[drawn], warning[places][drawn]))
@@ -110,43 +113,29 @@ def _parted(boundary: Array) -> Iterator[Array]:
             yield chosen
 
 
-def _at(case: Case, names: list[str], point: Array, airspeed: Any) -> tuple[Case, Any]:
-    """The case, and the airspeeds, at points (..., 2) of the plane."""
-    given = dict(zip(names, np.moveaxis(point, -1, 0), strict=True))
+def _model_at(
+    case: Case, names: list[str], points: Array, airspeed: float | None, options: dict[str, Any]
+) -> LinearModel:
+    """Models at points (k, 2) of the plane."""
+    given: dict[str, Any] = dict(zip(names, points.T, strict=True))
     speed = given.pop(AIRSPEED, airspeed)
-    return case.vary(given), speed
+    return case.vary(given).linearize(speed, **options)
 
 
-def _same_mode(
-    case: Case, names: list[str], vertices: Array, roots: Array, airspeed: Any, options: dict[str, Any]
-) -> Iterator[slice]:
+def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice]:
     """Stretches of vertices along which the root that is neutral at one is that which is neutral at the next."""
-    varied, speed = _at(case, names, vertices, airspeed)
-    spectrum = decomposition(varied.linearize(speed, **options))
-    state = _nearest_state(spectrum, roots)
-    before = np.arange(len(vertices) - 1)
-    works = spectrum.works & np.isfinite(roots)
+    before, works = np.arange(len(state) - 1), spectrum.works & known
     good = before[works[:-1] & works[1:]]
     same = np.zeros(len(before), dtype=bool)
     after = link(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
     same[good] = (after == state[good + 1]) | (after == conjugate(spectrum.values)[good + 1, state[good + 1]])
     jumps = np.flatnonzero(~same) + 1
-    for start, stop in zip((0, *jumps), (*jumps, len(vertices)), strict=True):
+    for start, stop in zip((0, *jumps), (*jumps, len(state)), strict=True):
         yield slice(int(start), int(stop))
 
 
 def _nearest_state(spectrum: Spectrum, roots: Array) -> Array:
+    """Which state of each point has its root (k,)."""
     apart = np.abs(spectrum.values - roots[:, None])
     state: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=1)
     return state
-
-
-def _mode_at(
-    case: Case, names: list[str], point: Array, frequency: float, airspeed: Any, options: dict[str, Any]
-) -> str:
-    varied, speed = _at(case, names, point, airspeed)
-    model = varied.linearize(speed, **options)
-    values, right, left = decomposition(model).all_modes
-    # Neutral at this point: the least growth in size of those with this frequency.
-    nearest = np.argmin(np.hypot(values.real, np.abs(values.imag) - frequency))
-    return str(moving(model, values, left, right).names[nearest])

@@ -23,7 +23,7 @@ from proprotor.cubic import hermite_root
 from proprotor.eigenvalue_derivatives import eigenvalue_change, second_order_left, with_changes
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
-from proprotor.modes import decomposition, held_coordinates, some_points
+from proprotor.modes import decomposition, held_coordinates, missing_roots, some_points
 from proprotor.root_error import growth, growth_error, refined_near
 from proprotor.steps import Steps, first_steps, parted, undecided
 from proprotor.tracking import POOR, Modes, Spectrum, link
@@ -84,15 +84,15 @@ class Points(NamedTuple):
 class Solved(NamedTuple):
     """What came of a number of eigen-solves.
 
-    points : those that work; works (k,), which of those asked for they are; reason (k,) of the others, and warning of
-    all; model, of any of them, for what all have in common; None where there is none.
+    points : those that work, None where there is none; works (k,), which of those asked for they are; reason (k,) of
+    the others, and warning of all; missing (k,), why a point has fewer eigenvalues than others.
     """
 
     points: Points | None
     works: Array
     reason: Array
     warning: Array
-    model: LinearModel | None
+    missing: Array
 
 
 def solved(
@@ -124,7 +124,8 @@ def solved(
         told = error
     if len(line) == 1:
         reason = np.array([" ".join(str(told).split("\n"))], dtype=object)
-        return Solved(None, np.array([False]), reason, np.array([""], dtype=object), None)
+        nothing = np.array([""], dtype=object)
+        return Solved(None, np.array([False]), reason, nothing, nothing)
     halves = [
         solved(models, line[half], position[half], level, forgiving, states, plain)
         for half in np.array_split(np.arange(len(line)), 2)
@@ -133,13 +134,10 @@ def solved(
 
 
 def _together(one: Solved, other: Solved) -> Solved:
-    works, reason, warning = (
-        np.concatenate([getattr(one, name), getattr(other, name)]) for name in ("works", "reason", "warning")
-    )
+    told = (np.concatenate(parts) for parts in zip(one[1:], other[1:], strict=True))
     if one.points is None or other.points is None:
-        some = other if one.points is None else one
-        return Solved(some.points, works, reason, warning, some.model)
-    return Solved(one.points.joined(other.points), works, reason, warning, one.model)
+        return Solved(other.points if one.points is None else one.points, *told)
+    return Solved(one.points.joined(other.points), *told)
 
 
 def _solved(
@@ -149,10 +147,10 @@ def _solved(
         (models(line, position), None) if plain else with_changes(lambda x: models(line, x), position)
     )
     spectrum = decomposition(model, None if states is None else held_coordinates(model, states))
-    works = spectrum.works
+    works, missing = spectrum.works, missing_roots(model, spectrum.values.shape[-1])
     reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
     if not works.any():
-        return Solved(None, works, reason, warning, model)
+        return Solved(None, works, reason, warning, missing)
     part, some = some_points(model, works), spectrum.at(works)
     if changes is None:
         found = refined_near(part, some, level)
@@ -173,7 +171,7 @@ def _solved(
         growth_rate(found.values, change, level),
         growth_error(found.error, level),
     )
-    return Solved(points, works, reason, warning, model)
+    return Solved(points, works, reason, warning, missing)
 
 
 class Search:

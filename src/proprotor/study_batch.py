@@ -335,10 +335,8 @@ class Analysis:
             states=self.states or None,
         )
         scanned = search.scanned
-        for name in ("reason", "warning"):
+        for name in ALWAYS:
             found[name][rows] = getattr(scanned, name).reshape(len(rows), speeds)
-        if scanned.model is not None and scanned.model.airspeed.size == scanned.works.size:
-            found["missing"][rows] = missing_roots(scanned.model, self.states).reshape(len(rows), speeds)
         found["flutter_note"][:] = self._notes(found["reason"], batch, search)
         if search.scanned.points is not None:
             brackets = Brackets(search, self.tolerance)
