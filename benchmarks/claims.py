@@ -240,7 +240,7 @@ def flap_lag_stiffness(analyses: Analyses) -> Iterator[Claim]:
         "With given flap and lag frequencies damping is nearer to the baseline, boundaries still noticeably apart",
         f"chord boundary {given:+.0f} kt with the paper's frequencies and {own:+.0f} kt with this model's, "
         f"{moved['chord']:+.0f} kt without the flap-lag stiffness",
-        _verdict(abs(given) > 3 and round(abs(given)) < round(dropped), abs(own) < dropped),  # in knots, as told
+        _verdict(abs(given) > 3 and round(abs(given)) < round(dropped), abs(own) < dropped),
     )
 
 
