@@ -192,7 +192,7 @@ def _solved(matrix: Array) -> tuple[Array, Array]:
 
 
 def _real(model: LinearModel) -> LinearModel:
-    if not np.iscomplexobj(model.K):
+    if not any(np.iscomplexobj(getattr(model, name)) for name in "MCK"):
         return model
     return replace(model, M=model.M.real, C=model.C.real, K=model.K.real)
 
