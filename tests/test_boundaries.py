@@ -43,12 +43,12 @@ def told(found):
 
 def test_two_crossings_of_a_level_four_hundredths_of_a_knot_apart_are_found_by_every_scan(case):
     """A level near the least damping of a mode: the count of dense roots below it changes three times."""
-    level, options = 0.0020685453865450063, {"section_damping": True}
+    level, options = 0.0020909097161266373, {"section_damping": True}
     knots = np.linspace(178, 182, 2001)
     values = np.linalg.eigvals(state_matrix(case.linearize(knots * KNOT, **options)))
     beyond = ((-values.real / np.abs(values) < level) & (values.imag > 0)).sum(axis=-1)
     expected = knots[np.flatnonzero(np.diff(beyond))]
-    assert len(expected) == 3 and expected[1] - expected[0] < 0.05
+    assert len(expected) == 3 and np.diff(expected).min() < 0.05
     for scan in ("80:360:2kt", "80:360:5kt", "80:360:20kt", "170:190:20kt", "90:370:70kt"):
         found = case.flutter_point(scan, level=level, **options)
         near = np.array([b.position / KNOT for b in found.boundaries if 178 < b.position / KNOT < 182])
