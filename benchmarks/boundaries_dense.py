@@ -36,6 +36,7 @@ NEUTRAL = 1e-12  # of |λ|: growth, in 50 digits, that the rounding of the matri
 AGREES = 1e-3  # kt
 MANY = 6  # points at which a root in doubt is looked at first
 LEVELS = (0.0, 0.02)
+OPTIONS = {"section_damping": False}  # which has more boundaries
 Signed = tuple[float, bool]  # position in kt, and whether a root becomes unstable
 
 
@@ -73,7 +74,7 @@ class Reference:
 
     def values(self, knots: np.ndarray) -> np.ndarray:
         """Roots (k, states) at airspeeds; NaN where there is no trim."""
-        model = self.case.linearize(knots * KNOT)
+        model = self.case.linearize(knots * KNOT, **OPTIONS)
         return companion_roots(model)
 
     def crossings(self, low: float, high: float, step: float = COARSE) -> list[Signed]:
@@ -146,7 +147,7 @@ class Reference:
         return signs
 
     def _sign(self, knot: float, value: complex) -> float:
-        exact = exact_root(self.case.linearize(knot * KNOT), value)
+        exact = exact_root(self.case.linearize(knot * KNOT, **OPTIONS), value)
         reach = exact.real + self.level * abs(exact)
         return 0.0 if abs(reach) < NEUTRAL * max(abs(exact), 1e-3) else float(np.sign(float(reach)))
 
@@ -281,7 +282,7 @@ def main() -> None:
             dense = Reference(case, level)
             reference = dense.crossings(line[0], line[-1])
             for name, speeds in scans(case).items():
-                told = case.flutter_point(speeds, level=level)
+                told = case.flutter_point(speeds, level=level, **OPTIONS)
                 low, high = (speed / KNOT for speed in told.searched)
                 found = [(b.position / KNOT, b.onset) for b in told.boundaries]
                 gaps = [(first / KNOT, last / KNOT) for first, last, _ in told.failed]

@@ -442,22 +442,25 @@ class Brackets:
     def _place(self, active: Array, points: Points) -> Array:
         """Which state of each trial point is the one that crosses, followed from the ends of the bracket.
 
-        From the nearer end; where that does not tell it from others, as where two roots fall into one, from the end
-        that is beyond the level. Where a pair parts into real roots between the ends, from the one that is of the
-        trial's kind, since a pair does not tell which of two real roots it becomes.
+        From the nearer end. Where roots fall into one on the way from there, from the end that tells better which is
+        which; if neither does, from the one beyond the level, where they have parted. Where a pair parts into real
+        roots between the ends, from the one that is of the trial's kind, since a pair does not tell which of two real
+        roots it becomes.
         """
         rows, spectrum = np.arange(len(active)), points.spectrum
         nearer = np.argmin(np.abs(self.x[:, active] - points.position), axis=0)
         places, alike = np.empty((2, len(active)), dtype=int), np.empty((2, len(active)), dtype=bool)
-        trust = np.empty((2, len(active)))
+        quality = np.empty((2, len(active)))
         for end, found in enumerate(self.ends):
             start = found.at(active)
-            successor, quality = link(start.joined(spectrum), rows, len(active) + rows)
+            step = link(start.joined(spectrum), rows, len(active) + rows)
             own = self.place[end, active]
-            places[end], trust[end] = successor[rows, own], quality[rows, own]
+            places[end], quality[end] = step.successor[rows, own], step.quality[rows, own]
             alike[end] = (start.values[rows, own].imag == 0) == (spectrum.values[rows, places[end]].imag == 0)
-        surest = np.where(trust[nearer, rows] >= POOR, nearer, self.onset[active].astype(int))
-        chosen = np.where(alike[0] == alike[1], surest, alike[1].astype(int))
+        beyond = self.onset[active].astype(int)
+        better = np.where(quality.max(axis=0) < POOR, beyond, quality.argmax(axis=0))
+        clear = np.where(quality[nearer, rows] < POOR, better, nearer)
+        chosen = np.where(alike[0] == alike[1], clear, alike[1].astype(int))
         followed: Array = places[chosen, rows]
         return followed
 
