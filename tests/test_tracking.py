@@ -383,3 +383,19 @@ def test_one_point_and_none_are_sweeps_too():
     assert modes.tracking_quality.values.tolist() == [[1, 1]]
     nothing = np.zeros((0, 2, 2))
     assert sweep(linear_model(nothing, nothing, nothing)).sizes["mode"] == 0
+
+
+def test_two_motions_with_one_frequency_all_along_do_not_part_a_line_for_ever():
+    """Nothing tells their roots apart at any point, so that no halving helps: the step is given up and stays poor."""
+
+    def matrices(x):
+        return (
+            np.eye(3),
+            np.zeros((3, 3)),
+            np.diag([196.0, 196.0, 0.0]) + (900 + x) * np.diag([0.0, 0.0, 1.0]),
+        )
+
+    line = Line(np.array([0.0, 1.0]), along(matrices))
+    path = follow(line.models(line.positions), line)
+    assert len(path.points) < 300
+    assert path.steps.quality.min() < POOR

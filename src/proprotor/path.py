@@ -16,6 +16,7 @@ from proprotor.tracking import POOR, Spectrum, Steps, chain, keep_upper, link
 
 Linearize = Callable[[Array], LinearModel]  # positions (k,) along a line to the models there
 
+_MOST_PARTS = 128  # of a step: where two roots pass each other it takes a few dozens
 _HALVINGS = 24  # of a step whose modes cannot be told apart: of 20 kt, to 1e-6 kt
 
 
@@ -136,7 +137,8 @@ def follow(model: LinearModel, line: Line | None = None, held: list[int] | None 
     """States of the points of a line of models, followed one to one.
 
     A step whose quality is poor is halved until it is not, where the line can be linearised between its points. A step
-    that stays poor keeps its quality as a warning. `held` as `decomposition` has it.
+    that stays poor keeps its quality as a warning; where roots are alike all along it, as two motions with one
+    frequency, it is given up after a number of parts. `held` as `decomposition` has it.
     """
     held = held_coordinates(model) if held is None else held
     if line is None or line.linearize is None:
@@ -145,7 +147,9 @@ def follow(model: LinearModel, line: Line | None = None, held: list[int] | None 
         )
     path = path_of(decomposition(model, held), np.asarray(line.positions, dtype=float))
     hopeless = np.zeros(max(len(path.points) - 1, 0), dtype=bool)
+    origin = np.arange(len(hopeless))  # of each step: the step of the line that it is a part of
     for _ in range(_HALVINGS):
+        hopeless |= np.bincount(origin, minlength=1)[origin] > _MOST_PARTS
         poor = np.flatnonzero((path.steps.quality.min(axis=1, initial=1) < POOR) & ~hopeless)
         if not len(poor):
             break
@@ -155,5 +159,5 @@ def follow(model: LinearModel, line: Line | None = None, held: list[int] | None 
         works = between.works
         hopeless[poor[~works]] = True
         path = path.with_points(poor[works], middle[works], between.at(works))
-        hopeless = np.insert(hopeless, poor[works], hopeless[poor[works]])
+        hopeless, origin = (np.insert(part, poor[works], part[poor[works]]) for part in (hopeless, origin))
     return path
