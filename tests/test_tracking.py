@@ -389,11 +389,10 @@ def test_two_motions_with_one_frequency_all_along_do_not_part_a_line_for_ever():
     """Nothing tells their roots apart at any point, so that no halving helps: the step is given up and stays poor."""
 
     def matrices(x):
-        return (
-            np.eye(3),
-            np.zeros((3, 3)),
-            np.diag([196.0, 196.0, 0.0]) + (900 + x) * np.diag([0.0, 0.0, 1.0]),
-        )
+        way = 1e12 * x  # along which rounding picks the vectors
+        symmetric, parted = np.array([[0.0, 1.0], [1.0, 0.0]]), np.diag([1.0, -1.0])
+        noise = 1e-12 * (np.cos(way) * symmetric + np.sin(way) * parted)
+        return np.eye(2), np.zeros((2, 2)), 196 * np.eye(2) + noise
 
     line = Line(np.array([0.0, 1.0]), along(matrices))
     path = follow(line.models(line.positions), line)
