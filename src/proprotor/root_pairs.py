@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 _APPROACH = 0.8  # of what parts two roots at the nearer end: the least on the straight way below which they may meet
 _MEETING = 0.25  # of what parts them at the farther end
-_OF_BEND, _OF_CUBIC = 1 / 16, 1 / 4  # of what parts a cubic from its chord, and a cubic from a parabola: its error
+_OF_BEND = 1.0  # of what parts a cubic from its chord: its error
+_OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord of the step: the least error that it has
 _INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
 _MANY, _FEW = 6, 4  # points of a scan through which polynomials go
 
@@ -115,9 +116,8 @@ def by_derivatives(
 def _cubic(ends: Array) -> Smooth:
     rise = ends[1] - ends[0]
     bend = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
-    width = _OF_BEND * bend + _OF_CUBIC * np.abs(ends[2] + ends[3] - 2 * rise)
     band = 16 * _INSIDE**2 * (1 - _INSIDE) ** 2
-    return Smooth(hermite(_INSIDE, ends[:, :, None]), width[:, None] * band)
+    return Smooth(hermite(_INSIDE, ends[:, :, None]), _OF_BEND * bend[:, None] * band)
 
 
 def along_scan(
@@ -144,9 +144,12 @@ def along_scan(
     found = []
     for y in (values[0] + values[1], (values[0] - values[1]) ** 2):
         exact = _polynomial(x, y, wanted)
-        rough = _polynomial(*(np.take_along_axis(part, nearest, 0) for part in (x, y)), wanted)
         value = np.where(enough[:, None], exact, np.nan)
-        found.append(Smooth(value, np.abs(value - rough)))
+        rough, chord = (
+            _polynomial(*(np.take_along_axis(part, some, 0) for part in (x, y)), wanted)
+            for some in (nearest, here + np.array([[0], [1]]))
+        )
+        found.append(Smooth(value, np.abs(value - rough) + _OF_CHORD * np.abs(value - chord)))
     return found[0], found[1]
 
 
