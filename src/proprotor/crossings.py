@@ -7,6 +7,10 @@ tells how often G changes its sign: `proprotor.steps`. Where that is not settled
 question, until it is; the error of the cubic is known by then. Each crossing is found by Newton's method, started at
 the root of the cubic and kept in its bracket.
 
+Where the lowest onset of each line is all that is wanted the points are solved for their eigenvalues alone, linked by
+the nearest ones (`proprotor.screening`). Differences stand for derivatives, and the steps that may hold the onset by
+that are the only ones whose ends get vectors.
+
 Whether G has a sign is a matter of its error (`proprotor.root_error`). A root within it is neutral, and counts as not
 beyond the level; one that is neutral all along crosses nothing.
 """
@@ -25,7 +29,7 @@ from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition, held_coordinates, some_points
 from proprotor.root_error import growth, growth_error, refined_near, roots
-from proprotor.root_pairs import along_scan
+from proprotor.root_pairs import MANY, along_scan
 from proprotor.screening import steps_by_values
 from proprotor.steps import Steps, first_steps, parted, undecided
 from proprotor.tracking import POOR, Modes, Spectrum, link
@@ -268,6 +272,9 @@ class Search:
         share = undecided(steps, points, False, self.level, _TRUST, along_scan)
         asked = np.isfinite(share)
         asked[steps.crossing(points)[0]] = True
+        asked |= (
+            np.bincount(points.line)[points.line[steps.before]] < MANY
+        )  # too few to tell much by differences
         kept = steps.at(np.flatnonzero(asked & self._before_onset()))
         ends = np.unique(np.concatenate([kept.before, kept.after]))
         if not len(ends):

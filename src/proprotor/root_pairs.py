@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from proprotor.crossings import Points
     from proprotor.steps import Steps
 
-_APPROACH = 0.8  # of what parts two roots at the nearer end: the least on the straight way below which they may meet
-_MEETING = 0.25  # of what parts them at the farther end
+_APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
+_MEETING = 0.5  # of the distance at the farther end: and so may those that are as near at one end
 _OF_BEND = 1.0  # of what parts a cubic from its chord: its error
-_OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord of the step: the least error that it has
+_OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord: its least error
 _INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
-_MANY, _FEW = 6, 4  # points of a scan through which polynomials go
+MANY, _FEW = 6, 4  # points of a scan through which polynomials go
 
 
 class Smooth(NamedTuple):
@@ -41,10 +41,10 @@ PairsWithin = Callable[["Steps", "Points", Array, Array, Array], tuple[Smooth, S
 
 
 def may_meet(first: Array, last: Array, state: Array) -> Array:
-    """Which roots (n, states) some of them, state (n, k), may meet or turn away from between two points: (n, k, states).
+    """Which roots (n, k, states) some of them, state (n, k), may meet or turn away from between two points.
 
-    By the values alone: where the straight ways come nearer to each other than their ends, or one end is the nearer by
-    far.
+    By the values (n, states) alone: where the straight ways come nearer to each other than their ends, or one end is
+    the nearer by far.
     """
     apart, later = (
         np.take_along_axis(values, state, 1)[:, :, None] - values[:, None, :] for values in (first, last)
@@ -130,17 +130,17 @@ def along_scan(
     """
     line = points.line[steps.before]
     first, last = np.searchsorted(line, line[row]), np.searchsorted(line, line[row], side="right")
-    start = np.clip(row - _MANY // 2 + 1, first, np.maximum(last - _MANY + 1, first))
-    enough = last - first >= _MANY - 1
+    start = np.clip(row - MANY // 2 + 1, first, np.maximum(last - MANY + 1, first))
+    enough = last - first >= MANY - 1
     start = np.where(enough, start, 0)
     here = np.where(enough, row - start, 0)
-    chain = np.minimum(start + np.arange(_MANY - 1)[:, None], len(line) - 1)
+    chain = np.minimum(start + np.arange(MANY - 1)[:, None], len(line) - 1)
     at = np.concatenate([steps.before[chain], steps.after[chain[-1:]]])
     values = [points.spectrum.values[at, _places(steps, chain, here, one)] for one in (state, partner)]
     x = points.position[at]
     begin, end = (points.position[part[row]] for part in (steps.before, steps.after))
     wanted = begin[:, None] + _INSIDE * (end - begin)[:, None]
-    nearest = np.clip(here - _FEW // 2 + 1, 0, _MANY - _FEW) + np.arange(_FEW)[:, None]
+    nearest = np.clip(here - _FEW // 2 + 1, 0, MANY - _FEW) + np.arange(_FEW)[:, None]
     found = []
     for y in (values[0] + values[1], (values[0] - values[1]) ** 2):
         exact = _polynomial(x, y, wanted)

@@ -17,7 +17,7 @@ _NEVER = 1e300  # the distance between a root and none
 
 
 def steps_by_values(values: Array, before: Array, after: Array) -> Steps:
-    """Steps from points to those that follow them, by eigenvalues (points, states) alone; their quality is not known."""
+    """Steps from points to those that follow them, by eigenvalues (points, states); their quality is not known."""
     count = len(before)
     successor = np.empty((count, values.shape[1]), dtype=int)
     for start in range(0, count, _BLOCK):

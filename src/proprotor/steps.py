@@ -2,7 +2,8 @@
 
 G of a root over a step is the cubic that has values and slopes of its ends, with a band about it that is as wide as the
 cubic is likely to be wrong: zero at the ends, widest in the middle. A step is settled when every line within the band
-crosses the level as often as its ends say, once or not at all; else it is parted where the band leaves it open. As long
+crosses the level as often as its ends say, once or not at all; else it is parted where the band leaves it open. Two
+roots that cannot be told apart are judged together: `proprotor.root_pairs`. As long
 as nothing better is known the width is a share of how far the cubic bends away from the straight line, and after
 parting what the cubic was seen to be wrong by.
 """
@@ -36,9 +37,9 @@ class Steps:
     """Pairs of neighbouring points of one line.
 
     before, after (steps,) of int; successor (steps, states) of int and quality (steps, states), see
-    `proprotor.tracking.link`, NaN where it is not known yet; wrong (steps, states), the error of the cubic by what was seen when the step was parted
-    from a longer one, NaN where it was not; depth (steps,), how often that was; open (steps,), whether it is still to
-    be looked at.
+    `proprotor.tracking.link`, NaN where it is not known yet; wrong (steps, states), the error of the cubic by what was
+    seen when the step was parted from a longer one, NaN where it was not; depth (steps,), how often that was; open
+    (steps,), whether it is still to be looked at.
     """
 
     before: Array
@@ -181,9 +182,8 @@ def _learn_quality(steps: Steps, points: Points, near: Array) -> None:
     row, state = np.nonzero(near & np.isnan(steps.quality))
     if len(row):
         values = points.spectrum.values
-        first, last = values[steps.before[row]], np.take_along_axis(
-            values[steps.after[row]], steps.successor[row], 1
-        )
+        first, last = values[steps.before[row]], values[steps.after[row]]
+        last = np.take_along_axis(last, steps.successor[row], 1)
         steps.quality[row, state] = ~may_meet(first, last, state[:, None])[:, 0].any(axis=1)
 
 
