@@ -150,7 +150,7 @@ def undecided(
     width = width / trust
     counts = counts & (sides != 0).any(axis=0)  # neutral all along is no crossing
     near = _may_reach(steps, points, ends, sides, width)
-    _learn_quality(steps, points, near)
+    _learn_quality(steps, points, near & counts)
     poor = (steps.quality < POOR) & counts
     row, state = np.nonzero(poor & near)
     near[row, state] = ~keep_off(steps, points, row, state, level, trust, pairs)
