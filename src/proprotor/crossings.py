@@ -182,7 +182,7 @@ def _values_alone(
 ) -> Solved:
     """The points without vectors and derivatives."""
     values, error = roots(model, level)
-    works = np.isfinite(values).any(axis=-1)
+    works = np.asarray(np.isfinite(values).any(axis=-1))
     if not works.any():
         return Solved(None, works, *_told(model), model)
     more = 0 if states is None else states - values.shape[-1]

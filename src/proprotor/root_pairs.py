@@ -146,7 +146,7 @@ def along_scan(
         exact = _polynomial(x, y, wanted)
         value = np.where(enough[:, None], exact, np.nan)
         rough, chord = (
-            _polynomial(*(np.take_along_axis(part, some, 0) for part in (x, y)), wanted)
+            _polynomial(np.take_along_axis(x, some, 0), np.take_along_axis(y, some, 0), wanted)
             for some in (nearest, here + np.array([[0], [1]]))
         )
         found.append(Smooth(value, np.abs(value - rough) + _OF_CHORD * np.abs(value - chord)))
