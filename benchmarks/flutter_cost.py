@@ -4,6 +4,9 @@
 
 An eigen-solve is one airspeed linearised (trim included) and all its eigenvalues and vectors. The derivatives of a
 boundary take one more eigen-solve, for the vectors, and one batch of models a complex step away, one for each input.
+
+Costs of trim, boundary and study are told in eigenvalue problems: one is LAPACK's eigenvalues of one state matrix, by
+processor time, the least of rounds in which all take their turn.
 """
 
 from __future__ import annotations
@@ -16,15 +19,21 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.study import INPUTS
+from proprotor import sampling
 from proprotor.design import design_inputs
 from proprotor.flutter import find_crossings, flutter_point
-from proprotor.modes import decomposition
+from proprotor.modes import decomposition, state_matrix
 from proprotor.path import Line
 from proprotor.sensitivity import at_boundary
 from proprotor.speed import KNOT
+from proprotor.study import study
 
 SCANS = (2, 5, 10, 20, 40)  # kt
 REPEATS = 15
+ROUNDS = 5
+SPEEDS = np.linspace(160, 380, 20) * KNOT
+DESIGNS = 200
 
 
 def crossings(console: Console, case: pp.Case) -> None:
@@ -76,18 +85,47 @@ def derivatives(console: Console, case: pp.Case) -> None:
     console.print(f"of it, {len(inputs)} models a complex step away {batch / solve:.2f}")
 
 
+def in_eigenvalue_problems(console: Console, case: pp.Case) -> None:
+    """Cost of trim, boundary and study, in eigenvalues of one state matrix."""
+    scan = np.linspace(50, 400, 71) * KNOT
+    matrices = state_matrix(case.linearize(scan))
+    inputs = {name: limits for name, limits in INPUTS.items() if name != "airspeed"}
+    designs = sampling.latin_hypercube(inputs, DESIGNS, seed=1)
+    works: dict[str, tuple[Callable[[], object], int]] = {
+        "": (lambda: np.linalg.eigvals(matrices), len(scan)),
+        "trim and matrices of 71 airspeeds, a point": (lambda: case.linearize(scan), len(scan)),
+        "and of 2000": (lambda: case.linearize(np.linspace(50, 400, 2000) * KNOT), 2000),
+        "all boundaries of a scan of 71 airspeeds": (lambda: flutter_point(case, scan), 1),
+        f"study of {DESIGNS} designs at {len(SPEEDS)} airspeeds, a design": (
+            lambda: study(case, designs, SPEEDS, "flutter", workers=1, progress=False),
+            DESIGNS,
+        ),
+    }
+    least = dict.fromkeys(works, np.inf)
+    for _ in range(ROUNDS):
+        for name, (work, count) in works.items():
+            least[name] = min(least[name], _processor_time(work) / count)
+    table = Table("", "eigenvalue problems", title=f"one eigenvalue problem takes {1e6 * least['']:.0f} µs")
+    for name, spent in least.items():
+        if name:
+            table.add_row(name, f"{spent / least['']:.2f}")
+    console.print(table)
+
+
+def _processor_time(work: Callable[[], object]) -> float:
+    begin = time.process_time()
+    work()
+    return time.process_time() - begin
+
+
 def fastest(work: Callable[[], object]) -> float:
     """Least processor time of some runs, s."""
-    times = []
-    for _ in range(REPEATS):
-        begin = time.process_time()
-        work()
-        times.append(time.process_time() - begin)
-    return min(times)
+    return min(_processor_time(work) for _ in range(REPEATS))
 
 
 def main() -> None:
     console, case = Console(width=120), pp.load_case("xv15")
+    in_eigenvalue_problems(console, case)
     crossings(console, case)
     one_bracket(console, case)
     derivatives(console, case)

@@ -6,6 +6,7 @@ from scipy.optimize import brentq
 
 import proprotor as pp
 from proprotor import sampling
+from proprotor.crossings import Brackets, Search
 from proprotor.flutter import boundaries, find_crossings
 from proprotor.modes import state_matrix
 from proprotor.path import Line
@@ -75,6 +76,26 @@ def test_roots_that_exchange_damping_where_they_pass_are_seen_from_afar(points):
     found = crossings(matrices, np.linspace(0, 10, points))
     assert [b.position for b in found.boundaries] == pytest.approx(expected, abs=5.1e-4)
     assert [b.onset for b in found.boundaries] == [True, False]
+
+
+@pytest.mark.parametrize("points", [3, 4, 5, 7, 8, 20, 40])
+@pytest.mark.parametrize("width", [0.29, 0.3005, 0.305, 0.35, 1.0])
+@pytest.mark.parametrize("rate", [0.4, 4.0, 12.0])
+def test_a_search_for_onsets_sees_what_lies_between_its_points(points, width, rate):
+    """The same two, as a study looks for them: by eigenvalues first. At 0.29 the damping is not all exchanged."""
+
+    def matrices(x):
+        stiffness = np.diag([100.0, 0.0]) + (100 + rate * (x - 6.13)) * np.diag([0.0, 1.0])
+        coupling = np.array([[0.0, width], [-width, 0.0]])
+        return np.eye(2), 0.03 * np.eye(2) + 0 * x, stiffness + coupling
+
+    dense = np.linspace(0, 10, 20001)
+    unstable = (roots(along(matrices)(dense)).real > 0).any(axis=1)
+    assert unstable.any() == (width > 0.3) and not unstable[0]
+    scan = np.linspace(0, 10, points)
+    search = Search(lambda _, x: along(matrices)(x), np.zeros(points, dtype=int), scan, onset_only=True)
+    found = min((one.position for one in Brackets(search).close() if one.onset), default=np.inf)
+    assert found == pytest.approx(dense[unstable.argmax()] if unstable.any() else np.inf, abs=5.1e-4)
 
 
 @pytest.mark.parametrize("points", [2, 4, 9])

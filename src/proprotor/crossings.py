@@ -7,6 +7,10 @@ tells how often G changes its sign: `proprotor.steps`. Where that is not settled
 question, until it is; the error of the cubic is known by then. Each crossing is found by Newton's method, started at
 the root of the cubic and kept in its bracket.
 
+Where the lowest onset of each line is all that is wanted the points are solved for their eigenvalues alone, linked by
+the nearest ones (`proprotor.screening`). Differences stand for derivatives, and the steps that may hold the onset by
+that are the only ones whose ends get vectors.
+
 Whether G has a sign is a matter of its error (`proprotor.root_error`). A root within it is neutral, and counts as not
 beyond the level; one that is neutral all along crosses nothing.
 """
@@ -24,7 +28,9 @@ from proprotor.eigenvalue_derivatives import eigenvalue_change, second_order_lef
 from proprotor.errors import InputError
 from proprotor.model import LinearModel
 from proprotor.modes import decomposition, held_coordinates, missing_roots, some_points
-from proprotor.root_error import growth, growth_error, refined_near
+from proprotor.root_error import growth, growth_error, refined_near, roots
+from proprotor.root_pairs import MANY, along_scan
+from proprotor.screening import steps_by_values
 from proprotor.steps import Steps, first_steps, parted, undecided
 from proprotor.tracking import POOR, Modes, Spectrum, link
 
@@ -106,8 +112,8 @@ def solved(
 ) -> Solved:
     """Eigen-solves at points of lines; where one of them cannot be had it spoils no other.
 
-    `states` says how many eigenvalues there is room for, where some points have fewer than others elsewhere. Without
-    derivatives, which are NaN, if `plain`: for a little more than half of the cost.
+    `states` says how many eigenvalues there is room for, where some points have fewer than others elsewhere. If `plain`
+    eigenvalues alone: the spectrum has no vectors and the derivatives are NaN, for a quarter of the cost.
 
     Raises
     ------
@@ -143,25 +149,20 @@ def _together(one: Solved, other: Solved) -> Solved:
 def _solved(
     models: Models, line: Array, position: Array, level: float, states: int | None, plain: bool
 ) -> Solved:
-    model, changes = (
-        (models(line, position), None) if plain else with_changes(lambda x: models(line, x), position)
-    )
+    if plain:
+        return _values_alone(models(line, position), line, position, level, states)
+    model, changes = with_changes(lambda x: models(line, x), position)
     spectrum = decomposition(model, None if states is None else held_coordinates(model, states))
-    works, missing = spectrum.works, missing_roots(model, spectrum.values.shape[-1])
-    reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
+    works, states = spectrum.works, spectrum.values.shape[-1]
     if not works.any():
-        return Solved(None, works, reason, warning, missing)
+        return Solved(None, works, *_told(model, states))
     part, some = some_points(model, works), spectrum.at(works)
-    if changes is None:
-        found = refined_near(part, some, level)
-        change = np.full(found.values.shape, complex(np.nan))
-    else:
-        modes = some.all_modes
-        left = second_order_left(part, modes.left)
-        found = refined_near(part, some, level, left)
-        mass, damping, stiffness = (np.broadcast_to(one, model.K.shape)[works] for one in changes)
-        moved = Modes(found.values, modes.right, modes.left)
-        change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
+    modes = some.all_modes
+    left = second_order_left(part, modes.left)
+    found = refined_near(part, some, level, left)
+    mass, damping, stiffness = (np.broadcast_to(one, model.K.shape)[works] for one in changes)
+    moved = Modes(found.values, modes.right, modes.left)
+    change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
     points = Points(
         line[works],
         position[works],
@@ -171,7 +172,40 @@ def _solved(
         growth_rate(found.values, change, level),
         growth_error(found.error, level),
     )
-    return Solved(points, works, reason, warning, missing)
+    return Solved(points, works, *_told(model, states))
+
+
+def _values_alone(
+    model: LinearModel, line: Array, position: Array, level: float, states: int | None
+) -> Solved:
+    """The points without vectors and derivatives."""
+    values, error = roots(model, level)
+    works = np.asarray(np.isfinite(values).any(axis=-1))
+    states = values.shape[-1] if states is None else states
+    if not works.any():
+        return Solved(None, works, *_told(model, states))
+    more = states - values.shape[-1]
+    values, error = (
+        np.pad(part[works], [(0, 0), (0, more)], constant_values=np.nan) for part in (values, error)
+    )
+    unknown = np.full(values.shape, complex(np.nan))
+    spectrum = Spectrum(values, np.empty((*values.shape, 0), dtype=complex))
+    points = Points(
+        line[works],
+        position[works],
+        spectrum,
+        unknown,
+        growth(values, level),
+        unknown.real,
+        growth_error(error, level),
+    )
+    return Solved(points, works, *_told(model, states))
+
+
+def _told(model: LinearModel, states: int) -> tuple[Array, Array, Array]:
+    """Why points failed, what makes them doubtful, and why they have fewer roots than so many."""
+    reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
+    return reason, warning, missing_roots(model, states)
 
 
 class Search:
@@ -221,19 +255,26 @@ class Search:
             self.first_points = self.points
             order = np.lexsort((self.points.position, self.points.line))
             same = np.diff(self.points.line[order]) == 0
-            self.steps = first_steps(self.points.spectrum, order[:-1][same], order[1:][same])
+            before, after = order[:-1][same], order[1:][same]
             if onset_only:
+                self.steps = steps_by_values(self.points.spectrum.values, before, after)
                 self._screen()
+            else:
+                self.steps = first_steps(self.points.spectrum, before, after)
             self._settle()
 
     def _screen(self) -> None:
-        """Keep the steps that may hold the lowest onset, and solve their ends with derivatives.
+        """Keep the steps that may hold the lowest onset, and solve their ends with vectors and derivatives.
 
         Differences from point to point stand for derivatives; with them the cubics are trusted half as much.
         """
         points, steps = with_differences(self.points, self.steps, self.level), self.steps
-        asked = np.isfinite(undecided(steps, points, names=False, trust=_TRUST))
+        share = undecided(steps, points, False, self.level, _TRUST, along_scan)
+        asked = np.isfinite(share)
         asked[steps.crossing(points)[0]] = True
+        asked |= (
+            np.bincount(points.line)[points.line[steps.before]] < MANY
+        )  # too few to tell much by differences
         kept = steps.at(np.flatnonzero(asked & self._before_onset()))
         ends = np.unique(np.concatenate([kept.before, kept.after]))
         if not len(ends):
@@ -273,7 +314,7 @@ class Search:
         """Part steps until each tells how often every root crosses."""
         for _ in range(_ROUNDS):
             wanted = np.flatnonzero(self.steps.open & self._before_onset())
-            share = undecided(self.steps.at(wanted), self.points, self.names)
+            share = undecided(self.steps.at(wanted), self.points, self.names, self.level)
             self.steps.open[wanted] = False
             line = self.points.line[self.steps.before[wanted]]
             left = np.isfinite(share) & (self.solves[line] > _MOST_SOLVES)

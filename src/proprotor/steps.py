@@ -2,7 +2,8 @@
 
 G of a root over a step is the cubic that has values and slopes of its ends, with a band about it that is as wide as the
 cubic is likely to be wrong: zero at the ends, widest in the middle. A step is settled when every line within the band
-crosses the level as often as its ends say, once or not at all; else it is parted where the band leaves it open. As long
+crosses the level as often as its ends say, once or not at all; else it is parted where the band leaves it open. Two
+roots that cannot be told apart are judged together: `proprotor.root_pairs`. As long
 as nothing better is known the width is a share of how far the cubic bends away from the straight line, and after
 parting what the cubic was seen to be wrong by.
 """
@@ -16,6 +17,7 @@ import numpy as np
 
 from proprotor.arrays import Array
 from proprotor.cubic import hermite, hermite_extrema, hermite_slope
+from proprotor.root_pairs import PairsWithin, by_derivatives, keep_off, may_meet
 from proprotor.tracking import POOR, Spectrum, link
 
 if TYPE_CHECKING:
@@ -35,9 +37,9 @@ class Steps:
     """Pairs of neighbouring points of one line.
 
     before, after (steps,) of int; successor (steps, states) of int and quality (steps, states), see
-    `proprotor.tracking.link`; wrong (steps, states), the error of the cubic by what was seen when the step was parted
-    from a longer one, NaN where it was not; depth (steps,), how often that was; open (steps,), whether it is still to
-    be looked at.
+    `proprotor.tracking.link`, NaN where it is not known yet; wrong (steps, states), the error of the cubic by what was
+    seen when the step was parted from a longer one, NaN where it was not; depth (steps,), how often that was; open
+    (steps,), whether it is still to be looked at.
     """
 
     before: Array
@@ -125,11 +127,18 @@ def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:
     )
 
 
-def undecided(steps: Steps, points: Points, names: bool, trust: float = 1.0) -> Array:
+def undecided(
+    steps: Steps,
+    points: Points,
+    names: bool,
+    level: float = 0.0,
+    trust: float = 1.0,
+    pairs: PairsWithin = by_derivatives,
+) -> Array:
     """Where each step is to be parted (steps,), as a share of it; NaN where it is settled.
 
     With `names` also where roots far from the level cannot be told apart. The less the trust in the cubics, the wider
-    their bands.
+    their bands; `pairs` tells of roots that may meet.
     """
     share = np.full(len(steps.before), np.nan)
     if not len(share):
@@ -141,6 +150,10 @@ def undecided(steps: Steps, points: Points, names: bool, trust: float = 1.0) -> 
     width = width / trust
     counts = counts & (sides != 0).any(axis=0)  # neutral all along is no crossing
     near = _may_reach(steps, points, ends, sides, width)
+    _learn_quality(steps, points, near & counts)
+    poor = (steps.quality < POOR) & counts
+    row, state = np.nonzero(poor & near)
+    near[row, state] = ~keep_off(steps, points, row, state, level, trust, pairs)
     looked = np.flatnonzero((counts & near).any(axis=1))
     row, state = np.nonzero((counts & near)[looked])
     row = looked[row]
@@ -151,7 +164,6 @@ def undecided(steps: Steps, points: Points, names: bool, trust: float = 1.0) -> 
     for one, place in zip(row[np.isfinite(open_at)], open_at[np.isfinite(open_at)], strict=True):
         if np.isnan(share[one]):  # one point in a step and round
             share[one] = place
-    poor = (steps.quality < POOR) & counts
     deepest = np.where((poor & near).any(axis=1), _NEAR_LEVEL, _FOR_NAMES if names else 0)
     share[poor.any(axis=1) & (steps.depth < deepest)] = 0.5
     return share
@@ -163,6 +175,16 @@ def _may_reach(steps: Steps, points: Points, ends: Array, sides: Array, width: A
     move = np.abs(steps.later(values) - values[steps.before])
     reach = move + width + np.abs(ends[2:]).max(axis=0)
     return np.asarray((np.abs(ends[:2]).min(axis=0) <= reach) | (sides[0] * sides[1] < 0))
+
+
+def _learn_quality(steps: Steps, points: Points, near: Array) -> None:
+    """Give some states of steps by values alone their quality, for those only: whether they may meet others."""
+    row, state = np.nonzero(near & np.isnan(steps.quality))
+    if len(row):
+        values = points.spectrum.values
+        first, last = values[steps.before[row]], values[steps.after[row]]
+        last = np.take_along_axis(last, steps.successor[row], 1)
+        steps.quality[row, state] = ~may_meet(first, last, state[:, None])[:, 0].any(axis=1)
 
 
 def _splitting(steps: Steps, points: Points, row: Array, state: Array) -> tuple[Array, Array]:

@@ -301,7 +301,7 @@ def _trust(likeness: Array, choice: Array, start: Array, end: Array) -> Array:
 
 def _index(mixing: Array, apart: Array, later: Array) -> Array:
     """S max(|Δ1|, |Δ2|) / |Δmin|; 0 where one of the states is none of a point."""
-    nearest = np.fmax(_nearest_to_zero(apart, later), 1e-300)
+    nearest = np.fmax(way_to_zero(apart, later), 1e-300)
     with np.errstate(over="ignore"):
         index = mixing * np.maximum(np.abs(apart), np.abs(later)) / nearest
     return np.where(np.isnan(index), 0.0, index)
@@ -365,7 +365,7 @@ def _distance(start: Array, end: Array, scale: Array) -> Array:
     return np.where(np.isnan(distance), 0.0, distance)
 
 
-def _nearest_to_zero(start: Array, end: Array) -> Array:
+def way_to_zero(start: Array, end: Array) -> Array:
     """Distance from zero to the straight line between two complex numbers."""
     way = end - start
     length = np.abs(way) ** 2
