@@ -110,6 +110,25 @@ def test_a_pair_that_is_two_real_roots_for_a_while_diverges_meanwhile(points):
     assert [(b.kind, b.onset) for b in found.boundaries] == [("divergence", True), ("divergence", False)]
 
 
+@pytest.mark.parametrize("points", [2, 3, 4, 9])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_real_roots_on_both_sides_of_the_level_that_join_below_it_cross_it_twice(points, mirrored):
+    """λ = μ ± √δ with μ = (p - 6)/10 and δ = 1 - p/5: one root falls before both meet, and the pair rises after."""
+
+    def matrices(x):
+        p = 10 - x if mirrored else x
+        middle, split = (p - 6) / 10, 1 - p / 5
+        return np.eye(1), -2 * middle * np.eye(1), (middle**2 - split) * np.eye(1)
+
+    found = crossings(matrices, np.linspace(0, 10, points))
+    expected = [(-0.08 + 0.032**0.5) / 0.02, 6.0]
+    expected = [10 - p for p in reversed(expected)] if mirrored else expected
+    assert [b.position for b in found.boundaries] == pytest.approx(expected, rel=1e-8)
+    assert [b.onset for b in found.boundaries] == [False, True]
+    kinds = ["divergence", "flutter"]
+    assert [b.kind for b in found.boundaries] == (kinds[::-1] if mirrored else kinds)
+
+
 def test_positions_may_come_in_any_order(case):
     speeds = np.arange(60, 400, 20) * KNOT
     expected = case.flutter_point(speeds, **PLAIN)

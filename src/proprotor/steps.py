@@ -10,7 +10,9 @@ parting what the cubic was seen to be wrong by.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,6 +31,7 @@ _SAFETY = 4.0  # the error of a cubic over half a step is a sixteenth; a quarter
 _FOR_NAMES = 7  # halvings of a step whose roots cannot be told apart: of 5 kt, to 0.04 kt
 _NEAR_LEVEL = 15  # and where one of them comes near the level: of 70 kt, to 0.002 kt
 _GRID = np.linspace(0.0, 1.0, 17)[1:-1]
+_DEEPEST_JOINT = 12  # partings of a step to find where two real roots join
 _EDGE = 0.04  # of a step: a new point stays that far from its ends
 
 
@@ -166,7 +169,36 @@ def undecided(
             share[one] = place
     deepest = np.where((poor & near).any(axis=1), _NEAR_LEVEL, _FOR_NAMES if names else 0)
     share[poor.any(axis=1) & (steps.depth < deepest)] = 0.5
+    for one, place in _where_real_roots_join(steps, points, sides):
+        share[one] = place
     return share
+
+
+def _where_real_roots_join(steps: Steps, points: Points, sides: Array) -> Iterator[tuple[int, float]]:
+    """Yield steps in which two real roots on different sides of the level are one pair at the other end, and where.
+
+    Whether they join on this side of the level or beyond it, the ends do not tell: one root more may cross it and come
+    back. The square of what parts them passes zero where they join, nearly on a straight line.
+    """
+    values = points.spectrum.values
+    ends = values[steps.before], steps.later(values)
+    real = [end.imag == 0 for end in ends]
+    for side, is_real in zip(sides, real, strict=True):
+        mixed = is_real & (real[0] != real[1])
+        both = [(mixed & (side == sign)).any(axis=1) for sign in (1, -1)]
+        for step in np.flatnonzero(both[0] & both[1] & (steps.depth < _DEEPEST_JOINT)):
+            yield from _joint(int(step), [end[step] for end in ends], mixed[step], side[step])
+
+
+def _joint(step: int, ends: list[Array], mixed: Array, side: Array) -> Iterator[tuple[int, float]]:
+    """Yield the step and the place in it where two of its real roots on different sides join, if any do."""
+    pair = ends[0] if (ends[0][mixed].imag != 0).all() else ends[1]
+    for one, other in combinations(np.flatnonzero(mixed), 2):
+        if side[one] * side[other] < 0 and pair[one] == pair[other].conjugate():
+            first, last = (
+                (end[one] - end[other]).real ** 2 - (end[one] - end[other]).imag ** 2 for end in ends
+            )
+            yield step, float(np.clip(first / (first - last), _EDGE, 1 - _EDGE))
 
 
 def _may_reach(steps: Steps, points: Points, ends: Array, sides: Array, width: Array) -> Array:
