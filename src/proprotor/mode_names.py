@@ -109,12 +109,12 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
     # A state that a point does not have, though others do, stands as a root at zero while names are given.
     roots = np.where(exists, values, 0)
     if good.all():  # the usual case, without copies
-        shares = name_shares(model, roots, left, right)
+        shares = name_shares(model, left, right)
     else:
         shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
         if good.any():
             some = some_points(model, good)
-            shares[good] = name_shares(some, roots[good], left[good], right[good])
+            shares[good] = name_shares(some, left[good], right[good])
     held = held_coordinates(model, values.shape[-1])
     place[good] = assign_names(model.dofs, held, shares[good], roots[good])
     return Moving(known, place, shares)
@@ -219,7 +219,7 @@ def whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> 
         Left vectors in rows, right ones in columns.
     """
     with_rotor, against = np.zeros(()), np.zeros(())
-    for cosine, sine in zip(*(_states(place, held, right.shape[-2]) for place in motion.places), strict=True):
+    for cosine, sine in zip(*(_states(place, held) for place in motion.places), strict=True):
         c, s = right[..., cosine, :], right[..., sine, :]
         lc, ls = left[..., :, cosine], left[..., :, sine]
         with_rotor = with_rotor + np.abs((c + 1j * s) * (lc - 1j * ls)) / 2
@@ -227,7 +227,7 @@ def whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> 
     return against, with_rotor
 
 
-def _states(place: int, held: list[int], states: int) -> list[int]:
+def _states(place: int, held: list[int]) -> list[int]:
     """States of a coordinate: its displacement, unless it has none, and its rate."""
     rate = len(held) + place
     return [held.index(place), rate] if place in held else [rate]
@@ -275,22 +275,20 @@ def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, 
     return against, with_rotor
 
 
-def name_shares(model: LinearModel, values: Array, left: Array, right: Array) -> Array:
+def name_shares(model: LinearModel, left: Array, right: Array) -> Array:
     """Share of each name in each state (..., names, states); sums to 1 over the names.
 
     Parameters
     ----------
     model : LinearModel
         With leading axes (...) that broadcast to those of the vectors.
-    values : array (..., states)
-        Eigenvalues, rad/s.
     left, right : array (..., states, states)
         Left vectors in rows, right ones in columns.
     """
     held, columns = held_coordinates(model, right.shape[-2]), []
     for motion in motions(model.dofs):
         if len(motion.places) == 1:
-            places = _states(motion.places[0], held, right.shape[-2])
+            places = _states(motion.places[0], held)
             columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
             continue
         whole = sum(whirl_shares(motion, held, left, right))
@@ -311,7 +309,7 @@ def _progressive_part(
     conjugate of z has the conjugates of both.
     """
     faster, slower = _uncoupled_roots(model, motion)
-    cosine, sine = (_states(place, held, right.shape[-2]) for place in motion.places)
+    cosine, sine = (_states(place, held) for place in motion.places)
     progressive, regressive = np.zeros(()), np.zeros(())
     for turn, p, r in ((1j, faster, slower), (-1j, faster.conj(), slower.conj())):
         p, r = p[..., None], r[..., None]

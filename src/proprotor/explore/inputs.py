@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from proprotor.deck_units import deck_unit
@@ -78,10 +78,6 @@ class SliderInput:
         raw = (self.high - self.low) / _STEPS
         power = 10.0 ** int(f"{raw:e}".partition("e")[2])
         return next(digit * power for digit in (1, 2, 5, 10) if digit * power >= raw * 0.999)
-
-    def widened(self, value: float) -> SliderInput:
-        """With a range that holds a value."""
-        return replace(self, low=min(self.low, value), high=max(self.high, value))
 
 
 def first_inputs(case: Case) -> list[str]:
