@@ -426,8 +426,8 @@ def boundaries(
     ----------
     case : Case
     airspeeds : array (points,) in m/s, text such as "50:400:5kt", or pint quantity, optional
-        The scan, 0.2 to 1.2 of the tip speed by default; one airspeed with `vary`. Steps wider than 2 % of the tip speed
-        are divided, so that a coarse scan finds what the default one finds.
+        The scan, 0.2 to 1.2 of the tip speed by default; one airspeed with `vary`. Steps wider than 2 % of the tip
+        speed are divided, so that a coarse scan finds what the default one finds.
     vary : mapping of str to array (points,), optional
         One input by its path in the deck, and the values of the scan in SI: a critical control stiffness, support
         frequency or rotor speed.
@@ -464,7 +464,7 @@ def boundaries(
 
 
 def _widest_step(case: Case) -> float:
-    """Return the widest step of airspeed in m/s that a search takes, the default scan's: wider ones can hide two crossings."""
+    """Return the widest step of airspeed in m/s that a search takes: the default scan's; wider ones hide crossings."""
     low, high, points = _RANGE
     return (high - low) / (points - 1) * tip_speed(case)
 
@@ -472,7 +472,10 @@ def _widest_step(case: Case) -> float:
 def _in_small_steps(positions: Array, widest: float) -> Array:
     """Return rising positions (k,) with equally spaced points in each step that is wider than the widest allowed."""
     parts = np.maximum(np.ceil(np.diff(positions) / widest * (1 - 1e-9)), 1).astype(int)
-    step, part = np.repeat(np.arange(len(parts)), parts), np.concatenate([np.arange(k) for k in parts] or [[]])
+    step, part = (
+        np.repeat(np.arange(len(parts)), parts),
+        np.concatenate([np.arange(k) for k in parts] or [[]]),
+    )
     between = positions[step] + part / parts[step] * np.diff(positions)[step]
     return np.append(between, positions[-1:])
 
