@@ -25,9 +25,9 @@ from hypothesis import HealthCheck, Phase, given, settings
 from rich.console import Console
 
 import proprotor as pp
-from proprotor.flutter import scan_speeds
-from proprotor.modes import held_coordinates
-from proprotor.speed import KNOT
+from proprotor.stability.flutter import scan_speeds
+from proprotor.stability.modes import held_coordinates
+from proprotor.units import KNOT
 
 COARSE, FINE = 0.2, 0.002  # kt
 APART = 0.01  # kt: boundaries nearer to each other than that are left out

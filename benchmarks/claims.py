@@ -18,14 +18,14 @@ from rich.table import Table
 from scipy.optimize import brentq
 
 import proprotor as pp
-from proprotor.figures import Analyses
-from proprotor.figures.analyses import XV15
-from proprotor.figures.blade_state import AS_THE_PAPER, blade_state, on_rigid_hub
-from proprotor.figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES, XV15_FLUTTER
-from proprotor.model import HUB, LinearModel, rotor_model
-from proprotor.modes import eigensystem, participation
-from proprotor.speed import KNOT
-from proprotor.uncertainty_band import boundary, least_damping
+from benchmarks.paper_figures import Analyses
+from benchmarks.paper_figures.analyses import XV15
+from benchmarks.paper_figures.blade_state import AS_THE_PAPER, blade_state, on_rigid_hub
+from benchmarks.paper_figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES, XV15_FLUTTER
+from benchmarks.paper_figures.uncertainty_band import boundary, least_damping
+from proprotor.model.linear_model import HUB, LinearModel, rotor_model
+from proprotor.stability.modes import eigensystem, participation
+from proprotor.units import KNOT
 
 REPRODUCED, PARTLY, NOT = "reproduced", "partly", "not reproduced"
 CALIBRATED, UNTESTED = "by calibration", "cannot be tested"

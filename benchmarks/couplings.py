@@ -19,7 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from proprotor.speed import KNOT
+from proprotor.units import KNOT
 
 SPEEDS = np.arange(100, 401, 50) * KNOT
 

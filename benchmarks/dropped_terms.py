@@ -15,7 +15,7 @@ import proprotor as pp
 from benchmarks.xv15_boundary import WING, boundaries
 from derive.emit import reduced_modules
 from derive.published import DROPPED_TERMS, PUBLISHED
-from proprotor.equation_set import EquationSet
+from proprotor.rotor.generated import EquationSet
 
 
 def without(name: str) -> EquationSet:

@@ -22,9 +22,9 @@ from proprotor.explore.analysis import live_modes
 from proprotor.explore.curves import curves, ends
 from proprotor.explore.inputs import first_inputs, slider_input
 from proprotor.explore.page import ExplorePage, messages, readout
-from proprotor.flutter import scan_speeds
-from proprotor.options import CHOICES, default_choice
-from proprotor.speed import KNOT
+from proprotor.rotor.options import CHOICES, default_choice
+from proprotor.stability.flutter import scan_speeds
+from proprotor.units import KNOT
 
 _POINTS = 60
 _STAGES = ("analysis", "drawing data", "transfer", "all")

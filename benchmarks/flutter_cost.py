@@ -21,13 +21,13 @@ from rich.table import Table
 import proprotor as pp
 from benchmarks.study import INPUTS
 from proprotor import sampling
-from proprotor.design import design_inputs
-from proprotor.flutter import find_crossings, flutter_point
-from proprotor.modes import decomposition, state_matrix
-from proprotor.path import Line
-from proprotor.sensitivity import at_boundary
-from proprotor.speed import KNOT
-from proprotor.study import study
+from proprotor.deck.vary import design_inputs
+from proprotor.stability.flutter import find_crossings, flutter_point
+from proprotor.stability.following import Line
+from proprotor.stability.modes import decomposition, state_matrix
+from proprotor.stability.sensitivity import at_boundary
+from proprotor.study.study import study
+from proprotor.units import KNOT
 
 SCANS = (2, 5, 10, 20, 40)  # kt
 REPEATS = 15

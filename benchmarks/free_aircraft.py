@@ -13,7 +13,7 @@ import numpy as np
 import scipy.linalg
 
 import proprotor as pp
-from proprotor.beam_wing import Pylon, Wing, beam_structure, rigid_motion, wing_elements
+from proprotor.support.beam_wing import Pylon, Wing, beam_structure, rigid_motion, wing_elements
 
 POUND, SLUG_FOOT2 = 0.45359237, 1.3558179483314
 SYMMETRIC = (0, 2, 4)  # x, z and alpha_y of the mount

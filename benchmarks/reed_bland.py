@@ -19,10 +19,10 @@ from scipy.optimize import brentq
 from scipy.special import hankel2
 
 import proprotor as pp
-from proprotor.assembly import mount
-from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
-from proprotor.structural_damping import NeutralDamping, neutral_damping
-from proprotor.support import NormalModes, two_axis_pivot
+from proprotor.model.mount import mount
+from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
+from proprotor.model.structural_damping import NeutralDamping, neutral_damping
+from proprotor.support.normal_modes import NormalModes, two_axis_pivot
 
 FT = 0.3048
 SLUG = 0.45359237 * 9.80665 / FT

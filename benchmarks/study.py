@@ -25,11 +25,16 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from proprotor import blade_airloads, model, modes, sampling, study_workers, trim_balance
 from proprotor import case as case_module
-from proprotor.modes import state_matrix
-from proprotor.study import BATCH, study
-from proprotor.study_batch import DEFAULT_QUANTITIES
+from proprotor import sampling
+from proprotor.model import linear_model as model
+from proprotor.rotor import section_loads as blade_airloads
+from proprotor.rotor import trim_balance
+from proprotor.stability import modes
+from proprotor.stability.modes import state_matrix
+from proprotor.study import workers as study_workers
+from proprotor.study.batch import DEFAULT_QUANTITIES
+from proprotor.study.study import BATCH, study
 
 POINTS = 10_000
 TURNS = 3

@@ -25,8 +25,8 @@ from rich.console import Console
 
 import proprotor as pp
 from benchmarks.study import plan
-from proprotor.results_file import load_results, save_results
-from proprotor.study import study
+from proprotor.exchange.netcdf import load_results, save_results
+from proprotor.study.study import study
 
 DESIGNS = 100_000
 MB = 1 / 1024  # of the kilobytes in which Linux tells memory
@@ -39,7 +39,7 @@ def run(designs: int, folder: str, result: str) -> None:
     analysed = time.perf_counter() - start
     save_results(found, result)
     saved = time.perf_counter() - start - analysed
-    from proprotor.study_workers import end_workers
+    from proprotor.study.workers import end_workers
 
     end_workers()  # their memory is told once they have ended
     own, largest_worker = (

@@ -21,10 +21,10 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from proprotor.modes import decomposition, state_matrix
-from proprotor.path import Line, Path, follow, path_of
-from proprotor.speed import KNOT
-from proprotor.tracking import chain, left_vectors, link
+from proprotor.stability.following import Line, Path, follow, path_of
+from proprotor.stability.matching import chain, left_vectors, link
+from proprotor.stability.modes import decomposition, state_matrix
+from proprotor.units import KNOT
 
 COARSE, FINE, LESS_FINE, FINEST = 5.0, 0.1, 0.5, 0.002  # kt
 DESIGNS, POINTS, BATCH = 200, 10_000, 1000

@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 from rich.progress import track
 
 from benchmarks.claims import VERDICTS, WING, Claim, all_claims, mode_boundaries, told
-from proprotor.figures import NUMBERS, Analyses, csv_of, make_figure
-from proprotor.figures.analyses import XV15
-from proprotor.figures.drawing import draw_intervals, save
-from proprotor.figures.published import XV15_FLUTTER, XV15_MARK
-from proprotor.input_ranges import V22, WRATS
-from proprotor.input_ranges import XV15 as XV15_RANGES
-from proprotor.output_file import write_whole
-from proprotor.speed import KNOT
-from proprotor.uncertainty_band import Band, InputRange
+from benchmarks.paper_figures import NUMBERS, Analyses, csv_of, make_figure
+from benchmarks.paper_figures.analyses import XV15
+from benchmarks.paper_figures.drawing import draw_intervals, save
+from benchmarks.paper_figures.input_ranges import V22, WRATS
+from benchmarks.paper_figures.input_ranges import XV15 as XV15_RANGES
+from benchmarks.paper_figures.published import XV15_FLUTTER, XV15_MARK
+from benchmarks.paper_figures.uncertainty_band import Band, InputRange
+from proprotor.files.output import write_whole
+from proprotor.units import KNOT
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE, FOLDER = ROOT / "docs" / "validation.md", ROOT / "docs" / "figures"

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import proprotor as pp
-from proprotor.mode_following import follow_support_modes
-from proprotor.modes import eigensystem
-from proprotor.speed import KNOT
+from benchmarks.paper_figures.mode_following import follow_support_modes
+from proprotor.stability.modes import eigensystem
+from proprotor.units import KNOT
 
 SPEEDS = np.arange(100, 521, 5) * KNOT
 WING = ("beam", "chord", "torsion")

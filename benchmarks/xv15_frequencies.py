@@ -12,8 +12,8 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.paper_figures.blade_state import on_rigid_hub
 from benchmarks.xv15_boundary import KNOT
-from proprotor.figures.blade_state import on_rigid_hub
 
 SPEEDS = np.arange(50, 451, 50) * KNOT
 MODES = ("coning", "low cyclic lag", "low gimbal", "high gimbal")

@@ -19,8 +19,8 @@ from rich.table import Table
 import proprotor as pp
 from benchmarks.xv15_boundary import WING, boundaries, lowest_of_wing, told
 from proprotor.errors import InputError
-from proprotor.rotor import MASS_INTEGRALS
-from proprotor.support import HUB_AXES
+from proprotor.rotor.rotor import MASS_INTEGRALS
+from proprotor.support.normal_modes import HUB_AXES
 
 PUBLISHED_BOUNDARIES = "published: 285 kt (Nixon) to 305 kt (Johnson), elastic blades on the semispan wing"
 DEG, FT = np.pi / 180, 0.3048

@@ -16,10 +16,10 @@ from rich.table import Table
 from scipy.optimize import brentq
 
 import proprotor as pp
+from benchmarks.paper_figures.blade_state import blade_state, on_rigid_hub
+from benchmarks.paper_figures.published import PAPER_FREQUENCIES
 from benchmarks.xv15_boundary import KNOT, SPEEDS, WING, boundaries, told
-from proprotor.figures.blade_state import blade_state, on_rigid_hub
-from proprotor.figures.published import PAPER_FREQUENCIES
-from proprotor.frequencies import BladeFrequencies
+from proprotor.rotor.blade_frequencies import BladeFrequencies
 
 TABLE_SPEEDS = np.arange(50, 451, 50) * KNOT
 

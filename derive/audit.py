@@ -29,7 +29,7 @@ from derive.invariants import Finding
 from derive.printed.notation import latex_names
 from derive.published import DROPPED_TERMS
 from derive.table_audit import TableVerdict, audit_table
-from proprotor.output_file import write_whole
+from proprotor.files.output import write_whole
 
 ROOT = Path(__file__).resolve().parent.parent
 RECORD = ROOT / "tests" / "golden" / "audit.csv"

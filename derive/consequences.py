@@ -31,9 +31,9 @@ from derive.equations import REDUCED_MODULES, STEPS
 from derive.printed import TABLES
 from derive.printed.notation import TIME
 from derive.published import DROPPED_TERMS, PUBLISHED
-from proprotor import model as runtime
-from proprotor.branches import by_branch
-from proprotor.equation_set import EQUATION_SETS, EquationSet
+from proprotor.model import linear_model as runtime
+from proprotor.rotor.generated import EQUATION_SETS, EquationSet
+from proprotor.stability.branches import by_branch
 
 _FLAP, _LAG = (BLADE_COORDINATES.index(name) for name in ("flap", "lag"))
 KNOT = 1852 / 3600

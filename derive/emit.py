@@ -319,7 +319,7 @@ def update(folder: Path = GENERATED, progress: Progress = print) -> None:
 
 
 def _write_whole(path: Path, text: str) -> None:
-    """As `proprotor.output_file.write_whole`, which cannot be imported while the equations are not there."""
+    """As `proprotor.files.output.write_whole`, which cannot be imported while the equations are not there."""
     unfinished = path.with_name(f".proprotor-{secrets.token_hex(8)}.tmp")
     try:
         with unfinished.open("x", encoding="utf-8") as file:

@@ -26,14 +26,14 @@ from derive.counterparts import frequency_squared
 from derive.inertia import dependent_inertias
 from derive.printed import TABLES
 from derive.printed.tables import PrintedTable
-from proprotor.arrays import Array
-from proprotor.branches import by_branch
-from proprotor.evaluation import evaluate
-from proprotor.model import HUB, rotor_quantities
-from proprotor.modes import eigensystem
-from proprotor.options import Options
-from proprotor.sweep import sweep
-from proprotor.trim import UNKNOWNS, Trim, with_trim
+from proprotor.model.linear_model import HUB, rotor_quantities
+from proprotor.rotor.generated import evaluate
+from proprotor.rotor.options import Options
+from proprotor.rotor.trim import UNKNOWNS, Trim, with_trim
+from proprotor.stability.branches import by_branch
+from proprotor.stability.modes import eigensystem
+from proprotor.stability.sweep import sweep
+from proprotor.typing import Array
 
 BLACK, BLUE, RED, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"  # Okabe and Ito
 LOW_SPEEDS = np.arange(50, 451, 10) * KNOT

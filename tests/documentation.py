@@ -28,9 +28,9 @@ from typing import Any
 
 from click.testing import CliRunner
 
-from proprotor.command_line import main
-from proprotor.deck import validate
-from proprotor.deck_file import read_tables
+from proprotor.commands.main import main
+from proprotor.deck.file import read_tables
+from proprotor.deck.sections import validate
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from contextlib import contextmanager
 
-_COMMAND = "from proprotor.command_line import main; main()"
+_COMMAND = "from proprotor.commands.main import main; main()"
 
 
 @contextmanager

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import proprotor as pp
-from proprotor.trim import Trim
+from proprotor.rotor.trim import Trim
 
 
 def linear_model(

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import proprotor as pp
-from proprotor.airfoil import Warns
-from proprotor.airfoil_table import BEYOND_ALPHA, BEYOND_MACH, BEYOND_STALL, AirfoilTable
 from proprotor.errors import InputError
+from proprotor.rotor.airfoil import Warns
+from proprotor.rotor.airfoil_table import BEYOND_ALPHA, BEYOND_MACH, BEYOND_STALL, AirfoilTable
 from tests.c81_files import made_up_tables
 from tests.oracles.comparison import assert_matrices_match
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.atmosphere import standard_air
+from proprotor.rotor.atmosphere import standard_air
 
 # U.S. Standard Atmosphere 1976 (the same as ISO 2533 up to 32 km), table of base levels: geopotential altitude in m,
 # temperature in K, pressure in Pa, density in kg/m³, speed of sound in m/s, to the digits printed there.

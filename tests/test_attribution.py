@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.attribution import attribution, contributions
-from proprotor.model_parts import Part, model_parts
-from proprotor.modes import decomposition
+from proprotor.stability.attribution import attribution, contributions
+from proprotor.stability.modes import decomposition
+from proprotor.stability.origins import Part, model_parts
 from tests.known_systems import linear_model
 
 VARIANTS = {

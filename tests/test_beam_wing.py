@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.beam_wing import Pylon, Wing, beam_structure, beam_wing, rigid_motion, wing_elements
 from proprotor.errors import InputError
-from proprotor.modal_reduction import lowest_modes, per_mode
-from proprotor.modes import state_matrix
-from proprotor.support import NormalModes
+from proprotor.stability.modes import state_matrix
+from proprotor.support.beam_wing import Pylon, Wing, beam_structure, beam_wing, rigid_motion, wing_elements
+from proprotor.support.modal_reduction import lowest_modes, per_mode
+from proprotor.support.normal_modes import NormalModes
 
 EXACT = 1e-9  # static and lumped results, which cubic elements have without error
 IN, LB, LBF, FT = 0.0254, 0.45359237, 4.4482216152605, 0.3048

@@ -11,9 +11,9 @@ import pytest
 from scipy.integrate import quad
 
 import proprotor as pp
-from proprotor.deck_file import read_tables
+from proprotor.deck.file import read_tables
 from proprotor.errors import InputError
-from proprotor.rotor import MASS_INTEGRALS
+from proprotor.rotor.rotor import MASS_INTEGRALS
 
 FT, SLUG, LB = 0.3048, 14.593902937, 0.45359237
 RADIUS = 12.5 * FT

@@ -6,12 +6,12 @@ from scipy.optimize import brentq
 
 import proprotor as pp
 from proprotor import sampling
-from proprotor.crossings import Brackets, Search
-from proprotor.flutter import boundaries, find_crossings
-from proprotor.modes import state_matrix
-from proprotor.path import Line
-from proprotor.study import study
-from proprotor.study_batch import STABLE, UNSTABLE
+from proprotor.stability.crossings import Brackets, Search
+from proprotor.stability.flutter import boundaries, find_crossings
+from proprotor.stability.following import Line
+from proprotor.stability.modes import state_matrix
+from proprotor.study.batch import STABLE, UNSTABLE
+from proprotor.study.study import study
 from tests.known_systems import along, roots
 from tests.rotors import Flight, random_support
 from tests.test_root_error import exact_roots

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from proprotor.airfoil_table import AirfoilTable
-from proprotor.c81 import read_c81
 from proprotor.errors import InputError
+from proprotor.rotor.airfoil_table import AirfoilTable
+from proprotor.rotor.c81 import read_c81
 from tests.c81_files import as_c81, made_up_tables
 
 TEXT = as_c81("MADE UP", **made_up_tables())

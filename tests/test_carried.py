@@ -15,23 +15,27 @@ from click.testing import CliRunner
 from scipy.io import loadmat
 
 import proprotor as pp
-from proprotor import flutter, mode_motion, plots, sampling, stamp, study_summary
-from proprotor.animation import title_of
-from proprotor.attribution import attribution
-from proprotor.boundary_lines import boundary_lines
+from proprotor import plots, sampling
 from proprotor.case import Case
-from proprotor.command_line import main
-from proprotor.csv_text import csv_of
-from proprotor.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
+from proprotor.commands.main import main
+from proprotor.exchange.matlab import matlab_names
 from proprotor.explore.analysis import live_modes
 from proprotor.explore.page import ExplorePage, messages, readout
-from proprotor.matlab_file import matlab_names
-from proprotor.model_parts import model_parts
-from proprotor.options import CHOICES, Options, parse_options
-from proprotor.sensitivity import at_boundary, sensitivity
-from proprotor.several_rotors import MountedRotor
-from proprotor.stability_map import stability_map
-from proprotor.sweep import sweep_case
+from proprotor.model import stamp
+from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
+from proprotor.model.several_rotors import MountedRotor
+from proprotor.plots import mode_motion
+from proprotor.plots.animation import title_of
+from proprotor.rotor.options import CHOICES, Options, parse_options
+from proprotor.stability import flutter
+from proprotor.stability.attribution import attribution
+from proprotor.stability.boundary_lines import boundary_lines
+from proprotor.stability.map import stability_map
+from proprotor.stability.origins import model_parts
+from proprotor.stability.sensitivity import at_boundary, sensitivity
+from proprotor.stability.sweep import sweep_case
+from proprotor.tables import study_summary
+from proprotor.tables.csv_text import csv_of
 from tests.csv_files import without_comments
 
 KNOT = 1852 / 3600

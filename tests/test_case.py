@@ -6,13 +6,13 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from proprotor.airfoil import Airfoil
 from proprotor.case import Case, list_cases, load_case
-from proprotor.deck import AirfoilSection, OperationSection, RotorSection
+from proprotor.deck.sections import AirfoilSection, OperationSection, RotorSection
 from proprotor.errors import InputError
-from proprotor.operation import Operation
-from proprotor.rotor import Rotor
-from proprotor.support import NormalModes
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.operation import Operation
+from proprotor.rotor.rotor import Rotor
+from proprotor.support.normal_modes import NormalModes
 from tests.c81_files import as_c81, made_up_tables
 
 FT = 0.3048

@@ -15,10 +15,10 @@ import pytest
 from click.testing import CliRunner, Result
 
 import proprotor as pp
-from proprotor.command_line import main
 from proprotor.commands.arguments import EXIT_CODES
+from proprotor.commands.main import main
 
-PROPROTOR = [sys.executable, "-c", "from proprotor.command_line import main; main()"]
+PROPROTOR = [sys.executable, "-c", "from proprotor.commands.main import main; main()"]
 MAP = ("xv15", "--x", "airspeed=200:300:50kt", "--y", "rotor.precone=1:3:1 deg")
 STUDY = ("xv15", "--vary", "rotor.precone=1:2:1 deg", "--speed", "200 kt", "--workers", "1")
 FAST = ("--pitch", "rigid", "--rotor-speed", "constant")

@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 import proprotor as pp
-from proprotor.command_line import main, sweep
-from proprotor.options import CHOICES, LOCKABLE
-from proprotor.output_file import write_whole
+from proprotor.commands.main import main, sweep
+from proprotor.files.output import write_whole
+from proprotor.rotor.options import CHOICES, LOCKABLE
 from tests.csv_files import without_comments
 
 SWEEP = ("sweep", "xv15", "--speed", "300:400:20kt")
@@ -288,7 +288,7 @@ def test_help_starts_without_the_slow_imports():
     slow = ("pint", "pydantic", "xarray", "matplotlib", "rich")
     code = f"""
 import sys
-from proprotor.command_line import main
+from proprotor.commands.main import main
 main(["--help"], standalone_mode=False)
 main(["sweep", "--help"], standalone_mode=False)
 print([name for name in {slow} if name in sys.modules])
@@ -298,7 +298,7 @@ print([name for name in {slow} if name in sys.modules])
 
 
 def test_a_reader_that_leaves_early_is_no_error():
-    command = f"{sys.executable} -c 'from proprotor.command_line import main; main()'"
+    command = f"{sys.executable} -c 'from proprotor.commands.main import main; main()'"
     script = f"{command} sweep xv15 --speed 50:400:1kt | head -1"
     done = subprocess.run(["bash", "-c", script], capture_output=True, text=True)
     assert done.stdout.startswith("XV-15")
@@ -307,7 +307,7 @@ def test_a_reader_that_leaves_early_is_no_error():
 
 @pytest.mark.parametrize(("terminal", "seconds"), [(True, 1.3), (True, 0), (False, 1.3)])
 def test_what_takes_long_is_announced_on_a_terminal(capsys, monkeypatch, terminal, seconds):
-    from proprotor.waiting import waiting
+    from proprotor.commands.waiting import waiting
 
     monkeypatch.setenv("TTY_COMPATIBLE", "1" if terminal else "0")  # what rich takes for a terminal
     with waiting("Counting"):

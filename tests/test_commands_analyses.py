@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 import proprotor as pp
-from proprotor.command_line import main
+from proprotor.commands.main import main
 from tests.csv_files import without_comments
 
 KT = 1852 / 3600

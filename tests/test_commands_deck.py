@@ -14,14 +14,14 @@ from click.testing import CliRunner, Result
 
 import proprotor as pp
 from proprotor.case import load_case
-from proprotor.command_line import main
+from proprotor.commands.main import main
 from proprotor.datum import Datum
-from proprotor.deck import validate
-from proprotor.deck_file import list_cases, read_tables
-from proprotor.deck_schema import deck_schema
-from proprotor.deck_settings import with_settings
-from proprotor.deck_template import case_name, deck_text, example
-from proprotor.describe import deck_fields, find_fields, markdown
+from proprotor.deck.describe import deck_fields, find_fields, markdown
+from proprotor.deck.file import list_cases, read_tables
+from proprotor.deck.schema import deck_schema
+from proprotor.deck.sections import validate
+from proprotor.deck.settings import with_settings
+from proprotor.deck.template import case_name, deck_text, example
 from proprotor.errors import InputError
 
 DECKS = Path(sys.modules["proprotor"].__file__).parent / "decks"
@@ -427,7 +427,7 @@ def test_help_of_every_command_starts_without_the_slow_imports():
     slow = ("pint", "pydantic", "xarray", "matplotlib", "rich")
     code = f"""
 import sys
-from proprotor.command_line import main
+from proprotor.commands.main import main
 for name in main.commands:
     main([name, "--help"], standalone_mode=False)
 print([name for name in {slow} if name in sys.modules])
@@ -460,7 +460,7 @@ def test_a_name_that_is_no_case_completes_as_a_file():
 
 
 def test_a_number_of_a_deck_says_its_unit():
-    from proprotor.deck_units import deck_unit
+    from proprotor.datum import deck_unit
 
     assert deck_unit(Datum("2.5 deg", 0.04, "rad")) == ("deg", pytest.approx(DEG))
     assert deck_unit(Datum("0.42/rev", 21.0, "rad/s", rotor_speed=50.0)) == ("/rev", 50.0)

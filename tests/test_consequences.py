@@ -8,7 +8,7 @@ import pytest
 from derive import consequences, printed, table_audit
 from derive.equations import REDUCED_MODULES
 from derive.published import DROPPED_TERMS, PUBLISHED
-from proprotor.options import Options
+from proprotor.rotor.options import Options
 
 
 @pytest.mark.parametrize("term", [name for name, term in DROPPED_TERMS.items() if not term.option])

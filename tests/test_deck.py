@@ -14,8 +14,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from proprotor.datum import STATUSES, Datum
-from proprotor.deck import validate
-from proprotor.deck_file import list_cases, read_tables
+from proprotor.deck.file import list_cases, read_tables
+from proprotor.deck.sections import validate
 from proprotor.errors import InputError
 from proprotor.units import as_si, speeds, to_si, unit_registry
 
@@ -624,7 +624,7 @@ def test_a_unit_may_be_written_in_many_ways():
 
 
 def test_the_package_loads_without_the_unit_and_schema_libraries():
-    code = "import proprotor.units, proprotor.deck_file, sys; print({'pint', 'pydantic'} & set(sys.modules))"
+    code = "import proprotor.units, proprotor.deck.file, sys; print({'pint', 'pydantic'} & set(sys.modules))"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "set()"
 

@@ -8,10 +8,10 @@ import pytest
 from click.testing import CliRunner
 
 import proprotor as pp
-from proprotor.airfoil import Airfoil
-from proprotor.command_line import main
-from proprotor.describe import deck_fields
+from proprotor.commands.main import main
+from proprotor.deck.describe import deck_fields
 from proprotor.errors import InputError
+from proprotor.rotor.airfoil import Airfoil
 
 FREQUENCIES = """
 [rotor.frequencies]

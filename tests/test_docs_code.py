@@ -5,7 +5,7 @@ import re
 import pytest
 from PIL import Image
 
-from proprotor.command_line import main
+from proprotor.commands.main import main
 from tests import documentation
 from tests.documentation import DOCS, NOT_RUN, Block, Runner, blocks, compare, name_of, pages
 

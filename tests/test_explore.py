@@ -13,15 +13,15 @@ from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
 import proprotor as pp
-from proprotor.command_line import main
+from proprotor.commands.main import main
 from proprotor.explore.altered_deck import altered_deck
 from proprotor.explore.analysis import live_modes
 from proprotor.explore.curves import curves
 from proprotor.explore.inputs import first_inputs, slider_input
 from proprotor.explore.page import ExplorePage
-from proprotor.flutter import scan_speeds
-from proprotor.options import Options
-from proprotor.sweep_summary import leaps
+from proprotor.rotor.options import Options
+from proprotor.stability.flutter import scan_speeds
+from proprotor.tables.sweep_summary import leaps
 from tests.explore_server import serving
 
 KT = 1852 / 3600

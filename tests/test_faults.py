@@ -23,10 +23,10 @@ from click.testing import CliRunner
 import proprotor as pp
 from derive import __main__ as derivation
 from derive import audit, emit
-from proprotor.checkpoint import Checkpoint
-from proprotor.command_line import main
-from proprotor.mode_names import assign_names
-from proprotor.output_file import write_whole
+from proprotor.commands.main import main
+from proprotor.files.output import write_whole
+from proprotor.stability.mode_names import assign_names
+from proprotor.study.checkpoint import Checkpoint
 from tests import accept_golden
 from tests.csv_files import without_comments
 from tests.golden.modes import Mode, Record
@@ -101,7 +101,7 @@ def test_a_figure_on_a_full_disk_leaves_what_was(tmp_path):
 
 
 def test_a_full_disk_under_the_standard_output_is_no_traceback():
-    code = "from proprotor.command_line import main; main()"
+    code = "from proprotor.commands.main import main; main()"
     command = [sys.executable, "-c", code, *SWEEP, "--json"]
     with open("/dev/full", "w") as full:
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
@@ -194,7 +194,7 @@ def test_verdicts_that_do_not_fit_leave_those_before(tmp_path, monkeypatch):
 WRITES = """
 import sys, time
 from pathlib import Path
-from proprotor.output_file import write_whole
+from proprotor.files.output import write_whole
 
 def slowly(file):
     file.write(b"half")
@@ -230,7 +230,7 @@ def test_a_program_killed_in_the_middle_of_a_write_leaves_what_was(tmp_path, sen
 KEEPS = """
 import sys
 import numpy as np
-from proprotor.checkpoint import Checkpoint
+from proprotor.study.checkpoint import Checkpoint
 kept = Checkpoint(sys.argv[1])
 with kept.open({"study": "1"}, {"batches": 2000}):
     print("begun", flush=True)

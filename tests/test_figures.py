@@ -10,16 +10,16 @@ from click.testing import CliRunner
 
 import proprotor as pp
 from benchmarks import claims
-from proprotor.command_line import main
-from proprotor.design import design_inputs
+from benchmarks.paper_figures import NUMBERS, Analyses, csv_of, decks_with_bands, make_figure
+from benchmarks.paper_figures.analyses import XV15, own_frequencies
+from benchmarks.paper_figures.content import Mark
+from benchmarks.paper_figures.drawing import draw, draw_intervals
+from benchmarks.paper_figures.input_ranges import RANGES
+from benchmarks.paper_figures.mode_following import follow_support_modes, support_names
+from benchmarks.paper_figures.uncertainty_band import InputRange, boundary, damping_band, sample
+from proprotor.commands.main import main
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
-from proprotor.figures import NUMBERS, Analyses, csv_of, decks_with_bands, make_figure
-from proprotor.figures.analyses import XV15, own_frequencies
-from proprotor.figures.content import Mark
-from proprotor.figures.drawing import draw, draw_intervals
-from proprotor.input_ranges import RANGES
-from proprotor.mode_following import follow_support_modes, support_names
-from proprotor.uncertainty_band import InputRange, boundary, damping_band, sample
 
 KNOT = 1852 / 3600
 ALL = (4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 15, 16, 17, 18, 21, 22, 23, 24)
@@ -88,7 +88,7 @@ def test_a_figure_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
         file.write(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("proprotor.figures.drawing.save", fail)
+    monkeypatch.setattr("benchmarks.paper_figures.drawing.save", fail)
     result = run(21, "--out", tmp_path, "--step", 20)
     assert result.exit_code == 1 and "No space left on device" in result.output
     assert [path.name for path in tmp_path.iterdir()] == ["figure-21.png"]

@@ -26,7 +26,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, RegularGridInterpo
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.fingerprint import fingerprint
+from proprotor.files.fingerprint import fingerprint
 
 CASE = pp.load_case("xv15")
 SCALE, TABLE, HOLDER = 1.0, np.linspace(1, 2, 5), {"k": [1.0]}
@@ -340,7 +340,7 @@ import collections, functools, math
 import numpy as np
 import proprotor as pp
 from scipy.interpolate import CubicSpline
-from proprotor.fingerprint import fingerprint
+from proprotor.files.fingerprint import fingerprint
 
 TABLE, NAMES = np.linspace(0, 1, 7), {"chord", "beam", "torsion", ("a", 1), frozenset("xyz")}
 
@@ -445,7 +445,7 @@ def test_what_cannot_be_told_is_refused_in_one_message(what):
 
 
 def test_nothing_is_computed_of_a_study_whose_inputs_cannot_be_told(tmp_path, monkeypatch):
-    from proprotor.study_batch import Analysis
+    from proprotor.study.batch import Analysis
 
     monkeypatch.setattr(Analysis, "__call__", lambda self, batch: pytest.fail("a point was computed"))
     held = closure(threading.Lock())

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.frequency_response import frequency_response
-from proprotor.model import HUB, INPUTS
+from proprotor.model.frequency_response import frequency_response
+from proprotor.model.linear_model import HUB, INPUTS
 from tests.known_systems import linear_model
 
 MASS, DAMPING, STIFFNESS, FORCE = 40.0, 60.0, 9000.0, 7.0  # kg, N s/m, N/m, N per m/s of gust

@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 import proprotor as pp
-from proprotor.options import CHOICES
+from proprotor.rotor.options import CHOICES
 from tests import accept_golden
 from tests.golden.combinations import ADVANCE, SWITCHES, choices, computed, record
 from tests.golden.modes import COMMAND, Change, Mode, Record, accepted, changes, movement

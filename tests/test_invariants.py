@@ -14,7 +14,7 @@ from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 import proprotor as pp
-from proprotor.evaluation import evaluate
+from proprotor.rotor.generated import evaluate
 from tests.rotors import HUB, Flight, between, flights, random_support, seeds
 
 # A rotor that fails is shown as it was drawn: to shrink one takes minutes.

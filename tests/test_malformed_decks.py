@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 from click.testing import CliRunner
 
-from proprotor.command_line import main
+from proprotor.commands.main import main
 
 DECKS = Path(sys.modules["proprotor"].__file__).parent / "decks"
 XV15 = (DECKS / "xv15.toml").read_text(encoding="utf-8")
@@ -298,7 +298,7 @@ def test_a_deck_that_may_not_be_read(folder):
 
 def test_the_installed_command_says_the_same(folder):
     (folder / "deck.toml").write_text(MALFORMED["negative inertia"].text)
-    command = [sys.executable, "-c", "from proprotor.command_line import main; main()"]
+    command = [sys.executable, "-c", "from proprotor.commands.main import main; main()"]
     done = subprocess.run(
         [*command, "sweep", "deck.toml", *COMMANDS["sweep"]], capture_output=True, text=True, cwd=folder
     )

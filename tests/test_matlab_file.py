@@ -8,8 +8,8 @@ import xarray
 from scipy.io import loadmat
 
 import proprotor as pp
-from proprotor.matlab_file import matlab_names, save_matlab
-from proprotor.sweep import sweep
+from proprotor.exchange.matlab import matlab_names, save_matlab
+from proprotor.stability.sweep import sweep
 
 MATLAB_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.io import mmwrite
 from scipy.sparse import coo_array
 
-from proprotor.matrix_market import MatrixMarketError, read_matrix
+from proprotor.support.matrix_market import MatrixMarketError, read_matrix
 
 RNG = np.random.default_rng(0)
 FULL = RNG.uniform(-1, 1, (5, 5)) * 10.0 ** RNG.integers(-9, 9, (5, 5))

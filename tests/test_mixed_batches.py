@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.modes import decomposition, eigensystem, eigenvalues, participation, state_matrix
-from proprotor.sampling import points
+from proprotor.stability.modes import decomposition, eigensystem, eigenvalues, participation, state_matrix
+from proprotor.study.sampling import points
 
 SHAFT = "drive_train.shaft_stiffness"
 TRAIN = {

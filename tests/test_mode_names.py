@@ -12,14 +12,14 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
-from proprotor.boundary_lines import boundary_lines
-from proprotor.branches import by_branch
 from proprotor.explore.analysis import live_modes
-from proprotor.mode_motion import mode_motion
-from proprotor.mode_names import DOUBTFUL, motions, moving, name_list
-from proprotor.modes import decomposition, state_matrix
-from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller
-from proprotor.tracking import POOR
+from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
+from proprotor.plots.mode_motion import mode_motion
+from proprotor.stability.boundary_lines import boundary_lines
+from proprotor.stability.branches import by_branch
+from proprotor.stability.matching import POOR
+from proprotor.stability.mode_names import DOUBTFUL, motions, moving, name_list
+from proprotor.stability.modes import decomposition, state_matrix
 from tests.known_systems import continued, roots
 
 KNOT, RPM = 1852 / 3600, np.pi / 30
@@ -261,7 +261,7 @@ def test_the_modes_of_a_propeller_on_a_pivot_whirl():
     pivot = pp.two_axis_pivot(
         0.3, inertia=[0.5, 0.5], stiffness=[900.0, 900.0], damping=[0.0, 0.0], includes_rotor=False
     )
-    from proprotor.sweep import sweep
+    from proprotor.stability.sweep import sweep
 
     modes = sweep(pp.mount(propeller, pivot)).isel(airspeed=0).sortby("frequency")
     np.testing.assert_allclose(modes.whirl, [-1, 1], atol=1e-9)

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.beam_wing import beam_structure, beam_wing
 from proprotor.errors import InputError
-from proprotor.modal_reduction import lowest_modes
-from proprotor.nastran import _names_of_older_numpy, _one_subcase, nastran_modes
+from proprotor.support.beam_wing import beam_structure, beam_wing
+from proprotor.support.modal_reduction import lowest_modes
+from proprotor.support.nastran import _names_of_older_numpy, _one_subcase, nastran_modes
 from tests.test_beam_wing import furthest, on_the_rotor, with_rotor, xv15_wing
 
 SINGLE = 1e-6  # the file holds single precision

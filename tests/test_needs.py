@@ -19,16 +19,17 @@ import xarray as xr
 from click.testing import CliRunner
 
 import proprotor as pp
-from proprotor import nastran, needs
-from proprotor.animation import animate_mode
+from benchmarks.paper_figures.input_ranges import RANGES
+from benchmarks.paper_figures.uncertainty_band import damping_band
+from proprotor import needs
 from proprotor.case import Case
-from proprotor.command_line import main
+from proprotor.commands.main import main
 from proprotor.errors import InputError
-from proprotor.frequency_response import frequency_response
-from proprotor.input_ranges import RANGES
-from proprotor.mode_motion import mode_motion
+from proprotor.model.frequency_response import frequency_response
 from proprotor.needs import check_memory, free_memory
-from proprotor.uncertainty_band import damping_band
+from proprotor.plots.animation import animate_mode
+from proprotor.plots.mode_motion import mode_motion
+from proprotor.support import nastran
 
 ROOT = Path(pp.__file__).parent
 PROJECT = tomllib.loads((ROOT.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
@@ -100,10 +101,12 @@ def test_a_missing_package_is_told_before_anything_is_computed(tmp_path, monkeyp
 
 
 def test_openmdao_is_asked_for_where_its_component_is_imported():
-    code = "import sys; sys.modules['openmdao'] = None\nimport proprotor.openmdao"
+    code = "import sys; sys.modules['openmdao'] = None\nimport proprotor.exchange.openmdao"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     last = done.stderr.strip().splitlines()[-1]
-    assert last == 'ImportError: proprotor.openmdao needs OpenMDAO: pip install "proprotor[openmdao]"'
+    assert (
+        last == 'ImportError: proprotor.exchange.openmdao needs OpenMDAO: pip install "proprotor[openmdao]"'
+    )
 
 
 def test_a_package_that_is_there_and_broken_is_told_with_its_reason(tmp_path, monkeypatch):
@@ -166,7 +169,7 @@ class WithoutExtras:
 sys.meta_path[:] = map(WithoutExtras, sys.meta_path)
 import numpy as np
 import proprotor as pp
-from proprotor.command_line import main
+from proprotor.commands.main import main
 
 case = pp.load_case("xv15")
 found = case.sweep([80.0, 90.0])

@@ -7,7 +7,7 @@ import proprotor as pp
 
 om = pytest.importorskip("openmdao.api")
 
-from proprotor.openmdao import WhirlFlutter, variable_name  # noqa: E402
+from proprotor.exchange.openmdao import WhirlFlutter, variable_name  # noqa: E402
 
 INPUTS = ["rotor.precone", "support.modes[chord].frequency"]
 SEARCH = "375:395:10kt"  # around the boundary of the XV-15, at about 384 kt

@@ -20,12 +20,12 @@ from click.testing import CliRunner
 from scipy.io import loadmat
 
 import proprotor as pp
-from proprotor.animation import animate_mode
-from proprotor.command_line import main
+from proprotor.commands.main import main
 from proprotor.errors import InputError
-from proprotor.matlab_file import save_matlab
-from proprotor.mode_motion import mode_motion
-from proprotor.output_file import check_writable, write_whole
+from proprotor.exchange.matlab import save_matlab
+from proprotor.files.output import check_writable, write_whole
+from proprotor.plots.animation import animate_mode
+from proprotor.plots.mode_motion import mode_motion
 
 SOURCE = Path(pp.__file__).parent
 LONG = "n" * 246
@@ -70,7 +70,7 @@ def test_threads_on_one_file_all_succeed_and_readers_see_whole_ones(tmp_path):
 
 WRITES = """
 import sys
-from proprotor.output_file import write_whole
+from proprotor.files.output import write_whole
 sys.stdin.read()
 for _ in range(50):
     write_whole(sys.argv[1], lambda file: file.write(sys.argv[2].encode() * 10_000))
@@ -217,7 +217,7 @@ def test_links(tmp_path):
 
 READ_ONLY = """
 import os, sys
-from proprotor.output_file import check_writable, write_whole
+from proprotor.files.output import check_writable, write_whole
 if os.getuid() == 0:
     os.setuid(65534)  # permissions do not hold the superuser
 for told in (check_writable, lambda path: write_whole(path, lambda file: file.write(b"after"))):
@@ -255,7 +255,7 @@ def test_whatever_fails_what_was_there_stays_and_nothing_else(tmp_path, monkeypa
         raise error
 
     if step != "write":
-        monkeypatch.setattr(f"proprotor.output_file.os.{step}", fails)
+        monkeypatch.setattr(f"proprotor.files.output.os.{step}", fails)
     with pytest.raises(type(error)):
         write_whole(path, fails if step == "write" else lambda file: file.write(b"after"))
     monkeypatch.undo()
@@ -268,7 +268,7 @@ def test_what_is_written_is_on_the_disk_before_it_takes_its_place(tmp_path, monk
     for step in ("fsync", "replace"):
         own = getattr(os, step)
         monkeypatch.setattr(
-            f"proprotor.output_file.os.{step}", lambda *a, own=own, step=step: (done.append(step), own(*a))
+            f"proprotor.files.output.os.{step}", lambda *a, own=own, step=step: (done.append(step), own(*a))
         )
     write(tmp_path / "modes.csv")
     assert done == ["fsync", "replace"]
@@ -321,7 +321,7 @@ def test_every_writer_writes_whole_files(tmp_path, monkeypatch, name):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("proprotor.output_file.os.replace", full)
+    monkeypatch.setattr("proprotor.files.output.os.replace", full)
     with pytest.raises(OSError, match="No space left on device"):
         WRITERS[name](path)
     assert content(tmp_path) == written

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.deck_file import read_tables
-from proprotor.deck_template import deck_text
-from proprotor.describe import deck_fields
+from proprotor.deck.describe import deck_fields
+from proprotor.deck.file import read_tables
+from proprotor.deck.template import deck_text
 from proprotor.explore.altered_deck import altered_deck
 from proprotor.explore.inputs import slider_input
 

@@ -8,7 +8,7 @@ import pytest
 
 import proprotor as pp
 from proprotor.plots import plot_damping, plot_frequency, plot_sweep
-from proprotor.sweep_summary import leaps, unstable_ranges
+from proprotor.tables.sweep_summary import leaps, unstable_ranges
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

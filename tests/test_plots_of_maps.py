@@ -8,8 +8,8 @@ from matplotlib.path import Path
 
 import proprotor as pp
 from proprotor import plots
-from proprotor.boundary_lines import boundary_lines
-from proprotor.modes import eigensystem
+from proprotor.stability.boundary_lines import boundary_lines
+from proprotor.stability.modes import eigensystem
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 
 import proprotor as pp
 from proprotor import plots
-from proprotor.animation import animate_mode, title_of
-from proprotor.mode_motion import WingSketch, mode_motion, sketch_of
+from proprotor.plots.animation import animate_mode, title_of
+from proprotor.plots.mode_motion import WingSketch, mode_motion, sketch_of
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

@@ -17,27 +17,21 @@ import pytest
 from numpydoc.docscrape import NumpyDocString
 
 import proprotor as pp
-from proprotor import (
-    animation,
-    boundary_lines,
-    flutter,
-    frequency_response,
-    matlab_file,
-    mode_motion,
-    openmdao,
-    plots,
-    results_file,
-    sampling,
-    state_space,
-)
-from proprotor.attribution import attribution
-from proprotor.design import vary
-from proprotor.modes import modes
-from proprotor.options import Options
-from proprotor.sensitivity import sensitivity
-from proprotor.stability_map import stability_map
-from proprotor.sweep import sweep_case
-from proprotor.trim import Trim
+from proprotor import plots, sampling
+from proprotor.deck.vary import vary
+from proprotor.exchange import matlab as matlab_file
+from proprotor.exchange import netcdf as results_file
+from proprotor.exchange import openmdao
+from proprotor.model import frequency_response, state_space
+from proprotor.plots import animation, mode_motion
+from proprotor.rotor.options import Options
+from proprotor.rotor.trim import Trim
+from proprotor.stability import boundary_lines, flutter
+from proprotor.stability.attribution import attribution
+from proprotor.stability.map import stability_map
+from proprotor.stability.modes import modes
+from proprotor.stability.sensitivity import sensitivity
+from proprotor.stability.sweep import sweep_case
 
 # All functions and classes of these are public, and of others those that are named.
 MODULES: tuple[ModuleType, ...] = (

@@ -10,19 +10,20 @@ import xarray as xr
 from click.testing import CliRunner
 
 import proprotor as pp
-from proprotor import InputError, flutter, sampling
+from proprotor import InputError, sampling
 from proprotor.case import Case
-from proprotor.command_line import main
-from proprotor.deck_settings import with_settings
-from proprotor.frequencies import BladeFrequencies
-from proprotor.modal_reduction import lowest_modes
-from proprotor.model import HUB
-from proprotor.output_file import write_whole
-from proprotor.path import Line
-from proprotor.results_file import save_results
-from proprotor.several_rotors import MountedRotor, mount_rotors
-from proprotor.sweep import sweep
-from proprotor.uncertainty import share_below
+from proprotor.commands.main import main
+from proprotor.deck.settings import with_settings
+from proprotor.exchange.netcdf import save_results
+from proprotor.files.output import write_whole
+from proprotor.model.linear_model import HUB
+from proprotor.model.several_rotors import MountedRotor, mount_rotors
+from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.stability import flutter
+from proprotor.stability.following import Line
+from proprotor.stability.sweep import sweep
+from proprotor.study.uncertainty import share_below
+from proprotor.support.modal_reduction import lowest_modes
 
 CASE = pp.load_case("xv15")
 PRECONE = "rotor.precone"

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from pypdf import PdfReader
 
 import proprotor as pp
-from proprotor.command_line import main
+from proprotor.commands.main import main
 
 KT = 1852 / 3600
 SPEEDS = "340:400:20kt"  # holds the boundary of the chord mode
@@ -262,7 +262,7 @@ def test_a_date_that_is_none_is_told(tmp_path, monkeypatch):
 
 def test_without_typst_a_pdf_is_refused_before_the_analysis(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "typst", None)
-    monkeypatch.setattr("proprotor.report_page.analyse", lambda *_: pytest.fail("analysed"))
+    monkeypatch.setattr("proprotor.report.analyse", lambda *_: pytest.fail("analysed"))
     result = run("xv15", "--out", tmp_path / "x.pdf")
     assert result.exit_code == 2
     assert 'pip install "proprotor[report]"' in result.stderr
@@ -276,7 +276,7 @@ def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("proprotor.output_file.os.replace", full)
+    monkeypatch.setattr("proprotor.files.output.os.replace", full)
     result = run("xv15", "--speed", "200kt", "--out", place)
     assert result.exit_code == 1
     assert "No space left on device" in result.stderr

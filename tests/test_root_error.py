@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.modes import decomposition, held_coordinates
-from proprotor.root_error import error_near_zero, errors_of, refined, roots
+from proprotor.stability.modes import decomposition, held_coordinates
+from proprotor.stability.root_error import error_near_zero, errors_of, refined, roots
 from tests.known_systems import linear_model
 
 SPRINGS = [1.0, 1e4, 1e9, 1e14, 1e18]

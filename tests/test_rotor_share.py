@@ -12,12 +12,12 @@ from scipy.linalg import eigh
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.model import HUB, mass_at_rest, rotor_model
-from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller
-from proprotor.rotor_share import rotor_share, spring_warnings, without_rotors
-from proprotor.several_rotors import MountedRotor, mount_rotors
-from proprotor.support import INCLUDES_ROTOR, SHAFT
-from proprotor.support_file import support_from_matrices
+from proprotor.model.linear_model import HUB, mass_at_rest, rotor_model
+from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
+from proprotor.model.rotor_share import rotor_share, spring_warnings, without_rotors
+from proprotor.model.several_rotors import MountedRotor, mount_rotors
+from proprotor.support.matrix_files import support_from_matrices
+from proprotor.support.normal_modes import INCLUDES_ROTOR, SHAFT
 from tests.test_beam_wing import xv15_wing
 from tests.test_nastran import to_aircraft, write_op2
 
@@ -251,7 +251,7 @@ def test_no_option_of_an_analysis_changes_the_share(xv15):
 
 
 def test_parts_of_a_model_add_up_to_it(xv15):
-    from proprotor.model_parts import model_parts
+    from proprotor.stability.origins import model_parts
 
     for held in INCLUDES_ROTOR:
         case = replace(xv15, support=replace(xv15.support, includes_rotor=held))
@@ -409,7 +409,7 @@ def test_mounting_by_hand_is_refused_alike(xv15):
 
 def test_what_is_left_of_a_finite_element_wing_is_the_wing(tmp_path):
     """A point mass at the hub's grid point, on all coordinates: taken off, the wing is the one without."""
-    from proprotor.beam_wing import beam_structure
+    from proprotor.support.beam_wing import beam_structure
 
     wing, pylon, _ = xv15_wing()
     structure = beam_structure(wing, pylon)

@@ -30,8 +30,8 @@ from scipy.linalg import eig
 from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
-from proprotor.deck_file import read_tables
-from proprotor.modes import held_coordinates, state_matrix
+from proprotor.deck.file import read_tables
+from proprotor.stability.modes import held_coordinates, state_matrix
 from tests.fuzz.decks import written
 from tests.rotors import DAMPERS, HUB, between, flights, random_support, seeds
 

@@ -8,9 +8,9 @@ import pytest
 from proprotor_equations import FIXED_COORDINATES, section
 
 import proprotor as pp
-from proprotor.airfoil import SectionCoefficients
-from proprotor.model import INPUTS
-from proprotor.options import Options
+from proprotor.model.linear_model import INPUTS
+from proprotor.rotor.airfoil import SectionCoefficients
+from proprotor.rotor.options import Options
 from tests.oracles.random_rotors import random_rotor
 
 SPEED = 90.0

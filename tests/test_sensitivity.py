@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.design import design_inputs
-from proprotor.eigenvalue_derivatives import defect
-from proprotor.flutter import flutter_point
-from proprotor.modes import decomposition, state_matrix
-from proprotor.sensitivity import NEARLY_DEFECTIVE, damping_rate, input_rates, sensitivity
+from proprotor.deck.vary import design_inputs
+from proprotor.stability.eigenvalue_derivatives import defect
+from proprotor.stability.flutter import flutter_point
+from proprotor.stability.modes import decomposition, state_matrix
+from proprotor.stability.sensitivity import NEARLY_DEFECTIVE, damping_rate, input_rates, sensitivity
 from tests.known_systems import linear_model
 
 KNOT = 1852 / 3600

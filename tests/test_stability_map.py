@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.boundary_lines import boundary_lines
-from proprotor.stability_map import Edges, _lines, largest_growth, stability_map
+from proprotor.stability.boundary_lines import boundary_lines
+from proprotor.stability.map import Edges, _lines, largest_growth, stability_map
 from tests.known_systems import linear_model
 
 KNOT = 1852 / 3600

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import proprotor as pp
-from proprotor.deck_file import read_tables
-from proprotor.stations_file import read_stations
+from proprotor.deck.file import read_tables
+from proprotor.deck.stations import read_stations
 
 FOOT, SLUG, DEGREE = 0.3048, 14.59390294, np.pi / 180
 STATIONS = """# a blade

@@ -15,13 +15,14 @@ from click.testing import CliRunner
 from scipy.optimize import brentq
 
 import proprotor as pp
-from proprotor import sampling, study_workers
-from proprotor.command_line import main
+from proprotor import sampling
+from proprotor.commands.main import main
 from proprotor.errors import InputError
-from proprotor.modes import state_matrix
-from proprotor.results_file import load_results, save_results
-from proprotor.study import study
-from proprotor.study_batch import QUANTITIES, STABLE, UNSTABLE, Analysis, Batch, variables
+from proprotor.exchange.netcdf import load_results, save_results
+from proprotor.stability.modes import state_matrix
+from proprotor.study import workers as study_workers
+from proprotor.study.batch import QUANTITIES, STABLE, UNSTABLE, Analysis, Batch, variables
+from proprotor.study.study import study
 from proprotor.units import unit_registry
 
 DEG, KT = np.pi / 180, 1852 / 3600

@@ -11,8 +11,8 @@ import xarray as xr
 
 import proprotor as pp
 from proprotor import InputError, sampling
-from proprotor.study import study
-from proprotor.study_workers import on_cluster
+from proprotor.study.study import study
+from proprotor.study.workers import on_cluster
 
 # Ends of connections to the killed worker are the cluster's own affair.
 pytestmark = pytest.mark.filterwarnings("default")

@@ -15,11 +15,13 @@ import pytest
 import xarray as xr
 
 import proprotor as pp
-from proprotor import sampling, source_code, study_workers
-from proprotor.checkpoint import Checkpoint
+from proprotor import sampling
 from proprotor.errors import InputError
-from proprotor.study import study
-from proprotor.study_batch import Analysis
+from proprotor.study import source_code
+from proprotor.study import workers as study_workers
+from proprotor.study.batch import Analysis
+from proprotor.study.checkpoint import Checkpoint
+from proprotor.study.study import study
 
 PRECONE = "rotor.precone"
 CASE = pp.load_case("xv15")
@@ -80,7 +82,7 @@ def test_workers_end_with_a_study_that_is_killed(tmp_path):
     """Nobody is left behind who computes for nobody."""
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     script = (
-        "import os, signal; from proprotor import study_workers\n"
+        "import os, signal; from proprotor.study import workers as study_workers\n"
         "print(study_workers.Worker().process.pid, flush=True); os.kill(os.getpid(), signal.SIGKILL)"
     )
     done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
@@ -138,7 +140,8 @@ def test_batches_of_another_study_are_refused(finished):
 
 RESUMED = """
 import sys
-from proprotor import InputError, study_batch
+from proprotor.study import batch as study_batch
+from proprotor import InputError
 from tests.test_study_resume import run
 
 def computed(self, batch):
@@ -199,8 +202,8 @@ def test_all_that_computes_is_in_the_fingerprint():
 STUDIES = """
 import sys
 import proprotor as pp
-from proprotor import source_code
-from proprotor.study_batch import QUANTITIES
+from proprotor.study import source_code
+from proprotor.study.batch import QUANTITIES
 
 for name in pp.list_cases():
     found = pp.study(pp.load_case(name), {"operation.density": [1.0, 1.1]}, [60.0, 70.0], QUANTITIES, workers=1)
@@ -268,7 +271,7 @@ TOGETHER = """
 import sys, time
 import numpy as np
 from proprotor import InputError
-from proprotor.checkpoint import Checkpoint
+from proprotor.study.checkpoint import Checkpoint
 
 name = sys.argv[1]
 for folder in sys.stdin:
@@ -327,7 +330,7 @@ def test_studies_of_threads_never_mix(tmp_path):
 
 DIES = """
 import os, signal, sys
-from proprotor.checkpoint import Checkpoint
+from proprotor.study.checkpoint import Checkpoint
 with Checkpoint(sys.argv[1]).open({}, {}):
     os.kill(os.getpid(), signal.SIGKILL)
 """

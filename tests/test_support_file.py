@@ -9,12 +9,12 @@ from scipy.io import mmwrite
 from scipy.sparse import coo_array, csc_array
 
 import proprotor as pp
-from proprotor.beam_wing import beam_structure, beam_wing
 from proprotor.errors import InputError
-from proprotor.modal_reduction import lowest_modes
-from proprotor.modes import state_matrix
-from proprotor.support import HUB_AXES
-from proprotor.support_file import read_matrix_market, read_npz, support_from_matrices
+from proprotor.stability.modes import state_matrix
+from proprotor.support.beam_wing import beam_structure, beam_wing
+from proprotor.support.matrix_files import read_matrix_market, read_npz, support_from_matrices
+from proprotor.support.modal_reduction import lowest_modes
+from proprotor.support.normal_modes import HUB_AXES
 from tests.test_beam_wing import furthest, on_the_rotor, xv15_wing
 
 RATIO = [0.01, 0.02, 0.01]

@@ -11,9 +11,9 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 import proprotor as pp
-from proprotor.modes import Eigensystem, eigensystem
-from proprotor.sweep import sweep, track
-from proprotor.trim import Trim
+from proprotor.rotor.trim import Trim
+from proprotor.stability.modes import Eigensystem, eigensystem
+from proprotor.stability.sweep import sweep, track
 from tests.rotors import SPEED_OF_SOUND
 
 many = settings(max_examples=100, derandomize=True, deadline=None, phases=[Phase.generate])

@@ -12,15 +12,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import proprotor as pp
-from proprotor.airfoil_table import AirfoilTable
-from proprotor.command_line import main
-from proprotor.matrix_market import read_matrix
-from proprotor.mode_names import SECOND, motions, name_list
-from proprotor.model import HUB, reactionless_coordinates
-from proprotor.printable import printable, unprintable
-from proprotor.stations_file import read_stations
-from proprotor.support_file import read_matrix_market
-from proprotor.terminal import PlainConsole
+from proprotor.commands.main import main
+from proprotor.deck.stations import read_stations
+from proprotor.errors import printable, unprintable
+from proprotor.model.linear_model import HUB, reactionless_coordinates
+from proprotor.rotor.airfoil_table import AirfoilTable
+from proprotor.stability.mode_names import SECOND, motions, name_list
+from proprotor.support.matrix_files import read_matrix_market
+from proprotor.support.matrix_market import read_matrix
+from proprotor.tables.terminal import PlainConsole
 from tests.test_command_contract import SUCCEED
 
 DECK = 'base = "xv15"\n[case]\nname = "mine"\ntitle = "Mine"\n'

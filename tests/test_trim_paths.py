@@ -11,7 +11,7 @@ import pytest
 
 import proprotor as pp
 from benchmarks.trim_paths import KINDS, TURNED, population, verdicts
-from proprotor.airfoil import SectionCoefficients
+from proprotor.rotor.airfoil import SectionCoefficients
 from tests.oracles import trim_paths as oracle
 
 ANGLES = ("coning", "lag", "elastic_pitch")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.beam_wing import beam_structure, on_coordinates
 from proprotor.errors import InputError
-from proprotor.wing_aerodynamics import (
+from proprotor.support.beam_wing import beam_structure, on_coordinates
+from proprotor.support.wing_aerodynamics import (
     Strips,
     WingAerodynamics,
     beam_strips,

@@ -8,7 +8,7 @@ from typing import Any
 from numpy.typing import NDArray
 from proprotor_equations import flap_lag_springs, inertia, multiblade, pitch
 
-from proprotor.evaluation import evaluate
+from proprotor.rotor.generated import evaluate
 
 Matrices = tuple[NDArray, NDArray, NDArray]  # M, C, K
 

@@ -1,28 +1,28 @@
 """Whirl-flutter stability of gimballed tiltrotors, with equations derived from first principles."""
 
-from proprotor import sampling
-from proprotor.airfoil import Airfoil
-from proprotor.airfoil_table import AirfoilTable
-from proprotor.assembly import mount
-from proprotor.atmosphere import standard_air
-from proprotor.beam_wing import Pylon, Wing, beam_wing
 from proprotor.case import Case, list_cases, load_case
-from proprotor.design import design_inputs
-from proprotor.drive_train import DriveTrain
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
-from proprotor.frequencies import BladeFrequencies
-from proprotor.frequency_response import frequency_response
-from proprotor.matlab_file import save_matlab
-from proprotor.model import LinearModel, rotor_model
-from proprotor.operation import Operation
-from proprotor.results_file import load_results, save_results
-from proprotor.rigid_propeller import WhirlDerivatives, rigid_propeller
-from proprotor.rotor import Rotor
-from proprotor.several_rotors import mount_rotors
-from proprotor.structural_damping import neutral_damping
-from proprotor.study import study
-from proprotor.support import NormalModes, rigid_support, two_axis_pivot
-from proprotor.uncertainty import distribution, share_below, sobol_indices
+from proprotor.exchange.matlab import save_matlab
+from proprotor.exchange.netcdf import load_results, save_results
+from proprotor.model.frequency_response import frequency_response
+from proprotor.model.linear_model import LinearModel, rotor_model
+from proprotor.model.mount import mount
+from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
+from proprotor.model.several_rotors import mount_rotors
+from proprotor.model.structural_damping import neutral_damping
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.airfoil_table import AirfoilTable
+from proprotor.rotor.atmosphere import standard_air
+from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.operation import Operation
+from proprotor.rotor.rotor import Rotor
+from proprotor.study import sampling
+from proprotor.study.study import study
+from proprotor.study.uncertainty import distribution, share_below, sobol_indices
+from proprotor.support.beam_wing import Pylon, Wing, beam_wing
+from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
 
 __all__ = [
     "Airfoil",

@@ -11,28 +11,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.airfoil import Airfoil, SectionModel
-from proprotor.airfoil_table import AirfoilTable
-from proprotor.assembly import mount
-from proprotor.atmosphere import standard_air
 from proprotor.datum import PER_REV, Datum
-from proprotor.deck_file import ALTERNATIVES, list_cases, read_tables
-from proprotor.drive_train import DriveTrain
+from proprotor.deck.file import ALTERNATIVES, list_cases, read_tables
+from proprotor.deck.support_of_deck import support_of
 from proprotor.errors import InputError
-from proprotor.frequencies import BladeFrequencies
-from proprotor.model import LinearModel, mass_at_rest, rotor_model
-from proprotor.operation import Operation
-from proprotor.rotor import Rotor
-from proprotor.rotor_share import settled, spring_warnings
-from proprotor.support import NormalModes
-from proprotor.support_of_deck import support_of
+from proprotor.model.linear_model import LinearModel, mass_at_rest, rotor_model
+from proprotor.model.mount import mount
+from proprotor.model.rotor_share import settled, spring_warnings
+from proprotor.rotor.airfoil import Airfoil, SectionModel
+from proprotor.rotor.airfoil_table import AirfoilTable
+from proprotor.rotor.atmosphere import standard_air
+from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.operation import Operation
+from proprotor.rotor.rotor import Rotor
+from proprotor.support.normal_modes import NormalModes
 
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.deck import Deck
-    from proprotor.deck_fields import Section
-    from proprotor.flutter import Crossings, FlutterPoint
+    from proprotor.deck.fields import Section
+    from proprotor.deck.sections import Deck
+    from proprotor.stability.flutter import Crossings, FlutterPoint
 
 __all__ = ["Case", "list_cases", "load_case"]
 
@@ -81,7 +81,7 @@ class Case:
     given: Mapping[str, Datum] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        from proprotor.summary import of_case
+        from proprotor.stability.summary import of_case
 
         return of_case(self)
 
@@ -93,7 +93,7 @@ class Case:
         airspeed : float, array (...) in m/s, text such as "250 kt", pint quantity or xarray.DataArray
             One speed, or a batch of any shape.
         **options
-            See `proprotor.options.Options`.
+            See `proprotor.rotor.options.Options`.
 
         Returns
         -------
@@ -117,7 +117,7 @@ class Case:
         Parameters
         ----------
         options : mapping
-            See `proprotor.options.Options`.
+            See `proprotor.rotor.options.Options`.
 
         Returns
         -------
@@ -133,7 +133,7 @@ class Case:
         return found
 
     def vary(self, values: Mapping[str, Any]) -> Case:
-        """The case with other numbers in its deck, and all that follows from them: see `proprotor.design.vary`.
+        """The case with other numbers in its deck, and all that follows from them: see `proprotor.deck.vary.vary`.
 
         Parameters
         ----------
@@ -149,12 +149,12 @@ class Case:
         InputError
             For an unknown path, with the nearest known one, or a value that is not physical.
         """
-        from proprotor.design import vary
+        from proprotor.deck.vary import vary
 
         return vary(self, values)
 
     def sweep(self, airspeeds: Any, vary: Mapping[str, Any] | None = None, **options: Any) -> xarray.Dataset:
-        """Modes along airspeeds, or along one input, named and followed: see `proprotor.sweep.sweep_case`.
+        """Modes along airspeeds, or along one input, named and followed: see `proprotor.stability.sweep.sweep_case`.
 
         Parameters
         ----------
@@ -163,19 +163,19 @@ class Case:
         vary : mapping of str to array (points,), optional
             One input by its path in the deck, and its values in SI.
         **options
-            See `proprotor.options.Options`.
+            See `proprotor.rotor.options.Options`.
 
         Returns
         -------
         xarray.Dataset
-            See `proprotor.sweep.sweep`.
+            See `proprotor.stability.sweep.sweep`.
 
         Raises
         ------
         InputError
             For an unknown option or input, airspeeds that do not form a line, or more than one input.
         """
-        from proprotor.sweep import sweep_case
+        from proprotor.stability.sweep import sweep_case
 
         return sweep_case(self, airspeeds, vary, **options)
 
@@ -187,7 +187,7 @@ class Case:
         level: float = 0.0,
         **options: Any,
     ) -> Crossings:
-        """All crossings of a damping level along airspeeds, or one input: see `proprotor.flutter.boundaries`.
+        """All crossings of a damping level along airspeeds, or one input: see `proprotor.stability.flutter.boundaries`.
 
         Parameters
         ----------
@@ -198,7 +198,7 @@ class Case:
         level : float
             Damping ratio that counts as the boundary.
         **options
-            See `proprotor.options.Options`.
+            See `proprotor.rotor.options.Options`.
 
         Returns
         -------
@@ -210,12 +210,12 @@ class Case:
         InputError
             As `sweep`.
         """
-        from proprotor.flutter import boundaries
+        from proprotor.stability.flutter import boundaries
 
         return boundaries(self, airspeeds, vary, level=level, **options)
 
     def flutter_point(self, airspeeds: Any = None, *, level: float = 0.0, **options: Any) -> FlutterPoint:
-        """The lowest airspeed at which a mode becomes unstable: see `proprotor.flutter.flutter_point`.
+        """The lowest airspeed at which a mode becomes unstable: see `proprotor.stability.flutter.flutter_point`.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class Case:
         level : float
             Damping ratio that counts as the boundary: 0.03 for a margin of 3 % of critical.
         **options
-            See `proprotor.options.Options`.
+            See `proprotor.rotor.options.Options`.
 
         Returns
         -------
@@ -235,14 +235,14 @@ class Case:
         InputError
             As `sweep`.
         """
-        from proprotor.flutter import flutter_point
+        from proprotor.stability.flutter import flutter_point
 
         return flutter_point(self, airspeeds, level=level, **options)
 
     def sensitivity(
         self, of: str = "flutter_speed", wrt: Sequence[str] | None = None, **options: Any
     ) -> xarray.Dataset:
-        """Exact derivatives by inputs of the deck: see `proprotor.sensitivity.sensitivity`.
+        """Exact derivatives by inputs of the deck: see `proprotor.stability.sensitivity.sensitivity`.
 
         Parameters
         ----------
@@ -250,7 +250,7 @@ class Case:
         wrt : sequence of str, optional
             Paths of inputs; all by default.
         **options
-            airspeed, mode and level of `proprotor.sensitivity.sensitivity`, and those of `proprotor.options.Options`.
+            airspeed, mode and level of `proprotor.stability.sensitivity.sensitivity`, and those of `proprotor.rotor.options.Options`.
 
         Returns
         -------
@@ -262,12 +262,12 @@ class Case:
         InputError
             For an unknown quantity, input, mode or option, or where nothing becomes unstable.
         """
-        from proprotor.sensitivity import sensitivity
+        from proprotor.stability.sensitivity import sensitivity
 
         return sensitivity(self, of, wrt, **options)
 
     def attribution(self, airspeed: Any, mode: str | None = None, **options: Any) -> xarray.Dataset:
-        """What drives and what damps each mode, by physical origin: see `proprotor.attribution.attribution`.
+        """What drives and what damps each mode, by physical origin: see `proprotor.stability.attribution.attribution`.
 
         Parameters
         ----------
@@ -275,7 +275,7 @@ class Case:
         mode : str, optional
             One mode by name; all by default.
         **options
-            See `proprotor.options.Options`.
+            See `proprotor.rotor.options.Options`.
 
         Returns
         -------
@@ -287,19 +287,19 @@ class Case:
         InputError
             For an airspeed that is not one, or that cannot be analysed, and an unknown mode.
         """
-        from proprotor.attribution import attribution
+        from proprotor.stability.attribution import attribution
 
         return attribution(self, airspeed, mode, **options)
 
     def stability_map(self, axes: Mapping[str, Any], **options: Any) -> xarray.Dataset:
-        """Where in the plane of two inputs the case is stable: see `proprotor.stability_map.stability_map`.
+        """Where in the plane of two inputs the case is stable: see `proprotor.stability.map.stability_map`.
 
         Parameters
         ----------
         axes : mapping of str to array
             Two inputs by path, or "airspeed", and their rising values, in SI.
         **options
-            airspeed and level of `proprotor.stability_map.stability_map`, and those of `proprotor.options.Options`.
+            airspeed and level of `proprotor.stability.map.stability_map`, and those of `proprotor.rotor.options.Options`.
 
         Returns
         -------
@@ -311,7 +311,7 @@ class Case:
         InputError
             For axes that are not two, values that do not rise, an unknown input, or an airspeed that is missing.
         """
-        from proprotor.stability_map import stability_map
+        from proprotor.stability.map import stability_map
 
         return stability_map(self, axes, **options)
 
@@ -324,7 +324,7 @@ def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] 
     name_or_path : str or path
         A bundled deck (`list_cases`) or a TOML file; `proprotor describe` tells its fields.
     settings : mapping of str to str, optional
-        Fields to set first, as text: ``{"rotor.precone": "1.5 deg"}``. See `proprotor.deck_settings`.
+        Fields to set first, as text: ``{"rotor.precone": "1.5 deg"}``. See `proprotor.deck.settings`.
 
     Returns
     -------
@@ -336,11 +336,11 @@ def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] 
         When the deck cannot be found or read, or a field is missing, unknown or not physical: one line for
         each problem, with the field, the value as written and the rule.
     """
-    from proprotor.deck import validate  # here, because pydantic is slow to import
+    from proprotor.deck.sections import validate  # here, because pydantic is slow to import
 
     tables = read_tables(name_or_path)
     if settings:
-        from proprotor.deck_settings import with_settings
+        from proprotor.deck.settings import with_settings
 
         tables = with_settings(tables, settings)
     deck = validate(tables)

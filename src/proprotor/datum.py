@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
@@ -259,7 +260,7 @@ def read_column(raw: Any, unit: str, bound: Bound, radius: float, beyond: str) -
 
     It may have ``beyond``, as for `read_distribution`.
     """
-    from proprotor.stations_file import read_stations  # here, because few decks have one
+    from proprotor.deck.stations import read_stations  # here, because few decks have one
 
     table = _as_table(raw, ("file", "column"), ("beyond",))
     try:
@@ -346,3 +347,17 @@ def _check_numbers(key: str, values: Any) -> None:
     for value in values:
         if not abs(value) <= sys.float_info.max:  # also an integer beyond it, which math.isfinite cannot take
             raise InputError(key, value, "must be finite")
+
+
+_NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*")
+
+
+def deck_unit(number: Datum) -> tuple[str, float]:
+    """The unit a number is written in, and how many SI units it is; "/rev" is the rotor speed of its file."""
+    match = _NUMBER.match(number.written)
+    unit = number.written[match.end() :].strip() if match else ""
+    if unit == "/rev" and number.rotor_speed is not None:
+        return "/rev", number.rotor_speed
+    if not unit:
+        return number.unit, 1.0
+    return unit, factor_to_si(number.written, unit, number.unit)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import difflib
+import unicodedata
 from collections.abc import Collection, Iterable
 
 import numpy as np
 
-from proprotor.printable import printable
-
 _WIDEST_VALUE = 60  # characters of a value worth repeating in a message
+# Controls, formats such as those that turn the direction of text round, halves of characters, characters without a
+# known shape, ends of lines.
+_NEVER = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 
 
 class InputError(ValueError):
@@ -88,3 +90,16 @@ def _on_one_line(value: object) -> str:
     text = str(value) or '""'
     text = printable(text)
     return text if len(text) <= _WIDEST_VALUE else f"{text[: _WIDEST_VALUE - 1]}…"
+
+
+def unprintable(text: str) -> str:
+    """The first character of a text that may not be shown, such as ``U+001B``; empty where there is none."""
+    found = next((c for c in text if unicodedata.category(c) in _NEVER), "")
+    return f"U+{ord(found):04X}" if found else ""
+
+
+def printable(text: str, keep: str = "") -> str:
+    """A text with a space for each character that may not be shown, except those to keep."""
+    if text.isprintable():
+        return text
+    return "".join(c if c in keep or c.isprintable() else " " for c in text)

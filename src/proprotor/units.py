@@ -16,11 +16,13 @@ import numpy as np
 
 from proprotor.errors import InputError, unknown_name
 from proprotor.needs import check_memory
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import pint
     from numpy.typing import ArrayLike, NDArray
 
+KNOT = 1852 / 3600  # m/s
 
 _DEFINITIONS = """
 kilo- = 1e3 = k-
@@ -316,3 +318,43 @@ def _finite(text: object, number: float) -> float:
     if abs(number) > LARGEST:
         raise InputError("", text, f"must not be beyond {LARGEST:g} in SI units")
     return number
+
+
+def has_own_unit(value: Any) -> bool:
+    """Whether a value says its unit: text, a quantity, a data array with an attribute ``units``, or a list of these."""
+    if isinstance(value, list | tuple):
+        return any(map(has_own_unit, value))
+    return isinstance(value, str) or hasattr(value, "to") or "units" in getattr(value, "attrs", {})
+
+
+def in_metres_per_second(airspeed: Any) -> Array:
+    """Airspeed as an array in m/s.
+
+    Parameters
+    ----------
+    airspeed : float, array (...), text, pint quantity or xarray.DataArray
+        A bare number is in m/s and may be complex, for derivatives by a complex step; text such as "250 kt" (one
+        speed) or "50:400:5kt" (a list), quantities, lists of these, and data arrays with an attribute
+        ``units`` are converted.
+
+    Returns
+    -------
+    array (...)
+        m/s; without axes for a single speed.
+
+    Raises
+    ------
+    InputError
+        When it is not a speed.
+    """
+    if isinstance(airspeed, str) or (isinstance(airspeed, list | tuple) and has_own_unit(airspeed)):
+        if not isinstance(airspeed, str):
+            return values_in_si(airspeed, "m/s", "airspeed")
+        found = speeds(airspeed)
+        return found if ":" in airspeed else found.reshape(())
+    if has_own_unit(airspeed):
+        return as_si(airspeed, "m/s", "airspeed")
+    try:
+        return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)
+    except (TypeError, ValueError):
+        raise InputError("airspeed", airspeed, 'must be in m/s, or text such as "300 kt"') from None

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.io import mmwrite
 from scipy.sparse import coo_array
 
-from proprotor.support import HUB_AXES, INCLUDES_ROTOR, SHAFT
-from proprotor.support_file import read_matrix_market, read_npz
+from proprotor.support.matrix_files import read_matrix_market, read_npz
+from proprotor.support.normal_modes import HUB_AXES, INCLUDES_ROTOR, SHAFT
 from tests.fuzz.mutation import NUMBERS, other_lines, other_number, several, spoiled_bytes
 
 _HUB = [f"hub_{axis}" for axis in HUB_AXES]

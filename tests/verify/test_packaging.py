@@ -21,12 +21,12 @@ NEEDED_OF_SOURCE = (
     "derive/equations.py",
     "templates",
     "generated/proprotor_equations/multiblade.py",
-    "src/proprotor/decks/xv15.toml",
+    "src/proprotor/deck/decks/xv15.toml",
     "tests/test_closed_forms.py",
 )
 NEEDED_OF_WHEEL = (
-    "proprotor/decks/xv15.toml",
-    "proprotor/command_line.py",
+    "proprotor/deck/decks/xv15.toml",
+    "proprotor/commands/main.py",
     "proprotor_equations/__init__.py",
     "proprotor_equations/published/__init__.py",
 )

@@ -13,7 +13,7 @@ from click.shell_completion import CompletionItem
 from click.types import StringParamType
 
 from proprotor.errors import InputError
-from proprotor.options import CHOICES, LOCKABLE, Options, default_choice
+from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -41,7 +41,7 @@ class CaseName(StringParamType):
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        from proprotor.deck_file import list_cases
+        from proprotor.deck.file import list_cases
 
         found = [name for name in list_cases() if name.startswith(incomplete)]
         return [CompletionItem(name) for name in found] or [CompletionItem(incomplete, type="file")]
@@ -62,7 +62,7 @@ class Field(StringParamType):
 
     def paths(self, ctx: click.Context) -> Iterable[str]:
         """Every field there is."""
-        from proprotor.describe import deck_fields
+        from proprotor.deck.describe import deck_fields
 
         return dict.fromkeys(field.path for field in deck_fields())
 
@@ -100,7 +100,7 @@ class InputValues(Input):
 
 def _numbers_of_case(ctx: click.Context) -> tuple[str, ...]:
     """Inputs of the case on the command line; none before one is given, or while it cannot be read."""
-    from proprotor.design import design_inputs
+    from proprotor.deck.vary import design_inputs
 
     # click leaves the words it could not place in args, as after an option that still misses its value
     name = ctx.params.get("case") or ctx.params.get("name") or next(iter(ctx.args), None)
@@ -217,7 +217,7 @@ def unit_of(text: str) -> str:
 
 
 def model_options(command: Command) -> Command:
-    """A flag for each choice of the model, as `proprotor.options` has them."""
+    """A flag for each choice of the model, as `proprotor.rotor.options` has them."""
     meanings = _meanings(Options)
     locked: dict[str, Any] = {
         "multiple": True,

@@ -16,9 +16,9 @@ from proprotor.commands.arguments import (
     one_speed,
     settings_of,
 )
-from proprotor.csv_text import csv_of
-from proprotor.doubts import doubts_along, marked
-from proprotor.waiting import waiting
+from proprotor.commands.waiting import waiting
+from proprotor.model.doubts import doubts_along, marked
+from proprotor.tables.csv_text import csv_of
 
 if TYPE_CHECKING:
     import xarray

@@ -9,7 +9,7 @@ import click
 
 from proprotor.commands import output
 from proprotor.commands.arguments import EXIT_CODES, CaseName, loaded_case, set_option, settings_of
-from proprotor.deck_file import list_cases, read_tables
+from proprotor.deck.file import list_cases, read_tables
 from proprotor.errors import InputError
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
     if as_json:
         output.print_json(_document(case, settings))
         return
-    from proprotor.terminal import print_case
+    from proprotor.tables.terminal import print_case
 
     print_case(case)
 

@@ -11,7 +11,7 @@ from proprotor.commands.arguments import EXIT_CODES, Field
 from proprotor.errors import InputError
 
 if TYPE_CHECKING:
-    from proprotor.describe import DeckField
+    from proprotor.deck.describe import DeckField
 
 _MOST_IN_FULL = 3  # fields that are told in full; more of them are a table
 
@@ -33,8 +33,8 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
       proprotor describe beam-wing
       proprotor describe --schema > deck.schema.json
     """
-    from proprotor import describe as told
-    from proprotor.deck_schema import deck_schema
+    from proprotor.deck import describe as told
+    from proprotor.deck.schema import deck_schema
 
     if sum((schema, markdown, as_json)) > 1:
         raise InputError("--schema", None, "must not be given with --markdown or --json")
@@ -56,7 +56,7 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
 
 
 def _print_in_full(found: tuple[DeckField, ...]) -> None:
-    from proprotor.describe import field_lines
+    from proprotor.deck.describe import field_lines
 
     out = output.console()
     for field in found:

@@ -16,9 +16,9 @@ from proprotor.commands.arguments import (
     model_options,
     settings_of,
 )
+from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.needs import need
-from proprotor.waiting import waiting
 
 if TYPE_CHECKING:
     from bokeh.document import Document
@@ -62,7 +62,7 @@ def explore(
     """
     import numpy as np
 
-    from proprotor.flutter import scan_speeds
+    from proprotor.stability.flutter import scan_speeds
     from proprotor.units import speeds
 
     need("bokeh", "explore", "the page", "explore")

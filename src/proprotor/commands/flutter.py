@@ -7,15 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.boundary_summary import (
-    COLUMNS,
-    boundary_record,
-    failed_records,
-    failed_told,
-    mechanism_told,
-    modes_beyond,
-    verdict,
-)
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
@@ -30,15 +21,24 @@ from proprotor.commands.arguments import (
     settings_of,
     unit_of,
 )
-from proprotor.csv_text import csv_of
-from proprotor.doubts import doubt_at, marked
+from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
-from proprotor.speed import KNOT
-from proprotor.waiting import waiting
+from proprotor.model.doubts import doubt_at, marked
+from proprotor.stability.boundary_summary import (
+    COLUMNS,
+    boundary_record,
+    failed_records,
+    failed_told,
+    mechanism_told,
+    modes_beyond,
+    verdict,
+)
+from proprotor.tables.csv_text import csv_of
+from proprotor.units import KNOT
 
 if TYPE_CHECKING:
     from proprotor.case import Case
-    from proprotor.flutter import FlutterPoint
+    from proprotor.stability.flutter import FlutterPoint
 
 
 @click.command(epilog=EXIT_CODES, short_help="Flutter and divergence boundaries, and the margin.")

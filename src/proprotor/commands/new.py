@@ -39,9 +39,9 @@ def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None
     """
     import os
 
-    from proprotor.deck import validate
-    from proprotor.deck_file import list_cases, read_tables
-    from proprotor.deck_template import deck_text
+    from proprotor.deck.file import list_cases, read_tables
+    from proprotor.deck.sections import validate
+    from proprotor.deck.template import deck_text
 
     place = Path(file)
     if place.suffix != ".toml":

@@ -12,18 +12,19 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from proprotor import output_file, stamp
 from proprotor.commands.arguments import Command, Option
-from proprotor.doubts import MARK, Doubt, footnotes
 from proprotor.errors import InputError
-from proprotor.options import CHOICES, parse_options
-from proprotor.speed import KNOT
+from proprotor.files import output as output_file
+from proprotor.model import stamp
+from proprotor.model.doubts import MARK, Doubt, footnotes
+from proprotor.rotor.options import CHOICES, parse_options
+from proprotor.units import KNOT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from proprotor.case import Case
-    from proprotor.terminal import PlainConsole
+    from proprotor.tables.terminal import PlainConsole
 
 STANDARD_OUTPUT = "-"  # as the file of an option: print instead, as other programs have it
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
@@ -63,7 +64,7 @@ def _finite(data: Any) -> Any:
 
 def about(case: Case, options: Mapping[str, Any], settings: Mapping[str, str]) -> dict[str, Any]:
     """What stands at the head of every JSON document of a case."""
-    from proprotor.provenance import reservations
+    from proprotor.model.provenance import reservations
 
     own = stamp.of_case(case, options)
     return {
@@ -87,15 +88,15 @@ def told_options(case: Case, options: Mapping[str, Any]) -> dict[str, Any]:
 
 def console() -> PlainConsole:
     """Of the standard output; text is printed as it is."""
-    from proprotor.terminal import PlainConsole  # here, because rich takes long to import
+    from proprotor.tables.terminal import PlainConsole  # here, because rich takes long to import
 
     return PlainConsole()
 
 
 def print_head(case: Case, found: Mapping[Any, Any]) -> None:
     """Print what was analysed, with which options of those that are no defaults, and what it rests on."""
-    from proprotor.provenance import reservations
-    from proprotor.terminal import heading
+    from proprotor.model.provenance import reservations
+    from proprotor.tables.terminal import heading
 
     out = console()
     for line in (heading(case), *stamp.told_if_unusual(found), *reservations(case), ""):
@@ -224,7 +225,7 @@ def write_plot(path: str, case: Case, draw: Callable[[], Axes]) -> None:
     InputError, click.ClickException
         As `write`.
     """
-    from proprotor.waiting import waiting
+    from proprotor.commands.waiting import waiting
 
     with waiting("Drawing"):
         import matplotlib
@@ -233,7 +234,7 @@ def write_plot(path: str, case: Case, draw: Callable[[], Axes]) -> None:
         from matplotlib import pyplot
 
         from proprotor.plots import rests_on
-        from proprotor.terminal import heading
+        from proprotor.tables.terminal import heading
 
         axes = draw()
         rests_on(axes, case, f"{heading(case)}.")

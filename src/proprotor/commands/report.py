@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.boundary_summary import boundary_record, failed_records
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
@@ -20,12 +19,13 @@ from proprotor.commands.arguments import (
     settings_of,
     unit_of,
 )
+from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
-from proprotor.waiting import waiting
+from proprotor.stability.boundary_summary import boundary_record, failed_records
 
 if TYPE_CHECKING:
     from proprotor.case import Case
-    from proprotor.report_page import Document, Findings
+    from proprotor.report import Document, Findings
 
 _SUFFIXES = (".html", ".pdf")
 
@@ -66,7 +66,7 @@ def report(
       proprotor report my.toml --out my.pdf
       proprotor report my.toml --speed 100:400:5kt --set rotor.precone="1.5 deg" --pdf
     """
-    from proprotor.report_page import analyse, report_document
+    from proprotor.report import analyse, report_document
     from proprotor.units import speeds
 
     date, options, given = _date(), in_order(options), settings_of(settings)
@@ -102,7 +102,7 @@ def report(
 
 def _places(out: str, pdf: bool) -> list[str]:
     """The files to write, refused before anything is analysed where they cannot be."""
-    from proprotor.report_page.typeset import check_typesetter
+    from proprotor.report.typeset import check_typesetter
 
     place = Path(out)
     if place.suffix.lower() not in _SUFFIXES:
@@ -116,7 +116,7 @@ def _places(out: str, pdf: bool) -> list[str]:
 
 
 def _content(document: Document, place: str) -> bytes:
-    from proprotor.report_page import html_of, pdf_of
+    from proprotor.report import html_of, pdf_of
 
     return pdf_of(document) if Path(place).suffix.lower() == ".pdf" else html_of(document).encode()
 
@@ -135,9 +135,9 @@ def _date() -> str:
 def _deck_hash(name: str, settings: dict[str, str], case: Case) -> str:
     """SHA-256 of a deck with its base, what was set, and the content of the files that it names."""
     from proprotor.datum import FilePath
-    from proprotor.deck_file import read_tables
-    from proprotor.deck_settings import with_settings
-    from proprotor.fingerprint import fingerprint
+    from proprotor.deck.file import read_tables
+    from proprotor.deck.settings import with_settings
+    from proprotor.files.fingerprint import fingerprint
 
     numbers = {
         path: Path(number.si).read_bytes() if isinstance(number.si, FilePath) else number.si

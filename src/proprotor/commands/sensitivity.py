@@ -21,12 +21,12 @@ from proprotor.commands.arguments import (
     scan_option,
     settings_of,
 )
-from proprotor.csv_text import csv_of
-from proprotor.doubts import doubts_along, marked
+from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
-from proprotor.sensitivity_summary import READ_IN, sensitivity_records
-from proprotor.speed import KNOT
-from proprotor.waiting import waiting
+from proprotor.model.doubts import doubts_along, marked
+from proprotor.tables.csv_text import csv_of
+from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records
+from proprotor.units import KNOT
 
 if TYPE_CHECKING:
     import xarray

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 import numpy as np
 
-from proprotor.arrays import Array
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
@@ -23,10 +22,11 @@ from proprotor.commands.arguments import (
     settings_of,
     unit_of,
 )
-from proprotor.csv_text import csv_of
-from proprotor.doubts import MARK, map_doubts, marked
+from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
-from proprotor.waiting import waiting
+from proprotor.model.doubts import MARK, map_doubts, marked
+from proprotor.tables.csv_text import csv_of
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -113,8 +113,8 @@ def stability_map(
 
 
 def _axis(option: str, text: str, case: Case) -> _Axis:
-    from proprotor.design import design_inputs
-    from proprotor.sampling import grid
+    from proprotor.deck.vary import design_inputs
+    from proprotor.study.sampling import grid
     from proprotor.units import factor_to_si
 
     path, equals, given = (part.strip() for part in text.partition("="))

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor import stamp
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
@@ -19,13 +18,14 @@ from proprotor.commands.arguments import (
     model_options,
     settings_of,
 )
-from proprotor.doubts import MARK, marked
 from proprotor.errors import InputError
+from proprotor.model import stamp
+from proprotor.model.doubts import MARK, marked
 
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.sampling import Plan
+    from proprotor.study.sampling import Plan
 
 SAMPLES = ("latin-hypercube", "sobol", "saltelli")
 _OF_DECK = " of deck"
@@ -85,10 +85,10 @@ def study(
       proprotor study xv15 --vary "rotor.precone=1:4 deg" --vary "support.modes[chord].frequency=0.9:1.1 of deck"
         --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter --out study.nc --checkpoint batches
     """
-    from proprotor.results_file import check_path, save_results
-    from proprotor.study import study as analyse
-    from proprotor.study_batch import DEFAULT_QUANTITIES
-    from proprotor.study_summary import study_summary
+    from proprotor.exchange.netcdf import check_path, save_results
+    from proprotor.study.batch import DEFAULT_QUANTITIES
+    from proprotor.study.study import study as analyse
+    from proprotor.tables.study_summary import study_summary
     from proprotor.units import speeds
 
     output.check_writable("--out", out)
@@ -120,7 +120,7 @@ def study(
 
 
 def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> Plan:
-    from proprotor import sampling
+    from proprotor.study import sampling
 
     inputs = {}
     for text in varied:
@@ -145,7 +145,7 @@ def _values(text: str) -> Any:
 
 def _limits(whole: str, text: str) -> Any:
     """``"1:4 deg"`` or ``"0.9:1.1 of deck"``."""
-    from proprotor.sampling import Relative
+    from proprotor.study.sampling import Relative
 
     low, colon, high = text.removesuffix(_OF_DECK).strip().partition(":")
     if not colon or ":" in high:
@@ -160,7 +160,7 @@ def _limits(whole: str, text: str) -> Any:
 
 
 def _print(results: xarray.Dataset) -> None:
-    from proprotor.study_summary import study_summary
+    from proprotor.tables.study_summary import study_summary
 
     out, found = output.console(), study_summary(results)
     out.print(f"{found['title']}: {found['points']} points, {found['failed']} failed")
@@ -179,8 +179,8 @@ def _print(results: xarray.Dataset) -> None:
 
 
 def _print_flutter(results: xarray.Dataset) -> None:
-    from proprotor.speed import KNOT
-    from proprotor.uncertainty import distribution
+    from proprotor.study.uncertainty import distribution
+    from proprotor.units import KNOT
 
     stacked = results[["flutter_speed", "flutter_note", "flutter_warning"]]
     if "design" not in stacked.dims:

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from proprotor.datum import PerRevolution
-from proprotor.deck_file import as_one_file, read_tables
-from proprotor.deck_settings import with_settings
-from proprotor.deck_template import toml
+from proprotor.deck.file import as_one_file, read_tables
+from proprotor.deck.settings import with_settings
+from proprotor.deck.template import toml
 from proprotor.explore.inputs import slider_input
-from proprotor.options import CHOICES, default_choice
+from proprotor.rotor.options import CHOICES, default_choice
 
 if TYPE_CHECKING:
     from proprotor.case import Case

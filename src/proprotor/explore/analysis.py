@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.arrays import Array
-from proprotor.branches import Named, branches
-from proprotor.mode_names import moving, name_list
-from proprotor.model import LinearModel
-from proprotor.modes import some_points
-from proprotor.path import Line, Path, follow
-from proprotor.root_error import error_near_zero
-from proprotor.sweep import ANCHORS, mode_columns, names_at, tip_speed
-from proprotor.sweep_summary import UnstableRange, leaps, unstable_ranges
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.branches import Named, branches
+from proprotor.stability.following import Line, Path, follow
+from proprotor.stability.mode_names import moving, name_list
+from proprotor.stability.modes import some_points
+from proprotor.stability.root_error import error_near_zero
+from proprotor.stability.sweep import ANCHORS, mode_columns, names_at, tip_speed
+from proprotor.tables.sweep_summary import UnstableRange, leaps, unstable_ranges
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -41,7 +41,7 @@ class LiveModes:
     unstable : list of UnstableRange
         Their ends are interpolated between the points.
     leaps : array (points - 1, modes) of bool
-        Where a name passes to a root that lies elsewhere, see `proprotor.sweep_summary.leaps`.
+        Where a name passes to a root that lies elsewhere, see `proprotor.tables.sweep_summary.leaps`.
     """
 
     airspeed: Array
@@ -81,9 +81,9 @@ def live_modes(
     airspeeds : array (points,)
         m/s, rising.
     values : mapping of str to float, optional
-        SI values by path, see `proprotor.design.design_inputs`.
+        SI values by path, see `proprotor.deck.vary.design_inputs`.
     **options
-        See `proprotor.options.Options`.
+        See `proprotor.rotor.options.Options`.
 
     Raises
     ------

@@ -14,20 +14,19 @@ from bokeh.models.annotations import BoxAnnotation, Legend, LegendItem, Span
 from bokeh.models.widgets import Button, Div, MultiChoice, Select, Slider, TextInput
 from bokeh.plotting import figure
 
-from proprotor.arrays import Array
-from proprotor.design import design_inputs
-from proprotor.doubts import MARK, doubtful_near, doubts_along, footnotes, marked
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.explore.altered_deck import altered_deck
 from proprotor.explore.analysis import LiveModes, live_modes
 from proprotor.explore.curves import curves, ends
 from proprotor.explore.inputs import SliderInput, first_inputs, slider_input
-from proprotor.options import CHOICES
+from proprotor.model.doubts import MARK, doubtful_near, doubts_along, footnotes, marked
+from proprotor.model.provenance import reservations
+from proprotor.model.stamp import of_case, told_if_unusual
 from proprotor.plots.style import UNSTABLE
-from proprotor.provenance import reservations
-from proprotor.speed import KNOT
-from proprotor.stamp import of_case, told_if_unusual
-from proprotor.units import to_si
+from proprotor.rotor.options import CHOICES
+from proprotor.typing import Array
+from proprotor.units import KNOT, to_si
 
 if TYPE_CHECKING:
     from bokeh.document import Document

@@ -1,7 +1,7 @@
 """Plots that specialists expect: each takes a dataset and, if wanted, axes, and returns the axes.
 
 `plot_sweep`, two plots in a figure of their own, returns the figure. `rests_on` writes beneath a plot what its numbers
-rest on. `proprotor.animation` moves a mode.
+rest on. `proprotor.plots.animation` moves a mode.
 """
 
 from proprotor.plots.attribution import plot_attribution

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.doubts import marked
 from proprotor.errors import InputError, unknown_name
+from proprotor.model.doubts import marked
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin, signed
 from proprotor.plots.style import DAMPS, DRIVES, LABEL_SIZE
-from proprotor.speed import KNOT
+from proprotor.units import KNOT
 
 if TYPE_CHECKING:
     import xarray
@@ -50,7 +50,7 @@ def plot_attribution(
     InputError
         For an unknown mode, or none of several.
     """
-    from proprotor.sensitivity import damping_rate
+    from proprotor.stability.sensitivity import damping_rate
 
     names = found.mode.values.tolist()
     if mode is None and len(names) == 1:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.arrays import Array
 from proprotor.errors import InputError
 from proprotor.plots.canvas import along, axes_or_new, grid, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
 from proprotor.plots.frequency_and_damping import mark_failed
 from proprotor.plots.line_of_sweep import positions, with_gaps
 from proprotor.plots.style import LABEL_SIZE, mode_styles
-from proprotor.sweep_summary import damped_frequency, leaps
+from proprotor.tables.sweep_summary import damped_frequency, leaps
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray

@@ -6,11 +6,11 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from proprotor import stamp
-from proprotor.doubts import MARK, doubts_along, footnotes
+from proprotor.errors import printable
+from proprotor.model import stamp
+from proprotor.model.doubts import MARK, doubts_along, footnotes
 from proprotor.plots.line_of_sweep import Positions, written
 from proprotor.plots.style import GREY, LABEL_SIZE
-from proprotor.printable import printable
 
 if TYPE_CHECKING:
     import xarray
@@ -106,7 +106,7 @@ def rests_on(ax: Axes, case: Case, *more: str) -> Axes:
     matplotlib.axes.Axes
         The same.
     """
-    from proprotor.provenance import reservations
+    from proprotor.model.provenance import reservations
 
     add_footer(ax.get_figure(root=True), " ".join((*more, *reservations(case))))
     return ax

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.arrays import Array
 from proprotor.plots.canvas import note, points_per_pixel
 from proprotor.plots.style import LABEL_SIZE, ModeStyle
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

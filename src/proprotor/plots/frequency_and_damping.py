@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor import stamp
-from proprotor.arrays import Array
-from proprotor.doubts import MARK
+from proprotor.model import stamp
+from proprotor.model.doubts import MARK
 from proprotor.plots.canvas import RIGHT, add_footer, along, axes_or_new, grid, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, along_airspeed, mode_styles
-from proprotor.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
+from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray

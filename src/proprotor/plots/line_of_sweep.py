@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from proprotor.arrays import Array
 from proprotor.plots.input_names import short_name
+from proprotor.typing import Array
 from proprotor.units import factor_to_si
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def with_gaps(leaps: Array, positions: Array, *values: Array) -> list[Array]:
     Parameters
     ----------
     leaps : array (points - 1,) of bool
-        Of one mode, see `proprotor.sweep_summary.leaps`.
+        Of one mode, see `proprotor.tables.sweep_summary.leaps`.
     positions, *values : array (points,)
     """
     at = np.flatnonzero(leaps)

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.plots.canvas import say_origin
 from proprotor.plots.style import LABEL_SIZE
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from proprotor.mode_motion import ModeMotion
+    from proprotor.plots.mode_motion import ModeMotion
 
 
 class _View(NamedTuple):
@@ -47,7 +47,7 @@ def plot_mode_shape(
     Parameters
     ----------
     motion : ModeMotion
-        Of `proprotor.mode_motion.mode_motion`.
+        Of `proprotor.plots.mode_motion.mode_motion`.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default. For the view "3d" one with that projection.
     view : "front", "side", "top" or "3d"

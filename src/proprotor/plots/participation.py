@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.arrays import Array
 from proprotor.errors import InputError, unknown_name
 from proprotor.plots.canvas import along, axes_or_new, grid, say_origin
 from proprotor.plots.line_of_sweep import positions, written
 from proprotor.plots.style import COLOURS, LABEL_SIZE
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.arrays import Array
 from proprotor.plots.canvas import along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_ends, name_those_outside
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles
-from proprotor.sweep_summary import growth_rate, leaps
+from proprotor.tables.sweep_summary import growth_rate, leaps
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray

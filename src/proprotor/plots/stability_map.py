@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.arrays import Array
-from proprotor.doubts import map_doubts
+from proprotor.model.doubts import map_doubts
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.line_of_sweep import Positions, axis_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-    from proprotor.boundary_lines import BoundaryLine
+    from proprotor.stability.boundary_lines import BoundaryLine
 
 _DASHES = ("-", "--", "-.", ":")
 _ROOM = 0.06  # of the axes: a region less wide than this is not named
@@ -39,7 +39,7 @@ def plot_stability_map(
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     lines : sequence of BoundaryLine, optional
-        Of `proprotor.boundary_lines.boundary_lines`: the boundary by the mode that is neutral, and named after it.
+        Of `proprotor.stability.boundary_lines.boundary_lines`: the boundary by the mode that is neutral, and named after it.
     units : mapping of str to str, optional
         Units of the axes by input; the usual ones by default.
 

@@ -11,7 +11,7 @@ from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.input_names import short_names
 from proprotor.plots.line_of_sweep import axis_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE
-from proprotor.uncertainty import distribution
+from proprotor.study.uncertainty import distribution
 
 if TYPE_CHECKING:
     import xarray

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import cycle
 from typing import TYPE_CHECKING, NamedTuple
 
-from proprotor.sweep_summary import growth_rate, support_coordinates
+from proprotor.tables.sweep_summary import growth_rate, support_coordinates
 
 if TYPE_CHECKING:
     import xarray

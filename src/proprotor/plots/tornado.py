@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from proprotor.arrays import Array
-from proprotor.doubts import marked
 from proprotor.errors import InputError, unknown_name
+from proprotor.model.doubts import marked
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin, signed
 from proprotor.plots.input_names import short_names
 from proprotor.plots.style import DAMPS, DRIVES, LABEL_SIZE, STATUS_HATCHES
+from proprotor.typing import Array
 from proprotor.units import factor_to_si
 
 if TYPE_CHECKING:

@@ -1,0 +1,129 @@
+"""The command `proprotor`."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import io
+import os
+import sys
+from typing import IO, Any
+
+import click
+
+from proprotor.commands.arguments import EXIT_CODES as _EXIT_CODES
+from proprotor.commands.attribution import attribution
+from proprotor.commands.cases import cases
+from proprotor.commands.describe import describe
+from proprotor.commands.explore import explore
+from proprotor.commands.flutter import flutter
+from proprotor.commands.new import new
+from proprotor.commands.report import report
+from proprotor.commands.sensitivity import sensitivity
+from proprotor.commands.stability_map import stability_map
+from proprotor.commands.study import study
+from proprotor.commands.sweep import sweep
+from proprotor.errors import InputError
+
+# pint, pydantic, xarray, rich and matplotlib are slow to import: each is imported where it is needed.
+
+__all__ = ["main", "sweep"]
+
+
+class _UnusableInput(click.ClickException):
+    exit_code = 2
+
+
+class _Interrupted(click.ClickException):
+    exit_code = 130  # 128 and the number of the signal, as shells have it
+
+    def __init__(self) -> None:
+        super().__init__("interrupted; no file was left half-written")
+
+    def show(self, file: IO[Any] | None = None) -> None:
+        click.echo(f"\n{self.format_message()}", err=True, file=file)
+
+
+class _InputErrorsTold(click.Group):
+    """A group of commands that tells errors in one message, without a traceback."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except InputError as error:
+            raise _UnusableInput(str(error)) from None
+        except KeyboardInterrupt:
+            raise _Interrupted from None
+        except OSError as error:
+            if error.errno == errno.EPIPE:  # a reader such as `head` has left: click ends quietly
+                raise
+            _let_go_of_standard_output()
+            where = error.filename or "standard output"
+            raise click.ClickException(f"{where}: {error.strerror or error}") from None
+
+
+def _let_go_of_standard_output() -> None:
+    """Send what is still to be written nowhere, or Python would try once more at its end, and complain."""
+    with contextlib.suppress(OSError, AttributeError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+
+
+def _write_any_character() -> None:
+    """Have characters that the terminal's encoding lacks, such as cp1252's Greek, written as their codes."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+class _InOrder(_InputErrorsTold):
+    """Commands listed as a newcomer meets them."""
+
+    def main(self, *args: Any, **more: Any) -> Any:
+        _write_any_character()
+        return super().main(*args, **more)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(self.commands)
+
+
+@click.group(cls=_InOrder, epilog=_EXIT_CODES, context_settings={"max_content_width": 100})
+@click.version_option(package_name="proprotor")
+def main() -> None:
+    """Whirl-flutter stability of gimballed tiltrotors.
+
+    \b
+    Try:
+      proprotor cases                               the bundled cases
+      proprotor sweep xv15 --speed 50:400:5kt       frequency and damping of each mode
+      proprotor flutter xv15                        flutter speed and all other boundaries
+      proprotor report xv15                         all of it on one page, HTML or PDF
+      proprotor explore xv15                        a page with sliders on the inputs
+      proprotor new my.toml                         a commented deck of your own
+      proprotor describe rotor.precone              what a field of it is
+      proprotor sweep --help                        all there is to choose
+
+    Each command tells its options with --help. --set changes a field of the deck for one run; --json prints
+    everything a command finds.
+
+    \b
+    Completion in the shell, for bash (likewise zsh, fish):
+      eval "$(_PROPROTOR_COMPLETE=bash_source proprotor)"
+    """
+
+
+for _command in (
+    cases,
+    new,
+    describe,
+    sweep,
+    flutter,
+    stability_map,
+    sensitivity,
+    attribution,
+    report,
+    explore,
+    study,
+):
+    main.add_command(_command)

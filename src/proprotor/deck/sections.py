@@ -1,0 +1,419 @@
+"""The sections and fields of a deck, and what each must be.
+
+`proprotor describe` and docs/decks.md tell them all, from the definitions here.
+
+A deck is a TOML file. A number with a dimension is text, ``radius = "12.5 ft"``, US and SI units as one
+likes; a plain number has none. Either may be a table that says where it comes from::
+
+    radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
+
+with a status of published, derived, recalled, calibrated or assumed. Chord and twist take one value (twist:
+the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
+linear between its stations; chord, twist and mass_distribution also a column of a CSV file,
+``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
+
+Stations of chord and twist reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
+values hold there. Those of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to the
+tip, or their table says ``beyond = "nothing"``: no mass there.
+
+``base``
+    Above all sections: the deck this one alters, a bundled name or a file beside it. A field given here
+    replaces the base's; one of two alternatives removes the other.
+``[case]``
+    name, title, description, calibration (what was calibrated to what), warnings.
+``[rotor]``
+    The arguments of `proprotor.Rotor`, or instead of flap_stiffness and lag_stiffness: flap_frequency and
+    lag_frequency, non-rotating, K = I ω²; of chord: lock_number γ, chord = γ I_b / (ρ c_lα R⁴) at the
+    deck's density; of the seven mass integrals: mass_distribution.
+``[rotor.airfoil]``
+    The arguments of `proprotor.Airfoil`, or instead of them: table, a C81 file, its name starting from the
+    deck's folder.
+``[rotor.frequencies]``
+    Left out, or the arguments of `proprotor.BladeFrequencies`: against, "collective" or "airspeed"; at, a table
+    ``{ value = [0, 20, 40], unit = "deg" }``; flap, lag and perhaps cyclic_flap, rotating, per revolution, one
+    number or a table ``{ value = [1.9, 1.8, 1.7] }`` with one for each of at. The model then has structure="tabulated".
+``[operation]``
+    rotor_speed, trim = "windmill" or { collective = "30 deg" }, { thrust_coefficient = 0.008 },
+    { power_coefficient = 0.01 }; density and speed_of_sound, or instead of them: altitude, a pressure altitude in
+    the standard atmosphere, and temperature_offset (`proprotor.rotor.atmosphere`).
+``[drive_train]``
+    Left out, or the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness.
+``[support]``
+    kind and the fields of that kind: `proprotor.deck.support_sections` lists them.
+
+A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
+written in the same file, or in its base where the file gives none. It is a frequency in hertz from then on: a
+deck that alters another, ``--set``, a study and a map change the rotor speed and not the frequency, and a
+frequency that is set in /rev is one of the deck's own rotor speed too. `proprotor.units` lists the units.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema, model_validator
+
+from proprotor.datum import read_quantity
+from proprotor.deck.fields import (
+    Abscissa,
+    Angle,
+    Chord,
+    Count,
+    CurvePerRev,
+    Damping,
+    Density,
+    File,
+    FirstMoment,
+    Fraction,
+    Frequency,
+    Inertia,
+    InertiaOrNone,
+    Length,
+    Mass,
+    MassDistribution,
+    MassOrNone,
+    Name,
+    NotNegative,
+    Number,
+    Offset,
+    Positive,
+    PositiveLength,
+    RotorSpeed,
+    Section,
+    Sides,
+    Slope,
+    Speed,
+    Stiffness,
+    TemperatureDifference,
+    Text,
+    Twist,
+    needed,
+    optional,
+)
+from proprotor.deck.file import AIR_ALTERNATIVES, AIRFOIL_ALTERNATIVES, ALTERNATIVES, TRIM_ALTERNATIVES
+from proprotor.deck.schema import TRIM_SCHEMA
+from proprotor.deck.support_sections import SUPPORT_KINDS, SUPPORT_TABLES, SupportSection
+from proprotor.deck.text import plain_text
+from proprotor.errors import InputError, unknown_name
+
+
+class CaseSection(Section):
+    """What the case is, in words."""
+
+    name: Name = needed("Short name; a deck that alters another has its own.")
+    title: Text = needed("Stands above tables and plots.")
+    description: str = optional("What is modelled.", "")
+    calibration: str = optional("Which inputs were matched to which result; repeated with every result.", "")
+    warnings: list[Text] = Field(
+        default_factory=list, description="What a reader of results should know, a text each."
+    )
+
+
+class AirfoilSection(Section):
+    """Sections of the blade: a straight lift line with constant drag and moment, or a table."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = AIRFOIL_ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("lift_slope", "table")
+
+    lift_slope: Slope = optional("Slope of the lift coefficient with the angle of attack.")
+    zero_lift_angle: Angle = optional("Angle of attack without lift.")
+    drag: NotNegative = optional("Drag coefficient.")
+    moment: Number = optional("Moment coefficient about the reference line, nose up.")
+    table: File = optional("A C81 file; its name starts from the deck's folder.")
+
+    @model_validator(mode="after")
+    def _numbers_or_a_table(self) -> AirfoilSection:
+        numbers = [name for name in type(self).model_fields if name in self.model_fields_set - {"table"}]
+        if self.table is not None and numbers:
+            raise InputError("table", self.table.written, f"must not be given with {', '.join(numbers)}")
+        if self.table is None and "lift_slope" not in numbers:
+            raise InputError("lift_slope", None, "is missing; give lift_slope or table")
+        return self
+
+
+class FrequenciesSection(Section):
+    """Rotating blade frequencies from a table, in place of springs; `--structure coupled` leaves them out."""
+
+    against: Literal["collective", "airspeed"] = optional("What they depend on.", "collective")
+    at: Abscissa = optional("Where lists have their values, rising: collective or airspeed.")
+    flap: CurvePerRev = needed("Flap frequency per revolution, without lag and at zero cone.")
+    lag: CurvePerRev = needed("Lag frequency per revolution, without flap and at zero cone.")
+    cyclic_flap: CurvePerRev = optional("Of cyclic flapping where it is another than flap.")
+
+    @model_validator(mode="after")
+    def _one_value_for_each_place(self) -> FrequenciesSection:
+        places = None if self.at is None else len(self.at.si)
+        for name in ("flap", "lag", "cyclic_flap"):
+            curve = getattr(self, name)
+            if curve is None or not isinstance(curve.si, tuple):
+                continue
+            if places is None:
+                raise InputError("at", None, f"is missing; {name} has {curve.written}")
+            if len(curve.si) != places:
+                raise InputError(name, curve.written, f"must have one value for each of the {places} of at")
+        return self
+
+
+class RotorSection(Section):
+    """The rotor: the arguments of `proprotor.Rotor`, and what some of them may follow from."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = tuple(
+        name for choice in ALTERNATIVES for side in choice for name in side
+    )
+
+    n_blades: Count = needed("Number of blades.")
+    radius: PositiveLength = needed("Centre of rotation to tip.")
+    root_cutout: Length = needed("Where the airloads begin, from the centre of rotation.")
+    flap_hinge_offset: Length = needed("Centre of rotation to flap hinge; at 0 lock flap or gimbal.")
+    lag_hinge_offset: Length = needed("Centre of rotation to lag hinge, not inboard of the flap hinge.")
+    precone: Angle = needed("Cone built into the hub, towards thrust.")
+    blade_mass: Mass = optional("Integral of m over the whole blade.")
+    blade_first_moment: FirstMoment = optional("Integral of m r over the whole blade.")
+    blade_inertia: Inertia = optional("I_b, integral of m r² over the whole blade.")
+    flap_first_moment: FirstMoment = optional("Integral of m (r - e) outboard of the flap hinge.")
+    flap_inertia: Inertia = optional("Integral of m (r - e)² outboard of the flap hinge.")
+    lag_first_moment: FirstMoment = optional("Integral of m (r - e) outboard of the lag hinge.")
+    lag_inertia: Inertia = optional("Integral of m (r - e)² outboard of the lag hinge.")
+    mass_distribution: MassDistribution = optional(
+        "Mass per length from the centre (or with hub_mass from anywhere) to the tip, which gives all seven integrals; "
+        'beyond = "nothing" where it has no mass there.'
+    )
+    hub_mass: MassOrNone = optional(
+        "Of the whole rotor at the centre of rotation, for a mass_distribution that begins further out, and not once "
+        "more in the masses of the support."
+    )
+    flap_stiffness: Stiffness = optional("Flap spring, hub and blade in series.")
+    flap_frequency: Frequency = optional("Flap frequency without rotation, K = I ω².")
+    lag_stiffness: Stiffness = optional("Lag spring, hub and blade in series.")
+    lag_frequency: Frequency = optional("Lag frequency without rotation, K = I ω².")
+    flap_outboard_fraction: Fraction = needed("Share of the flap flexibility outboard of the pitch bearing.")
+    lag_outboard_fraction: Fraction = needed("Share of the lag flexibility outboard of the pitch bearing.")
+    structural_pitch_offset: Angle = optional("From the collective reference to the blade's structural axes.")
+    gimbal_stiffness: Stiffness = needed("Hub spring.")
+    pitch_gimbal_coupling: Number = needed("K_PG = tan δ3, pitch per gimbal tilt.")
+    pitch_inertia: InertiaOrNone = needed("Of one blade about its pitch axis.")
+    control_stiffness: Stiffness = needed("Control system of one blade, about its pitch axis.")
+    flap_damping: Damping = optional("Viscous damper of the flap hinge.")
+    lag_damping: Damping = optional("Viscous damper of the lag hinge.")
+    pitch_damping: Damping = optional("Viscous damper of the blade's pitch.")
+    gimbal_damping: Damping = optional("Viscous damper of the gimbal, which does not rotate.")
+    propeller_moment: bool = optional("Whether the propeller moment acts on the blade's pitch.", True)
+    chord: Chord = optional(
+        "Chord of the blade, one value or along r from root cutout to tip; "
+        'beyond = "held" where its end values hold beyond the stations.'
+    )
+    lock_number: Positive = optional("γ, chord = γ I_b / (ρ c_lα R⁴) at the deck's density.")
+    twist: Twist = needed(
+        "One value: change from centre to tip, linear. Or along r from root cutout to tip; "
+        'beyond = "held" where its end values hold beyond the stations. Pitch counts from 0.75 R.'
+    )
+    airfoil: AirfoilSection = needed("Sections of the blade.")
+    frequencies: FrequenciesSection | None = optional("Of the blades; from the springs where left out.")
+
+    @model_validator(mode="after")
+    def _one_side_of_each_pair(self) -> RotorSection:
+        for pair in ALTERNATIVES:
+            sides = [side for side in pair if self.model_fields_set.intersection(side)]
+            both = " or ".join(_listed(side) for side in pair)
+            if not sides:
+                raise InputError(pair[0][0], None, f"is missing; give {both}")
+            if len(sides) > 1:
+                raise InputError(sides[1][0], None, f"must not be given twice over; give {both}")
+            for name in sides[0]:
+                if name not in self.model_fields_set:
+                    raise InputError(name, None, "is missing")
+        if self.hub_mass is not None and self.mass_distribution is None:
+            rule = "must be given with mass_distribution; blade_mass holds the hub's mass"
+            raise InputError("hub_mass", self.hub_mass.written, rule)
+        return self
+
+
+class TrimSection(Section):
+    """What the rotor is trimmed to instead of windmilling."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = TRIM_ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = (
+        "collective",
+        "thrust_coefficient",
+        "power_coefficient",
+    )
+
+    collective: Angle = optional("Pitch at 0.75 R.")
+    thrust_coefficient: Number = optional("C_T = T/(ρπR²(ΩR)²).")
+    power_coefficient: Number = optional("C_P = P/(ρπR²(ΩR)³), power put into the rotor positive.")
+
+
+_TRIM_RULE = (
+    'must be "windmill" or { collective = "30 deg" }, or likewise a thrust_coefficient or power_coefficient'
+)
+
+
+def _read_trim(raw: Any) -> str | TrimSection:
+    if raw == "windmill":
+        return "windmill"
+    if not isinstance(raw, dict) or len(raw) != 1:
+        raise InputError("", raw, _TRIM_RULE)
+    ((name, given),) = raw.items()
+    if name not in TrimSection.model_fields:
+        raise InputError(name, given, unknown_name(name, TrimSection.model_fields, "trim"))
+    try:
+        number = read_quantity(given, "rad" if name == "collective" else "")
+    except InputError as error:
+        raise error.within(name) from None
+    target: dict[str, Any] = {name: number}
+    return TrimSection.model_construct(**target)
+
+
+class OperationSection(Section):
+    """How the rotor is run, and in which air."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = AIR_ALTERNATIVES
+    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("density", "speed_of_sound", "altitude")
+
+    rotor_speed: RotorSpeed = needed("Ω.")
+    density: Density = optional("Of the air; 0 is a vacuum.")
+    speed_of_sound: Speed = optional("Of the air.")
+    altitude: Offset = optional("Pressure altitude in the standard atmosphere (ISA), -610 m to 32 km.")
+    temperature_offset: TemperatureDifference = optional(
+        "Above the standard temperature of that altitude; none by default."
+    )
+    trim: Annotated[Any, PlainValidator(_read_trim), WithJsonSchema(TRIM_SCHEMA)] = optional(
+        '"windmill", the collective without torque, or one target: { collective = "30 deg" }, '
+        "{ thrust_coefficient = 0.008 } or { power_coefficient = 0.01 }.",
+        "windmill",
+    )
+
+    @model_validator(mode="after")
+    def _given_air_or_standard(self) -> OperationSection:
+        ((own, standard),) = AIR_ALTERNATIVES
+        given = [name for name in own if name in self.model_fields_set]
+        by_altitude = [name for name in standard if name in self.model_fields_set]
+        both = f"{_listed(own)} or {_listed(standard)}"
+        if given and by_altitude:
+            raise InputError(by_altitude[0], None, f"must not be given twice over; give {both}")
+        if not given and not by_altitude:
+            raise InputError(own[0], None, f"is missing; give {both}")
+        for name in own if given else standard[:1]:
+            if name not in self.model_fields_set:
+                raise InputError(name, None, "is missing")
+        return self
+
+
+class DriveTrainSection(Section):
+    """Engine and shaft on the rotor's azimuth, referred to the rotor's speed."""
+
+    drive_inertia: InertiaOrNone = optional("What turns with the rotor besides the blades.")
+    drive_damping: Damping = optional("Torque per change of rotor speed.")
+    shaft_stiffness: Stiffness = optional(
+        "Torque per azimuth, to an end of constant speed; 0 leaves the rotor free to find its speed."
+    )
+
+
+class Deck(Section):
+    """A case of the whirl-flutter analysis proprotor."""
+
+    case: CaseSection = needed("What the case is, in words.")
+    rotor: RotorSection = needed("The rotor.")
+    operation: OperationSection = needed("How the rotor is run.")
+    drive_train: DriveTrainSection | None = optional("Engine and shaft; none where left out.")
+    support: SupportSection = needed("What carries the rotor.")
+
+
+_SECTIONS: dict[tuple[str, ...], type[Section]] = {
+    (): Deck,
+    ("case",): CaseSection,
+    ("rotor",): RotorSection,
+    ("rotor", "airfoil"): AirfoilSection,
+    ("rotor", "frequencies"): FrequenciesSection,
+    ("operation",): OperationSection,
+    ("operation", "trim"): TrimSection,
+    ("drive_train",): DriveTrainSection,
+    **{("support", *place): section for place, section in SUPPORT_TABLES.items()},
+}
+
+
+def sections_at(place: tuple[str, ...]) -> dict[str, type[Section]]:
+    """The sections that may stand at a place, such as ``("support", "modes")``, by kind of support; "" elsewhere."""
+    return {
+        known[1] if known[:1] == ("support",) else "": section
+        for known, section in _SECTIONS.items()
+        if _in_the_deck(known) == place
+    }
+
+
+def section_places() -> list[tuple[str, ...]]:
+    """Every place of a deck at which a section may stand, the deck itself first."""
+    return list(dict.fromkeys(tuple(map(str, _in_the_deck(known))) for known in _SECTIONS))
+
+
+# How a message states what pydantic found, by pydantic's name for it.
+_RULES = {
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+    "dict_type": "must be a table",
+    "int_type": "must be a whole number",
+    "list_type": "must be a list",
+    "string_type": "must be text",
+    "bool_type": "must be true or false",
+    "too_short": "must not be empty",
+    "string_too_short": "must not be empty",
+    "string_pattern_mismatch": "must be letters, digits, spaces, dots, dashes and underscores",
+}
+
+
+def validate(tables: dict[str, Any]) -> Deck:
+    """The tables of a TOML file as a deck.
+
+    Raises
+    ------
+    InputError
+        With every problem found, one line each.
+    """
+    tables = plain_text(tables, field_name)
+    try:
+        return Deck.model_validate(tables)
+    except ValidationError as error:
+        first, *others = [_input_error(problem, tables) for problem in error.errors(include_url=False)]
+        raise InputError(first.field, first.value, first.rule, others) from None
+
+
+def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
+    place, kind = problem["loc"], problem["type"]
+    field = field_name(_in_the_deck(place), tables)
+    if kind == "value_error":
+        error: InputError = problem["ctx"]["error"]
+        return error.within(field)
+    if kind == "extra_forbidden":
+        known = _SECTIONS[tuple(part for part in place[:-1] if isinstance(part, str))].model_fields
+        return InputError(field, problem["input"], unknown_name(str(place[-1]), known))
+    if kind == "literal_error":
+        return InputError(field, problem["input"], f"must be {problem['ctx']['expected']}")
+    if kind in ("missing", "union_tag_not_found"):
+        return InputError(field if kind == "missing" else f"{field}.kind", None, "is missing")
+    if kind == "union_tag_invalid":
+        rule = f"must be {', '.join(map(repr, SUPPORT_KINDS))}"
+        return InputError(f"{field}.kind", problem["ctx"]["tag"], rule)
+    return InputError(field, problem["input"], _RULES.get(kind, problem["msg"]))
+
+
+def _in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
+    """A place without the kind of support, which pydantic puts in."""
+    return (place[0], *place[2:]) if place[:1] == ("support",) and len(place) > 1 else place
+
+
+def field_name(place: tuple[str | int, ...], tables: Any) -> str:
+    """``("support", "modes", 0, "x")`` as ``support.modes[beam].x``, an entry of a list by its name."""
+    text = ""
+    for part in place:
+        tables = tables[part] if not isinstance(tables, dict) or part in tables else None
+        if isinstance(part, str):
+            text += f".{part}" if text else part
+        else:
+            name = tables.get("name") if isinstance(tables, dict) else None
+            text += f"[{name if isinstance(name, str) and name else part}]"
+    return text
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return names[0] if len(names) == 1 else f"({', '.join(names)})"

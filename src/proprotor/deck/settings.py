@@ -1,0 +1,177 @@
+"""Single fields of a deck set to other values before it is read: ``rotor.precone = "1.5 deg"``."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import tomllib
+from collections.abc import Mapping
+from typing import Any, Literal, get_args, get_origin
+
+from proprotor.deck.file import altered, per_revolution_of
+from proprotor.errors import InputError, unknown_name
+
+_STEP = re.compile(r"([^.\[\]]+)(?:\[([^\[\]]+)\])?(?:\.|$)")
+_SOURCE = "set for this run"
+_LONGEST_TITLE = 300  # characters of settings worth repeating above every result
+
+
+class _Entry(str):
+    """The name or number of an entry of a list."""
+
+
+Place = tuple[str, ...]
+
+
+def with_settings(tables: Mapping[str, Any], settings: Mapping[str, str]) -> dict[str, Any]:
+    """The tables of a deck with some fields set, as if the deck had them so.
+
+    Parameters
+    ----------
+    tables : mapping
+        Of `proprotor.deck.file.read_tables`.
+    settings : mapping of str to str
+        Text by place: ``rotor.precone``, ``operation.trim``, ``support.modes[beam].frequency``, an entry of a list by
+        its name. A number is written with its unit, as in a deck; what else TOML has is read as TOML, and all other
+        text is text. A field replaces its alternatives, as chord does a Lock number. Numbers become
+        assumed ones, and the title tells what was set. A frequency per revolution is one of the deck's own rotor speed,
+        whatever speed is set.
+
+    Raises
+    ------
+    InputError
+        For a place that no deck has, with the nearest one. Values are left to `proprotor.deck.sections.validate`.
+    """
+    entries: list[tuple[Place, Any]] = []
+    changes: dict[str, Any] = {}
+    for path, text in settings.items():
+        steps = _steps(path, text)
+        value = _value(text, steps)
+        if any(entry for _, entry in steps):
+            entries.append((_place(steps), value))
+        else:
+            _put(changes, tuple(name for name, _ in steps), value)
+    result = altered(dict(tables), changes)
+    for place, value in entries:
+        result = _replaced(result, place, value, "")
+    return _titled(per_revolution_of(tables, result), settings)
+
+
+def _steps(path: str, text: str) -> list[tuple[str, str]]:
+    """A place as names, each with the entry of a list or ""."""
+    from proprotor.deck.sections import Deck
+
+    found = [match.groups(default="") for match in _STEP.finditer(path)]
+    if "".join(match[0] for match in _STEP.finditer(path)) != path or path.endswith("."):
+        raise InputError(path, text, "must be a field of a deck, such as rotor.precone")
+    steps = [(name.strip(), entry.strip()) for name, entry in found]
+    if not steps or steps[0][0] not in Deck.model_fields:
+        raise InputError(path, text, _nearest(path))
+    return steps
+
+
+def _place(steps: list[tuple[str, str]]) -> Place:
+    return tuple(part for name, entry in steps for part in ((name, _Entry(entry)) if entry else (name,)))
+
+
+def _nearest(path: str) -> str:
+    """What is told of a field that stands in no section of a deck."""
+    from proprotor.deck.describe import deck_fields
+    from proprotor.deck.sections import Deck
+
+    by_name = {field.path.rpartition(".")[2]: field.path for field in deck_fields()}
+    close = difflib.get_close_matches(path.rpartition(".")[2].lower(), by_name, n=1)
+    if "." not in path and close:
+        return f"unknown field {path!r}; did you mean {by_name[close[0]]}?"
+    return unknown_name(path.partition(".")[0], Deck.model_fields)
+
+
+def _value(text: str, steps: list[tuple[str, str]]) -> Any:
+    """Text as TOML has it where it does, and as a number with its provenance where the field is one."""
+    from proprotor.deck.fields import Reading
+
+    field = _field([name for name, _ in steps])
+    try:
+        read = tomllib.loads(f"value = {text}")
+        value = read["value"] if set(read) == {"value"} else text
+    except (ValueError, RecursionError):
+        value = text
+    if field is None:
+        return value
+    if _is_text(field.annotation) and not isinstance(value, str):
+        return text
+    is_number = any(isinstance(part, Reading) for part in field.metadata)
+    return value if isinstance(value, dict) or not is_number else _assumed(value)
+
+
+def _field(names: list[str]) -> Any:
+    """The definition of a field, which is one of several kinds of support perhaps; None where there is none."""
+    from proprotor.deck.sections import sections_at
+
+    found = [
+        section.model_fields[names[-1]]
+        for section in sections_at(tuple(names[:-1])).values()
+        if names[-1] in section.model_fields
+    ]
+    return found[0] if found else None
+
+
+def _is_text(annotation: Any) -> bool:
+    return annotation is str or (
+        get_origin(annotation) is Literal and all(isinstance(choice, str) for choice in get_args(annotation))
+    )
+
+
+def _assumed(value: Any) -> dict[str, Any]:
+    return {"value": value, "status": "assumed", "source": _SOURCE}
+
+
+def _put(changes: dict[str, Any], place: tuple[str, ...], value: Any) -> None:
+    """A value into nested tables."""
+    *outer, last = place
+    for name in outer:
+        within = changes.setdefault(name, {})
+        if not isinstance(within, dict) or "value" in within:
+            raise InputError(".".join(place), None, f"must not be set together with {name} itself")
+        changes = within
+    if isinstance(changes.get(last), dict) and isinstance(value, dict):
+        raise InputError(".".join(place), None, "must not be set twice")
+    changes[last] = value
+
+
+def _replaced(tables: Any, place: Place, value: Any, told: str) -> Any:
+    """Nested tables and lists with one value replaced, nothing changed in place."""
+    if not place:
+        return value
+    key, further = place[0], place[1:]
+    if isinstance(key, _Entry):
+        if not isinstance(tables, list):
+            raise InputError(f"{told}[{key}]", None, "is no entry of a list of this deck")
+        position = _position(tables, key, told)
+        replaced = _replaced(tables[position], further, value, f"{told}[{key}]")
+        return [*tables[:position], replaced, *tables[position + 1 :]]
+    inner = f"{told}.{key}" if told else key
+    if not isinstance(tables, dict):
+        raise InputError(inner, None, "stands in no table of this deck")
+    return tables | {key: _replaced(tables.get(key), further, value, inner)}
+
+
+def _position(entries: list[Any], name: str, told: str) -> int:
+    """Where an entry stands in a list, by its name, or by its number from 0."""
+    names = [str(entry.get("name")) if isinstance(entry, dict) else "" for entry in entries]
+    if name in names:
+        return names.index(name)
+    if name.isdecimal() and len(name) < 6 and int(name) < len(entries):
+        return int(name)
+    raise InputError(f"{told}[{name}]", None, unknown_name(name, names, "name"))
+
+
+def _titled(tables: dict[str, Any], settings: Mapping[str, str]) -> dict[str, Any]:
+    """The tables with a title that tells what was set, so that no result is taken for the deck's own."""
+    case = tables.get("case")
+    if not settings or "case.title" in settings or not isinstance(case, dict):
+        return tables
+    told = ", ".join(f"{path} = {' '.join(text.split())}" for path, text in settings.items())
+    told = told if len(told) <= _LONGEST_TITLE else f"{len(settings)} fields set"
+    title = case.get("title")
+    return tables | {"case": case | {"title": f"{title} ({told})"}} if isinstance(title, str) else tables

@@ -1,0 +1,105 @@
+"""Other designs of a case: numbers of its deck replaced by others, one design or many at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.case import assemble
+from proprotor.errors import InputError, unknown_name
+from proprotor.units import has_own_unit
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+    from proprotor.datum import Datum
+    from proprotor.deck.sections import Deck
+
+_FIXED = (str, int, tuple)  # files, whole numbers and lists, which do not vary as others do
+
+
+def design_inputs(case: Case) -> dict[str, Datum]:
+    """The numbers of a case's deck that may vary, by path, with value, SI unit, status and source.
+
+    A path is the place in the deck: ``rotor.precone``, ``rotor.airfoil.lift_slope``, ``operation.rotor_speed``,
+    ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. Distributions along the blade, blade
+    frequencies, files and what follows from other numbers are left out.
+
+    Parameters
+    ----------
+    case : Case
+        Made from a deck.
+
+    Returns
+    -------
+    dict of str to Datum
+
+    Raises
+    ------
+    InputError
+        When the case was not made from a deck.
+    """
+    _deck_of(case)
+    return {
+        path: number
+        for path, number in case.given.items()
+        if number.r_over_R is None
+        and not isinstance(number.si, _FIXED)
+        and not path.startswith("rotor.frequencies.")
+    }
+
+
+def vary(case: Case, values: Mapping[str, Any]) -> Case:
+    """The case with other values of some numbers of its deck.
+
+    What follows from a number follows: a spring from a frequency and an inertia, the chord from the Lock number. A
+    frequency per revolution was turned to rad/s at the rotor speed of its deck, and keeps that value when the rotor
+    speed varies, as it does when a setting or a variant of the deck changes it.
+
+    Parameters
+    ----------
+    case : Case
+    values : mapping of str to float, array, text, pint quantity or xarray.DataArray
+        By path, see `design_inputs`: numbers in SI; text such as "1.5 deg", quantities, and data arrays with an
+        attribute ``units`` are converted. Arrays broadcast with each other and with the airspeeds of
+        `Case.linearize`. Complex numbers are taken, for derivatives by a complex step.
+
+    Returns
+    -------
+    Case
+        Its rotor, operation and support hold arrays where numbers were given as arrays.
+
+    Raises
+    ------
+    InputError
+        For an unknown path, with the nearest known one, or a value that is not physical.
+    """
+    known, numbers = design_inputs(case), dict(case.given)
+    for path, value in values.items():
+        if path not in known:
+            raise InputError(path, None, unknown_name(path, known, "input"))
+        number = _number(path, value, known[path].unit)
+        written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
+        numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
+    return assemble(_deck_of(case), numbers, tuple(case.support.names))
+
+
+def _deck_of(case: Case) -> Deck:
+    if case.deck is None:
+        raise InputError("case", case.name, "must be made from a deck, whose numbers may then vary")
+    return case.deck
+
+
+def _number(path: str, value: Any, unit: str) -> np.ndarray:
+    if has_own_unit(value):
+        from proprotor.units import values_in_si  # here, because pint takes long to import
+
+        value = values_in_si(value, unit, path)
+    number = np.asarray(value)
+    if number.dtype.kind not in "fciu":
+        raise InputError(path, value, "must be a number or an array of numbers")
+    if not np.isfinite(number).all():
+        raise InputError(path, value, "must be finite")
+    return number if number.dtype.kind == "c" else number.astype(float)

@@ -1,0 +1,140 @@
+"""Results in netCDF files that every reader opens: complex numbers are stored as real and imaginary parts."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+from threading import Lock
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from proprotor.errors import InputError
+from proprotor.files.output import check_place, write_whole
+from proprotor.needs import need
+
+if TYPE_CHECKING:
+    import xarray
+
+PARTS = ("_real", "_imag")
+_COMPLEX = "complex_of"  # attribute of both parts: the name of the number they make
+_ONE_AT_A_TIME = Lock()  # the netCDF library is not made for threads: two at once crash the process
+
+
+def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
+    """Write a dataset of this package, such as a study or a sweep, as netCDF.
+
+    A complex variable ``eigenvalue`` is stored as ``eigenvalue_real`` and ``eigenvalue_imag``.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+    path : str or path
+        Ends in ``.nc``. A file that exists is replaced, and stays as it is when writing fails.
+
+    Raises
+    ------
+    InputError
+        When the path is no such file or cannot be written, the library that writes netCDF is missing, or a variable is
+        in the way of a part.
+    OSError
+        When the file cannot be written.
+    """
+    check_path(path)
+    write_whole(path, lambda file: _write(_in_parts(results), file.name))
+
+
+def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
+    """See that results can be written there, before they are computed.
+
+    Parameters
+    ----------
+    path : str or path
+    field : str
+        What a message calls it.
+
+    Raises
+    ------
+    InputError
+        When the path does not end in ``.nc``, is a folder, lies in none or cannot be written, or the library that
+        writes netCDF is missing.
+    """
+    check_place(path, ".nc", field)
+    need("netCDF4", field, "netCDF files")
+
+
+def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
+    """Read what `save_results` has written, complex numbers as such.
+
+    Parameters
+    ----------
+    path : str or path
+        A .nc file.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    InputError
+        When the file does not exist or is no netCDF file.
+    """
+    import xarray  # here, because it takes long to import
+
+    if not Path(path).is_file():
+        raise InputError("path", path, "must be a file that exists")
+    need("netCDF4", "path", "netCDF files")
+    try:
+        with _ONE_AT_A_TIME, xarray.open_dataset(path, engine="netcdf4") as stored:
+            return _whole(stored.load())
+    except OSError as error:
+        raise InputError("path", path, f"cannot be read as netCDF ({error.strerror or error})") from None
+
+
+def _write(results: xarray.Dataset, path: str) -> None:
+    """Write a dataset without complex numbers.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
+    try:
+        with _ONE_AT_A_TIME:
+            results.to_netcdf(path, engine="netcdf4", format="NETCDF4")
+    except RuntimeError as error:  # how the library tells a full disk
+        raise OSError(errno.EIO, f"{error}: is the disk full?") from None
+
+
+def _in_parts(results: xarray.Dataset) -> xarray.Dataset:
+    """Complex variables as two; the parts are views, and no copies."""
+    parts = {}
+    for name, variable in results.variables.items():
+        if not np.iscomplexobj(variable.values):
+            continue
+        if name in results.coords:
+            raise InputError(str(name), None, "cannot be stored: it is a complex coordinate")
+        for ending, array in zip(PARTS, (variable.values.real, variable.values.imag), strict=True):
+            if f"{name}{ending}" in results.variables:
+                raise InputError(
+                    f"{name}{ending}", None, f"has the name that a part of {name} is stored under"
+                )
+            parts[f"{name}{ending}"] = (variable.dims, array, {**variable.attrs, _COMPLEX: name})
+    whole = {attributes[_COMPLEX] for _, _, attributes in parts.values()}
+    return results.drop_vars(whole).assign(parts)
+
+
+def _whole(stored: xarray.Dataset) -> xarray.Dataset:
+    names = dict.fromkeys(v.attrs[_COMPLEX] for v in stored.data_vars.values() if _COMPLEX in v.attrs)
+    for name in names:
+        real, imaginary = (stored[f"{name}{ending}"] for ending in PARTS)
+        number = np.empty(
+            real.shape, dtype=complex
+        )  # not real + 1j * imaginary, which loses signs and infinities
+        number.real, number.imag = real.values, imaginary.values
+        attributes = {key: value for key, value in real.attrs.items() if key != _COMPLEX}
+        stored = stored.assign({name: (real.dims, number, attributes)})
+        stored = stored.drop_vars([f"{name}{ending}" for ending in PARTS])
+    return stored

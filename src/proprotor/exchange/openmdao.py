@@ -1,0 +1,303 @@
+"""A component for OpenMDAO: flutter speed and damping of a case by its inputs, with exact partial derivatives.
+
+::
+
+    import openmdao.api as om
+    from proprotor.exchange.openmdao import WhirlFlutter
+
+    problem = om.Problem()
+    problem.model.add_subsystem(
+        "wing", WhirlFlutter(case="xv15", inputs=["rotor.precone", "support.modes[chord].frequency"]), promotes=["*"]
+    )
+    problem.setup()
+    problem.set_val("rotor_precone", 2.0, units="deg")
+    problem.run_model()
+    problem.get_val("flutter_speed", units="kn")
+
+Needs the extra ``openmdao``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+try:
+    import openmdao.api as om
+except ImportError as missing:
+    raise ImportError(
+        'proprotor.exchange.openmdao needs OpenMDAO: pip install "proprotor[openmdao]"'
+    ) from missing
+
+from proprotor.case import Case, load_case
+from proprotor.errors import InputError, unknown_name
+from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
+from proprotor.stability.flutter import Boundary, flutter_point
+from proprotor.stability.modes import decomposition
+from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
+from proprotor.units import in_metres_per_second
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import NDArray
+
+    from proprotor.datum import Datum
+
+_UNITS = {"": None, "K": "degK"}  # where OpenMDAO writes a unit otherwise
+
+
+def variable_name(path: str) -> str:
+    """The name of a variable of OpenMDAO for a path or a mode: ``support.modes[beam].x`` is support_modes_beam_x.
+
+    Parameters
+    ----------
+    path : str
+
+    Returns
+    -------
+    str
+    """
+    return re.sub(r"[^A-Za-z0-9]+", "_", path).strip("_")
+
+
+class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
+    """Flutter speed, and damping of named modes, of a case as functions of numbers of its deck.
+
+    Inputs are named by their paths (`variable_name`) and have SI units, which OpenMDAO converts: rotor_precone in rad.
+    With `damping`, airspeed is an input as well, (speeds,) in m/s. Outputs: flutter_speed in m/s and flutter_frequency
+    in rad/s, of the lowest onset or of the mode that is asked for; damping_<mode> (speeds,), the ratio -Re λ/|λ|.
+
+    A point that cannot be analysed raises `openmdao.api.AnalysisError` with the reason, which optimisers can step back
+    from: a trim that was not found, nothing that becomes unstable in the range, a mode that is not there, a number that
+    is not physical.
+
+    Parameters
+    ----------
+    case : Case or str
+        Or the name or path of a deck.
+    inputs : sequence of str, or mapping of str to str
+        Paths of inputs (`proprotor.deck.vary.design_inputs`), or paths by the names that the variables shall have.
+    flutter_speed : bool
+        Whether flutter_speed and flutter_frequency are outputs.
+    search : airspeeds in m/s, text such as "100:400:5kt", or pint quantity
+        Where the flutter speed is searched; 0.2 to 1.2 of the tip speed by default.
+    mode : str
+        The first boundary of this mode, instead of the lowest onset of any.
+    level : float
+        Damping ratio that counts as the boundary.
+    damping : sequence of str
+        Modes whose damping is wanted.
+    airspeed : as search
+        First values of the input airspeed.
+    model_options : mapping
+        See `proprotor.rotor.options.Options`.
+
+    Raises
+    ------
+    InputError
+        In setup, for an unknown path or mode, or when no output is asked for.
+    """
+
+    def initialize(self) -> None:
+        """Declare the options."""
+        declare = self.options.declare
+        declare("case", recordable=False, desc="Case, or name or path of a deck")
+        declare("inputs", default=(), desc="paths of inputs, or a mapping of variable names to paths")
+        declare("flutter_speed", default=True, types=bool, desc="whether the flutter speed is an output")
+        declare("search", default=None, desc="airspeeds in which the flutter speed is searched")
+        declare("mode", default=None, desc="mode whose boundary is the flutter speed; any by default")
+        declare("level", default=0.0, desc="damping ratio that counts as the boundary")
+        declare("damping", default=(), desc="modes whose damping at the airspeeds is an output")
+        declare("airspeed", default=None, desc="first values of the input airspeed")
+        declare("model_options", default={}, recordable=False, desc="options of the model")
+
+    def setup(self) -> None:
+        """Add inputs, outputs and partial derivatives.
+
+        Raises
+        ------
+        InputError
+            For an unknown path or mode, airspeeds that are missing, or when no output is asked for.
+        """
+        case = self.options["case"]
+        self._case = case if isinstance(case, Case) else load_case(case)
+        self._paths = self._paths_by_name()
+        self._damping = {f"damping_{variable_name(mode)}": mode for mode in self._modes()}
+        self._found: tuple[Any, Boundary] | None = None
+        if not (self.options["flutter_speed"] or self._damping):
+            raise InputError("damping", None, "must name a mode, or flutter_speed must be true")
+        for name, path in self._paths.items():
+            number = self._numbers[path]
+            self.add_input(name, float(number.si), units=_UNITS.get(number.unit, number.unit), desc=path)
+        if self.options["flutter_speed"]:
+            self.add_output("flutter_speed", 100.0, units="m/s")
+            self.add_output("flutter_frequency", 10.0, units="rad/s")
+            if self._paths:
+                self.declare_partials(["flutter_speed", "flutter_frequency"], list(self._paths))
+        if self._damping:
+            self._setup_damping()
+
+    def _setup_damping(self) -> None:
+        if self.options["airspeed"] is None:
+            raise InputError("airspeed", None, "must be given for the damping")
+        speeds = in_metres_per_second(self.options["airspeed"]).reshape(-1)
+        points = np.arange(len(speeds))
+        self.add_input("airspeed", speeds, units="m/s")
+        for output in self._damping:
+            self.add_output(output, shape=len(speeds))
+            self.declare_partials(output, "airspeed", rows=points, cols=points)
+            if self._paths:
+                self.declare_partials(output, list(self._paths))
+
+    def compute(self, inputs: Mapping[str, NDArray[np.float64]], outputs: Any) -> None:
+        """Find the flutter speed and the damping at the airspeeds.
+
+        Parameters
+        ----------
+        inputs : mapping of str to array
+            SI, by the names of the variables.
+        outputs : mapping of str to array
+            Filled: flutter_speed in m/s, flutter_frequency in rad/s, damping ratios.
+
+        Raises
+        ------
+        openmdao.api.AnalysisError
+            When the point cannot be analysed, with the reason.
+        """
+        try:
+            case = self._varied(inputs)
+            if self.options["flutter_speed"]:
+                boundary = self._boundary(case)
+                outputs["flutter_speed"], outputs["flutter_frequency"] = (
+                    boundary.position,
+                    boundary.frequency,
+                )
+                self._found = self._key(inputs), boundary
+            if self._damping:
+                modes = self._modes_at(case, inputs["airspeed"])
+                for output, mode in self._damping.items():
+                    outputs[output] = modes.damping_ratio.sel(mode=mode).values
+        except InputError as error:
+            raise om.AnalysisError(str(error)) from None
+
+    def compute_partials(self, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
+        """Exact derivatives by complex steps of the equations; no further flutter search.
+
+        Parameters
+        ----------
+        inputs : mapping of str to array
+            SI, by the names of the variables.
+        partials : mapping
+            Filled, by output and input, SI.
+
+        Raises
+        ------
+        openmdao.api.AnalysisError
+            When the point cannot be analysed, with the reason.
+        """
+        try:
+            case = self._varied(inputs)
+            if self.options["flutter_speed"] and self._paths:
+                self._flutter_partials(case, inputs, partials)
+            if self._damping:
+                self._airspeed_partials(case, inputs["airspeed"], partials)
+            if self._damping and self._paths:
+                self._damping_partials(case, inputs["airspeed"], partials)
+        except InputError as error:
+            raise om.AnalysisError(str(error)) from None
+
+    @property
+    def _numbers(self) -> dict[str, Datum]:
+        from proprotor.deck.vary import design_inputs
+
+        return design_inputs(self._case)
+
+    @property
+    def _model_options(self) -> dict[str, Any]:
+        return dict(self.options["model_options"])
+
+    def _paths_by_name(self) -> dict[str, str]:
+        """Paths of the inputs by the names of their variables."""
+        given = self.options["inputs"]
+        if isinstance(given, str):
+            raise InputError("inputs", given, "must be a list of paths")
+        paths = dict(given) if isinstance(given, Mapping) else {variable_name(path): path for path in given}
+        known = self._numbers
+        for path in paths.values():
+            if path not in known:
+                raise InputError("inputs", path, unknown_name(path, known, "input"))
+        return paths
+
+    def _modes(self) -> tuple[str, ...]:
+        if isinstance(self.options["damping"], str):
+            raise InputError("damping", self.options["damping"], "must be a list of modes")
+        return tuple(self.options["damping"])
+
+    def _varied(self, inputs: Mapping[str, NDArray[np.float64]]) -> Case:
+        return self._case.vary({path: inputs[name].item() for name, path in self._paths.items()})
+
+    def _key(self, inputs: Mapping[str, NDArray[np.float64]]) -> tuple[float, ...]:
+        return tuple(inputs[name].item() for name in self._paths)
+
+    def _boundary(self, case: Case) -> Boundary:
+        """The boundary that is the flutter speed."""
+        mode, level = self.options["mode"], self.options["level"]
+        found = flutter_point(case, self.options["search"], level=level, **self._model_options)
+        wanted = [b for b in found.boundaries if (b.onset if mode is None else b.mode == mode)]
+        if not wanted:
+            rule = "nothing becomes unstable" if mode is None else "has no boundary"
+            low, high = found.searched
+            raise InputError("flutter_speed", mode, f"{rule} between {low:.6g} and {high:.6g} m/s")
+        return wanted[0]
+
+    def _flutter_partials(self, case: Case, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
+        known = self._found is not None and self._found[0] == self._key(inputs)
+        boundary = self._found[1] if known and self._found else self._boundary(case)
+        numbers = {path: case.given[path] for path in self._paths.values()}
+        rates = at_boundary(case, boundary, numbers, self._model_options)
+        for name, path in self._paths.items():
+            own = rates.sel(input=path)
+            partials["flutter_speed", name] = own.derivative.item()
+            partials["flutter_frequency", name] = own.frequency_derivative.item()
+
+    def _damping_partials(self, case: Case, speeds: NDArray[np.float64], partials: Any) -> None:
+        paths = list(self._paths.values())
+        by_speed = [
+            sensitivity(case, "damping", paths, airspeed=float(speed), **self._model_options).derivative
+            for speed in speeds
+        ]
+        for output, mode in self._damping.items():
+            for name, path in self._paths.items():
+                rates = [derivative.sel(input=path, mode=mode).item() for derivative in by_speed]
+                partials[output, name] = np.reshape(rates, (-1, 1))
+
+    def _airspeed_partials(self, case: Case, speeds: NDArray[np.float64], partials: Any) -> None:
+        named = self._modes_at(case, speeds).sel(mode=list(self._damping.values()))
+        model, changes = with_changes(
+            lambda positions: case.linearize(positions, **self._model_options), np.asarray(speeds)
+        )
+        spectrum = decomposition(model)
+        apart = np.abs(spectrum.values[:, None, :] - named.eigenvalue.values[:, :, None])
+        modes = spectrum.modes(apart.argmin(axis=-1))
+        rates = damping_rate(modes.values, eigenvalue_change(model, changes, modes))
+        for place, output in enumerate(self._damping):
+            partials[output, "airspeed"] = rates[:, place]
+
+    def _modes_at(self, case: Case, speeds: NDArray[np.float64]) -> xarray.Dataset:
+        """The modes at the airspeeds, all analysed and with all modes whose damping is wanted."""
+        line, places = np.unique(speeds, return_inverse=True)
+        found = case.sweep(line, **self._model_options)
+        for speed, reason in zip(line, found.reason.values, strict=True):
+            if reason:
+                raise InputError("airspeed", f"{speed:.6g} m/s", str(reason))
+        names = found.mode.values.tolist()
+        for mode in self._damping.values():
+            if mode not in names:
+                raise InputError("damping", mode, unknown_name(mode, names, "mode"))
+            missing = ~np.isfinite(found.damping_ratio.sel(mode=mode).values)
+            if missing.any():
+                raise InputError("damping", mode, f"is no mode at {line[missing][0]:.6g} m/s")
+        return found.isel(airspeed=places)

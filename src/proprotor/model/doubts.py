@@ -1,0 +1,96 @@
+"""Doubtful numbers: each has a question mark wherever it is shown, and beneath stands what makes it doubtful."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+MARK = "?"
+_SHARE = re.compile(r"\d+(?=%)")  # which differs from point to point, for the same reason
+
+
+class Doubt(NamedTuple):
+    """What makes numbers doubtful, and between which positions.
+
+    Parameters
+    ----------
+    text : str
+    low, high : float
+        The lowest and the highest position that have it, m/s or in SI units of the input.
+    """
+
+    text: str
+    low: float
+    high: float
+
+
+def reasons_for_doubt(warnings: Iterable[str]) -> dict[str, list[int]]:
+    """The reasons in some warnings, in the order in which they come, each with the places of the warnings that have it.
+
+    One reason with a share that differs is told once, with the largest.
+    """
+    found: dict[str, list[tuple[int, str]]] = defaultdict(list)
+    for place, warning in enumerate(warnings):
+        for text in filter(None, str(warning).split("; ")):
+            found[_SHARE.sub("", text)].append((place, text))
+    return {_largest([text for _, text in own]): [place for place, _ in own] for own in found.values()}
+
+
+def _largest(texts: list[str]) -> str:
+    if len(set(texts)) == 1:
+        return texts[0]
+    largest = max(texts, key=lambda text: [int(share) for share in _SHARE.findall(text)])
+    return _SHARE.sub(lambda share: f"up to {share[0]}", largest)
+
+
+def doubts_along(positions: Array | float, warnings: Array) -> tuple[Doubt, ...]:
+    """The doubts along a line of positions (points,) with warnings (points,), or at one."""
+    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    found = reasons_for_doubt(np.atleast_1d(warnings).tolist())
+    return tuple(
+        Doubt(text, float(at[places].min()), float(at[places].max())) for text, places in found.items()
+    )
+
+
+def doubtful_near(positions: Array, warnings: Array, at: float) -> bool:
+    """Whether a point is doubtful of the two between which a position lies, or of which it is one."""
+    near = [positions[positions <= at].max(initial=-np.inf), positions[positions >= at].min(initial=np.inf)]
+    return bool((warnings[np.isin(positions, near)] != "").any())
+
+
+def doubt_at(doubts: Iterable[Doubt], position: float) -> str:
+    """What makes a position doubtful by the doubts along its line; empty where nothing does."""
+    return "; ".join(doubt.text for doubt in doubts if doubt.low <= position <= doubt.high)
+
+
+def marked(number: str, warning: object) -> str:
+    """A number as it is shown: with a question mark where there is a warning."""
+    return f"{number}{MARK}" if warning else number
+
+
+def footnotes(doubts: Iterable[Doubt], unit: str, factor: float = 1.0) -> Iterator[str]:
+    """A sentence on each doubt, its positions in a unit of so many SI units."""
+    for doubt in doubts:
+        low, high = (f"{float(f'{end / factor:.10g}'):g} {unit}".strip() for end in doubt[1:])
+        where = f"at {low}" if low == high else f"from {low} to {high}"
+        yield f"Doubtful {where}: {doubt.text}."
+
+
+def map_doubts(found: xarray.Dataset) -> Iterator[str]:
+    """A sentence on each doubt of a stability map, of its points and of the boundary between them."""
+    points, vertices = (
+        found[name].values.ravel().tolist() if name in found else []
+        for name in ("warning", "boundary_warning")
+    )
+    for text, places in reasons_for_doubt([*points, *vertices]).items():
+        inside = sum(place < len(points) for place in places)
+        yield f"Doubtful at {inside} points and {len(places) - inside} of the boundary: {text}."

@@ -1,0 +1,190 @@
+"""Response of hub loads, hub motion and blades to gusts and to the swashplate, over frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.model.linear_model import HUB, SWASHPLATE, LinearModel
+from proprotor.model.state_space import LOADS, StateSpace
+from proprotor.needs import check_memory
+from proprotor.stability.root_error import roots
+from proprotor.typing import Array
+from proprotor.units import values_in_si
+
+if TYPE_CHECKING:
+    import xarray
+
+_BYTES_PER_ENTRY = 48.0  # of a response: a complex number, its magnitude and phase, and a copy
+_BLOCK = 4096  # matrices solved at once
+
+
+def frequency_response(
+    model: LinearModel,
+    frequency: Any,
+    *,
+    inputs: Sequence[str] | None = None,
+    outputs: Sequence[str] | None = None,
+) -> xarray.Dataset:
+    """Steady response to an input of one frequency: output = response × input, both e^{iωt}.
+
+    The same as `StateSpace.to_control` gives to python-control, for whole batches and with names and units. Where the
+    model is unstable no steady state is ever reached; `stable` tells.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Leading axes of a batch are kept.
+    frequency : array (frequencies,) in rad/s, text such as "3 Hz" or "1:5:0.1 Hz", or pint quantity
+        Of the excitation; not negative.
+    inputs, outputs : sequence of str, optional
+        Names as `StateSpace` has them; all by default.
+
+    Returns
+    -------
+    xarray.Dataset
+        response (..., frequency, output, input), complex, in the output's unit per unit of the input; magnitude and
+        phase (rad) of it; stable (...), whether every mode is damped; warning and reason (...) of points that are
+        doubtful, and of those that failed. Attributes: the case and its options (`proprotor.model.stamp`). Coordinates:
+        frequency, output_unit, input_unit, airspeed. NaN where a point failed, or where a frequency is that of an
+        undamped mode.
+
+    Raises
+    ------
+    InputError
+        For an unknown name, a frequency that is negative or not finite, a model without inputs, or a response that does
+        not fit into memory.
+    """
+    import xarray  # here, because it takes long to import
+
+    omega = _frequencies(frequency)
+    space = model.to_state_space()
+    columns, rows = _places(inputs, space.inputs, "inputs"), _places(outputs, space.outputs, "outputs")
+    count = space.A[..., 0, 0].size * omega.size
+    told = f"{omega.size} frequencies"
+    size = _BYTES_PER_ENTRY * count * len(rows) * len(columns)
+    check_memory("frequency", told, size, "the response", "take fewer, or fewer inputs and outputs")
+    response = _response(space, omega, rows, columns)
+    leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
+    leading = ("airspeed",) if len(leading) == 1 else leading
+    dims = (*leading, "frequency", "output", "input")
+    chosen = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
+    unit = {"units": "output_unit / input_unit"}
+    return xarray.Dataset(
+        {
+            "response": (dims, response, unit),
+            "magnitude": (dims, np.abs(response), unit),
+            "phase": (dims, np.angle(response), {"units": "rad"}),
+            "stable": (leading, _stable(model)),
+            "warning": (
+                leading,
+                model.trim.warning.astype(str),
+                {"long_name": "what makes a point doubtful"},
+            ),
+            "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
+        },
+        coords={
+            "frequency": ("frequency", omega, {"units": "rad/s"}),
+            "output": chosen[0],
+            "input": chosen[1],
+            "output_unit": ("output", [_unit_of(name) for name in chosen[0]]),
+            "input_unit": ("input", ["rad" if name in SWASHPLATE else "m/s" for name in chosen[1]]),
+            "airspeed": (leading, model.airspeed, {"units": "m/s"}),
+        },
+        attrs=dict(space.stamp),
+    )
+
+
+def _frequencies(frequency: Any) -> Array:
+    omega = values_in_si(frequency, "rad/s", "frequency").reshape(-1)
+    wrong = ~(np.isfinite(omega) & (omega >= 0))
+    if wrong.any():
+        raise InputError("frequency", omega[wrong][0], "must be finite and not negative")
+    return omega
+
+
+def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> list[int]:
+    names = known if wanted is None else (wanted,) if isinstance(wanted, str) else tuple(wanted)
+    for name in names:
+        if name not in known:
+            raise InputError(what, name, unknown_name(name, known, what.removesuffix("s")))
+    return [known.index(name) for name in names]
+
+
+def _response(space: StateSpace, omega: Array, rows: list[int], columns: list[int]) -> Array:
+    """C (iω - A)⁻¹ B + D (..., frequencies, rows, columns)."""
+    leading = space.A.shape[:-2]
+    count = int(np.prod(leading, dtype=int))
+    a, b, c, d = (
+        np.reshape(np.broadcast_to(m, (*leading, *m.shape[-2:])), (count, *m.shape[-2:]))
+        for m in (
+            space.A,
+            space.B[..., columns],
+            space.C[..., rows, :],
+            space.D[..., rows, :][..., columns],
+        )
+    )
+    found = np.full((count, len(omega), len(rows), len(columns)), complex(np.nan, np.nan))
+    for points, own in _alike(a):
+        parts = a[points][:, own][:, :, own], b[points][:, own], c[points][:, :, own], d[points]
+        found[points] = _of_alike(*parts, omega)
+    return found.reshape(*leading, *found.shape[1:])
+
+
+def _of_alike(a: Array, b: Array, c: Array, d: Array, omega: Array) -> Array:
+    """The same (points, frequencies, rows, columns) for points with the same states."""
+    found = np.empty((len(a), len(omega), *d.shape[1:]), dtype=complex)
+    step = max(1, _BLOCK // max(len(a), 1))
+    for start in range(0, len(omega), step):
+        at = slice(start, start + step)
+        turning = 1j * omega[at, None, None] * np.eye(a.shape[-1])
+        found[:, at] = c[:, None] @ _solved(turning - a[:, None], b[:, None]) + d[:, None]
+    return found
+
+
+def _alike(systems: Array) -> Iterator[tuple[Array, Array]]:
+    """Points (k,) of matrices (points, states, states) that have the same states, and these; failed ones left out."""
+    present = np.isfinite(np.diagonal(systems, axis1=-2, axis2=-1))
+    kinds, kind = np.unique(present, axis=0, return_inverse=True)
+    for place, states in enumerate(kinds):
+        points = np.flatnonzero(kind.reshape(-1) == place)
+        own = np.flatnonzero(states)
+        if not len(own):
+            continue
+        works = np.isfinite(systems[points][:, own][:, :, own]).all(axis=(-2, -1))
+        yield points[works], own
+
+
+def _solved(matrices: Array, loads: Array) -> Array:
+    """Solutions (points, frequencies, states, columns); NaN where there is none."""
+    loads = np.broadcast_to(loads, (*matrices.shape[:-1], loads.shape[-1]))
+    try:
+        return np.linalg.solve(matrices, loads)
+    except np.linalg.LinAlgError:  # one of them, at least, is singular
+        solutions = np.full(loads.shape, np.nan, dtype=complex)
+        for place in np.ndindex(matrices.shape[:-2]):
+            try:
+                solutions[place] = np.linalg.solve(matrices[place], loads[place])
+            except np.linalg.LinAlgError:
+                continue
+        return solutions
+
+
+def _stable(model: LinearModel) -> NDArray[np.bool_]:
+    """Whether every root decays, by more than its error."""
+    values, error = roots(model)
+    decays = (values.real < -error) | np.isnan(values)  # a state that a point does not have
+    return np.asarray(decays.all(axis=-1) & np.isfinite(values).any(axis=-1))
+
+
+def _unit_of(output: str) -> str:
+    """SI unit of an output by its name."""
+    name, _, kind = output.partition(" ")
+    if name in LOADS:
+        return "N" if name.startswith("force") else "N*m"
+    per = {"": "", "rate": "/s", "acceleration": "/s**2"}[kind]
+    return ("m" if name in HUB[:3] else "rad") + per

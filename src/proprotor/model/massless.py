@@ -1,0 +1,66 @@
+"""Motions that move no mass: flapping about the centre of rotation, say, against the tilt of a gimbal.
+
+Such coordinates describe one motion twice. Their mass matrix has no inverse, though rounding may hide that, and no
+eigenvalue follows from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from proprotor.model.linear_model import LinearModel
+from proprotor.typing import Array
+
+_CLEARLY_MASS = 1e-6  # pivot, of a mass matrix scaled to a unit diagonal, above which no more is asked
+_NO_INERTIA = 1e13  # condition number of that matrix, above which it has no inverse
+_TAKES_PART = 0.01  # component of a unit vector
+
+
+def massless(mass: Array) -> Array:
+    """Which mass matrices of a batch (..., n, n) have no inverse, (...); those of failed points are not asked."""
+    found = np.zeros(mass.shape[:-2], dtype=bool)
+    good = np.isfinite(mass).all(axis=(-2, -1))
+    numbers = np.real(mass[good])
+    if not _clearly_positive(numbers):
+        found[good] = np.linalg.cond(_scaled(numbers)) > _NO_INERTIA
+    return found
+
+
+def massless_coordinates(mass: Array, dofs: tuple[str, ...]) -> list[str]:
+    """Names of the coordinates in which one singular matrix (n, n) has motions without mass."""
+    _, sizes, motions = np.linalg.svd(_scaled(np.real(mass)))
+    without = motions[sizes * _NO_INERTIA < sizes[0]]
+    share = np.abs(without).max(axis=0, initial=0.0)
+    return [name for name, part in zip(dofs, share, strict=True) if part > _TAKES_PART]
+
+
+def with_reasons(model: LinearModel) -> LinearModel:
+    """The model with its singular points failed, each with its reason; their matrices are kept."""
+    singular = massless(model.M)
+    if not singular.any():
+        return model
+    reason = np.array(model.trim.reason, dtype=object)
+    for place in map(tuple, np.argwhere(singular)):
+        names = ", ".join(massless_coordinates(model.M[place], model.dofs))
+        reason[place] = f"{names}: move against each other without any mass; lock or hold some of them"
+    trim = replace(model.trim, reason=reason, converged=model.trim.converged & ~singular)
+    return replace(model, trim=trim)
+
+
+def _scaled(mass: Array) -> Array:
+    diagonal = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
+    diagonal = np.where(diagonal > 0, diagonal, 1)
+    scaled: Array = mass / diagonal[..., None, :] / diagonal[..., None]
+    return scaled
+
+
+def _clearly_positive(mass: Array) -> bool:
+    """Whether every motion has mass by the triangular factors of M + Mᵀ, much cheaper than singular values."""
+    twice = mass + np.swapaxes(mass, -1, -2)
+    try:
+        pivots = np.diagonal(np.linalg.cholesky(twice), axis1=-2, axis2=-1) ** 2
+    except np.linalg.LinAlgError:
+        return False
+    return bool(np.all(pivots > _CLEARLY_MASS * np.diagonal(twice, axis1=-2, axis2=-1)))

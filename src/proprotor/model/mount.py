@@ -1,0 +1,153 @@
+"""A rotor, or what stands in its place, on a support: hub coordinates replaced by the support's own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from proprotor.errors import InputError
+from proprotor.model.linear_model import HUB, LinearModel
+from proprotor.model.massless import with_reasons
+from proprotor.model.rotor_share import refuse, without_rotors
+from proprotor.rotor.trim import Trim
+from proprotor.stability.mode_names import check_distinct
+from proprotor.support.normal_modes import NormalModes
+from proprotor.typing import Array
+
+
+def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
+    """The coupled model on the coordinates of the support and of the rotor without its hub.
+
+    Hub motion is Φ p, so by virtual work the rotor's matrices become Tᵀ (...) T, with the support's own
+    added. Where the support's generalised masses include the rotor, its share is taken off first:
+    `proprotor.model.rotor_share`.
+
+    Parameters
+    ----------
+    rotor_alone : LinearModel
+        Six hub coordinates, then any others: `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere, these
+        with `mass_at_rest` where the support's masses include the rotor.
+    support : NormalModes
+
+    Returns
+    -------
+    LinearModel
+        With the coordinates of the support first, SI. A point whose mass matrix has no inverse has its matrices, but
+        no modes, and the reason in `trim`; one whose support has no mass without the rotor has neither.
+
+    Raises
+    ------
+    InputError
+        When the model does not begin with the hub coordinates, a coordinate of the support has the name of one of the
+        rotor's, the mass at rest is needed and missing, or the only support there is has no mass without the rotor.
+    """
+    if rotor_alone.dofs[: len(HUB)] != HUB:
+        raise InputError("dofs", ", ".join(rotor_alone.dofs), f"must begin with {', '.join(HUB)}")
+    own = rotor_alone.dofs[len(HUB) :]
+    _check_names(support.names, own)
+    mass, refusal = without_rotors(support, [(support.hub, rotor_alone.mass_at_rest)])
+    additions = {"M": mass, "C": support.damping, "K": support.stiffness}
+    shape = np.broadcast_shapes(
+        rotor_alone.M.shape[:-2],
+        support.hub.shape[:-2],
+        *(matrix.shape[:-2] for matrix in additions.values()),
+    )
+    rotor_alone = _broadcast(rotor_alone, shape)
+    matrices: dict[str, Any] = {
+        name: _on_support(getattr(rotor_alone, name), support.hub, addition)
+        for name, addition in additions.items()
+    }
+    if rotor_alone.B is not None:
+        at_hub = np.swapaxes(support.hub, -1, -2) @ rotor_alone.B[..., : len(HUB), :]
+        matrices["B"] = np.concatenate([at_hub, rotor_alone.B[..., len(HUB) :, :]], axis=-2)
+    still = np.zeros((*support.hub.shape[:-1], len(own)))
+    coupled = replace(
+        rotor_alone,
+        **matrices,
+        dofs=(*support.names, *own),
+        hub=np.concatenate([support.hub, still], axis=-1),
+        rotor=rotor_alone,
+        mass_at_rest=None,
+        shapes=_at_points(support.shapes, shape, 2),
+        trim=_with_warning(rotor_alone.trim, _at_points(support.warning, shape, 0)),
+    )
+    return refused_where(refusal, with_reasons(coupled), support)
+
+
+def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> LinearModel:
+    """Return the model with NaN and the reason at each point whose support has no mass without its rotors.
+
+    Raises
+    ------
+    InputError
+        When the refusal is that of all points at once.
+    """
+    if not refusal.ndim:
+        refuse(refusal, support)
+    everywhere = np.broadcast_to(refusal, model.M.shape[:-2])
+    if not (refused := everywhere != "").any():
+        return model
+    field = str(InputError("support.includes_rotor", support.includes_rotor, ""))
+    reason = np.where(refused, field + everywhere, model.trim.reason)
+    trim = replace(model.trim, reason=reason, converged=model.trim.converged & ~refused)
+    matrices: dict[str, Any] = {
+        name: np.where(refused[..., None, None], np.nan, getattr(model, name))
+        for name in ("M", "C", "K", "B")
+        if getattr(model, name) is not None
+    }
+    return replace(model, **matrices, trim=trim)
+
+
+def _at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
+    """An array of many designs, with some axes of its own, at each point of a batch."""
+    if values is None:
+        return None
+    return np.broadcast_to(values, (*shape, *values.shape[values.ndim - own :]))
+
+
+def _with_warning(trim: Trim, warning: Array | None) -> Trim:
+    if warning is None:
+        return trim
+    pairs = zip(trim.warning.ravel(), warning.ravel(), strict=True)
+    joined = np.array(["; ".join(filter(None, texts)) for texts in pairs], dtype=object)
+    return replace(trim, warning=joined.reshape(trim.warning.shape))
+
+
+def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
+    """Tᵀ (...) T with the support's own added; T = diag(Φ, 1) leaves the block of the rotor's own as it is."""
+    modes, hubs = hub.shape[-1], len(HUB)
+    own = matrix.shape[-1] - hubs
+    virtual = np.swapaxes(hub, -1, -2)
+    columns = matrix[..., :hubs] @ hub
+    kind = np.result_type(columns, addition)
+    whole = np.empty((*matrix.shape[:-2], modes + own, modes + own), dtype=kind)
+    whole[..., :modes, :modes] = virtual @ columns[..., :hubs, :] + addition
+    whole[..., :modes, modes:] = virtual @ matrix[..., :hubs, hubs:]
+    whole[..., modes:, :modes] = columns[..., hubs:, :]
+    whole[..., modes:, modes:] = matrix[..., hubs:, hubs:]
+    return whole
+
+
+def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:
+    """Refuse a coordinate of the support that would be taken for one of the rotor, by its name or by its mode's."""
+    if clashes := [name for name in support if name in own]:
+        rule = f"must not be a name of the rotor's own coordinates, {', '.join(own)}"
+        raise InputError("support.names", ", ".join(clashes), rule)
+    check_distinct("support.names", (*support, *own))
+
+
+def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
+    """The model at every point of a batch that has more axes, those of the supports."""
+    if model.M.shape[:-2] == shape:
+        return model
+    matrices = {name: getattr(model, name) for name in ("M", "C", "K", "B")}
+    matrices = {
+        name: None if matrix is None else np.broadcast_to(matrix, (*shape, *matrix.shape[-2:]))
+        for name, matrix in matrices.items()
+    }
+    return replace(
+        model, **matrices, trim=model.trim.broadcast(shape), airspeed=np.broadcast_to(model.airspeed, shape)
+    )

@@ -1,0 +1,241 @@
+"""The rotor's share in the masses of a support whose modes were measured or computed with the rotor on.
+
+The share depends on how the rotor was held then, never on the options of an analysis: it is the rotor's mass matrix at
+rest with its blades locked, less what a free gimbal or a free shaft took out of it (a Schur complement).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError
+from proprotor.model.linear_model import HUB, MASS_AT_REST
+from proprotor.support.normal_modes import NormalModes
+from proprotor.typing import Array
+
+_TRANSLATION = np.diag([1.0] * 3 + [0.0] * 3)
+_ABOUT_SHAFT = [HUB.index("alpha_z")]  # which moves a rotor at rest just as its azimuth does
+_GIMBAL = [MASS_AT_REST.index(name) for name in ("gimbal_1c", "gimbal_1s")]
+_ROUNDING = 1e-9  # of a mass scaled to a unit diagonal, as for the masses of a support
+_TOLD = 1e-3  # change of a frequency by the hub spring, from which on it is told
+_NO_MASS = 1e-12  # of the largest direction of a scaled mass
+
+
+def how_held(support: NormalModes, mass_at_rest: Array) -> str:
+    """Return the support's word for how the rotor was held; for True "gimballed" with a gimbal, "rigid" without."""
+    if isinstance(support.includes_rotor, str):
+        return support.includes_rotor
+    return "gimballed" if mass_at_rest.shape[-1] == len(MASS_AT_REST) else "rigid"
+
+
+def rotor_share(mass_at_rest: ArrayLike, held: str, shaft: str = "held") -> Array:
+    """Return what a rotor adds to the mass at its hub.
+
+    Parameters
+    ----------
+    mass_at_rest : array_like, shape (..., 8, 8) or (..., 6, 6)
+        Of `proprotor.model.linear_model.mass_at_rest`, or on the hub's coordinates alone for a rotor without gimbal; SI.
+    held : "gimballed", "rigid" or "mass only"
+        Free to tilt on its gimbal, as one body with the shaft, or a point mass at the hub.
+    shaft : "held" or "free"
+        Whether the rotor could turn about its shaft; a point mass does not ask.
+
+    Returns
+    -------
+    array (..., 6, 6)
+        On the hub's coordinates: kg, kg m and kg m².
+
+    Raises
+    ------
+    InputError
+        When the matrix has another size, or has no gimbal to be free on.
+    """
+    mass = np.asarray(mass_at_rest)
+    if mass.shape[-2:] not in ((len(HUB),) * 2, (len(MASS_AT_REST),) * 2):
+        raise InputError("mass_at_rest", f"array of shape {mass.shape}", "must be (..., 6, 6) or (..., 8, 8)")
+    if held == "mass only":
+        point: Array = mass[..., :1, :1] * _TRANSLATION
+        return point
+    if held == "gimballed" and mass.shape[-1] == len(HUB):
+        raise InputError("includes_rotor", held, 'needs a rotor with a gimbal; this one has none: "rigid"')
+    free = (_GIMBAL if held == "gimballed" else []) + (_ABOUT_SHAFT if shaft == "free" else [])
+    return _released(mass, free) if free else mass[..., : len(HUB), : len(HUB)]
+
+
+def _released(mass: Array, free: list[int]) -> Array:
+    """Return the mass that the hub moves when some coordinates are free to follow as they like."""
+    own, coupling = mass[..., free, :][..., free], mass[..., free, : len(HUB)]
+    without = np.diagonal(own, axis1=-2, axis2=-1) == 0  # nothing follows where nothing has mass
+    own = own + without[..., None] * np.eye(len(free))
+    at_hub = mass[..., : len(HUB), : len(HUB)]
+    released: Array = at_hub - np.swapaxes(coupling, -1, -2) @ np.linalg.solve(own, coupling)
+    return released
+
+
+def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | None]]) -> tuple[Array, Array]:
+    """Take the shares of the rotors off the mass of a support.
+
+    Parameters
+    ----------
+    support : NormalModes
+    rotors : iterable of (hub, mass_at_rest)
+        Of each rotor the motion of its hub (..., 6, n), and its mass at rest as for `rotor_share`.
+
+    Returns
+    -------
+    mass : array (..., n, n)
+        SI; as the support has it where that does not include the rotor.
+    refusal : array (...) of str
+        Why what is left is no mass; "" where it is one.
+
+    Raises
+    ------
+    InputError
+        When a mass at rest is needed and missing.
+    """
+    mass, held = support.mass, ""
+    for hub, at_rest in rotors if support.includes_rotor else ():
+        if at_rest is None:
+            rule = "must be given with the model: the support's masses include the rotor"
+            raise InputError("mass_at_rest", None, rule)
+        held = how_held(support, at_rest)
+        mass = mass - np.swapaxes(hub, -1, -2) @ rotor_share(at_rest, held, support.shaft) @ hub
+    refusal = np.full(mass.shape[:-2], "", dtype=object)
+    if held and not _holds(mass, support.mass):
+        given = np.broadcast_to(np.real(support.mass), mass.shape)
+        for place in np.ndindex(refusal.shape):
+            refusal[place] = _refusal(np.real(mass[place]), given[place], support.names, held)
+    return mass, refusal
+
+
+def settled(support: NormalModes, mass_at_rest: Array) -> NormalModes:
+    """Return the support with the word for how its rotor was held, and refuse one without a mass of its own.
+
+    In a batch each design fails by itself, when the rotor is mounted.
+
+    Raises
+    ------
+    InputError
+        Naming includes_rotor and the units.
+    """
+    _, refusal = without_rotors(support, [(support.hub, mass_at_rest)])
+    if not refusal.ndim:
+        refuse(refusal, support)
+    if support.includes_rotor is not True:
+        return support
+    return replace(support, includes_rotor=how_held(support, mass_at_rest))
+
+
+def refuse(refusal: Array, support: NormalModes) -> None:
+    """Raise the refusal of a single design, if it is one."""
+    if reason := str(refusal[()]):
+        raise InputError("support.includes_rotor", support.includes_rotor, reason)
+
+
+def _holds(left: Array, given: Array) -> bool:
+    """Whether no direction of what is left is negative, but for rounding: all have a Cholesky factor."""
+    scaled = _scaled(np.real(left), np.real(given))
+    try:
+        np.linalg.cholesky(scaled + _ROUNDING * np.eye(scaled.shape[-1]))
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def _scaled(left: Array, given: Array) -> Array:
+    """Return what is left in units of the diagonal it was taken from, which is not zero where all was taken."""
+    diagonal = np.diagonal(given, axis1=-2, axis2=-1) + np.abs(np.diagonal(left, axis1=-2, axis2=-1))
+    size = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    scaled: Array = left / size[..., :, None] / size[..., None, :]
+    return scaled
+
+
+def _refusal(left: Array, given: Array, names: Sequence[str], held: str) -> str:
+    """Say of one design in which motion the rotor's share is more than the whole; "" where it is so in none."""
+    values, motions = np.linalg.eigh(_scaled(left, given))
+    if values[0] >= -_ROUNDING:
+        return ""
+    size = np.sqrt(np.diagonal(given) + np.abs(np.diagonal(left)))
+    motion = motions[:, 0] / np.where(size > 0, size, 1.0)
+    whole, rest = motion @ given @ motion, motion @ left @ motion
+    most = names[int(np.argmax(np.abs(motions[:, 0])))]
+    times = f"{1 - rest / whole:.3g} times" if whole > 0 else "more than"
+    return (
+        f"leaves no mass: in {most} the share of the rotor, {held}, is {times} the whole mass given. Check how the "
+        "rotor was held (false where it was not on) and the units (lb for slug, length_unit, mass_unit)"
+    )
+
+
+def spring_warnings(
+    support: NormalModes, mass_at_rest: Array, gimbal_stiffness: ArrayLike
+) -> tuple[str, ...]:
+    """Tell where a hub spring, which is no mass, keeps modes found on a gimbal from coming out as given.
+
+    Parameters
+    ----------
+    support : NormalModes
+    mass_at_rest : array (..., 8, 8)
+    gimbal_stiffness : float or array (...)
+        N m/rad.
+    """
+    if not support.includes_rotor or how_held(support, mass_at_rest) != "gimballed":
+        return ()
+    frequency, ratio, names = _modes_with_spring(support, np.real(mass_at_rest), np.real(gimbal_stiffness))
+    changes = [
+        f"{name} at {hertz:.4g} Hz by {100 * (times - 1):+.2g} %"
+        for name, hertz, times in zip(names, frequency / (2 * np.pi), ratio, strict=True)
+        if abs(times - 1) > _TOLD
+    ]
+    if not changes:
+        return ()
+    return (
+        f"At rest the hub spring moves {', '.join(changes)} from the frequency given: the rotor's share taken off the "
+        "support's modes is that of a gimbal without spring, for a spring is no mass.",
+    )
+
+
+def _modes_with_spring(
+    support: NormalModes, mass_at_rest: Array, gimbal_stiffness: ArrayLike
+) -> tuple[Array, Array, list[str]]:
+    """Return frequencies (n,) of the undamped modes in rad/s, what the spring makes of them as a ratio, and names.
+
+    Of many designs those which the spring moves most. One mode and the gimbal tilt it causes: with unit modal mass,
+    tilt c per unit, gimbal inertia I and spring K, the squares λ of the frequencies solve
+    I λ² - (I (ω² + K c²) + K) λ + ω² K = 0.
+    """
+    square, shapes, scaled = _undamped_modes(np.real(support.mass), np.real(support.stiffness))
+    own = mass_at_rest[..., _GIMBAL, :][..., _GIMBAL]
+    tilt = np.linalg.solve(own, mass_at_rest[..., _GIMBAL, : len(HUB)]) @ np.real(support.hub) @ shapes
+    inertia, spring = own[..., :1, 0], np.asarray(gimbal_stiffness, dtype=float)[..., None]
+    middle = inertia * (square + spring * np.sum(tilt**2, axis=-2)) + spring
+    root = np.sqrt(np.maximum(middle**2 - 4 * inertia * square * spring, 0.0))
+    upper = (middle + root) / (2 * inertia)
+    lower = square * spring / (inertia * upper)
+    held = square > 0
+    found = np.where(spring < inertia * square, upper, lower)
+    ratio = np.where(held, np.sqrt(found / np.where(held, square, 1.0)), 1.0)
+    names = np.array(support.names)[np.abs(scaled).argmax(axis=-2)]
+    n = ratio.shape[-1]
+    square, ratio, names = (
+        np.broadcast_to(part, ratio.shape).reshape(-1, n) for part in (square, ratio, names)
+    )
+    worst = np.abs(ratio - 1).argmax(axis=0), np.arange(n)
+    return np.sqrt(square[worst]), ratio[worst], names[worst].tolist()
+
+
+def _undamped_modes(mass: Array, stiffness: Array) -> tuple[Array, Array, Array]:
+    """Return ω² (..., n), shapes of unit modal mass, and these in scaled coordinates; zero where there is no mass."""
+    size = np.sqrt(np.diagonal(mass, axis1=-2, axis2=-1))
+    size = np.where(size > 0, size, 1.0)
+    values, vectors = np.linalg.eigh(mass / size[..., :, None] / size[..., None, :])
+    has_mass = values > _NO_MASS * values[..., -1:]
+    root = np.where(has_mass, 1 / np.sqrt(np.where(has_mass, values, 1.0)), 0.0)
+    inverse = (vectors * root[..., None, :]) @ np.swapaxes(vectors, -1, -2) / size[..., :, None]
+    flexible = np.swapaxes(inverse, -1, -2) @ stiffness @ inverse
+    square, turned = np.linalg.eigh((flexible + np.swapaxes(flexible, -1, -2)) / 2)
+    shapes = inverse @ turned
+    return np.where(square > _NO_MASS * square[..., -1:], square, 0.0), shapes, shapes * size[..., :, None]

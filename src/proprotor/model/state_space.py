@@ -1,0 +1,202 @@
+"""State space of a linear model, with names: for control design, frequency response and simulation.
+
+Inputs are swashplate collective and cyclics (rad) and gusts along I, J, K (m/s). Outputs are hub motion, the
+rotor's loads on the
+hub and the blades' motion. With the pitch equations kept, the pitch coordinates are the whole perturbation of
+blade pitch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from proprotor.errors import InputError
+from proprotor.model.linear_model import HUB, INPUTS, ROTOR_SPEED, LinearModel
+from proprotor.model.stamp import Stamp, of_model
+from proprotor.needs import need
+from proprotor.stability.modes import held_coordinates, lack_azimuth, state_matrix, without_massless
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import control
+
+Rows = tuple[Array, Array, Array]  # of displacements, rates and accelerations, by the states
+Block = tuple[tuple[str, ...], Array, Array]  # names of outputs, their rows of C and of D
+
+LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
+
+
+@dataclass(frozen=True, eq=False)
+class StateSpace:
+    """ẋ = A x + B u, y = C x + D u, batched over leading axes; NaN at failed points.
+
+    Where a shaft holds the azimuth at some points of a batch only, the azimuth is a state and an output, NaN at the
+    other points in its row and column of A, its rows of B, C and D and its column of C; its rate is an output too.
+
+    Attributes
+    ----------
+    A : array (..., states, states)
+        SI units.
+    B : array (..., states, inputs)
+        Per unit of the inputs, SI.
+    C : array (..., outputs, states)
+        SI units.
+    D : array (..., outputs, inputs)
+        SI units.
+    states, inputs, outputs : tuple of str
+        States are displacements (without the rotor's azimuth unless a shaft holds it), then rates ("… rate").
+        Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
+        inertial axes)
+        and the rotor's own coordinates; of an azimuth that no shaft holds, the rate.
+    warning, reason : array of str
+        (...): what makes a point doubtful, and why one failed; empty where nothing does.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.model.stamp`.
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    warning: Array
+    reason: Array
+    stamp: Stamp = field(default_factory=dict)
+
+    def to_control(self) -> control.StateSpace:
+        """The same as a `control.StateSpace` of python-control; one point at a time.
+
+        Returns
+        -------
+        control.StateSpace
+
+        Raises
+        ------
+        InputError
+            When the model is a batch of several points, or python-control is not installed.
+        """
+        need("control", "to_control", "state spaces", "control")
+        import control
+
+        if self.A.ndim != 2:
+            raise InputError(
+                "airspeed", f"array of shape {self.A.shape[:-2]}", "must be one speed for python-control"
+            )
+        return control.StateSpace(
+            self.A, self.B, self.C, self.D, states=self.states, inputs=self.inputs, outputs=self.outputs
+        )
+
+
+def state_space(model: LinearModel) -> StateSpace:
+    """State space of a rotor, alone or on a support.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Leading axes of a batch are kept.
+
+    Returns
+    -------
+    StateSpace
+
+    Raises
+    ------
+    InputError
+        When the model has no inputs, as one from elsewhere may.
+    """
+    if model.B is None:
+        raise InputError("B", None, "must be given: the model has no inputs")
+    system, mass = state_matrix(model), without_massless(model).M
+    n, held = len(model.dofs), held_coordinates(model)
+    rates = slice(len(held), len(held) + n)
+    acceleration_by_input = np.linalg.solve(mass, model.B)
+    inputs = np.zeros((*system.shape[:-1], len(INPUTS)))
+    inputs[..., rates, :] = acceleration_by_input
+    displacement = np.zeros((n, system.shape[-1]))
+    displacement[held, np.arange(len(held))] = 1
+    rate = np.zeros((n, system.shape[-1]))
+    rate[:, rates] = np.eye(n)
+    motion = (displacement, rate, system[..., rates, :])
+    names, rows, feedthrough = _outputs(model, motion, acceleration_by_input)
+    free, failed = lack_azimuth(model), ~np.isfinite(mass).all(axis=(-2, -1))
+    if free.any():
+        state, output = model.dofs.index(ROTOR_SPEED), names.index(ROTOR_SPEED)
+        inputs[free, state], rows[free, :, state] = np.nan, np.nan
+        rows[free, output], feedthrough[free, output] = np.nan, np.nan
+    for part in (inputs, rows, feedthrough):
+        part[failed] = np.nan
+    states = (*(model.dofs[place] for place in held), *(f"{name} rate" for name in model.dofs))
+    doubt = model.trim.warning, model.trim.reason
+    return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names, *doubt, of_model(model))
+
+
+def _outputs(
+    model: LinearModel, motion: Rows, acceleration_by_input: Array
+) -> tuple[tuple[str, ...], Array, Array]:
+    """Names, rows of C and of D."""
+    hub = np.eye(len(HUB), len(model.dofs)) if model.hub is None else model.hub
+    rotor = model if model.rotor is None else model.rotor
+    own = [place for place, name in enumerate(model.dofs) if name in rotor.dofs[len(HUB) :]]
+    displacement, rate, acceleration = motion
+    loads, loads_by_input = _hub_loads(model, motion, acceleration_by_input)
+    shape = acceleration.shape[:-2]
+    none = np.zeros((len(HUB), len(INPUTS)))
+    blocks: list[Block] = [
+        (HUB, hub @ displacement, none),
+        (tuple(f"{name} rate" for name in HUB), hub @ rate, none),
+        (tuple(f"{name} acceleration" for name in HUB), hub @ acceleration, hub @ acceleration_by_input),
+        (LOADS, loads, loads_by_input),
+        *_own_motion(model, own, displacement, rate),
+    ]
+    names = tuple(name for part, _, _ in blocks for name in part)
+    rows, feedthrough = (
+        np.concatenate([np.broadcast_to(part, (*shape, *part.shape[-2:])) for part in parts], axis=-2)
+        for parts in ([block[1] for block in blocks], [block[2] for block in blocks])
+    )
+    return names, rows, feedthrough
+
+
+def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: Array) -> list[Block]:
+    """Displacements of the rotor's own coordinates, and the rate of one that is no displacement everywhere."""
+    held, mixed = held_coordinates(model), bool(lack_azimuth(model).any())
+    moved = [place for place in own if place in held]
+    turning = [p for p in own if p not in held or (mixed and model.dofs[p] == ROTOR_SPEED)]
+    return [
+        (tuple(model.dofs[p] for p in moved), displacement[moved], np.zeros((len(moved), len(INPUTS)))),
+        (
+            tuple(f"{model.dofs[p]} rate" for p in turning),
+            rate[turning],
+            np.zeros((len(turning), len(INPUTS))),
+        ),
+    ]
+
+
+def _hub_loads(model: LinearModel, motion: Rows, acceleration_by_input: Array) -> tuple[Array, Array]:
+    """Perturbation of the rotor's loads on the hub: minus the hub rows of the rotor alone, plus its inputs."""
+    rotor = model if model.rotor is None else model.rotor
+    if rotor.dofs[: len(HUB)] != HUB:
+        raise InputError(
+            "dofs", ", ".join(rotor.dofs), "must begin with the hub's, from which its loads follow"
+        )
+    to_rotor = np.eye(len(model.dofs)) if model.rotor is None else _to_rotor(model)
+    rows = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
+    displacement, rate, acceleration = motion
+    loads = -(rows["M"] @ acceleration + rows["C"] @ rate + rows["K"] @ displacement)
+    assert rotor.B is not None  # as its mounted model has inputs
+    return loads, rotor.B[..., : len(HUB), :] - rows["M"] @ acceleration_by_input
+
+
+def _to_rotor(model: LinearModel) -> Array:
+    """Coordinates of the rotor alone in those of the mounted model."""
+    assert model.rotor is not None and model.hub is not None  # those of a mounted model
+    own = model.rotor.dofs[len(HUB) :]
+    rows = np.zeros((len(own), len(model.dofs)))
+    for place, name in enumerate(own):
+        if name in model.dofs:  # a coordinate left out of a submodel stays at zero
+            rows[place, model.dofs.index(name)] = 1
+    return np.concatenate([model.hub, np.broadcast_to(rows, (*model.hub.shape[:-2], *rows.shape))], axis=-2)

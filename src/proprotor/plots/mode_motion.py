@@ -1,0 +1,377 @@
+"""How wing, mast and blades move in a mode, as points in space: what a picture of the mode draws.
+
+Positions are those of the derivation: a straight blade with a flap and a lag hinge on precone, in its trim state, on
+a gimbal. Motions are linear in the coordinates. Coordinates of the fixed frame say how a blade is deflected that passes
+an azimuth, β(ψ) = β_0 + β_1c cos ψ + β_1s sin ψ, so blades are drawn at azimuths that stand still, and the path of the
+tips is a closed line.
+
+The wing is a sketch. The analysis knows a support by the motion of the hub alone; between root and tip the sketch bends
+as a cantilever that is loaded at its tip, and twists in proportion to the distance from its root.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.model.stamp import Stamp, of_model
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+    from proprotor.model.linear_model import LinearModel
+
+_SPAN, _MAST, _CHORD = 1.333, 0.342, 0.42  # of the XV-15, in radii: where a deck has no wing
+_PER_BLADE, _PER_WING, _PER_CIRCLE = 12, 12, 73
+_LARGEST_TRAVEL, _LARGEST_ANGLE = 0.22, 0.35  # in radii, and rad: what is still drawn without looking torn
+_HARMONIC = re.compile(r"(flap|lag|pitch|gimbal)_(0|(\d+)([cs]))")
+
+
+class WingSketch(NamedTuple):
+    """A wing to be drawn.
+
+    Parameters
+    ----------
+    span : float
+        From the root to the axis of the pylon, m.
+    mast : float
+        From the wing forward to the hub, m.
+    chord : float
+        Of the wing, m.
+    sweep : float
+        Of its axis, rad, back where positive.
+    assumed : bool
+        Whether the deck does not tell.
+    """
+
+    span: float
+    mast: float
+    chord: float
+    sweep: float = 0.0
+    assumed: bool = False
+
+
+class Part(NamedTuple):
+    """A line of the picture.
+
+    Parameters
+    ----------
+    name : str
+    points : array (k, 3)
+        x, y, z from the hub at trim, m.
+    motion : array (k, 3)
+        Complex amplitudes of the points, m.
+    """
+
+    name: str
+    points: Array
+    motion: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ModeMotion:
+    """A mode as moving lines.
+
+    Attributes
+    ----------
+    mode, case : str
+        Names.
+    airspeed : float
+        m/s.
+    eigenvalue : complex
+        rad/s, in the upper half plane.
+    rotor_speed, radius : float
+        rad/s, m.
+    parts : tuple of Part
+        Motions scaled so that they can be seen.
+    sketched : bool
+        Whether the wing's size is the sketch's and not the deck's.
+    warning : str
+        What makes the mode doubtful; empty where nothing does.
+    stamp : mapping of str to str
+        The case and the options in force, see `proprotor.model.stamp`.
+    """
+
+    mode: str
+    case: str
+    airspeed: float
+    eigenvalue: complex
+    rotor_speed: float
+    radius: float
+    parts: tuple[Part, ...]
+    sketched: bool
+    warning: str = ""
+    stamp: Stamp = field(default_factory=dict)
+
+    def at(self, phase: float) -> dict[str, Array]:
+        """Every part at a phase of the cycle; growth and decay are left out.
+
+        Parameters
+        ----------
+        phase : float
+            rad.
+
+        Returns
+        -------
+        dict of str to array (k, 3)
+            Points in x, y, z from the hub at trim, m, by the name of the part.
+        """
+        return {part.name: part.points + (part.motion * np.exp(1j * phase)).real for part in self.parts}
+
+
+def mode_motion(
+    case: Case, airspeed: Any, mode: str, *, wing: WingSketch | None = None, **options: Any
+) -> ModeMotion:
+    """The motion of one mode of a case.
+
+    Parameters
+    ----------
+    case : Case
+        One design.
+    airspeed : float in m/s, text such as "300 kt", or pint quantity
+    mode : str
+        By what moves at the airspeed.
+    wing : WingSketch, optional
+        What to draw; by default what the deck says of its wing, else the proportions of the XV-15.
+    **options
+        See `proprotor.rotor.options.Options`.
+
+    Returns
+    -------
+    ModeMotion
+
+    Raises
+    ------
+    InputError
+        For an airspeed that cannot be analysed, an unknown mode, one that does not oscillate, or coordinates of blades
+        that stand for no azimuth.
+    """
+    from proprotor.units import in_metres_per_second
+
+    speed = in_metres_per_second(airspeed).reshape(-1)
+    if len(speed) != 1:
+        raise InputError("airspeed", airspeed, "must be one speed")
+    found = case.sweep(speed, **options).isel(airspeed=0)
+    if found.reason.item():
+        raise InputError("airspeed", airspeed, found.reason.item())
+    names = found.mode.values.tolist()
+    if mode not in names:
+        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
+    chosen = found.sel(mode=mode)
+    value, shape = complex(chosen.eigenvalue.item()), chosen["shape"].values
+    if not value.imag:
+        raise InputError("mode", mode, "does not oscillate at this airspeed")
+    if value.imag < 0:
+        value, shape = value.conjugate(), shape.conj()
+    model = case.linearize(speed[0], **options)
+    sketch = wing or sketch_of(case)
+    coordinates = dict(zip(model.dofs, shape.tolist(), strict=True))
+    hub = _hub_motion(model, shape)
+    parts, largest_angle = _parts(case, model, coordinates, hub, sketch)
+    scale = _scale(parts, largest_angle, float(case.rotor.radius))
+    return ModeMotion(
+        mode=mode,
+        case=case.title or case.name,
+        airspeed=float(speed[0]),
+        eigenvalue=value,
+        rotor_speed=float(case.operation.rotor_speed),
+        radius=float(case.rotor.radius),
+        parts=tuple(part._replace(motion=scale * part.motion) for part in parts),
+        sketched=sketch.assumed,
+        warning=str(model.trim.warning),
+        stamp=of_model(model),
+    )
+
+
+def sketch_of(case: Case) -> WingSketch:
+    """The wing of a case as far as its deck tells, else in the proportions of the XV-15.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    WingSketch
+        m and rad.
+    """
+    given = {path.removeprefix("support."): number.si for path, number in case.given.items()}
+    radius = float(case.rotor.radius)
+    if "distance" in given:  # a pivot: a mast and no wing
+        return WingSketch(0.0, float(given["distance"]), 0.0)
+    for within in ("", "wing_aerodynamics."):
+        if f"{within}span" in given:
+            chord = given.get("wing_aerodynamics.chord", _CHORD * radius)
+            sweep = given.get(f"{within}sweep", 0.0)
+            return WingSketch(
+                float(given[f"{within}span"]),
+                float(given[f"{within}mast_length"]),
+                float(chord),
+                float(sweep),
+            )
+    return WingSketch(_SPAN * radius, _MAST * radius, _CHORD * radius, assumed=True)
+
+
+def _hub_motion(model: LinearModel, shape: Array) -> Array:
+    """Displacement and rotation (6,) of the hub."""
+    if model.hub is None:
+        return np.asarray(shape[:6])
+    hub = np.asarray(model.hub @ shape) if model.hub.size else np.zeros(6)
+    return hub.astype(complex)
+
+
+def _parts(
+    case: Case, model: LinearModel, coordinates: dict[str, complex], hub: Array, wing: WingSketch
+) -> tuple[list[Part], float]:
+    """All lines with their motions, and the largest angle of any coordinate."""
+    blade = _Blade.of(case, model)
+    azimuths = 2 * np.pi * np.arange(int(case.rotor.n_blades)) / int(case.rotor.n_blades)
+    parts = _wing(wing, hub)
+    for number, azimuth in enumerate(azimuths.tolist(), start=1):
+        parts.append(Part(f"blade {number}", *blade.outline(azimuth, coordinates, hub)))
+    circle = np.linspace(0, 2 * np.pi, _PER_CIRCLE)
+    tips = [blade.line(azimuth, coordinates, hub) for azimuth in circle.tolist()]
+    rings = np.array([points[-1] for points, _ in tips]), np.array([motion[-1] for _, motion in tips])
+    parts.append(Part("tip path", *rings))
+    angles = [abs(value) for name, value in coordinates.items() if _HARMONIC.fullmatch(name)]
+    return parts, max([*angles, *np.abs(hub[3:]).tolist()])
+
+
+def _scale(parts: list[Part], largest_angle: float, radius: float) -> float:
+    travel = max(float(np.linalg.norm(np.abs(part.motion), axis=1).max()) for part in parts)
+    limits = [_LARGEST_TRAVEL * radius / travel] if travel > 0 else []
+    limits += [_LARGEST_ANGLE / largest_angle] if largest_angle > 0 else []
+    return min(limits, default=1.0)
+
+
+def _wing(wing: WingSketch, hub: Array) -> list[Part]:
+    """The mast, and the outline of a wing that runs from its root to the pylon; the hub is where lines begin."""
+    still, turn = hub[:3], hub[3:]
+    foot = np.array([0.0, 0.0, -wing.mast])
+    mast = np.array([np.zeros(3), foot])
+    parts = [Part("mast", mast, still + np.cross(turn, mast))]
+    if not wing.span:
+        return parts
+    share = np.linspace(0, 1, _PER_WING)[:, None]
+    axis = np.array([0.0, wing.span, -wing.span * np.tan(wing.sweep)])
+    line = foot - axis + share * axis
+    # A cantilever with a given displacement and slope at its end: Hermite's cubics.
+    slope = np.cross(turn, axis)
+    bent = (3 * share**2 - 2 * share**3) * (still + np.cross(turn, foot)) + (share**3 - share**2) * slope
+    twist = np.array([0.0, turn[1], 0.0])
+    edges = [np.array([0.0, 0.0, offset * wing.chord]) for offset in (0.4, -0.6)]
+    points = [line + edge for edge in edges]
+    motions = [bent + share * np.cross(twist, edge) for edge in edges]
+    parts.append(
+        Part(
+            "wing",
+            np.concatenate([points[0], points[1][::-1]]),
+            np.concatenate([motions[0], motions[1][::-1]]),
+        )
+    )
+    return parts
+
+
+@dataclass(frozen=True)
+class _Blade:
+    """A blade in its trim state: radii (k,), lever arms of flap and lag, pitch and chord of sections, angles in rad."""
+
+    r: Array
+    flap_arm: Array
+    lag_arm: Array
+    pitch: Array
+    chord: Array
+    precone: float
+    flap: float
+    lag: float
+    pitch_gimbal_coupling: float
+
+    @classmethod
+    def of(cls, case: Case, model: LinearModel) -> _Blade:
+        rotor, trim = case.rotor, model.trim
+        r = np.linspace(float(rotor.root_cutout), float(rotor.radius), _PER_BLADE)
+        return cls(
+            r=r,
+            flap_arm=np.maximum(r - float(rotor.flap_hinge_offset), 0),
+            lag_arm=np.maximum(r - float(rotor.lag_hinge_offset), 0),
+            pitch=float(trim.pitch) + np.asarray(rotor.twist_at(r)),
+            chord=np.broadcast_to(rotor.chord_at(r), r.shape),
+            precone=float(rotor.precone),
+            flap=float(trim.coning),
+            lag=float(trim.lag),
+            pitch_gimbal_coupling=float(rotor.pitch_gimbal_coupling),
+        )
+
+    def line(self, azimuth: float, coordinates: dict[str, complex], hub: Array) -> tuple[Array, Array]:
+        """Points (k, 3) of the reference line from the hub, and their motion."""
+        i, j, k = _axes(azimuth)
+        inner, outer = self.precone, self.precone + self.flap
+        d1, d2 = np.cos(inner) * j + np.sin(inner) * k, np.cos(outer) * j + np.sin(outer) * k
+        normal = np.cos(outer) * k - np.sin(outer) * j
+        b, z = self.flap_arm[:, None], self.lag_arm[:, None]
+        cosine, sine = np.cos(self.lag), np.sin(self.lag)
+        points = (self.r[:, None] - b) * d1 + b * d2 + z * ((cosine - 1) * d2 + sine * i)
+        by_flap = (b + z * (cosine - 1)) * normal
+        by_lag = z * (cosine * i - sine * d2)
+        motion = _at_azimuth("flap", azimuth, coordinates) * by_flap
+        motion = motion + _at_azimuth("lag", azimuth, coordinates) * by_lag
+        return points, motion + _carried(points, coordinates, hub)
+
+    def outline(self, azimuth: float, coordinates: dict[str, complex], hub: Array) -> tuple[Array, Array]:
+        """Leading edge outwards and trailing edge back, (2 k + 1, 3): a closed line, and its motion."""
+        points, motion = self.line(azimuth, coordinates, hub)
+        i, j, k = _axes(azimuth)
+        normal = np.cos(self.precone + self.flap) * k - np.sin(self.precone + self.flap) * j
+        cosine, sine = np.cos(self.pitch)[:, None], np.sin(self.pitch)[:, None]
+        ahead = sine * normal - cosine * i  # towards the leading edge
+        turned = cosine * normal + sine * i  # its change with the pitch
+        tilt = coordinates.get("gimbal_1c", 0.0), coordinates.get("gimbal_1s", 0.0)
+        flap = tilt[0] * np.cos(azimuth) + tilt[1] * np.sin(azimuth)
+        roll = tilt[1] * np.cos(azimuth) - tilt[0] * np.sin(azimuth)
+        pitch = _at_azimuth("pitch", azimuth, coordinates) - self.pitch_gimbal_coupling * flap - roll
+        turn = _turn(coordinates, hub)
+        edges, moved = [], []
+        for share in (0.25, -0.75):  # of the chord, from the axis of pitch
+            offset = share * self.chord[:, None]
+            edges.append(points + offset * ahead)
+            moved.append(motion + offset * (pitch * turned + np.cross(turn, ahead)))
+        order = slice(None, None, -1)
+        outline = np.concatenate([edges[0], edges[1][order], edges[0][:1]])
+        return outline, np.concatenate([moved[0], moved[1][order], moved[0][:1]])
+
+
+def _axes(azimuth: float) -> tuple[Array, Array, Array]:
+    """i against the rotation, j along the blade, k along the shaft, in x, y, z."""
+    cosine, sine = np.cos(azimuth), np.sin(azimuth)
+    return np.array([sine, -cosine, 0.0]), np.array([cosine, sine, 0.0]), np.array([0.0, 0.0, 1.0])
+
+
+def _at_azimuth(stem: str, azimuth: float, coordinates: dict[str, complex]) -> complex:
+    """An angle of the blade that passes an azimuth, from the coordinates of the fixed frame."""
+    total = 0j
+    for name, value in coordinates.items():
+        if not name.startswith(f"{stem}_"):
+            continue
+        found = _HARMONIC.fullmatch(name)
+        if found is None:
+            raise InputError(
+                "coordinates", name, "is no motion of the fixed frame: leave reactionless=True out"
+            )
+        n = int(found[3] or 0)
+        total += value * (np.sin(n * azimuth) if found[4] == "s" else np.cos(n * azimuth))
+    return total
+
+
+def _turn(coordinates: dict[str, complex], hub: Array) -> Array:
+    """Rotation (3,) of the whole rotor: hub, gimbal g = β_GS I - β_GC J, and azimuth."""
+    gimbal = coordinates.get("gimbal_1s", 0.0), -coordinates.get("gimbal_1c", 0.0)
+    return np.array([hub[3] + gimbal[0], hub[4] + gimbal[1], hub[5] + coordinates.get("azimuth", 0.0)])
+
+
+def _carried(points: Array, coordinates: dict[str, complex], hub: Array) -> Array:
+    """Motion of points that are carried along by hub, gimbal and azimuth."""
+    return np.asarray(hub[:3] + np.cross(_turn(coordinates, hub), points))

@@ -1,0 +1,376 @@
+"""What a report says: sentences, tables and pictures of what was found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.datum import Datum, FilePath, as_toml
+from proprotor.model.doubts import MARK, doubt_at, footnotes, marked
+from proprotor.model.provenance import doubtful_inputs, reservations
+from proprotor.model.stamp import chosen, deck_fingerprint, option_told, options_told
+from proprotor.report import pictures
+from proprotor.report.analyses import Findings
+from proprotor.report.document import Document, Section, Table, Text
+from proprotor.stability.boundary_summary import boundary_record, mechanism_told, verdict
+from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records
+from proprotor.tables.tables import SweepTable
+from proprotor.tables.terminal import heading
+from proprotor.typing import Array
+from proprotor.units import factor_to_si
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+_SPEEDS = 9  # in the tables of modes and of trim
+_ANGLES = ("collective", "coning", "lag", "elastic_pitch")  # of the trim
+_PAIRS = 5  # stations in a row of a distribution
+
+CONVENTIONS = (
+    "Inputs are converted to SI units; hub axes have z along the shaft, which is the direction of flight.",
+    "Flap is positive towards thrust, lag against the rotation, pitch nose up at 0.75 R.",
+    "Eigenvalues s = −ζω ± iω√(1 − ζ²). Damping is −Re s/|s| in percent of critical, negative where a mode is "
+    "unstable. Frequency is |Im s|; per revolution (/rev) means divided by the rotor speed.",
+    "Airloads are quasi-steady strip theory at cruise inflow: no induced velocity and no stall.",
+    "A point that has no trim is left out with its reason, and spoils no other.",
+)
+
+
+def report_document(
+    case: Case,
+    found: Findings,
+    *,
+    settings: Mapping[str, str],
+    deck_hash: str,
+    date: str,
+    unit: str = "kt",
+) -> Document:
+    """The report on a case.
+
+    Parameters
+    ----------
+    case : Case
+    found : Findings
+        Of `proprotor.report.analyse`.
+    settings : mapping
+        The fields set for this run, as they were given.
+    deck_hash : str
+        Of the deck as it was read.
+    date : str
+        ISO 8601, of the day.
+    unit : str
+        Of airspeeds.
+
+    Raises
+    ------
+    InputError
+        When the unit is not one of speed.
+    """
+    factor = factor_to_si(unit, unit, "m/s")
+    table = SweepTable(found.sweep, float(case.operation.rotor_speed), unit)
+    sections = (
+        Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),
+        Section("What was analysed", tuple(_model(case, table, settings))),
+        Section("Conventions", (Text(CONVENTIONS),)),
+        Section("Frequency and damping", tuple(_sweep(case, found, unit))),
+        Section(f"Causes {_where(found, unit, factor)}".strip(), tuple(_causes(found, unit, factor))),
+        Section("Modes", tuple(_modes(table))),
+        Section("Sensitivities", tuple(_sensitivities(case, found, unit, factor))),
+        Section("Trim", tuple(_trim(found, table))),
+        Section("Inputs", tuple(_inputs(case))),
+        Section("Reproduction", (_reproduction(case, deck_hash, date),)),
+    )
+    return Document(
+        title=case.title or case.name,
+        subtitle=f"Case {case.name}, {heading(case).rpartition(', ')[2]}",
+        date=date,
+        verdict=tuple(_verdict(found, table, unit, factor)),
+        caution=(*reservations(case), *case.warnings, *table.doubts(), *_failures(table)),
+        sections=tuple(section for section in sections if section.blocks),
+    )
+
+
+def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> Iterator[str]:
+    if table.failed.all():
+        yield "No airspeed could be analysed."
+        return
+    if found.flutters:
+        omega = table.rotor_speed
+        yield (
+            f"Flutter speed {marked(f'{found.flutter.speed / factor:.2f}', found.flutter.warning)} {unit}: "
+            f"{found.flutter.mode}, {found.flutter.kind}, "
+            f"at {found.flutter.frequency / (2 * math.pi):.3f} Hz, {found.flutter.frequency / omega:.3f} per rev."
+        )
+    for sentence in verdict(found.flutter, None, unit, factor):
+        if not (found.flutters and sentence.startswith("Flutter speed")):
+            yield sentence
+
+
+def _failures(table: SweepTable) -> Iterator[str]:
+    for first, last, reason in _runs(table.sweep.reason.values.tolist()):
+        yield f"Not analysed {_range(table, first, last)}: {reason}."
+
+
+def _runs(texts: Sequence[str]) -> Iterator[tuple[int, int, str]]:
+    """First and last place of each run of one text that is not empty."""
+    start = 0
+    for place in range(1, len(texts) + 1):
+        if place == len(texts) or texts[place] != texts[start]:
+            if texts[start]:
+                yield start, place - 1, texts[start]
+            start = place
+
+
+def _range(table: SweepTable, first: int, last: int) -> str:
+    ends = f"{table.airspeed[first]:.4g} {table.unit}", f"{table.airspeed[last]:.4g} {table.unit}"
+    return f"at {ends[0]}" if first == last else f"from {ends[0]} to {ends[1]}"
+
+
+def _where(found: Findings, unit: str, factor: float) -> str:
+    if not found.mode:
+        return ""
+    at = _at(found, unit, factor)
+    return f"at the flutter speed, {at[3:]}" if found.flutters else at
+
+
+def _at(found: Findings, unit: str, factor: float) -> str:
+    return f"at {marked(f'{found.speed / factor:.2f}', found.warning)} {unit}"
+
+
+# Boundaries and the model -------------------------------------------------------------------------------------------
+
+
+def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterator[Table | Text]:
+    low, high = (
+        marked(f"{at / factor:.4g}", doubt_at(found.flutter.doubts, at)) for at in found.flutter.searched
+    )
+    if not math.isfinite(found.flutter.searched[0]):
+        yield Text(("No airspeed could be analysed, so nothing is known of boundaries.",))
+        return
+    yield Text((f"Crossings of zero damping between {low} and {high} {unit}, to rounding.",))
+    if not found.flutter.boundaries:
+        yield Text(("There is none.",))
+        return
+    columns = (f"airspeed, {unit}", "m/s", "Hz", "/rev", "mode", "kind", "instability", "mechanism")
+    rows = []
+    for boundary in found.flutter.boundaries:
+        record = boundary_record(boundary, case)
+        rows.append(
+            (
+                marked(f"{boundary.position / factor:.2f}", boundary.warning),
+                marked(f"{boundary.position:.3f}", boundary.warning),
+                f"{record['frequency (Hz)']:.3f}",
+                f"{record['frequency (per rev)']:.3f}",
+                boundary.mode,
+                boundary.kind,
+                "begins" if boundary.onset else "ends",
+                mechanism_told(dict(boundary.mechanism)),
+            )
+        )
+    yield Table("Boundaries by airspeed", columns, tuple(rows), frozenset(columns[:4]))
+    if doubts := tuple(f"{MARK} {line}" for line in footnotes(found.flutter.doubts, unit, factor)):
+        yield Text(doubts, warning=True)
+
+
+def _model(case: Case, table: SweepTable, settings: Mapping[str, str]) -> Iterator[Table | Text]:
+    paragraphs = (case.description, f"{len(table.airspeed)} airspeeds, {_range(table, 0, -1)[5:]}.")
+    yield Text(tuple(filter(None, paragraphs)))
+    every = options_told(table.sweep.attrs)
+    other = chosen(every)
+    rows = [
+        (name.replace("_", " "), option_told(value), "chosen" if name in other else "default")
+        for name, value in every.items()
+        if value is not None
+    ]
+    yield Table("Options of the model", ("option", "choice", "chosen or default"), tuple(rows))
+    if settings:
+        yield Table("Fields set for this run", ("field", "value"), tuple(settings.items()))
+
+
+def _sweep(case: Case, found: Findings, unit: str) -> Iterator[Any]:
+    if found.mode:
+        yield from pictures.of_sweep(case, found, unit)
+
+
+def _causes(found: Findings, unit: str, factor: float) -> Iterator[Any]:
+    if found.causes is None:
+        yield Text((f"Causes could not be found: {found.no_causes}.",))
+        return
+    at = _at(found, unit, factor)
+    if not found.flutters:
+        told = (
+            f"{found.mode}, the mode that is damped least {at}, the highest airspeed that could be analysed"
+        )
+        yield Text((f"Nothing becomes unstable. Shown for {told}.",))
+    yield from pictures.of_causes(found.causes, found.mode, at, unit)
+
+
+# Tables -------------------------------------------------------------------------------------------------------------
+
+
+def _some(working: Array) -> list[int]:
+    """Places of a few points, the first and the last that work included."""
+    places = np.flatnonzero(working)
+    chosen = np.linspace(0, len(places) - 1, min(_SPEEDS, len(places))).round().astype(int)
+    return places[chosen].tolist() if len(places) else []
+
+
+def _modes(table: SweepTable) -> Iterator[Table | Text]:
+    at = _some(~table.failed)
+    if not at:
+        return
+    warnings = table.sweep.warning.values
+    speeds = tuple(marked(f"{table.airspeed[point]:.4g} {table.unit}", warnings[point]) for point in at)
+    for caption, values, form in (
+        ("Frequency |Im s| per revolution", table.frequency, ".3f"),
+        ("Damping −Re s/|s|, percent of critical; * where a mode is unstable", table.damping, ".2f"),
+    ):
+        unstable = table.unstable & caption.startswith("Damping")
+        rows = tuple(
+            (str(mode), *(_cell(values[point, place], form, unstable[point, place]) for point in at))
+            for place, mode in enumerate(table.sweep.mode.values)
+        )
+        yield Table(caption, ("mode", *speeds), rows, frozenset(speeds))
+    if mixed := table.mixed():
+        yield Text((mixed,))
+
+
+def _cell(value: float, form: str, marked: bool = False) -> str:
+    return f"{value:{form}}{'*' if marked else ''}" if math.isfinite(value) else "–"
+
+
+def _sensitivities(case: Case, found: Findings, unit: str, factor: float) -> Iterator[Table | Text]:
+    if found.causes is None:
+        return
+    rates = found.causes.sensitivity
+    if "mode" in rates.dims:
+        rates = rates.isel(mode=0)
+    of = "flutter_speed" if found.flutters else "damping"
+    read_in = READ_IN[of][0]
+    records = sensitivity_records(case, rates, of)
+    what = (
+        "flutter speed" if found.flutters else f"damping of {found.mode} at {found.speed / factor:.2f} {unit}"
+    )
+    columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %", "status")
+    rows = tuple(
+        (
+            record["input"],
+            record["value"],
+            marked(f"{record[f'derivative ({read_in} per unit)']:+.4g}", record["warning"]),
+            record["unit"],
+            "–"
+            if record[f"for +1 % ({read_in})"] is None
+            else marked(f"{record[f'for +1 % ({read_in})']:+.3g}", record["warning"]),
+            record["status"],
+        )
+        for record in records
+    )
+    yield Table(
+        f"Exact derivatives of the {what}, trim included", columns, rows, frozenset((columns[2], columns[4]))
+    )
+    if doubt := rates.warning.item():
+        yield Text((f"{MARK} Doubtful: {doubt}.",), warning=True)
+    if bool(rates.nearly_defective):
+        yield Text(
+            ("The mode nearly falls into one with another: derivatives hold in a small range only.",),
+            warning=True,
+        )
+
+
+def _trim(found: Findings, table: SweepTable) -> Iterator[Table | Text]:
+    trim, degree = found.trim, math.pi / 180
+    columns = (
+        f"airspeed, {table.unit}",
+        "collective, deg",
+        "coning, deg",
+        "lag, deg",
+        "elastic pitch, deg",
+        "thrust, N",
+        "torque, N·m",
+        "doubt",
+    )
+    rows = [
+        (
+            marked(f"{table.airspeed[point]:.4g}", trim.warning[point]),
+            *(f"{getattr(trim, name)[point] / degree:.3f}" for name in _ANGLES),
+            f"{trim.thrust[point]:.0f}",
+            f"{round(trim.torque[point]) + 0:d}",
+            str(trim.warning[point]) or "–",
+        )
+        for point in _some(~table.failed)
+    ]
+    if rows:
+        yield Table("Steady state at some airspeeds", columns, tuple(rows), frozenset(columns[:-1]))
+    failed = [
+        (_range(table, first, last), str(last - first + 1), reason)
+        for first, last, reason in _runs(table.sweep.reason.values.tolist())
+    ]
+    if failed:
+        head = ("airspeeds", "points", "reason")
+        yield Table("Airspeeds that could not be analysed", head, tuple(failed), frozenset(("points",)))
+    else:
+        yield Text(("Every airspeed could be analysed.",))
+
+
+# Inputs -------------------------------------------------------------------------------------------------------------
+
+
+def _inputs(case: Case) -> Iterator[Table | Text]:
+    doubtful = doubtful_inputs(case)
+    yield Text(
+        (f"{len(doubtful)} of {len(case.sources)} inputs were not read in a source; they are marked *.",)
+    )
+    rows = tuple(
+        (
+            path,
+            number.written,
+            _si(number),
+            number.status + ("*" if path in doubtful else ""),
+            number.source or "–",
+        )
+        for path, number in case.sources.items()
+    )
+    columns = ("field", "as written", "SI", "status", "source")
+    yield Table("All inputs, and what follows from them", columns, rows)
+    for path, number in case.sources.items():
+        if number.r_over_R is not None:
+            yield _distribution(path, number)
+
+
+def _si(number: Datum) -> str:
+    if number.r_over_R is not None:
+        low, high = min(number.si), max(number.si)
+        return f"{low:.6g} to {high:.6g} {number.unit}".strip() + ", see below"
+    if isinstance(number.si, FilePath):
+        return "a file"
+    if isinstance(number.si, bool | str):
+        return as_toml(number.si)
+    return f"{number.si:.6g} {number.unit}".strip()
+
+
+def _distribution(path: str, number: Datum) -> Table:
+    stations = list(zip(number.r_over_R or (), number.si, strict=True))
+    count = math.ceil(len(stations) / _PAIRS)
+    pair = ("r/R", number.unit or "value")
+    rows = []
+    for place in range(count):
+        cells: list[str] = []
+        for station in stations[place::count]:
+            cells += [f"{station[0]:.4g}", f"{station[1]:.6g}"]
+        rows.append(tuple(cells + [""] * (2 * _PAIRS - len(cells))))
+    return Table(f"{path} along the blade", pair * _PAIRS, tuple(rows), frozenset(pair))
+
+
+def _reproduction(case: Case, deck_hash: str, date: str) -> Table:
+    rows = (
+        ("proprotor", version("proprotor")),
+        ("case", case.name),
+        ("numbers of the deck", deck_fingerprint(case)),
+        ("deck, SHA-256", deck_hash),
+        ("date", date),
+    )
+    return Table("The same deck and options give the same report, but for the date", ("what", "value"), rows)

@@ -1,0 +1,95 @@
+"""The plots of a report as SVG."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from proprotor.report.document import Picture
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from proprotor.case import Case
+    from proprotor.report.analyses import Causes, Findings
+
+_SHARE = 0.75  # of the width of a sheet, for bars
+# Names within the file would else be drawn by lot, and a dollar in the name of a mode begin a formula.
+_FIXED: Any = {"svg.hashsalt": "proprotor", "text.parse_math": False}
+
+
+def svg_of(draw: Callable[[], Axes]) -> bytes:
+    """A plot as SVG, the same each time."""
+    import matplotlib
+
+    matplotlib.use("Agg")  # no window, and no display needed
+    from matplotlib import pyplot
+
+    with matplotlib.rc_context(_FIXED):
+        figure = draw().get_figure(root=True)
+        if figure is None:
+            raise RuntimeError("axes without a figure")
+        file = io.BytesIO()
+        figure.savefig(file, format="svg", bbox_inches="tight", metadata={"Date": None})
+        pyplot.close(figure)
+    return file.getvalue()
+
+
+def of_sweep(case: Case, found: Findings, unit: str) -> Iterator[Picture]:
+    """Frequency, damping and root locus."""
+    from proprotor.plots import plot_damping, plot_frequency, plot_root_locus
+
+    omega = float(case.operation.rotor_speed)
+    low, high = (f"{speed:.4g} m/s" for speed in found.flutter.searched)
+    across = f"from {low} to {high}; the tables of modes have the numbers."
+    names = ", ".join(map(str, found.sweep.mode.values))
+    broad = "Broad lines with markers: modes of the support, and modes that become unstable."
+    yield Picture(
+        "frequency",
+        f"Frequency of each mode over airspeed. {broad}",
+        f"Line plot of the frequency, per revolution, of the modes {names}, {across}",
+        svg_of(lambda: plot_frequency(found.sweep, rotor_speed=omega, unit=unit)),
+    )
+    yield Picture(
+        "damping",
+        "Damping of each mode over airspeed; below zero a mode is unstable. "
+        "Circles are interpolated between the airspeeds drawn, the boundaries of the summary are exact.",
+        f"Line plot of the damping, in percent of critical, of the modes {names}, {across}",
+        svg_of(lambda: plot_damping(found.sweep, unit=unit)),
+    )
+    yield Picture(
+        "root-locus",
+        "Root locus: growth across, frequency up; right of zero a mode is unstable.",
+        f"Roots of the modes {names} in the plane of growth and frequency, {across}",
+        svg_of(lambda: plot_root_locus(found.sweep, rotor_speed=omega, unit=unit)),
+        0.85,
+    )
+
+
+def of_causes(causes: Causes, mode: str, where: str, unit: str) -> Iterator[Picture]:
+    """Participation, attribution and tornado of one mode at one airspeed."""
+    from proprotor.plots import plot_attribution, plot_participation, plot_sensitivity
+
+    if mode in causes.modes.mode.values:
+        yield Picture(
+            "participation",
+            f"Coordinates that take part in {mode} {where}.",
+            f"Bars of the share of each coordinate in {mode} {where}.",
+            svg_of(lambda: plot_participation(causes.modes, mode, unit=unit)),
+            _SHARE,
+        )
+    yield Picture(
+        "attribution",
+        f"What drives and what damps {mode} {where}, by the physical origin of the terms.",
+        f"Bars of the change of damping of {mode} {where} per origin of the terms; hatched bars drive it.",
+        svg_of(lambda: plot_attribution(causes.attribution)),
+        _SHARE,
+    )
+    yield Picture(
+        "sensitivity",
+        "What each input moves if it grows by 1 % of itself; hatches tell inputs that were not read in a source.",
+        "Tornado of the inputs that move it most; the table of sensitivities has the numbers.",
+        svg_of(lambda: plot_sensitivity(causes.sensitivity, unit=unit)),
+        _SHARE,
+    )

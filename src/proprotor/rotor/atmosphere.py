@@ -1,0 +1,89 @@
+"""Air of the International Standard Atmosphere at a pressure altitude, on a standard, hot or cold day.
+
+The atmosphere itself is that of the library `fluids` (US Standard Atmosphere 1976, up to 32 km the same as ISO 2533
+and ICAO Doc 7488). Here altitudes are geopotential, as those of altimeters and flight levels are; a temperature
+offset changes temperature and density at the pressure of that altitude ("ISA + 15").
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError, check_number
+from proprotor.typing import Array
+
+LOWEST, HIGHEST = -610.0, 32_000.0  # m: where the library holds, and where the standards are one
+MOST_OFFSET = 100.0  # K: beyond what the air of any day has; a temperature given as an offset is told by it
+
+
+class Air(NamedTuple):
+    """State of the air; arrays of one shape (...).
+
+    density : kg/m³; speed_of_sound : m/s; pressure : Pa; temperature : K
+    """
+
+    density: Array
+    speed_of_sound: Array
+    pressure: Array
+    temperature: Array
+
+
+def standard_air(altitude: ArrayLike, temperature_offset: ArrayLike = 0.0) -> Air:
+    """Air at pressure altitudes.
+
+    Parameters
+    ----------
+    altitude : float or array (...)
+        Geopotential pressure altitude, m, -610 to 32 000. Complex numbers are taken to first order in their imaginary
+        part, which is what a complex step needs.
+    temperature_offset : float or array (...)
+        Above the standard temperature, K, within 100 K.
+
+    Returns
+    -------
+    Air
+
+    Raises
+    ------
+    InputError
+        When an altitude or an offset is not finite or out of range.
+    """
+    check_number("altitude", altitude)
+    check_number("temperature_offset", temperature_offset)
+    altitude, offset = np.broadcast_arrays(np.asarray(altitude), np.asarray(temperature_offset))
+    _check("altitude", altitude, LOWEST, HIGHEST, "m")
+    _check("temperature_offset", offset, -MOST_OFFSET, MOST_OFFSET, "K")
+    density, sound, pressure, temperature, lapse, gravity = _standard(altitude.real)
+    if np.iscomplexobj(altitude):
+        # dp/dH = -g0 ρ, dT/dH as in the layer, ρ ~ p/T
+        step = 1j * altitude.imag
+        fall = gravity * density / pressure
+        density = density * (1 - (fall + lapse / temperature) * step)
+        pressure = pressure * (1 - fall * step)
+        standard = temperature + lapse * step
+    else:
+        standard = temperature
+    actual = standard + offset
+    return Air(density * standard / actual, sound * np.sqrt(actual / temperature), pressure, actual)
+
+
+def _check(field: str, values: Array, least: float, most: float, unit: str) -> None:
+    wrong = ~((values.real >= least) & (values.real <= most) & np.isfinite(values))
+    if wrong.any():
+        rule = f"must lie between {least:g} and {most:g} {unit}"
+        raise InputError(field, f"{values.real[wrong].flat[0]:g} {unit}", rule)
+
+
+def _standard(altitude: Array) -> tuple[Array, ...]:
+    """ρ, a, p, T, dT/dH and g0 at real altitudes; the library takes one altitude at a time."""
+    from fluids import atmosphere  # here, because few decks need it
+
+    found = np.empty((altitude.size, 5))
+    for place, height in enumerate(altitude.flat):
+        geometric = atmosphere.r0 * float(height) / (atmosphere.r0 - float(height))
+        air = atmosphere.ATMOSPHERE_1976(geometric)
+        found[place] = air.rho, air.v_sonic, air.P, air.T, air.T_increase
+    return *np.moveaxis(found, -1, 0).reshape(5, *altitude.shape), np.asarray(atmosphere.g0)

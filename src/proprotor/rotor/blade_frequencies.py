@@ -1,0 +1,137 @@
+"""Flap and lag frequencies given against collective or airspeed, as simple analyses with tabulated rotors take them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError
+from proprotor.typing import Array
+
+Curve = float | ArrayLike | Callable[[Array], Array]
+ABSCISSAE = ("collective", "airspeed")
+_STEP = 1e-6  # of the abscissa, for the slope of a function
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BladeFrequencies:
+    """Rotating frequencies of a blade per revolution, uncoupled and at zero cone.
+
+    Parameters
+    ----------
+    against : "collective" or "airspeed"
+        What they depend on: trim collective in rad, or airspeed in m/s.
+    at : array (k,), optional
+        Where the tables have their entries, rad or m/s, increasing; not needed for numbers and functions.
+    flap, lag : float, array (k,) or function of an array
+        Frequency per revolution. Tables are interpolated smoothly without overshoot and held at their ends.
+    cyclic_flap : the same, optional
+        Frequency of cyclic flapping where it is not that of the collective, as when the gimbal is locked and its mode
+        stands in the blade's place.
+
+    Raises
+    ------
+    InputError
+        When a table does not fit its abscissa or a frequency is not positive.
+    """
+
+    flap: Curve
+    lag: Curve
+    cyclic_flap: Curve | None = None
+    against: str = "collective"
+    at: ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        if self.against not in ABSCISSAE:
+            raise InputError("against", self.against, f"must be one of {', '.join(ABSCISSAE)}")
+        if self.at is not None:
+            at = np.asarray(self.at, dtype=float)
+            if at.ndim != 1 or at.size < 2 or not np.all(np.isfinite(at)) or np.any(np.diff(at) <= 0):
+                raise InputError("at", self.at, "must increase, as a list of at least two numbers")
+        for name in ("flap", "lag", "cyclic_flap"):
+            self._check(name, getattr(self, name))
+
+    def _check(self, name: str, curve: Curve | None) -> None:
+        if curve is None or callable(curve):
+            return
+        values = np.asarray(curve, dtype=float)
+        if values.ndim and (self.at is None or values.shape != np.shape(self.at)):
+            raise InputError(name, f"array of shape {values.shape}", "must have one entry for each of at")
+        if not np.all(np.isfinite(values)) or np.any(values <= 0):
+            raise InputError(name, curve, "must be above zero")
+
+    def _evaluate(self, curve: Curve, abscissa: Array) -> Array:
+        """A curve at an abscissa; an imaginary part of it is followed to first order, which a complex step needs."""
+        if not np.iscomplexobj(abscissa):
+            return self._value(curve, abscissa)
+        at = np.asarray(abscissa.real)
+        followed: Array = self._value(curve, at) + 1j * self._slope(curve, at) * abscissa.imag
+        return followed
+
+    def _slope(self, curve: Curve, abscissa: Array) -> Array:
+        """Derivative of a curve: that of the interpolation, or of a function by central differences."""
+        if callable(curve):
+            step = _STEP * np.maximum(np.abs(abscissa), 1.0)
+            change: Array = self._value(curve, abscissa + step) - self._value(curve, abscissa - step)
+            return change / (2 * step)
+        if np.ndim(curve) == 0:
+            return np.zeros(np.shape(abscissa))
+        at = np.asarray(self.at, dtype=float)
+        slope: Array = self._interpolation(curve).derivative()(np.clip(abscissa, at[0], at[-1]))
+        return np.asarray(np.where((abscissa < at[0]) | (abscissa > at[-1]), 0.0, slope))
+
+    def _interpolation(self, curve: Curve) -> Any:
+        from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
+
+        return PchipInterpolator(np.asarray(self.at, dtype=float), np.asarray(curve, dtype=float))
+
+    def _value(self, curve: Curve, abscissa: Array) -> Array:
+        if callable(curve):
+            values = np.asarray(curve(abscissa), dtype=float)
+            if np.any(np.isfinite(abscissa) & ~(values > 0)):
+                raise InputError(
+                    "frequencies", float(np.min(values)), "must be above zero wherever a function gives them"
+                )
+            return values
+        given = np.asarray(curve, dtype=float)
+        if given.ndim == 0:
+            return np.full(np.shape(abscissa), float(given))
+        at = np.asarray(self.at, dtype=float)
+        found: Array = self._interpolation(curve)(np.clip(abscissa, at[0], at[-1]))
+        return found
+
+    def rotating(self, collective: Array, airspeed: Array, rotor_speed: Array) -> dict[str, Array]:
+        """Rotating frequencies by the names of the derivation; the arguments broadcast.
+
+        Parameters
+        ----------
+        collective : array (...)
+            Trim collective, rad.
+        airspeed : array (...)
+            m/s.
+        rotor_speed : float or array (...)
+            rad/s.
+
+        Returns
+        -------
+        dict of str to array (...)
+            rad/s.
+
+        Raises
+        ------
+        InputError
+            Where a function gives what is not above zero.
+        """
+        abscissa = np.asarray(collective if self.against == "collective" else airspeed)
+        cyclic = self.flap if self.cyclic_flap is None else self.cyclic_flap
+        curves = {"flap": self.flap, "lag": self.lag, "cyclic": cyclic}
+        per_rev = {name: self._evaluate(curve, abscissa) for name, curve in curves.items()}
+        return {
+            "rotating_flap_frequency": per_rev["flap"] * rotor_speed,
+            "rotating_lag_frequency": per_rev["lag"] * rotor_speed,
+            "cyclic_flap_frequency": per_rev["cyclic"] * rotor_speed,
+        }

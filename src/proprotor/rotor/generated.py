@@ -1,0 +1,56 @@
+"""The generated equations: which functions make up the model, and how they are called by the names of quantities."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import ModuleType
+from typing import Any
+
+import proprotor_equations as consistent
+from proprotor_equations import published
+
+
+@dataclass(frozen=True)
+class EquationSet:
+    """Generated modules that a dropped term can change; what both sets share is imported where it is used.
+
+    `derive.emit.reduced_modules` makes such modules for any choice of dropped terms.
+    """
+
+    inertia: ModuleType
+    flap_lag_springs: ModuleType
+    pitch: ModuleType
+    airloads: ModuleType
+
+
+EQUATION_SETS = {
+    "consistent": EquationSet(
+        consistent.inertia, consistent.flap_lag_springs, consistent.pitch, consistent.airloads
+    ),
+    "published": EquationSet(
+        published.inertia, published.flap_lag_springs, published.pitch, published.airloads
+    ),
+}
+
+
+@cache
+def keywords(function: Callable[..., Any]) -> tuple[str, ...]:
+    """Names of the quantities a generated function takes."""
+    parameters = inspect.signature(function).parameters.values()
+    return tuple(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
+
+
+def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matrices: Any) -> Any:
+    """Result of a generated function whose keyword arguments are looked up by name.
+
+    A quantity has one name throughout the derivation, so the names are the interface.
+
+    Raises
+    ------
+    KeyError
+        When a quantity the function needs is not there.
+    """
+    return function(*matrices, **{name: quantities[name] for name in keywords(function)})

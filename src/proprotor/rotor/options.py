@@ -1,0 +1,157 @@
+"""Modelling options: one keyword each, the same everywhere, the first choice is the default.
+
+A first choice None stands for one of the others, which `default_choice` finds by what else is chosen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.generated import EQUATION_SETS, EquationSet
+
+CHOICES: dict[str, tuple[Any, ...]] = {
+    "equations": tuple(EQUATION_SETS),
+    "pitch": ("dynamic", "coupling", "rigid"),
+    "structure": ("coupled", "diagonal", "tabulated"),
+    "airloads": ("full", "lift-slope", "none"),
+    "compressibility": (True, False),
+    "section_damping": (None, True, False),
+    "rotor_speed": ("windmilling", "constant"),
+    "reactionless": (False, True),
+}
+FURTHER = ("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling", "drive_train")
+LOCKABLE = ("flap", "lag", "pitch", "gimbal")
+
+
+def default_choice(name: str, options: Mapping[str, Any]) -> Any:
+    """Return what an option is when it is not given; the paper's equations have no section damping, the others do."""
+    if name == "section_damping":
+        return options.get("equations", CHOICES["equations"][0]) != "published"
+    return CHOICES[name][0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Choices of the model.
+
+    Section damping that is not given stands in the object as what it means, True or False.
+
+    Parameters
+    ----------
+    equations : "consistent" or "published"
+        Every first-order term, or what AIAA-2002-1604 keeps of the perturbation equations (the trim is the same); an
+        `EquationSet` of generated modules stands for itself.
+    pitch : "dynamic", "coupling" or "rigid"
+        Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
+    structure : "coupled", "diagonal" or "tabulated"
+        Springs that turn with the pitch (Eqs. 20-22); the same without the flap-lag stiffness; or the stiffness that
+        gives the frequencies of `frequencies`, whatever the rotor's springs are.
+    frequencies : BladeFrequencies
+        For structure="tabulated".
+    pitch_flap_coupling, pitch_lag_coupling : float or array that broadcasts with the airspeeds, optional
+        For pitch="coupling": values (dimensionless) in place of Eqs. 36 and 37.
+    airloads : "full", "lift-slope" or "none"
+        Perturbation airloads: all, those proportional to the lift slope, or none. The trim has them all.
+    compressibility : bool
+        Prandtl-Glauert factor on lift and moment.
+    section_damping : bool, optional
+        Quasi-steady damping of turning sections (lift by the incidence at 3/4 chord, and the moment about the quarter
+        chord), in the trim too. Not given: on, and off with equations="published", to which True adds it. Lift-slope
+        airloads keep its lift alone.
+    rotor_speed : "windmilling" or "constant"
+        Whether the rotor speed perturbation is a degree of freedom.
+    drive_train : DriveTrain, optional
+        Engine and shaft on the rotor's azimuth.
+    reactionless : bool
+        Keep the blade motions that no load of the hub feels, for more than three blades.
+    locked : collection of "flap", "lag", "pitch", "gimbal"
+        Coordinates removed; they stay at zero in trim too.
+
+    Raises
+    ------
+    InputError
+        For a choice that does not exist, with those that do.
+    """
+
+    equations: str | EquationSet = "consistent"
+    pitch: str = "dynamic"
+    structure: str = "coupled"
+    frequencies: BladeFrequencies | None = None
+    pitch_flap_coupling: ArrayLike | None = None
+    pitch_lag_coupling: ArrayLike | None = None
+    airloads: str = "full"
+    compressibility: bool = True
+    section_damping: bool | None = None
+    rotor_speed: str = "windmilling"
+    drive_train: DriveTrain | None = None
+    reactionless: bool = False
+    locked: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name, choices in CHOICES.items():
+            value = getattr(self, name)
+            if isinstance(value, EquationSet):
+                continue
+            if value not in choices:
+                raise InputError(name, value, f"must be one of {', '.join(map(str, choices))}")
+        if self.section_damping is None:
+            object.__setattr__(self, "section_damping", default_choice("section_damping", vars(self)))
+        locked = (self.locked,) if isinstance(self.locked, str) else tuple(self.locked)
+        for name in locked:
+            if name not in LOCKABLE:
+                raise InputError("locked", name, f"must be of {', '.join(LOCKABLE)}")
+        object.__setattr__(self, "locked", locked)
+        self._check_combinations()
+
+    def _check_combinations(self) -> None:
+        if (self.structure == "tabulated") != isinstance(self.frequencies, BladeFrequencies):
+            raise InputError(
+                "frequencies", self.frequencies, 'must be BladeFrequencies, with structure="tabulated" only'
+            )
+        for name in ("pitch_flap_coupling", "pitch_lag_coupling"):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            if self.pitch != "coupling":
+                raise InputError(name, value, 'goes with pitch="coupling"')
+            if not np.all(np.isfinite(np.asarray(value, dtype=float))):
+                raise InputError(name, value, "must be finite")
+        if self.drive_train is not None and not isinstance(self.drive_train, DriveTrain):
+            raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
+        if self.drive_train is not None and self.rotor_speed == "constant":
+            raise InputError("drive_train", self.drive_train, 'goes with rotor_speed="windmilling"')
+
+    @property
+    def equation_set(self) -> EquationSet:
+        """The generated modules of the chosen equations."""
+        return self.equations if isinstance(self.equations, EquationSet) else EQUATION_SETS[self.equations]
+
+    @property
+    def pitch_is_free(self) -> bool:
+        """Whether the pitch equations are part of the model."""
+        return self.pitch == "dynamic" and "pitch" not in self.locked
+
+
+def parse_options(options: Mapping[str, Any]) -> Options:
+    """`Options` from keywords.
+
+    Raises
+    ------
+    InputError
+        For an unknown keyword, with the known ones.
+    """
+    known = (*CHOICES, *FURTHER)
+    for name in options:
+        if name not in known:
+            raise InputError(
+                name, options[name], f"{unknown_name(name, known, 'option')} (options: {', '.join(known)})"
+            )
+    return Options(**options)

@@ -1,0 +1,474 @@
+"""A proprotor: geometry, mass, springs, control system and blade sections, in SI units."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from proprotor_equations import inertia
+
+from proprotor.errors import InputError, check_number
+from proprotor.rotor.airfoil import SectionModel
+from proprotor.rotor.generated import evaluate
+from proprotor.rotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
+from proprotor.typing import Array
+
+MASS_INTEGRALS = (
+    "blade_mass",
+    "blade_first_moment",
+    "blade_inertia",
+    "flap_first_moment",
+    "flap_inertia",
+    "lag_first_moment",
+    "lag_inertia",
+)
+_POSITIVE = ("radius", "blade_inertia", "flap_inertia", "lag_inertia", "blade_mass")
+_NOT_NEGATIVE = (
+    "flap_hinge_offset",
+    "root_cutout",
+    "flap_first_moment",
+    "lag_first_moment",
+    "flap_stiffness",
+    "lag_stiffness",
+    "gimbal_stiffness",
+    "pitch_inertia",
+    "control_stiffness",
+    "flap_damping",
+    "lag_damping",
+    "pitch_damping",
+    "gimbal_damping",
+)
+_FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
+_REACH = 1e-3  # of the radius: stations may be printed to three digits
+HELD, NOTHING = "held", "nothing"  # what a table may say of the blade beyond its stations
+
+Table = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, str]  # r, values, perhaps `HELD`
+Distribution = float | Table | Callable[[Array], Array]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rotor:
+    """A gimballed rotor of equal blades, each with a flap and a lag hinge and a flexible control system.
+
+    All values in SI units and radians. The mass integrals are over the whole blade (blade_*, about the centre of
+    rotation) and over what lies outboard of a hinge (flap_*, lag_*, about that hinge). Any number may be an array that
+    broadcasts with the airspeeds, for many designs at once.
+
+    Parameters
+    ----------
+    n_blades : int
+        At least 3.
+    radius, root_cutout, flap_hinge_offset, lag_hinge_offset : float
+        m from the centre of rotation; the lag hinge is not inboard of the flap hinge.
+    precone : float
+        rad.
+    blade_mass, blade_first_moment, blade_inertia : float
+        Integrals of m, m r and m r²: kg, kg m, kg m².
+    flap_first_moment, flap_inertia, lag_first_moment, lag_inertia : float
+        Integrals of m (r - e) and m (r - e)² outboard of each hinge: kg m, kg m².
+    flap_stiffness, lag_stiffness : float
+        Hub and blade spring in series, N m/rad (Eq. 18 of AIAA-2002-1604).
+    flap_outboard_fraction, lag_outboard_fraction : float
+        Share of that flexibility (dimensionless) outboard of the pitch bearing, 0 to 1 (Eq. 19).
+    gimbal_stiffness : float
+        Hub spring, N m/rad.
+    pitch_gimbal_coupling : float
+        K_PG = tan δ3 (Eq. 16), dimensionless.
+    pitch_inertia, control_stiffness : float
+        Of one blade: kg m², N m/rad.
+    flap_damping, lag_damping, pitch_damping, gimbal_damping : float
+        Viscous dampers, N m s/rad; the gimbal's does not rotate.
+    structural_pitch_offset : float
+        From the collective reference to the blade's structural axes, rad.
+    propeller_moment : bool
+        Whether the propeller moment acts on the blade's pitch.
+    chord, twist : float, (r, values) or function of r
+        m and rad. A number is a constant chord and a linear twist over the radius; a pair of arrays is interpolated
+        linearly between its stations, which reach from the root cutout to the tip; (r, values, "held") says that the
+        end values hold beyond them. A smooth function takes an array of radii. Twist counts from the pitch at 0.75 R.
+    airfoil : SectionModel
+        Such as `Airfoil`.
+
+    Raises
+    ------
+    InputError
+        With the field, its value and the rule, when a value is missing, not finite or not physical.
+    """
+
+    n_blades: int
+    radius: float
+    root_cutout: float = 0.0
+    flap_hinge_offset: float = 0.0
+    lag_hinge_offset: float = 0.0
+    precone: float = 0.0
+    blade_mass: float
+    blade_first_moment: float
+    blade_inertia: float
+    flap_first_moment: float
+    flap_inertia: float
+    lag_first_moment: float
+    lag_inertia: float
+    flap_stiffness: float
+    lag_stiffness: float
+    flap_outboard_fraction: float = 0.0
+    lag_outboard_fraction: float = 0.0
+    gimbal_stiffness: float = 0.0
+    pitch_gimbal_coupling: float = 0.0
+    pitch_inertia: float = 0.0
+    control_stiffness: float = 0.0
+    flap_damping: float = 0.0
+    lag_damping: float = 0.0
+    pitch_damping: float = 0.0
+    gimbal_damping: float = 0.0
+    structural_pitch_offset: float = 0.0
+    propeller_moment: bool = True
+    chord: Distribution
+    twist: Distribution = 0.0
+    airfoil: SectionModel = field(repr=False)
+
+    def __post_init__(self) -> None:
+        for name in (entry.name for entry in fields(self) if entry.name != "airfoil"):
+            self._check_number(name)
+        if np.any(np.asarray(self.n_blades) < 3) or np.any(np.asarray(self.n_blades) % 1 != 0):
+            raise InputError("n_blades", self.n_blades, "must be a whole number of at least 3")
+        self._check_signs()
+        self._check_hinges()
+        self._check_reach()
+        self._check_mass()
+
+    def _check_number(self, name: str) -> None:
+        value = getattr(self, name)
+        if name in ("chord", "twist") and (isinstance(value, tuple) or callable(value)):
+            return  # a distribution, checked once the radius it stretches with is known to be positive
+        if isinstance(value, tuple | str):
+            raise InputError(name, value, "must be a number")
+        try:
+            finite = np.all(np.isfinite(np.asarray(value, dtype=complex)))
+        except (TypeError, ValueError):
+            raise InputError(name, value, "must be a number") from None
+        if not finite:
+            raise InputError(name, value, "must be finite")
+
+    def _check_signs(self) -> None:
+        for name in _POSITIVE:
+            if np.any(np.real(getattr(self, name)) <= 0):
+                raise InputError(name, getattr(self, name), "must be above zero")
+        for name in _NOT_NEGATIVE:
+            if np.any(np.real(getattr(self, name)) < 0):
+                raise InputError(name, getattr(self, name), "must not be negative")
+        for name in _FRACTIONS:
+            if np.any((np.real(getattr(self, name)) < 0) | (np.real(getattr(self, name)) > 1)):
+                raise InputError(name, getattr(self, name), "must lie between 0 and 1")
+        for name in ("chord", "twist"):
+            if isinstance(getattr(self, name), tuple):
+                _check_distribution(name, getattr(self, name))
+        chord: Any = self.station_chord if callable(self.chord) else self.chord
+        chord = chord[1] if isinstance(chord, tuple) else chord
+        if np.any(np.real(chord) <= 0):
+            raise InputError("chord", chord, "must be above zero")
+        if np.any(np.abs(np.real(self.precone)) >= np.pi / 2):
+            raise InputError("precone", self.precone, "must lie within 90 deg")
+
+    def _check_hinges(self) -> None:
+        if np.any(np.real(self.root_cutout) >= np.real(self.radius)):
+            raise InputError(
+                "root_cutout", self.root_cutout, f"must lie inboard of the tip ({_shown(self.radius)} m)"
+            )
+        if np.any(np.real(self.lag_hinge_offset) < np.real(self.flap_hinge_offset)):
+            rule = f"must not lie inboard of the flap hinge ({_shown(self.flap_hinge_offset)} m)"
+            raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
+        if np.any(np.real(self.lag_hinge_offset) >= np.real(self.radius)):
+            rule = f"must lie inboard of the tip ({_shown(self.radius)} m)"
+            raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
+
+    def _check_reach(self) -> None:
+        """Chord and twist are known wherever there are airloads, or said to hold beyond their stations."""
+        radius, cutout = np.real(self.radius), np.real(self.root_cutout)
+        for name in ("chord", "twist"):
+            table = getattr(self, name)
+            if not isinstance(table, tuple) or table[2:] == (HELD,):
+                continue
+            first, last = (np.real(np.asarray(table[0]))[..., end] / radius for end in (0, -1))
+            if np.any(first > cutout / radius + _REACH) or np.any(last < 1 - _REACH):
+                rule = (
+                    f"has stations from {_shown(first)} R to {_shown(last)} R; they must reach from the root cutout, "
+                    f'{_shown(cutout / radius)} R, to the tip, or say beyond = "held" for end values that hold there'
+                )
+                raise InputError(name, f"{np.size(table[1])} values", rule)
+
+    def _check_mass(self) -> None:
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ are inner products: no negative Gram matrix."""
+        i_beta_alpha = np.real(self.flap_hub_inertia)
+        if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
+            rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
+            raise InputError("flap_inertia", self.flap_inertia, rule)
+        gram = np.real(self._gram_matrix())
+        scale = np.sqrt(np.diagonal(gram, axis1=-2, axis2=-1))
+        correlation = gram / (scale[..., :, None] * scale[..., None, :])
+        if np.any(np.linalg.eigvalsh(correlation) < -1e-9):
+            rule = (
+                "cannot belong to one blade: the Gram matrix of the mass integrals has a negative eigenvalue"
+            )
+            raise InputError("blade_inertia", self.blade_inertia, rule)
+
+    def _gram_matrix(self) -> Array:
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ."""
+        entries = (
+            (self.blade_mass, self.blade_first_moment, self.flap_first_moment, self.lag_first_moment),
+            (self.blade_first_moment, self.blade_inertia, self.flap_hub_inertia, self.lag_hub_inertia),
+            (self.flap_first_moment, self.flap_hub_inertia, self.flap_inertia, self.flap_lag_inertia),
+            (self.lag_first_moment, self.lag_hub_inertia, self.flap_lag_inertia, self.lag_inertia),
+        )
+        flat = np.broadcast_arrays(*(entry for row in entries for entry in row))
+        return np.stack(flat, axis=-1).reshape(*np.shape(flat[0]), 4, 4)
+
+    @functools.cached_property
+    def _dependent(self) -> Any:
+        return evaluate(
+            inertia.dependent_inertias, {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        )
+
+    @property
+    def flap_hub_inertia(self) -> Any:
+        """I_βα = ∫ m r (r - e_β), kg m²; follows from the flap inertia, first moment and hinge offset."""
+        return self._dependent.flap_hub_inertia
+
+    @property
+    def lag_hub_inertia(self) -> Any:
+        """I_ζα = ∫ m r (r - e_ζ), kg m²."""
+        return self._dependent.lag_hub_inertia
+
+    @property
+    def flap_lag_inertia(self) -> Any:
+        """I_βζ = ∫ m (r - e_β)(r - e_ζ), kg m²."""
+        return self._dependent.flap_lag_inertia
+
+    @functools.cached_property
+    def quadrature(self) -> RadialQuadrature:
+        """Radial stations and weights from cutout to tip, split at hinges and tabulated stations."""
+        knots = [np.asarray(d[0]) for d in (self.chord, self.twist) if isinstance(d, tuple)]
+        return gauss_panels(
+            root_cutout=self.root_cutout,
+            radius=self.radius,
+            flap_hinge_offset=self.flap_hinge_offset,
+            lag_hinge_offset=self.lag_hinge_offset,
+            knots=_joined(knots),
+        )
+
+    @functools.cached_property
+    def coarse_quadrature(self) -> RadialQuadrature:
+        """A few stations, enough to come near the trim."""
+        return coarse_panels(
+            root_cutout=self.root_cutout,
+            radius=self.radius,
+            flap_hinge_offset=self.flap_hinge_offset,
+            lag_hinge_offset=self.lag_hinge_offset,
+        )
+
+    @functools.cached_property
+    def station_chord(self) -> Array:
+        """Chord at the stations of the quadrature, m."""
+        return self.chord_at(self.quadrature.stations)
+
+    @functools.cached_property
+    def station_twist(self) -> Array:
+        """Twist at the stations of the quadrature, from the pitch at 0.75 R, rad."""
+        return self.twist_at(self.quadrature.stations)
+
+    def chord_at(self, r: Array) -> Array:
+        """Chord at radii.
+
+        Parameters
+        ----------
+        r : array (..., stations)
+            From the centre of rotation, m.
+
+        Returns
+        -------
+        array (..., stations)
+            m; a constant chord has one station.
+        """
+        if isinstance(self.chord, tuple) or callable(self.chord):
+            return _interpolate(self.chord, r)
+        return np.asarray(self.chord)[..., None]
+
+    def twist_at(self, r: Array) -> Array:
+        """Twist at radii.
+
+        Parameters
+        ----------
+        r : array (..., stations)
+            From the centre of rotation, m.
+
+        Returns
+        -------
+        array (..., stations)
+            From the pitch at 0.75 R, rad.
+        """
+        reference = 0.75 * np.asarray(self.radius)[..., None]
+        if isinstance(self.twist, tuple) or callable(self.twist):
+            twist: Array = _interpolate(self.twist, r) - _interpolate(self.twist, reference)
+        else:
+            twist = np.asarray(self.twist)[..., None] * (r - reference) / np.asarray(self.radius)[..., None]
+        return twist
+
+    @classmethod
+    def from_mass_distribution(
+        cls,
+        r: ArrayLike,
+        mass_per_length: ArrayLike,
+        beyond: str = "",
+        *,
+        hub_mass: ArrayLike | None = None,
+        **fields_: Any,
+    ) -> Rotor:
+        """A rotor whose seven mass integrals come from mass per length, linear between stations.
+
+        Exact for that distribution: each interval between stations and hinges is integrated as the cubic it is. Hinge
+        offsets and, with leading axes, r may be arrays of many designs.
+
+        Stations reach from the centre of rotation to the tip, where those within 0.1 % of the radius are taken to be.
+
+        Parameters
+        ----------
+        r : array_like, shape (..., k)
+            Stations from the centre of rotation, m, increasing.
+        mass_per_length : array_like, shape (k,)
+            kg/m, not negative.
+        beyond : "" or "nothing"
+            "nothing" says that there is no mass inboard of the first station and outboard of the last.
+        hub_mass : float or array, optional
+            Of the whole rotor at the centre of rotation, kg, for stations that begin further out; it may be 0.
+        **fields_
+            The other fields of `Rotor`.
+
+        Returns
+        -------
+        Rotor
+
+        Raises
+        ------
+        InputError
+            When the distribution is not increasing in r or negative, ends short of centre or tip without a word, or a
+            field is wrong.
+        """
+        r, mass = np.asarray(r), np.asarray(mass_per_length, dtype=float)
+        _check_distribution("mass_distribution", (r, mass))
+        if np.any(mass < 0):
+            raise InputError("mass_distribution", float(mass.min()), "must not be negative")
+        if beyond not in ("", NOTHING):
+            raise InputError(
+                "mass_distribution", beyond, f'must say "{NOTHING}" of what is beyond, or not say it'
+            )
+        r = _reaching(r, fields_.get("radius"), beyond, hub_mass)
+        _check_distribution("mass_distribution", (r, mass))
+        hinges = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
+        integrals = {"blade_mass": _outboard_moment(r, mass, None, 0)}
+        for name, axis in {"blade": None, **hinges}.items():
+            for power, kind in ((1, "first_moment"), (2, "inertia")):
+                integrals[f"{name}_{kind}"] = _outboard_moment(r, mass, axis, power)
+        rotor = cls(**integrals, **fields_)
+        return rotor if hub_mass is None else rotor._with_hub(hub_mass)
+
+    def _with_hub(self, hub_mass: ArrayLike) -> Rotor:
+        """The rotor with a mass at its centre, a share of it in every blade."""
+        check_number("hub_mass", hub_mass)
+        if not np.all(np.isfinite(hub_mass)) or np.any(np.real(hub_mass) < 0):
+            raise InputError("hub_mass", hub_mass, "must be finite and not negative")
+        share: Any = hub_mass / np.asarray(self.n_blades)
+        return replace(self, blade_mass=self.blade_mass + share)
+
+
+def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) -> Array:
+    """Return the stations of the mass, with those near centre and tip moved there; refuse ones that leave mass out."""
+    try:
+        tip = np.asarray(radius, dtype=complex if np.iscomplexobj(radius) else float)
+    except (TypeError, ValueError):
+        return r  # refused as a field of the rotor
+    if not np.all(np.real(tip) > 0):
+        return r
+    first, last = (np.real(r[..., end]) / np.real(tip) for end in (0, -1))
+    reached = f"has stations from {_shown(first)} R to {_shown(last)} R"
+    at_centre, at_tip = np.abs(first) <= _REACH, np.abs(last - 1) <= _REACH
+    if np.any(first < -_REACH) or np.any(last > 1 + _REACH):
+        raise InputError(
+            "mass_distribution", f"{r.shape[-1]} values", f"{reached}; there is no blade beyond its tip"
+        )
+    if hub_mass is not None and np.any(at_centre):
+        rule = "must not be given with a mass_distribution that begins at the centre of rotation and holds the hub"
+        raise InputError("hub_mass", hub_mass, rule)
+    if beyond != NOTHING and not (np.all(at_tip) and (hub_mass is not None or np.all(at_centre))):
+        rule = (
+            f"{reached}; they must reach from the centre to the tip. Give hub_mass for what is inboard of the first, "
+            f'or say beyond = "{NOTHING}" where there is no mass beyond the stations'
+        )
+        raise InputError("mass_distribution", f"{r.shape[-1]} values", rule)
+    moved = np.array(np.broadcast_to(r, (*np.broadcast_shapes(r.shape[:-1], tip.shape), r.shape[-1])))
+    moved = moved.astype(np.result_type(moved, tip), copy=False)
+    moved[..., 0] = np.where(at_centre, 0.0, moved[..., 0])
+    moved[..., -1] = np.where(at_tip, tip, moved[..., -1])
+    return moved
+
+
+def _shown(value: ArrayLike) -> str:
+    """A number, or the range of an array of designs."""
+    low, high = np.min(np.real(value)), np.max(np.real(value))
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
+
+
+def _check_distribution(name: str, distribution: Table) -> None:
+    if (further := distribution[2:]) not in ((), (HELD,)):
+        raise InputError(name, further, f'must be (r, values), or (r, values, "{HELD}")')
+    r, values = (np.real(part) for part in distribution[:2])
+    if values.ndim != 1 or r.shape[-1:] != values.shape or values.size < 2:
+        raise InputError(
+            name, f"arrays of shape {r.shape} and {values.shape}", "must be two lists of equal length"
+        )
+    if not (np.isfinite(r).all() and np.isfinite(values).all()):
+        raise InputError(name, values.tolist(), "must be finite")
+    if np.any(np.diff(r) <= 0):
+        raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
+
+
+def _joined(knots: list[Array]) -> Array:
+    """Stations of several distributions along the last axis."""
+    if not knots:
+        return np.empty(0)
+    leading = np.broadcast_shapes(*(stations.shape[:-1] for stations in knots))
+    return np.concatenate([np.broadcast_to(s, (*leading, s.shape[-1])) for s in knots], axis=-1)
+
+
+def _interpolate(distribution: Table | Callable[[Array], Array], r: Array) -> Array:
+    """Values (..., stations) at radii r (..., stations), linear and constant beyond the ends, complex if r is."""
+    if callable(distribution):
+        return np.asarray(distribution(r))
+    stations, values = np.asarray(distribution[0]), np.asarray(distribution[1])
+    last = stations.shape[-1] - 2
+    panel = np.sum(np.real(r)[..., None] >= np.real(stations)[..., None, :], axis=-1) - 1
+    panel = np.clip(panel, 0, last)
+    stations = np.broadcast_to(stations, (*r.shape[:-1], last + 2))
+    start, end = (np.take_along_axis(stations, panel + step, axis=-1) for step in (0, 1))
+    share = (r - start) / (end - start)
+    share = np.where(np.real(share) < 0, 0.0, np.where(np.real(share) > 1, 1.0, share))
+    between: Array = values[panel] + share * (values[panel + 1] - values[panel])
+    return between
+
+
+def _outboard_moment(r: Array, mass: Array, axis: ArrayLike | None, power: int) -> Any:
+    """∫ m (r - axis)^power outboard of an axis (...), over all the blade about its centre for None."""
+    nodes, weights = np.polynomial.legendre.leggauss(2)
+    inboard, outboard = r[..., :-1], r[..., 1:]
+    center = np.zeros(()) if axis is None else np.asarray(axis)[..., None]
+    start = inboard
+    if axis is not None:
+        start = np.where(np.real(center) > np.real(inboard), center, inboard)
+        start = np.where(np.real(start) > np.real(outboard), outboard, start)
+    half = ((outboard - start) / 2)[..., None]
+    stations = start[..., None] + half * (1 + nodes)
+    slope = (np.diff(mass) / np.diff(r))[..., None]
+    density = mass[:-1, None] + slope * (stations - inboard[..., None])
+    return np.sum(half * weights * density * (stations - center[..., None]) ** power, axis=(-2, -1))[()]

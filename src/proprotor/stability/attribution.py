@@ -1,0 +1,80 @@
+"""What makes a mode grow or decay: its eigenvalue by the physical origin of the matrices.
+
+If all terms of one origin grew by a small part ε, an eigenvalue would move by ε times
+
+    λ_g = -yᴴ(λ² M_g + λ C_g + K_g) x / yᴴ(2λM + C) x ,
+
+which is what is told here for each origin g, with trim, mode and all other terms held. Where Re λ_g is positive the
+origin drives the mode. Terms of all origins that grow alike move nothing: the sum of λ_g is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.model import stamp
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.eigenvalue_derivatives import eigenvalue_change
+from proprotor.stability.matching import Modes
+from proprotor.stability.named_modes import named_modes
+from proprotor.stability.origins import Part, model_parts
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+
+
+def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
+    """λ_g of each part and mode (..., parts, modes), rad/s; the sum over parts that make up the model is zero."""
+    return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
+
+
+def attribution(case: Case, airspeed: Any, mode: str | None = None, **options: Any) -> xarray.Dataset:
+    """What drives and what damps the modes of a case at one airspeed.
+
+    Parameters
+    ----------
+    case : Case
+    airspeed : float in m/s, text such as "300 kt", or pint quantity
+    mode : str, optional
+        One mode by what moves at the airspeed; all by default.
+    **options
+        See `proprotor.rotor.options.Options`.
+
+    Returns
+    -------
+    xarray.Dataset
+        contribution (origin, mode), rad/s: the change of the eigenvalue if all terms of an origin grew by 100 %, to
+        first order; growth, its real part, positive where the origin drives the mode; eigenvalue (mode,); warning, what
+        makes the numbers doubtful. Attributes: airspeed in m/s, and the case and its options (`proprotor.model.stamp`).
+
+    Raises
+    ------
+    InputError
+        For an airspeed that is not one, or that cannot be analysed, and an unknown mode.
+    """
+    found = named_modes(case, airspeed, mode, options)
+    parts = model_parts(case, found.model, **options)
+    changes = contributions(found.model, parts, found.modes)
+    data = _dataset(found.names, list(parts), found.modes.values, changes)
+    data["warning"] = (), str(found.model.trim.warning), {"long_name": "what makes the numbers doubtful"}
+    return data.assign_attrs(stamp.of_model(found.model) | {"airspeed": found.speed})
+
+
+def _dataset(modes: list[str], origins: list[str], values: Array, found: Array) -> xarray.Dataset:
+    import xarray  # here, because it takes long to import
+
+    units = {"units": "rad/s"}
+    return xarray.Dataset(
+        {
+            "contribution": (("origin", "mode"), found, units),
+            "growth": (("origin", "mode"), found.real, units),
+            "eigenvalue": ("mode", values, units),
+        },
+        coords={"origin": origins, "mode": modes},
+    )

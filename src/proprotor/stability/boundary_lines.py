@@ -1,0 +1,141 @@
+"""The lines of a stability map, parted where another mode takes over, each named after the mode that is neutral."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from proprotor.errors import InputError
+from proprotor.model.stamp import options_of
+from proprotor.stability.map import AIRSPEED
+from proprotor.stability.matching import Spectrum, conjugate, link
+from proprotor.stability.mode_names import name_list
+from proprotor.stability.modes import decomposition
+from proprotor.stability.sweep import names_at
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+    from proprotor.model.linear_model import LinearModel
+
+
+class BoundaryLine(NamedTuple):
+    """A line along which one mode is neutral.
+
+    Parameters
+    ----------
+    mode : str
+        What moves in it at the middle of the line.
+    x, y : array (vertices,)
+        In SI, as the axes of the map.
+    frequency : array (vertices,)
+        Of the mode, rad/s.
+    warning : array of str
+        (vertices,): what makes a vertex doubtful; empty where nothing does.
+    """
+
+    mode: str
+    x: Array
+    y: Array
+    frequency: Array
+    warning: Array = np.empty(0, dtype=str)
+
+
+def boundary_lines(
+    case: Case, found: xarray.Dataset, *, airspeed: Any = None, **options: Any
+) -> list[BoundaryLine]:
+    """The lines of a stability map by mode.
+
+    The root that is neutral at a vertex is followed to the next by its vectors; its name is looked for at the middle of
+    each line.
+    Where one mode takes over from another, the step from the last vertex of the one belongs to the other.
+
+    Parameters
+    ----------
+    case : Case
+    found : xarray.Dataset
+        Of `Case.stability_map`.
+    airspeed : float in m/s, text such as "300 kt", or pint quantity, optional
+        That of the map, which need not be repeated.
+    **options
+        Those of the map, see `proprotor.rotor.options.Options`. The map has its own, which need not be repeated but where
+        they hold functions.
+
+    Returns
+    -------
+    list of BoundaryLine
+
+    Raises
+    ------
+    InputError
+        For an unknown option, and another option, airspeed or case than the map's.
+    """
+    options = options_of(found.attrs, case, options)
+    airspeed = _airspeed_of(found, airspeed)
+    names = [str(name) for name in found.axis.values]
+    roots, warning = found.boundary_eigenvalue.values, found.boundary_warning.values
+    lines = []
+    for places in _parted(found.boundary.values):
+        vertices, frequency = found.boundary.values[places], np.abs(roots[places].imag)
+        model = _model_at(case, names, vertices, airspeed, options)
+        spectrum = decomposition(model)
+        state = _nearest_state(spectrum, roots[places])
+        for part in _same_mode(spectrum, state, np.isfinite(roots[places])):
+            middle = (part.start + part.stop) // 2
+            mode = name_list(model.dofs)[names_at(model, spectrum, middle)[state[middle]]]
+            drawn = slice(max(part.start - 1, 0), part.stop)
+            x, y = vertices[drawn].T
+            lines.append(BoundaryLine(mode, x, y, frequency[drawn], warning[places][drawn]))
+    return lines
+
+
+def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
+    """The airspeed of a map in m/s; None where it is one of its axes."""
+    from proprotor.units import in_metres_per_second
+
+    own = found.attrs.get(AIRSPEED)
+    if given is not None and (own is None or not np.isclose(in_metres_per_second(given), own, rtol=1e-12)):
+        rule = "is one of the axes of the map" if own is None else f"must be {own:.6g} m/s, that of the map"
+        raise InputError(AIRSPEED, given, f"{rule}, or be left out" if own is not None else rule)
+    return None if own is None else float(own)
+
+
+def _parted(boundary: Array) -> Iterator[Array]:
+    """Places (vertices,) of each line of a boundary in which NaN parts them."""
+    good: Array = np.asarray(np.isfinite(boundary).all(axis=1))
+    for part in np.split(np.arange(len(boundary)), np.flatnonzero(~good)):
+        chosen = part[good[part]]
+        if len(chosen):
+            yield chosen
+
+
+def _model_at(
+    case: Case, names: list[str], points: Array, airspeed: float | None, options: dict[str, Any]
+) -> LinearModel:
+    """Models at points (k, 2) of the plane."""
+    given: dict[str, Any] = dict(zip(names, points.T, strict=True))
+    speed = given.pop(AIRSPEED, airspeed)
+    return case.vary(given).linearize(speed, **options)
+
+
+def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice]:
+    """Stretches of vertices along which the root that is neutral at one is that which is neutral at the next."""
+    before, works = np.arange(len(state) - 1), spectrum.works & known
+    good = before[works[:-1] & works[1:]]
+    same = np.zeros(len(before), dtype=bool)
+    after = link(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
+    same[good] = (after == state[good + 1]) | (after == conjugate(spectrum.values)[good + 1, state[good + 1]])
+    jumps = np.flatnonzero(~same) + 1
+    for start, stop in zip((0, *jumps), (*jumps, len(state)), strict=True):
+        yield slice(int(start), int(stop))
+
+
+def _nearest_state(spectrum: Spectrum, roots: Array) -> Array:
+    """Which state of each point has its root (k,)."""
+    apart = np.abs(spectrum.values - roots[:, None])
+    state: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=1)
+    return state

@@ -1,0 +1,111 @@
+"""What boundaries say at a glance, in the units people read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from proprotor.model.doubts import doubt_at, marked
+from proprotor.units import KNOT
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+    from proprotor.stability.flutter import Boundary, Crossings, FlutterPoint
+
+COLUMNS = (
+    "airspeed (kt)",
+    "airspeed (m/s)",
+    "frequency (Hz)",
+    "frequency (per rev)",
+    "mode",
+    "kind",
+    "onset",
+    "mechanism",
+    "growth per airspeed (1/m)",
+    "branch",
+    "warning",
+)
+
+
+def boundary_record(boundary: Boundary, case: Case) -> dict[str, Any]:
+    """A boundary in the units people read, by `COLUMNS`."""
+    values = (
+        boundary.position / KNOT,
+        boundary.position,
+        boundary.frequency / (2 * math.pi),
+        boundary.frequency / float(case.operation.rotor_speed),
+        boundary.mode,
+        boundary.kind,
+        boundary.onset,
+        dict(boundary.mechanism),
+        boundary.rate,
+        boundary.branch,
+        boundary.warning,
+    )
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def modes_beyond(found: FlutterPoint, airspeed: float) -> int | None:
+    """How many modes are beyond the level at an airspeed; None outside the range that was searched."""
+    low, high = found.searched
+    if not low <= airspeed <= high:
+        return None
+    passed = [boundary.onset for boundary in found.boundaries if boundary.position < airspeed]
+    return len(found.unstable_at_start) + 2 * sum(passed) - len(passed)
+
+
+def mechanism_told(mechanism: dict[str, float]) -> str:
+    """Which modes take part in a boundary, and how much."""
+    return ", ".join(f"{name} {100 * share:.0f} %" for name, share in mechanism.items())
+
+
+def least_told(found: FlutterPoint, unit: str, factor: float) -> str:
+    """Return the least damping of a search, with its mode and airspeed; "" where there was no mode."""
+    if math.isnan(found.least_damping):
+        return ""
+    speed = found.least_damping_speed
+    where = f"{found.least_damping_mode} at {speed / factor:.4g} {unit}"
+    return (
+        f"{marked(f'{100 * found.least_damping:.2g}', doubt_at(found.doubts, speed))} % of critical: {where}"
+    )
+
+
+def failed_told(found: FlutterPoint | Crossings, unit: str, factor: float) -> Iterator[str]:
+    """Sentences on what of a scan could not be analysed, and why: where the range searched ends, and its gaps."""
+    for first, last, reason in found.failed:
+        low, high = f"{first / factor:.4g}", f"{last / factor:.4g}"
+        yield f"Not analysed: {low if low == high else f'{low} to {high}'} {unit}".rstrip() + f" ({reason})."
+
+
+def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:
+    """The same as plain data."""
+    return [{"from (m/s)": first, "to (m/s)": last, "reason": reason} for first, last, reason in found.failed]
+
+
+def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
+    """Sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
+    low, high = (marked(f"{at / factor:.4g}", doubt_at(found.doubts, at)) for at in found.searched)
+    beyond = f"below {100 * found.level:g} % of critical" if found.level else "unstable"
+    if found.unstable_at_start:
+        yield f"Already {beyond} at {low} {unit}: {', '.join(found.unstable_at_start)}."
+    if math.isnan(found.speed):
+        yield f"No mode becomes {beyond} between {low} and {high} {unit}."
+        if told := least_told(found, unit, factor):
+            yield f"The least damping there is {told}."
+    else:
+        speed = marked(f"{found.speed / factor:.2f}", found.warning)
+        yield f"Flutter speed {speed} {unit} ({found.mode}, {found.kind})."
+    yield from failed_told(found, unit, factor)
+    if at is None:
+        return
+    count = modes_beyond(found, at)
+    if count is None:
+        ends = " to ".join(f"{end / factor:.4g}" for end in found.searched)
+        yield f"{at / factor:.4g} {unit} lies outside the range searched, {ends} {unit}."
+    elif count:
+        here = marked(f"{at / factor:.4g}", doubt_at(found.doubts, at))
+        yield f"At {here} {unit} {count} mode{'s are' if count > 1 else ' is'} {beyond}."
+    if not math.isnan(found.speed):
+        margin = marked(f"{100 * found.margin(at):+.1f}", found.warning)
+        yield f"Margin at {at / factor:.4g} {unit}: {margin} % of that airspeed."

@@ -1,0 +1,47 @@
+"""Cubics through values and slopes at both ends of a step, many at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from proprotor.typing import Array
+
+
+def hermite(t: Array, ends: Array) -> Array:
+    """The cubic with values and slopes `ends` (4, ...): at 0, at 1, slope at 0 and at 1 per unit of t."""
+    value0, value1, slope0, slope1 = ends
+    rise = value1 - value0
+    a, b = slope0 - rise, rise - slope1
+    value: Array = value0 + t * (rise + (1 - t) * (a + t * (b - a)))
+    return value
+
+
+def hermite_slope(t: Array, ends: Array) -> Array:
+    """Its slope per unit of t."""
+    value0, value1, slope0, slope1 = ends
+    rise = value1 - value0
+    slope: Array = slope0 + t * (6 * rise - 4 * slope0 - 2 * slope1 + 3 * t * (slope0 + slope1 - 2 * rise))
+    return slope
+
+
+def hermite_extrema(ends: Array) -> Array:
+    """Where the cubics (4, m) have extrema within (0, 1): (m, 2), NaN where they have none."""
+    value0, value1, slope0, slope1 = ends
+    rise = value1 - value0
+    c3, c2, c1 = slope0 + slope1 - 2 * rise, 3 * rise - 2 * slope0 - slope1, slope0
+    with np.errstate(all="ignore"):
+        root = np.sqrt(c2**2 - 3 * c3 * c1)
+        q = -(c2 + np.where(c2 < 0, -root, root))
+        found = np.stack([q / (3 * c3), c1 / q], axis=-1)
+    return np.where((found > 0) & (found < 1), found, np.nan)
+
+
+def hermite_root(ends: Array) -> Array:
+    """A root in (0, 1) of cubics (4, m) with values of opposite sign at the ends, by bisection and then secants."""
+    low, high = np.zeros(ends.shape[1]), np.ones(ends.shape[1])
+    rising = ends[1] > ends[0]
+    for _ in range(52):
+        middle = (low + high) / 2
+        above = (hermite(middle, ends) > 0) == rising
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return (low + high) / 2

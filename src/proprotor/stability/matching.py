@@ -1,0 +1,414 @@
+"""The same mode at neighbouring points: one-to-one, by vectors and eigenvalues, with a measure of trust.
+
+A mode is followed by the likeness of its vectors at two points,
+
+    S_ij = √( |l_i(1) r_j(2)| |l_j(2) r_i(1)| ),
+
+l the rows of the inverse of the matrix of right vectors r. They are the mass-weighted left vectors: S is 1 for a mode
+that has not changed and 0 for any other, whatever units coordinates have and however vectors are scaled. The distance
+of the eigenvalues, in parts of the largest, is taken off. The assignment with the largest sum of S_ij - d_ij is the
+step. Where the best candidates of all states are different, that is the assignment: no permutation exceeds the sum of
+the largest entries of the rows. Elsewhere `scipy.optimize.linear_sum_assignment` finds it.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from proprotor.typing import Array
+
+_BLOCK = 64  # steps whose matrices stay in the cache
+_COUPLED = (
+    1e-6  # likeness of different modes below which it is rounding, and they pass each other as strangers
+)
+NOT_TOLD = "the step to here does not tell which root is which"
+POOR = 0.5  # quality of a step below which it is divided
+
+
+class Steps(NamedTuple):
+    """Pairs of neighbouring points.
+
+    Attributes
+    ----------
+    successor : array (steps, states) of int
+        Place at the later point of each state of the earlier one.
+    quality : array (steps, states)
+        Trust in the step of each state, 0 to 1: see `link`.
+    """
+
+    successor: Array
+    quality: Array
+
+
+class Modes(NamedTuple):
+    """Some modes of points: values (..., modes), right vectors (..., states, modes) and left ones (..., modes, states).
+
+    left @ right is 1 for a mode with itself and 0 with any other.
+    """
+
+    values: Array
+    right: Array
+    left: Array
+
+
+class Spectrum(NamedTuple):
+    """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side.
+
+    A state that a point does not have, though others do, has a vector and no eigenvalue, NaN; a failed point has none.
+    shapes (..., m, k) are those of the first k coordinates where they differ from point to point, else None.
+    """
+
+    values: Array
+    right: Array
+    shapes: Array | None = None
+
+    def at(self, points: Any) -> Spectrum:
+        """Some of the points, by what an array is indexed with."""
+        shapes = None if self.shapes is None else self.shapes[points]
+        return Spectrum(self.values[points], self.right[points], shapes)
+
+    def joined(self, other: Spectrum) -> Spectrum:
+        """The points of both."""
+        values, right = (
+            np.concatenate([getattr(part, of) for part in (self, other)]) for of in ("values", "right")
+        )
+        shapes = None
+        if self.shapes is not None and other.shapes is not None:
+            shapes = np.concatenate([self.shapes, other.shapes])
+        return Spectrum(values, right, shapes)
+
+    @property
+    def works(self) -> Array:
+        """Which points have not failed."""
+        return np.asarray(np.isfinite(self.values).any(axis=-1))
+
+    @property
+    def all_modes(self) -> Modes:
+        """Every state of every point."""
+        return Modes(self.values, self.right, left_vectors(self.values, self.right))
+
+    def modes(self, places: Array) -> Modes:
+        """Some states of each point: places (..., modes)."""
+        values, right, left = self.all_modes
+        return Modes(
+            np.take_along_axis(values, places, -1),
+            np.take_along_axis(right, places[..., None, :], -1),
+            np.take_along_axis(left, places[..., :, None], -2),
+        )
+
+
+def left_vectors(values: Array, right: Array) -> Array:
+    """Rows (..., states, states) with rows @ right = 1, for a real matrix whose pairs stand side by side.
+
+    The columns a + ib and a - ib span what a and b span: their inverse is had from that of the real matrix with the
+    columns a and b, at a third of the cost. A defective matrix has no inverse; there the rows are those of least
+    squares. NaN at failed points.
+    """
+    states = values.shape[-1]
+    flat, vectors = values.reshape(-1, states), right.reshape(-1, states, states)
+    left = np.full(vectors.shape, np.nan, dtype=complex)
+    good = np.flatnonzero(np.isfinite(flat).any(axis=-1))
+    for start in range(0, len(good), _BLOCK):
+        rows = _as_slice(good[start : start + _BLOCK])
+        left[rows] = _left_block(flat[rows], vectors[rows])
+    return left.reshape(right.shape)
+
+
+def _left_block(values: Array, right: Array) -> Array:
+    real = np.where((values.imag < 0)[:, None, :], -right.imag, right.real)
+    rows = _inverse(real)
+    left = rows.astype(complex)
+    point, place = np.nonzero(values.imag > 0)
+    first, second = rows[point, place], rows[point, place + 1]
+    left[point, place] = 0.5 * (first - 1j * second)
+    left[point, place + 1] = 0.5 * (first + 1j * second)
+    return left
+
+
+def _inverse(matrices: Array) -> Array:
+    try:
+        return np.linalg.inv(matrices)
+    except np.linalg.LinAlgError:  # at one point, which is defective
+        return np.linalg.pinv(matrices)
+
+
+def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
+    """Successors of all states from points `before` (steps,) to points `after` (steps,).
+
+    The quality of a step is the likeness of a state to its successor, less the largest of
+
+        S_ij' max(|Δ1|, |Δ2|) / |Δmin|
+
+    over the other states, with S_ij' the likeness of the state to the successor of another, Δ1 and Δ2 what parts
+    their eigenvalues at both points, and Δmin the least on the straight way from one to the other. Two states that
+    mix by S while they are Δ apart are coupled by about S Δ: where they would come nearer to each other than that,
+    they may have passed or may have turned away between the points, and the step does not tell. The conjugate of a
+    state and its other half, where a pair parts into two real roots or two join, do not count as others.
+
+    A state that a point does not have is at no distance from any other: its likeness alone tells which it becomes
+    where the next point has it, and from there on it has an eigenvalue.
+    """
+    if spectrum.shapes is not None:
+        return _link_in_common(spectrum, spectrum.shapes, before, after)
+    states = spectrum.values.shape[-1]
+    successor = np.full((len(before), states), -1)
+    quality = np.empty((len(before), states))
+    pairs = (spectrum.values.imag > 0).sum(axis=-1)
+    alike = pairs[before] == pairs[after]
+    for count in np.unique(pairs[before[alike]]):
+        steps = np.flatnonzero(alike & (pairs[before] == count))
+        for start in range(0, len(steps), _BLOCK):
+            rows = _as_slice(steps[start : start + _BLOCK])
+            successor[rows], quality[rows] = _link_block(spectrum, before[rows], after[rows], int(count))
+    for step in np.flatnonzero(successor[:, 0] < 0):
+        successor[step], quality[step] = _link_alone(spectrum.at(before[step]), spectrum.at(after[step]))
+    return Steps(successor, quality)
+
+
+def _link_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Array) -> Steps:
+    """Steps between points whose coordinates have different shapes, each in the coordinates of its earlier point."""
+    turn = np.linalg.pinv(shapes[before]) @ shapes[after]
+    states, count = spectrum.values.shape[-1], turn.shape[-1]
+    rates = (
+        states - (states + 1) // 2
+    )  # where they begin: all displacements, or all but the azimuth, stand before
+    right = spectrum.right[after]
+    for start in (0, rates):
+        places = slice(start, start + count)
+        right[:, places] = turn @ right[:, places]
+    first, last = spectrum.at(before), Spectrum(spectrum.values[after], right)
+    rows = np.arange(len(before))
+    return link(Spectrum(first.values, first.right).joined(last), rows, len(rows) + rows)
+
+
+class _Packed(NamedTuple):
+    """Points with one number of pairs: places of the states above and of the real ones, eigenvalues, vectors.
+
+    above (n, pairs), real (n, rest), values (n, pairs + rest) of both; columns (n, states, states) real: real parts of
+    the vectors of the pairs, then imaginary parts, then the real vectors; rows, the inverse.
+    """
+
+    above: Array
+    real: Array
+    values: Array
+    columns: Array
+    rows: Array
+
+    @classmethod
+    def of(cls, spectrum: Spectrum, pairs: int) -> _Packed:
+        values, right, _ = spectrum
+        n, states = values.shape
+        above = np.nonzero(values.imag > 0)[1].reshape(n, pairs)
+        real = np.nonzero(~((values.imag > 0) | (values.imag < 0)))[1].reshape(n, states - 2 * pairs)
+        places = np.concatenate([above, real], axis=1)
+        vectors = np.take_along_axis(right, places[:, None, :], 2)
+        columns = np.empty((n, states, states))
+        columns[..., :pairs] = vectors[..., :pairs].real
+        columns[..., pairs : 2 * pairs] = vectors[..., :pairs].imag
+        columns[..., 2 * pairs :] = vectors[..., pairs:].real
+        return cls(above, real, np.take_along_axis(values, places, 1), columns, _inverse(columns))
+
+    def at(self, points: slice) -> _Packed:
+        return _Packed(*(part[points] for part in self))
+
+
+def _link_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> tuple[Array, Array]:
+    """Steps between points with one number of pairs; -1 where the best candidates are not all different."""
+    n = len(before)
+    if np.array_equal(after, before + 1) and isinstance(_as_slice(before), slice):
+        every = _Packed.of(spectrum.at(slice(int(before[0]), int(after[-1]) + 1)), pairs)
+        first, last = every.at(slice(None, -1)), every.at(slice(1, None))
+    else:
+        first, last = (_Packed.of(spectrum.at(points), pairs) for points in (before, after))
+    likeness = _packed_likeness(first, last, pairs)
+    scale = np.sqrt(np.fmax.reduce(first.values.real**2 + first.values.imag**2, axis=1))[:, None, None]
+    ends = np.concatenate([last.values[:, :pairs], last.values[:, :pairs].conj(), last.values[:, pairs:]], 1)
+    choice = (likeness - _distance(first.values[:, :, None], ends[:, None, :], scale)).argmax(axis=2)
+    # Upper states go to pairs, real ones to real ones, each to another.
+    target = np.where((choice >= pairs) & (choice < 2 * pairs), choice - pairs, choice)
+    rows = np.arange(likeness.shape[1])
+    good = (np.sort(target, axis=1) == np.where(rows < pairs, rows, rows + pairs)).all(axis=1)
+    good &= (choice[:, :pairs] < 2 * pairs).all(axis=1)
+    places = np.concatenate([last.above, last.above + 1, last.real], axis=1)
+    successor = np.full((n, spectrum.values.shape[1]), -1)
+    found = np.take_along_axis(places, choice, 1)
+    turned = np.where(choice[:, :pairs] < pairs, 1, -1)  # a state that turns over the real axis
+    np.put_along_axis(successor, first.above, found[:, :pairs], 1)
+    np.put_along_axis(successor, first.above + 1, found[:, :pairs] + turned, 1)
+    np.put_along_axis(successor, first.real, found[:, pairs:], 1)
+    successor[~good] = -1
+    trust = _trust(likeness, choice, first.values, np.take_along_axis(ends, choice, 1))
+    quality = np.empty(successor.shape)
+    np.put_along_axis(quality, first.above, trust[:, :pairs], 1)
+    np.put_along_axis(quality, first.above + 1, trust[:, :pairs], 1)
+    np.put_along_axis(quality, first.real, trust[:, pairs:], 1)
+    return successor, quality
+
+
+def _packed_likeness(first: _Packed, last: _Packed, pairs: int) -> Array:
+    """S (n, pairs + rest, 2 pairs + rest) of states above and real ones with those above, conjugates and real ones."""
+    forward = _squares(first.rows @ last.columns, pairs)
+    back = _squares(last.rows @ first.columns, pairs)
+    # |l_j(2) r_i(1)| of a conjugate j is that of j with the conjugate of i.
+    above, conjugates, real = slice(0, pairs), slice(pairs, 2 * pairs), slice(2 * pairs, None)
+    rest = slice(pairs, None)
+    for rows, of_above, of_conjugates in ((above, above, conjugates), (rest, real, real)):
+        forward[:, rows, above] *= back[:, above, of_above].swapaxes(1, 2)
+        forward[:, rows, conjugates] *= back[:, above, of_conjugates].swapaxes(1, 2)
+        forward[:, rows, real] *= back[:, rest, of_above].swapaxes(1, 2)
+    np.sqrt(forward, out=forward)
+    return np.sqrt(forward, out=forward)
+
+
+def _squares(product: Array, pairs: int) -> Array:
+    """|l r|² (n, pairs + rest, 2 pairs + rest) from the products of packed rows and columns.
+
+    With l = (p - iq)/2 and r = a + ib, or a - ib for the conjugate; rows and columns of real states stand alone.
+    """
+    a, b, c = slice(0, pairs), slice(pairs, 2 * pairs), slice(2 * pairs, None)
+    rest = slice(pairs, None)
+    found = np.empty((len(product), product.shape[1] - pairs, product.shape[1]))
+    pa, pb, qa, qb = product[:, a, a], product[:, a, b], product[:, b, a], product[:, b, b]
+    found[:, a, a] = ((pa + qb) ** 2 + (pb - qa) ** 2) / 4
+    found[:, a, b] = ((pa - qb) ** 2 + (pb + qa) ** 2) / 4
+    found[:, a, c] = (product[:, a, c] ** 2 + product[:, b, c] ** 2) / 4
+    found[:, rest, a] = product[:, c, a] ** 2 + product[:, c, b] ** 2
+    found[:, rest, b] = found[:, rest, a]
+    found[:, rest, c] = product[:, c, c] ** 2
+    return found
+
+
+def _trust(likeness: Array, choice: Array, start: Array, end: Array) -> Array:
+    """Quality (n, m) of states, with what they are like (n, m, any), the successor of each and its eigenvalues."""
+    n, m = choice.shape
+    # mixing[i, k]: likeness of state i to the successor of state k
+    mixing = np.take_along_axis(likeness, np.broadcast_to(choice[:, None, :], (n, m, m)), 2)
+    own = np.diagonal(mixing, axis1=1, axis2=2).copy()
+    mixing[:, np.arange(m), np.arange(m)] = 0
+    step, one, other = np.nonzero(mixing > _COUPLED)
+    index = _index(
+        mixing[step, one, other], start[step, one] - start[step, other], end[step, one] - end[step, other]
+    )
+    mixing[...] = 0
+    mixing[step, one, other] = index
+    worst = np.maximum(mixing.max(axis=2, initial=0), mixing.max(axis=1, initial=0))
+    quality: Array = np.clip(np.minimum(own, 1) - worst, 0, 1)
+    return quality
+
+
+def _index(mixing: Array, apart: Array, later: Array) -> Array:
+    """S max(|Δ1|, |Δ2|) / |Δmin|; 0 where one of the states is none of a point."""
+    nearest = np.fmax(way_to_zero(apart, later), 1e-300)
+    with np.errstate(over="ignore"):
+        index = mixing * np.maximum(np.abs(apart), np.abs(later)) / nearest
+    return np.where(np.isnan(index), 0.0, index)
+
+
+def _link_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
+    """Successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
+    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
+
+    (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
+    likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
+    distance = _distance(start[:, None], end, np.nanmax(np.abs(start)))
+    gain = likeness - distance
+    successor = linear_sum_assignment(np.where(np.isfinite(gain), gain, -1e300), maximize=True)[1]
+    mixing = likeness[:, successor]
+    own = np.diagonal(mixing).copy()
+    states, twins = np.arange(len(start)), (conjugate(start), conjugate(end))
+    related = (states[:, None] == states) | (twins[0][:, None] == states)
+    related |= twins[1][successor][:, None] == successor
+    counts = ~related & (mixing > _COUPLED)
+    apart, later = start[:, None] - start, end[successor][:, None] - end[successor]
+    index = np.zeros(mixing.shape)
+    index[counts] = _index(mixing[counts], apart[counts], later[counts])
+    return successor, np.clip(np.minimum(own, 1) - np.maximum(index.max(axis=0), index.max(axis=1)), 0, 1)
+
+
+def _as_slice(points: Array) -> slice | Array:
+    """Neighbouring points without a copy."""
+    if len(points) and points[-1] - points[0] == len(points) - 1 and np.all(np.diff(points) == 1):
+        return slice(int(points[0]), int(points[-1]) + 1)
+    return points
+
+
+def conjugate(values: Array) -> Array:
+    """Place of the conjugate of each state (..., states); that of a real one is its own."""
+    return np.arange(values.shape[-1]) + (values.imag > 0) - (values.imag < 0)
+
+
+def side_by_side(values: Array) -> Array:
+    """Places (points, states) that put conjugates side by side, as LAPACK has them, of eigenvalues in any order."""
+    order = np.empty(values.shape, dtype=int)
+    for point, here in enumerate(values):
+        high = np.flatnonzero(here.imag > 0)
+        low = np.flatnonzero(here.imag < 0)
+        real = np.flatnonzero(~((here.imag > 0) | (here.imag < 0)))
+        high = high[np.lexsort([here[high].imag, here[high].real])]
+        low = low[np.lexsort([-here[low].imag, here[low].real])]
+        order[point] = [*np.stack([high, low], axis=1).ravel(), *real]
+    return order
+
+
+def size_of(numbers: Array) -> Array:
+    """|z|, without the care that np.abs takes of the largest and smallest of numbers."""
+    size: Array = np.sqrt(numbers.real**2 + numbers.imag**2)
+    return size
+
+
+def _distance(start: Array, end: Array, scale: Array) -> Array:
+    """Distance of eigenvalues in parts of the largest; 0 from and to a state that a point does not have."""
+    distance = size_of(start - end) / scale
+    return np.where(np.isnan(distance), 0.0, distance)
+
+
+def way_to_zero(start: Array, end: Array) -> Array:
+    """Distance from zero to the straight line between two complex numbers."""
+    way = end - start
+    length = np.abs(way) ** 2
+    at = np.clip(-(start.conj() * way).real / np.where(length > 0, length, 1), 0, 1)
+    distance: Array = np.abs(start + at * way)
+    return distance
+
+
+def chain(successor: Array, start: Array) -> Array:
+    """Places (steps + 1, states) of states along consecutive steps (steps, states), from places (states,)."""
+    order = np.empty((len(successor) + 1, successor.shape[-1]), dtype=int)
+    order[0] = start
+    for step, places in enumerate(successor):
+        places.take(order[step], out=order[step + 1])
+    return order
+
+
+def keep_upper(values: Array) -> Array:
+    """Swaps (points, states) that keep a followed state in the upper half plane after two real roots have joined.
+
+    Parameters
+    ----------
+    values : array (points, states)
+        Followed eigenvalues, in their places.
+
+    Returns
+    -------
+    array (points, states) of int
+        Places from which to take each state. Of two states that are conjugate to each other, that one goes above
+        which has been above before; of two real ones that join for the first time, that in the earlier place.
+    """
+    order = np.tile(np.arange(values.shape[1]), (len(values), 1))
+    if not len(values):
+        return order
+    side = np.sign(np.nan_to_num(values.imag))
+    changes = np.flatnonzero((side[1:] != side[:-1]).any(axis=1)) + 1
+    above = side[0] > 0
+    for begin, end in pairwise([*changes, len(values)]):
+        places, now = order[begin].copy(), values[begin]
+        for low in np.flatnonzero(now.imag < 0):
+            high = int(np.nanargmin(np.abs(now - now[low].conj())))
+            if above[low] > above[high] or (low < high and not above[low] and not above[high]):
+                places[[low, high]] = high, low
+        order[begin:end] = places
+        above = above | (now[places].imag > 0)
+    return order

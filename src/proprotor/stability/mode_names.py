@@ -1,0 +1,412 @@
+"""Names of modes: what moves in them at a point, told by participation and by the way cyclic motion whirls.
+
+A model has as many names as modes: one for each coordinate of the support, for coning and the collective motion of
+each other blade angle, for the rotor speed, and two for the cyclic motion of each blade angle and of the gimbal,
+regressive and progressive. At each point the modes get them by the assignment with the largest sum of participations,
+one name to one mode. That is a function of the point alone: of the eigenvalues and vectors there, and of nothing that
+lies before, behind or beside it. Where two branches veer and exchange their motions, the names pass from one to the
+other where both have moved as far as they will go on: where the sum of participations is the same for either.
+Which branch is which is another question, answered by following roots: `proprotor.stability.branches`.
+
+The share that a mode has in its own name says how much the name is worth: near 1 nothing else moves, below one third
+something else may move more.
+
+A cyclic motion alone has two modes. In the rotating frame they have one frequency ν and run round the rotor forwards,
+progressive, or backwards, regressive; in the fixed frame they appear at ν + 1 and at |ν - 1| per revolution. The first
+whirls with the rotor there; the second against it for ν > 1, and with it, but slower than the blades, for ν < 1. A mode
+of the whole system is progressive by as much of the one as takes part in it, and regressive by as much of the other:
+motion and rate of β_1c + i β_1s are the sum of both. How a mode whirls in the fixed frame is another number, `whirl`.
+There β_1c + i β_1s is what whirls with the rotor and β_1c - i β_1s what whirls against it, for s = iω, ω > 0 and an
+azimuth that grows with rotation (β = β_1c cos ψ + β_1s sin ψ).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from proprotor_equations import FIXED_COORDINATES
+
+from proprotor.errors import InputError, unprintable
+from proprotor.model.linear_model import HUB, ROTOR_SPEED, LinearModel, reactionless_coordinates
+from proprotor.stability.modes import coordinate_motion, held_coordinates, some_points
+from proprotor.typing import Array
+
+_COLLECTIVE = {"flap": "coning"}
+_AZIMUTH = "rotor speed"
+SECOND = ", second root"
+DOUBTFUL = 1 / 3  # a share below which two other motions may each move more
+_TIE = 1e-6  # of a share: what parts names that fit equally well, above the rounding of vectors
+_STILL = 1e-6  # participation of cyclic motion below which the way it whirls is rounding
+
+
+class Motion(NamedTuple):
+    """A coordinate, or a cyclic pair of them, and the names of its modes.
+
+    Attributes
+    ----------
+    names : tuple of str
+        One, or regressive and progressive.
+    places : tuple of int
+        Of the coordinate, or of its cosine and its sine part, among the coordinates of the model.
+    """
+
+    names: tuple[str, ...]
+    places: tuple[int, ...]
+
+
+class Moving(NamedTuple):
+    """What moves in the modes of points.
+
+    Attributes
+    ----------
+    known : list of str
+        The names of the model, in the order of its coordinates.
+    place : array (..., states) of int
+        The name of each state, by its place in `known`; -1 at failed points. Both states of a pair have one name; a
+        name that two real roots have stands twice.
+    shares : array (..., names, states)
+        Participation of each name's motion in each state, 0 to 1; NaN at failed points.
+    """
+
+    known: list[str]
+    place: Array
+    shares: Array
+
+    @property
+    def names(self) -> Array:
+        """The name of each state (..., states), as text; empty at failed points."""
+        return np.array([*self.known, ""], dtype=object)[self.place]
+
+    @property
+    def share(self) -> Array:
+        """How much of each state (..., states) is the motion that it is named after, 0 to 1."""
+        rows = np.maximum(self.place, 0)[..., None, :]
+        share: Array = np.take_along_axis(self.shares, rows, -2)[..., 0, :]
+        return share
+
+
+def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Moving:
+    """What moves in each mode of each point: a function of the point alone.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Of these points (...).
+    values : array (..., states)
+        All eigenvalues, rad/s, each pair side by side.
+    left, right : array (..., states, states)
+        Left vectors in rows, right ones in columns, left @ right = 1: `proprotor.stability.matching.Spectrum.all_modes`.
+    """
+    known = name_list(model.dofs)
+    place, exists = np.full(values.shape, -1), np.isfinite(values)
+    good = np.asarray(exists.any(axis=-1))
+    # A state that a point does not have, though others do, stands as a root at zero while names are given.
+    roots = np.where(exists, values, 0)
+    if good.all():  # the usual case, without copies
+        shares = name_shares(model, left, right)
+    else:
+        shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
+        if good.any():
+            some = some_points(model, good)
+            shares[good] = name_shares(some, left[good], right[good])
+    held = held_coordinates(model, values.shape[-1])
+    place[good] = assign_names(model.dofs, held, shares[good], roots[good])
+    return Moving(known, place, shares)
+
+
+def motions(dofs: tuple[str, ...]) -> list[Motion]:
+    """The motions of a model, in the order of its coordinates."""
+    found = []
+    for place, dof in enumerate(dofs):
+        partner = dof[:-1] + "s"
+        if _is_cosine(dof) and partner in dofs:
+            found.append(Motion(_cyclic_names(dof), (place, dofs.index(partner))))
+        elif not (_is_cosine(dof[:-1] + "c") and dof[:-1] + "c" in dofs and dof.endswith("s")):
+            found.append(Motion((_single_name(dof),), (place,)))
+    return found
+
+
+def _is_cosine(dof: str) -> bool:
+    stem, _, part = dof.rpartition("_")
+    return bool(stem) and part.endswith("c") and part[:-1].isdigit()
+
+
+def _cyclic_names(dof: str) -> tuple[str, str]:
+    stem, _, part = dof.rpartition("_")
+    motion = stem if part == "1c" else f"{stem} {part[:-1]}"
+    return f"regressive {motion}", f"progressive {motion}"
+
+
+def _single_name(dof: str) -> str:
+    stem, _, part = dof.rpartition("_")
+    if dof == ROTOR_SPEED:
+        return _AZIMUTH
+    if stem and part == "0":
+        return _COLLECTIVE.get(stem, f"collective {stem}")
+    if stem and part == "d":
+        return f"differential {stem}"
+    return dof
+
+
+def name_list(dofs: tuple[str, ...]) -> list[str]:
+    """All names of a model, in the order of its coordinates."""
+    return [name for motion in motions(dofs) for name in motion.names]
+
+
+def check_support_names(field: str, names: Sequence[str]) -> None:
+    """Refuse names of a support's coordinates that a rotor's coordinate or mode has, or that make two modes alike.
+
+    Parameters
+    ----------
+    field : str
+        What a message calls the names.
+    names : sequence of str
+
+    Raises
+    ------
+    InputError
+        For a name that is no printable text, or one that is taken, with the first of them.
+    """
+    for name in names:
+        if unprintable(name) or not name.strip():
+            raise InputError(field, name, "must be printable text")
+        if re.sub(r"\d+", "2", name) in _names_of_rotors() or name.endswith(SECOND):
+            rule = "must not be the name that a motion of a rotor has, which results would take it for"
+            raise InputError(field, name, rule)
+    check_distinct(field, tuple(names))
+
+
+def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
+    """Refuse coordinates of a model where two modes would have one name.
+
+    Raises
+    ------
+    InputError
+        With the coordinates whose modes would.
+    """
+    by_name: dict[str, str] = {}
+    for motion in motions(dofs):
+        own = ", ".join(dofs[place] for place in motion.places)
+        for name in (other + ending for other in motion.names for ending in ("", SECOND)):
+            if name in by_name:
+                raise InputError(field, f"{by_name[name]}, {own}", f'must differ: both have a mode "{name}"')
+            by_name[name] = own
+
+
+@lru_cache(maxsize=1)
+def _names_of_rotors() -> frozenset[str]:
+    """Coordinates and modes of rotors with any number of blades, the number of a harmonic written as 2."""
+    dofs = (*FIXED_COORDINATES[len(HUB) :], *reactionless_coordinates(6))
+    return frozenset(re.sub(r"\d+", "2", name) for name in (*dofs, *name_list(dofs)))
+
+
+def whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:
+    """Participation of what whirls against and with the rotor in each state, two arrays (..., states).
+
+    Parameters
+    ----------
+    motion : Motion
+        A cyclic one.
+    held : list of int
+        Coordinates whose displacement is a state.
+    left, right : array (..., states, states)
+        Left vectors in rows, right ones in columns.
+    """
+    with_rotor, against = np.zeros(()), np.zeros(())
+    for cosine, sine in zip(*(_states(place, held) for place in motion.places), strict=True):
+        c, s = right[..., cosine, :], right[..., sine, :]
+        lc, ls = left[..., :, cosine], left[..., :, sine]
+        with_rotor = with_rotor + np.abs((c + 1j * s) * (lc - 1j * ls)) / 2
+        against = against + np.abs((c - 1j * s) * (lc + 1j * ls)) / 2
+    return against, with_rotor
+
+
+def _states(place: int, held: list[int]) -> list[int]:
+    """States of a coordinate: its displacement, unless it has none, and its rate."""
+    rate = len(held) + place
+    return [held.index(place), rate] if place in held else [rate]
+
+
+def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array:
+    """Sense of whirl in the fixed frame (..., modes): 1 with the rotor, -1 against it.
+
+    Of the blades' and the gimbal's cyclic motion, by participation. Of a mode in which they take no part, as all modes
+    of a propeller on a pivot: of the way the shaft's axis goes round, or where that does not tilt, the hub's centre.
+    NaN for real roots, and where nothing goes round.
+    """
+    held = held_coordinates(model, right.shape[-2])
+    against, with_rotor = np.zeros(values.shape), np.zeros(values.shape)
+    for motion in motions(model.dofs):
+        if len(motion.places) == 2:
+            shares = whirl_shares(motion, held, left, right)
+            against, with_rotor = against + shares[0], with_rotor + shares[1]
+    of_hub = _hub_whirl(model, values, right)
+    still = against + with_rotor < _STILL
+    against, with_rotor = (
+        np.where(still, hub, own) for hub, own in zip(of_hub, (against, with_rotor), strict=True)
+    )
+    total = against + with_rotor
+    turned = np.where(values.imag < 0, -1.0, 1.0) * (with_rotor - against)
+    return np.where((total > 0) & (values.imag != 0), turned / np.where(total > 0, total, 1), np.nan)
+
+
+def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, Array]:
+    """Squares of what goes round against and with the rotor of the shaft's axis, or of the hub (..., modes)."""
+    n = len(model.dofs)
+    shape = coordinate_motion(held_coordinates(model, right.shape[-2]), n, values, right)
+    if model.hub is not None:
+        moved = np.asarray(model.hub) @ np.nan_to_num(shape)
+    else:
+        moved = np.zeros((*shape.shape[:-2], len(HUB), shape.shape[-1]), dtype=complex)
+        for axis, name in enumerate(HUB):
+            if name in model.dofs:
+                moved[..., axis, :] = np.nan_to_num(shape[..., model.dofs.index(name), :])
+    x, y, _, about_x, about_y, _ = np.moveaxis(moved, -2, 0)
+    # The axis k leans by α × k = (α_y, -α_x); x leads y by a quarter where a point goes round with the rotor.
+    sizes = [[np.abs(a - 1j * b) ** 2, np.abs(a + 1j * b) ** 2] for a, b in ((about_y, -about_x), (x, y))]
+    tilts = sum(sizes[0]) > 0
+    against, with_rotor = (np.where(tilts, tilt, way) for tilt, way in zip(*sizes, strict=True))
+    return against, with_rotor
+
+
+def name_shares(model: LinearModel, left: Array, right: Array) -> Array:
+    """Share of each name in each state (..., names, states); sums to 1 over the names.
+
+    Parameters
+    ----------
+    model : LinearModel
+        With leading axes (...) that broadcast to those of the vectors.
+    left, right : array (..., states, states)
+        Left vectors in rows, right ones in columns.
+    """
+    held, columns = held_coordinates(model, right.shape[-2]), []
+    for motion in motions(model.dofs):
+        if len(motion.places) == 1:
+            places = _states(motion.places[0], held)
+            columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
+            continue
+        whole = sum(whirl_shares(motion, held, left, right))
+        progressive = _progressive_part(model, motion, held, left, right)
+        columns += [whole * (1 - progressive), whole * progressive]
+    sums = np.stack(columns, axis=-2)
+    shares: Array = sums / sums.sum(axis=-2, keepdims=True)
+    return shares
+
+
+def _progressive_part(
+    model: LinearModel, motion: Motion, held: list[int], left: Array, right: Array
+) -> Array:
+    """How much of a cyclic motion is the progressive one of its two uncoupled modes, in each state (..., states).
+
+    Alone, z = β_1c + i β_1s has the roots s_p and s_r. Its displacement and rate are the sums z = p + r and
+    ż = s_p p + s_r r of both modes, so that p = (ż - s_r z) / (s_p - s_r) and r = (s_p z - ż) / (s_p - s_r); the
+    conjugate of z has the conjugates of both.
+    """
+    faster, slower = _uncoupled_roots(model, motion)
+    cosine, sine = (_states(place, held) for place in motion.places)
+    progressive, regressive = np.zeros(()), np.zeros(())
+    for turn, p, r in ((1j, faster, slower), (-1j, faster.conj(), slower.conj())):
+        p, r = p[..., None], r[..., None]
+        z, rate = (right[..., c, :] + turn * right[..., s, :] for c, s in zip(cosine, sine, strict=True))
+        of_z, of_rate = (left[..., :, c] - turn * left[..., :, s] for c, s in zip(cosine, sine, strict=True))
+        progressive = progressive + np.abs((of_z + p * of_rate) * (rate - r * z))
+        regressive = regressive + np.abs((of_z + r * of_rate) * (p * z - rate))
+    total = progressive + regressive
+    return np.where(total > 0, progressive / np.where(total > 0, total, 1), 0.5)
+
+
+def _uncoupled_roots(model: LinearModel, motion: Motion) -> tuple[Array, Array]:
+    """Roots (...) of a cyclic motion with all else held, alike in all directions: that of the progressive mode first.
+
+    In the rotating frame they are σ ± iν. Seen from the fixed frame the rotor's speed is added to both.
+    """
+    c, s = motion.places
+    mass, damping, stiffness = (
+        (matrix[..., c, c] + matrix[..., s, s]) / 2 - 0.5j * (matrix[..., c, s] - matrix[..., s, c])
+        for matrix in (np.real(getattr(model, name)) for name in "MCK")
+    )
+    with np.errstate(all="ignore"):
+        spread = np.sqrt(damping**2 - 4 * mass * stiffness)
+        both = np.stack([-damping + spread, -damping - spread]) / (2 * mass)
+    ahead = both[0].imag >= both[1].imag
+    return np.where(ahead, both[0], both[1]), np.where(ahead, both[1], both[0])
+
+
+def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> Array:
+    """The name of each state (points, states), by its place in `name_list`; both states of a pair have the same one.
+
+    The assignment with the largest sum of shares. Where the best names of all states go together, that is it. Of
+    assignments that are equally good, as for a propeller on a pivot that is alike in all directions, the one in which
+    frequencies rise in the order of the names: the choice must not be left to rounding.
+
+    Parameters
+    ----------
+    dofs : tuple of str
+    held : list of int
+    shares : array (points, names, states)
+        Of `name_shares`.
+    values : array (points, states)
+        Eigenvalues, each pair side by side.
+    """
+    slots = _slots(dofs, held)
+    gain = np.swapaxes(shares, -1, -2) + _TIE * _by_rank(values, shares.shape[-2])
+    upper = values.imag > 0
+    best: Array = gain.argmax(axis=-1)
+    best[:, 1:] = np.where(upper[:, :-1], best[:, :-1], best[:, 1:])
+    counts = (best[..., None] == np.arange(shares.shape[-2])).sum(axis=-2)
+    for point in np.flatnonzero((counts != np.bincount(slots)).any(axis=-1)):
+        best[point] = _assigned(gain[point], slots, values[point])
+    return best
+
+
+def _by_rank(values: Array, names: int) -> Array:
+    """Products (points, states, names) of the ranks of frequencies and of names, 0 to 1: largest where both rise."""
+    order = np.lexsort((values.real, np.abs(values.imag)), axis=-1)
+    rank = np.empty(values.shape)
+    np.put_along_axis(rank, order, np.broadcast_to(np.linspace(0, 1, values.shape[-1]), values.shape), -1)
+    return rank[..., None] * np.linspace(0, 1, names)
+
+
+def _assigned(gain: Array, slots: Array, values: Array) -> Array:
+    """The best assignment (states,) of one point in which no pair is torn."""
+    upper, real = np.flatnonzero(values.imag > 0), np.flatnonzero(values.imag == 0)
+    given: Array = slots[_best(gain[:, slots])]
+    if (given[upper] == given[upper + 1]).all():
+        return given
+    # Two real roots that want different names would tear a pair. Which names are left to the real roots is tried.
+    counts = np.bincount(slots)
+    whole, half = np.flatnonzero(counts == 2), np.flatnonzero(counts == 1)
+    largest = -np.inf
+    for left in combinations(whole.tolist(), len(whole) - len(upper)):
+        of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)
+        pairs, roots = _best(gain[np.ix_(upper, of_pairs)]), _best(gain[np.ix_(real, of_real)])
+        total = 2 * gain[upper, of_pairs[pairs]].sum() + gain[real, of_real[roots]].sum()
+        if total > largest:
+            largest = total
+            given[upper] = given[upper + 1] = of_pairs[pairs]
+            given[real] = of_real[roots]
+    return given
+
+
+def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
+    """The name of each of as many places as there are states: two for each mode, one for a rate alone."""
+    slots, count = [], 0
+    for motion in motions(dofs):
+        for _ in motion.names:
+            rate_alone = len(motion.places) == 1 and motion.places[0] not in held
+            slots += [count] * (1 if rate_alone else 2)
+            count += 1
+    return np.array(slots)
+
+
+def _best(gain: Array) -> Array:
+    """The column of each row in the assignment with the largest sum."""
+    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
+
+    columns: Array = linear_sum_assignment(gain, maximize=True)[1]
+    return columns

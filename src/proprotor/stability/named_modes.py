@@ -1,0 +1,59 @@
+"""The modes of a case at one airspeed by their names, with their vectors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.matching import Modes
+from proprotor.stability.mode_names import moving
+from proprotor.stability.modes import decomposition
+from proprotor.stability.sweep import mode_columns
+from proprotor.units import in_metres_per_second
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+
+class NamedModes(NamedTuple):
+    """Modes at an airspeed.
+
+    names (modes,); modes, their eigenvalues and vectors; model, at speed in m/s; eigen_solves, what finding them took.
+    """
+
+    names: list[str]
+    modes: Modes
+    model: LinearModel
+    speed: float
+    eigen_solves: int
+
+
+def named_modes(case: Case, airspeed: Any, mode: str | None, options: Mapping[str, Any]) -> NamedModes:
+    """The modes of a case at one airspeed, or one of them by its name.
+
+    Raises
+    ------
+    InputError
+        For an airspeed that is not one, or that cannot be analysed, many designs, and an unknown mode.
+    """
+    speed = in_metres_per_second(airspeed).reshape(-1)
+    if len(speed) != 1:
+        raise InputError("airspeed", airspeed, "must be one speed")
+    model = case.linearize(speed[0], **options)
+    if model.airspeed.ndim:
+        raise InputError("case", case.name, f"must be one design, not {model.airspeed.size}")
+    if model.trim.reason.item():
+        raise InputError("airspeed", airspeed, model.trim.reason.item())
+    spectrum = decomposition(model)
+    values, right, left = spectrum.all_modes
+    found = moving(model, values, left, right)
+    columns, names = mode_columns(found._replace(place=found.place[None]), values[None])
+    if mode is not None and mode not in names:
+        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
+    chosen = np.array([names.index(name) for name in (names if mode is None else [mode])])
+    wanted = spectrum.modes(columns[0, chosen])
+    return NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]), 1)

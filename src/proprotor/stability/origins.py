@@ -1,0 +1,289 @@
+"""The matrices of a case by what they come from, with the trim held.
+
+The matrices are sums: of inertia, springs and loads of a blade, carried into the fixed frame by a linear map, and of
+what the support adds. Airloads are linear in the coefficients of the sections, which are taken one at a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_train, multiblade, pitch
+
+from proprotor.errors import InputError
+from proprotor.model.linear_model import (
+    COUPLINGS,
+    LinearModel,
+    airload_matrices,
+    batch_shape,
+    couplings,
+    in_closed_form,
+    mass_at_rest,
+    model_quantities,
+)
+from proprotor.model.mount import mount
+from proprotor.model.rotor_share import without_rotors
+from proprotor.model.stamp import check_options, of_model
+from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
+from proprotor.rotor.generated import evaluate
+from proprotor.rotor.options import Options, parse_options
+from proprotor.rotor.section_loads import (
+    BladeSections,
+    closed_form_moments,
+    compressible,
+    load_moments,
+    segment_quantities,
+)
+from proprotor.rotor.trim import UNKNOWNS, with_trim
+from proprotor.support.normal_modes import NormalModes
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+_COUPLINGS_TOLD = {
+    "pitch_flap_coupling": "pitch-flap coupling K_Pβ",
+    "pitch_lag_coupling": "pitch-lag coupling K_Pζ",
+}
+_RESTRAINTS = {
+    "control_stiffness": "control system",
+    "gimbal_stiffness": "gimbal spring",
+    "propeller_moment": "propeller moment",
+}
+_COEFFICIENTS = {
+    "lift slope": ("lift_coefficient_alpha",),
+    "lift": ("lift_coefficient", "lift_coefficient_mach"),
+    "drag": ("drag_coefficient", "drag_coefficient_alpha", "drag_coefficient_mach"),
+    "section moment": ("moment_coefficient", "moment_coefficient_alpha", "moment_coefficient_mach"),
+}
+
+
+class Part(NamedTuple):
+    """M, C, K (..., n, n) of one origin, on the coordinates of the model."""
+
+    M: Array
+    C: Array
+    K: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _SomeCoefficients:
+    """An airfoil of which only some coefficients count, with Prandtl and Glauert's factor where it is wanted."""
+
+    airfoil: SectionModel
+    kept: tuple[str, ...]
+    compressible: bool
+    contains_compressibility: bool = True
+
+    def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
+        """Those kept, and zero for the others."""
+        found = self.airfoil.coefficients(alpha, mach)
+        if self.compressible and not self.airfoil.contains_compressibility:
+            found = compressible(found, mach)
+        dropped = dict.fromkeys(set(SectionCoefficients._fields) - set(self.kept), 0.0)
+        return found._replace(**dropped)
+
+
+def model_parts(case: Case, model: LinearModel, **options: Any) -> dict[str, Part]:
+    """M, C and K of a case by origin; their sum is the model.
+
+    Parameters
+    ----------
+    case : Case
+        Of one design.
+    model : LinearModel
+        Of this case; its trim is held.
+    **options
+        Those of the model, see `proprotor.rotor.options.Options`; they need not be repeated where it says its own.
+
+    Returns
+    -------
+    dict of str to Part
+        Origins that contribute nothing are left out.
+
+    Raises
+    ------
+    InputError
+        With reactionless=True, and for other options than the model's.
+    """
+    if model.origin is None:
+        choice = parse_options(case.model_options(options))
+    else:
+        check_options(of_model(model), case, options)
+        choice = model.origin.options
+    if choice.reactionless:
+        raise InputError("reactionless", True, "is not taken apart: leave it out")
+    rotor = case.rotor
+    shape = batch_shape(rotor, case.operation, model.airspeed, choice.drive_train)
+    pool = _pool(case, choice, model, shape)
+    blade = _structure(pool, choice) | dict(_airloads(BladeSections.of(rotor, shape), pool, choice))
+    own = {name: _in_fixed_frame(part, pool) for name, part in blade.items()}
+    own |= _other_parts(pool, choice)
+    support = case.support.at(model.airspeed, case.operation.density)
+    nothing = np.zeros_like(support.mass)
+    carrier = NormalModes(support.names, nothing, nothing, nothing, support.hub, includes_rotor=False)
+    found = {name: _mounted(part, carrier, model, shape) for name, part in own.items()}
+    found |= _support_parts(case, support, model, shape)
+    return {name: part for name, part in found.items() if any(np.any(matrix) for matrix in part)}
+
+
+def _pool(case: Case, choice: Options, model: LinearModel, shape: tuple[int, ...]) -> dict[str, Any]:
+    """All quantities at the trim of the model, arrays flattened over the batch."""
+    quantities = model_quantities(case.rotor, case.operation, choice, model.airspeed, shape)
+    state = {name: np.broadcast_to(getattr(model.trim, name), shape).reshape(-1) for name in UNKNOWNS}
+    pool = with_trim(quantities, choice, state)
+    return pool | couplings(choice, pool)
+
+
+def _structure(pool: dict[str, Any], choice: Options) -> dict[str, Part]:
+    """Inertia, springs and dampers of one blade (points, 12, 12)."""
+    equations = choice.equation_set
+    pool = pool | evaluate(equations.inertia.trim_integrals, pool)._asdict()
+    zero = np.zeros((12, 12))
+    parts = {
+        "inertia": Part(
+            evaluate(equations.inertia.mass, pool) + evaluate(equations.pitch.mass, pool), zero, zero
+        ),
+        "gyroscopic": Part(zero, evaluate(equations.inertia.gyroscopic, pool), zero),
+        "centrifugal": Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, pool)),
+        "dampers": Part(zero, evaluate(pitch.damping, pool), zero),
+    }
+    every = {"gimbal damper": "gimbal_damping"} | {told: name for name, told in _RESTRAINTS.items()}
+    for told, name in every.items():
+        others = dict.fromkeys(set(every.values()) - {name}, 0.0)
+        parts[told] = Part(zero, zero, evaluate(equations.pitch.stiffness, pool | others))
+    springs = evaluate(equations.flap_lag_springs.stiffness, pool)
+    return parts | {
+        told: Part(zero, zero, np.where(mask, springs, 0)) for told, mask in _spring_entries().items()
+    }
+
+
+def _spring_entries() -> dict[str, Array]:
+    """Which entries (12, 12) of the flap-lag springs are what.
+
+    The springs turn with the pitch relative to the yoke, which is that of pitch, gimbal flap and gimbal roll: entries
+    of these with flap and lag are what pitch-flap and pitch-lag coupling come from.
+    """
+    flap, lag = BLADE_COORDINATES.index("flap"), BLADE_COORDINATES.index("lag")
+    index = np.arange(len(BLADE_COORDINATES))
+    has_flap = (index[:, None] == flap) | (index == flap)
+    has_lag = (index[:, None] == lag) | (index == lag)
+    alone = index[:, None] == index
+    return {
+        "flap spring": has_flap & alone,
+        "lag spring": has_lag & alone,
+        "flap-lag coupling of the springs": has_flap & has_lag,
+        "pitch-flap coupling of the springs": has_flap & ~has_lag & ~alone,
+        "pitch-lag coupling of the springs": has_lag & ~has_flap & ~alone,
+        "pitch stiffness of the springs": ~has_flap & ~has_lag,
+    }
+
+
+def _airloads(sections: BladeSections, pool: dict[str, Any], choice: Options) -> Iterator[tuple[str, Part]]:
+    """Airloads of one blade (points, 12, 12) by coefficient, and by coupling of the pitch they see."""
+    if choice.airloads == "none":
+        return
+    zero, none = np.zeros((12, 12)), dict.fromkeys(COUPLINGS, 0.0)
+    kinds = {"lift slope": _COEFFICIENTS["lift slope"]} if choice.airloads == "lift-slope" else _COEFFICIENTS
+    for told, kept in kinds.items():
+        loads = _moments(sections, pool, choice, kept, section_damping=False)
+        yield f"airloads: {told}", Part(zero, *_loads(pool | none, choice, loads))
+    every = tuple(name for kept in kinds.values() for name in kept)
+    whole = _moments(sections, pool, choice, every, section_damping=False)
+    if choice.section_damping:
+        damped = _moments(sections, pool, choice, every, section_damping=True)
+        with_it, without = (_loads(pool | none, choice, loads) for loads in (damped, whole))
+        yield "section pitch damping", Part(zero, *(a - b for a, b in zip(with_it, without, strict=True)))
+        whole = damped
+    alone = _loads(pool | none, choice, whole)
+    for name, told in _COUPLINGS_TOLD.items():
+        if np.any(pool[name]):
+            coupled = _loads(pool | none | {name: pool[name]}, choice, whole)
+            yield told, Part(zero, *(a - b for a, b in zip(coupled, alone, strict=True)))
+
+
+def _moments(
+    sections: BladeSections,
+    pool: dict[str, Any],
+    choice: Options,
+    kept: tuple[str, ...],
+    section_damping: bool,
+) -> dict[str, Any]:
+    """Radial moments of the section loads by some of the coefficients, and what segments are."""
+    equations = choice.equation_set.airloads
+    segments = segment_quantities(sections, pool | {"section_damping": float(section_damping)}, equations)
+    if in_closed_form(sections, choice):
+        return segments | closed_form_moments(sections, segments)
+    some = replace(sections, airfoil=_SomeCoefficients(sections.airfoil, kept, choice.compressibility))
+    alone = choice.airloads == "lift-slope"
+    return segments | load_moments(
+        some, segments, compressibility=False, lift_slope_only=alone, equations=equations
+    )
+
+
+def _loads(pool: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
+    """Airload damping and stiffness of one blade."""
+    coupled = dict(segments) | {name: np.asarray(pool[name])[..., None] for name in COUPLINGS}
+    damping, stiffness, _ = airload_matrices(coupled, choice.equation_set.airloads)
+    return damping, stiffness
+
+
+def _in_fixed_frame(part: Part, pool: Mapping[str, Any]) -> Part:
+    """A part of one blade as a part of the rotor (points, 18, 18)."""
+    return Part(
+        evaluate(multiblade.mass, pool, part.M),
+        evaluate(multiblade.damping, pool, part.M, part.C),
+        evaluate(multiblade.stiffness, pool, part.M, part.C, part.K),
+    )
+
+
+def _other_parts(pool: Mapping[str, Any], choice: Options) -> dict[str, Part]:
+    """What is added in the fixed frame (18, 18)."""
+    zero, parts = np.zeros((len(FIXED_COORDINATES),) * 2), {}
+    if choice.drive_train is not None:
+        kinds = (drive_train.mass, drive_train.damping, drive_train.stiffness)
+        parts["drive train"] = Part(*(evaluate(kind, pool) for kind in kinds))
+    if "cyclic_flap_stiffness_excess" in pool:
+        parts["cyclic flap restraint"] = Part(zero, zero, evaluate(multiblade.cyclic_restraint, pool))
+    return parts
+
+
+def _mounted(part: Part, carrier: NormalModes, model: LinearModel, shape: tuple[int, ...]) -> Part:
+    """A part of the rotor on the coordinates of the model."""
+    n, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
+    matrices: dict[str, Any] = {
+        name: np.broadcast_to(matrix, (points, n, n)).reshape(*shape, n, n)
+        for name, matrix in zip("MCK", part, strict=True)
+    }
+    alone = LinearModel(**matrices, dofs=FIXED_COORDINATES, trim=model.trim, airspeed=model.airspeed)
+    whole = mount(alone, carrier).submodel(model.dofs)
+    return Part(whole.M, whole.C, whole.K)
+
+
+def _support_parts(
+    case: Case, support: NormalModes, model: LinearModel, shape: tuple[int, ...]
+) -> dict[str, Part]:
+    """What the support adds; its mass is that without the rotor's."""
+    n, modes = len(model.dofs), len(support.names)
+
+    def whole(matrix: Array) -> Array:
+        filled = np.zeros((*shape, n, n))
+        filled[..., :modes, :modes] = matrix
+        return filled
+
+    mass, _ = without_rotors(support, [(support.hub, mass_at_rest(case.rotor))])
+    zero, own = np.zeros((*shape, n, n)), case.support
+    air = Part(
+        whole(mass * 0 + support.mass - own.mass),
+        whole(support.damping - own.damping),
+        whole(support.stiffness - own.stiffness),
+    )
+    return {
+        "support inertia": Part(whole(mass) - air.M, zero, zero),
+        "support damping": Part(zero, whole(own.damping), zero),
+        "support stiffness": Part(zero, zero, whole(own.stiffness)),
+        "wing airloads": air,
+    }

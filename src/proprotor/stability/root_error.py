@@ -1,0 +1,162 @@
+"""Roots as exact as the matrices of a model allow, and how exact that is: what "neutral" rests on.
+
+LAPACK finds the eigenvalues of a state matrix to rounding of its largest entries, so that a stiff spring or a hinge
+near the centre spoils roots that have nothing to do with it. In (λ²M + λC + K)x = 0 such a spring stands beside the
+small motion that it allows: the root that the computed vectors have there,
+
+    λ - yᴴ(λ²M + λC + K)x / yᴴ(2λM + C)x,
+
+has an error of second order in theirs. What is left is rounding of the matrices' own entries, a few times
+ε |yᴴ|(|λ|²|M| + |λ||C| + |K|)|x| / |yᴴ(2λM + C)x|: the backward error, times the condition of the root.
+
+A root whose distance from a level is within its error is neutral there: neither beyond the level nor crossing it. Two
+roots that fall into one, as those of a motion without spring and damper, have an error without bound by that formula,
+and in fact one of the square root of rounding: that is the most that is told.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.eigenvalue_derivatives import real_times, second_order_left
+from proprotor.stability.matching import Modes, Spectrum, size_of
+from proprotor.stability.modes import decomposition, eigenvalues, held_coordinates, some_points
+from proprotor.typing import Array
+
+_EPSILON = float(np.finfo(float).eps)
+_ROUNDINGS = 4.0  # of an entry of M, C or K
+_OF_CORRECTION = 1e-3  # its own error, for vectors that are right to three digits
+_DOUBLE = _EPSILON**0.5  # of the largest root: what rounding parts two roots by that are one
+_NEAR = 1e-6  # of the largest root: farther from a level no error reaches
+
+
+class Refined(NamedTuple):
+    """Roots (..., modes), and the bound on the error of each, rad/s."""
+
+    values: Array
+    error: Array
+
+
+def growth(values: Array, level: float = 0.0) -> Array:
+    """G = Re λ + ζ0 |λ|, 1/s: positive where the damping ratio is below the level."""
+    return values.real + level * np.abs(values) if level else values.real
+
+
+def growth_error(error: Array, level: float = 0.0) -> Array:
+    """Error of G with that of the root."""
+    return error * (1 + abs(level)) if level else error
+
+
+def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refined:
+    """Roots refined by their vectors, with their errors; NaN at failed points.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Points (...,).
+    modes : Modes
+        All modes of every point, each pair side by side.
+    left : array (..., modes, n), optional
+        Of `second_order_left`, where it is known.
+    """
+    values, right, _ = modes
+    n, held = len(model.dofs), held_coordinates(model, right.shape[-2])
+    left = second_order_left(model, modes.left) if left is None else left
+    with np.errstate(all="ignore"):
+        displacement = right[..., : len(held), :]
+        rates = right[..., -n:, :].copy()
+        rates[..., held, :] = values[..., None, :] * displacement
+        motion = np.concatenate([values[..., None, :] * rates, rates, displacement], axis=-2)
+        matrices = np.concatenate([model.M.real, model.C.real, model.K.real[..., held]], axis=-1)
+        correction = -_products(left, real_times(matrices, motion))
+        rounding = _ROUNDINGS * _EPSILON * _products(size_of(left), np.abs(matrices) @ size_of(motion))
+        apart = _nearest(values)
+        share = size_of(correction) / apart
+        better = share < 0.5
+        error = rounding + size_of(correction) * np.where(better, _OF_CORRECTION + share, 1.0)
+        most = _DOUBLE * _largest(values)
+        error = np.where(np.isnan(values), np.nan, np.fmin(error, most))
+    return Refined(np.where(better, values + correction, values), error)
+
+
+def refined_near(
+    model: LinearModel, spectrum: Spectrum, level: float = 0.0, left: Array | None = None
+) -> Refined:
+    """The same of points (k,) that work, where a root is near a level; elsewhere roots as they are, with no error.
+
+    Farther from the level than a millionth of the largest root no error reaches. `left` of `second_order_left`, where
+    it is known.
+    """
+    values, error = spectrum.values.copy(), np.zeros(spectrum.values.shape)
+    near = _any_near(growth(values, level), values)
+    if near.any():
+        modes, rows = spectrum.at(near).all_modes, None if left is None else left[near]
+        values[near], error[near] = refined(some_points(model, near), modes, rows)
+    return Refined(values, error)
+
+
+def errors_of(model: LinearModel, spectrum: Spectrum) -> Array:
+    """Bound on the error (..., states) of eigenvalues as LAPACK finds them, rad/s; NaN at failed points."""
+    works = spectrum.works
+    error = np.full(spectrum.values.shape, np.nan)
+    if works.any():
+        modes = spectrum.at(works).all_modes
+        found = refined(some_points(model, works), modes)
+        error[works] = found.error + size_of(found.values - modes.values)
+    return error
+
+
+def roots(model: LinearModel, level: float = 0.0) -> Refined:
+    """Eigenvalues (..., states) and their errors; refined, with vectors, at points where one is near the level.
+
+    Farther away no error reaches, and it is told as zero. NaN at failed points.
+    """
+    values = eigenvalues(model)
+    error = np.where(np.isnan(values), np.nan, 0.0)
+    near = _any_near(growth(values, level), values)
+    if near.any():
+        part = some_points(model, near)
+        values[near], error[near] = refined(part, decomposition(part, held_coordinates(model)).all_modes)
+    return Refined(values, error)
+
+
+def error_near_zero(model: LinearModel, values: Array) -> Array:
+    """Errors of known eigenvalues (..., states) at points where one is near zero or the imaginary axis; else zero."""
+    error = np.zeros(values.shape)
+    near = _any_near(values.real, values)
+    if near.any():
+        part = some_points(model, near)
+        spectrum = decomposition(part, held_coordinates(model, values.shape[-1]))
+        apart = size_of(values[near][..., :, None] - spectrum.values[..., None, :])
+        place = np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1)
+        error[near] = np.take_along_axis(errors_of(part, spectrum), place, -1)
+    return error
+
+
+def _any_near(distance: Array, values: Array) -> Array:
+    """At which points (...) a root is so near to a level that its error may reach it."""
+    return np.asarray((np.abs(distance) <= _NEAR * _largest(values)).any(axis=-1))
+
+
+def _largest(values: Array) -> Array:
+    """Size of the largest root of each point (..., 1)."""
+    largest: Array = np.fmax.reduce(size_of(values), axis=-1, keepdims=True)
+    return largest
+
+
+def _products(rows: Array, columns: Array) -> Array:
+    """Of each row (..., modes, n) with its own column (..., n, modes)."""
+    found: Array = (rows * np.swapaxes(columns, -1, -2)).sum(axis=-1)
+    return found
+
+
+def _nearest(values: Array) -> Array:
+    """Distance of each root to the nearest other one of its point."""
+    apart = size_of(values[..., :, None] - values[..., None, :])
+    states = np.arange(values.shape[-1])
+    apart[..., states, states] = np.inf
+    nearest: Array = np.fmin.reduce(apart, axis=-1)
+    return nearest

@@ -1,0 +1,177 @@
+"""Two roots that cannot be told apart over a step: how near they come to the level all the same.
+
+Where two roots meet or veer, each moves like a square root, and which is which may not be known. Their sum s and the
+square of their difference d = (λ1 - λ2)² do not depend on it, and are as smooth as the matrices: polynomials give them
+over the step, in a band of their likely error, and (s ± √d)/2 are the roots. A pair of conjugates that parts into two
+real roots is one case of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from proprotor.stability.cubic import hermite
+from proprotor.stability.matching import size_of, way_to_zero
+from proprotor.stability.root_error import growth
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    from proprotor.stability.crossings import Points
+    from proprotor.stability.steps import Steps
+
+_APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
+_MEETING = 0.5  # of the distance at the farther end: and so may those that are as near at one end
+_OF_BEND = 1.0  # of what parts a cubic from its chord: its error
+_OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord: its least error
+_INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
+MANY, _FEW = 6, 4  # points of a scan through which polynomials go
+
+
+class Smooth(NamedTuple):
+    """A smooth quantity of pairs (m, places) within their steps, and how wrong it may be."""
+
+    value: Array
+    wrong: Array
+
+
+PairsWithin = Callable[["Steps", "Points", Array, Array, Array], tuple[Smooth, Smooth]]
+
+
+def may_meet(first: Array, last: Array, state: Array) -> Array:
+    """Which roots (n, k, states) some of them, state (n, k), may meet or turn away from between two points.
+
+    By the values (n, states) alone: where the straight ways come nearer to each other than their ends, or one end is
+    the nearer by far.
+    """
+    apart, later = (
+        np.take_along_axis(values, state, 1)[:, :, None] - values[:, None, :] for values in (first, last)
+    )
+    one, other = size_of(apart), size_of(later)
+    near, far = np.minimum(one, other), np.maximum(one, other)
+    return np.asarray((way_to_zero(apart, later) < _APPROACH * near) | (near < _MEETING * far))
+
+
+def partners(first: Array, last: Array) -> Array:
+    """The one root (n, states) that each may meet, where neither of the two may meet another; -1 elsewhere."""
+    meeting = may_meet(first, last, np.broadcast_to(np.arange(first.shape[1]), first.shape))
+    alone = meeting.sum(axis=2) == 1
+    partner = meeting.argmax(axis=2)
+    return np.where(alone & np.take_along_axis(alone, partner, 1), partner, -1)
+
+
+def keep_off(
+    steps: Steps, points: Points, row: Array, state: Array, level: float, trust: float, within: PairsWithin
+) -> Array:
+    """Which states (m,) of steps, with the one that each may meet, stay on one side of the level for certain."""
+    found = np.zeros(len(row), dtype=bool)
+    if not len(row):
+        return found
+    which, place = np.unique(row, return_inverse=True)
+    few = steps.at(which)
+    values = points.spectrum.values
+    partner = partners(values[few.before], few.later(values))[place, state]
+    sides = few.sides(points)[:, place]
+    own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
+    side = own[0]
+    alike = ((own == side) & (other == side)).all(axis=0)
+    asked = np.flatnonzero((partner >= 0) & (np.abs(side) == 1) & alike)
+    if len(asked):
+        pairs = within(steps, points, row[asked], state[asked], partner[asked])
+        found[asked] = _off(*pairs, side[asked], level, trust)
+    return found
+
+
+def _off(sums: Smooth, squares: Smooth, side: Array, level: float, trust: float) -> Array:
+    """Whether both roots (m,) stay on a side of the level all over their step, with all within its band."""
+    wrong_sum, wrong_square = (part.wrong / trust for part in (sums, squares))
+    root = np.sqrt(squares.value)
+    with np.errstate(divide="ignore", invalid="ignore"):  # |√(d + e) - √d| is within both of these
+        wrong_root = np.fmin(np.sqrt(wrong_square), wrong_square / size_of(root))
+    wrong = (1 + abs(level)) * (wrong_sum + wrong_root) / 2
+    margins = [side[:, None] * growth((sums.value + way * root) / 2, level) - wrong for way in (1, -1)]
+    return np.asarray((np.minimum(*margins) > 0).all(axis=1))
+
+
+def by_derivatives(
+    steps: Steps, points: Points, row: Array, state: Array, partner: Array
+) -> tuple[Smooth, Smooth]:
+    """Return s and d (m, places) of pairs within their steps, cubics by the derivatives of both roots."""
+    before, after = steps.before[row], steps.after[row]
+    length = points.position[after] - points.position[before]
+    values, changes = points.spectrum.values, points.change
+    sums, squares = np.empty((2, 4, len(row)), dtype=complex)
+    ends = ((before, state, partner), (after, *(steps.successor[row, one] for one in (state, partner))))
+    for end, (point, one, other) in enumerate(ends):
+        apart = values[point, one] - values[point, other]
+        sums[end] = values[point, one] + values[point, other]
+        sums[2 + end] = length * (changes[point, one] + changes[point, other])
+        squares[end] = apart**2
+        squares[2 + end] = 2 * length * apart * (changes[point, one] - changes[point, other])
+    return _cubic(sums), _cubic(squares)
+
+
+def _cubic(ends: Array) -> Smooth:
+    rise = ends[1] - ends[0]
+    bend = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
+    band = 16 * _INSIDE**2 * (1 - _INSIDE) ** 2
+    return Smooth(hermite(_INSIDE, ends[:, :, None]), _OF_BEND * bend[:, None] * band)
+
+
+def along_scan(
+    steps: Steps, points: Points, row: Array, state: Array, partner: Array
+) -> tuple[Smooth, Smooth]:
+    """Return the same by the polynomials through six points of the scan about the step; NaN where a line has fewer.
+
+    What parts them from those through four points is the error of the latter, and more than their own. The steps are
+    all those of their lines, one after the other.
+    """
+    line = points.line[steps.before]
+    first, last = np.searchsorted(line, line[row]), np.searchsorted(line, line[row], side="right")
+    start = np.clip(row - MANY // 2 + 1, first, np.maximum(last - MANY + 1, first))
+    enough = last - first >= MANY - 1
+    start = np.where(enough, start, 0)
+    here = np.where(enough, row - start, 0)
+    chain = np.minimum(start + np.arange(MANY - 1)[:, None], len(line) - 1)
+    at = np.concatenate([steps.before[chain], steps.after[chain[-1:]]])
+    values = [points.spectrum.values[at, _places(steps, chain, here, one)] for one in (state, partner)]
+    x = points.position[at]
+    begin, end = (points.position[part[row]] for part in (steps.before, steps.after))
+    wanted = begin[:, None] + _INSIDE * (end - begin)[:, None]
+    nearest = np.clip(here - _FEW // 2 + 1, 0, MANY - _FEW) + np.arange(_FEW)[:, None]
+    found = []
+    for y in (values[0] + values[1], (values[0] - values[1]) ** 2):
+        exact = _polynomial(x, y, wanted)
+        value = np.where(enough[:, None], exact, np.nan)
+        rough, chord = (
+            _polynomial(np.take_along_axis(x, some, 0), np.take_along_axis(y, some, 0), wanted)
+            for some in (nearest, here + np.array([[0], [1]]))
+        )
+        found.append(Smooth(value, np.abs(value - rough) + _OF_CHORD * np.abs(value - chord)))
+    return found[0], found[1]
+
+
+def _places(steps: Steps, chain: Array, here: Array, state: Array) -> Array:
+    """Places (points, m) of states along chains of steps (points - 1, m), with that at the step `here` known."""
+    rows = np.arange(len(state))
+    places = np.tile(state, (len(chain) + 1, 1))
+    for k, step in enumerate(chain):
+        places[k + 1] = np.where(k >= here, steps.successor[step, places[k]], places[k + 1])
+    for k in range(len(chain) - 1, -1, -1):
+        back = np.argsort(steps.successor[chain[k]], axis=1)
+        places[k] = np.where(k < here, back[rows, places[k + 1]], places[k])
+    return places
+
+
+def _polynomial(x: Array, y: Array, wanted: Array) -> Array:
+    """The polynomials through points (k, m) at places (m, any), by Lagrange."""
+    found = np.zeros(wanted.shape, dtype=y.dtype)
+    with np.errstate(all="ignore"):
+        for one in range(len(x)):
+            share = np.ones(wanted.shape)
+            for other in set(range(len(x))) - {one}:
+                share *= (wanted - x[other][:, None]) / (x[one] - x[other])[:, None]
+            found += share * y[one][:, None]
+    return found

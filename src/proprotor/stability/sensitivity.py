@@ -1,0 +1,289 @@
+"""Exact derivatives of eigenvalues, damping and flutter speed by the inputs of a case.
+
+Every input is moved by a complex step, all of them in one batch of models, through trim, airloads, springs and support:
+the imaginary parts of the matrices are their derivatives to rounding. The change of an eigenvalue follows from its two
+vectors without another eigenvalue problem. A boundary G(V, p) = 0 moves by dV/dp = -G_p / G_V; with the level of no
+damping that is -Re λ_p / Re λ_V.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.model import stamp
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.crossings import growth_rate
+from proprotor.stability.eigenvalue_derivatives import (
+    STEP,
+    defect,
+    differences,
+    eigenvalue_change,
+    matrix_derivatives,
+)
+from proprotor.stability.flutter import Boundary, flutter_point
+from proprotor.stability.matching import Modes
+from proprotor.stability.modes import decomposition
+from proprotor.stability.named_modes import named_modes
+from proprotor.stability.root_error import refined
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+    from proprotor.datum import Datum
+
+QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
+NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
+
+
+def input_rates(
+    linearize: Callable[[Mapping[str, Array]], LinearModel],
+    values: Mapping[str, float],
+    model: LinearModel,
+    modes: Modes,
+) -> Array:
+    """Derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
+
+    Parameters
+    ----------
+    linearize : callable
+        Models for arrays (inputs,) of the inputs by name, analytic in them.
+    values : mapping of str to float
+        Where the derivatives are wanted.
+    model : LinearModel
+        At these values; one point.
+    modes : Modes
+        Of that point.
+    """
+    count = len(values)
+    moved = {
+        name: value + 1j * STEP * (np.arange(count) == place)
+        for place, (name, value) in enumerate(values.items())
+    }
+    return eigenvalue_change(model, matrix_derivatives(linearize(moved)), modes)
+
+
+def damping_rate(values: Array, changes: Array) -> Array:
+    """Change of the damping ratio -Re λ/|λ| with a change of λ; NaN for a root at zero."""
+    size = np.abs(values)
+    with np.errstate(all="ignore"):
+        turned = values.real * (values.conj() * changes).real / size**3
+        return np.where(size > 0, -changes.real / size + turned, np.nan)
+
+
+def sensitivity(
+    case: Case,
+    of: str = "flutter_speed",
+    wrt: Sequence[str] | None = None,
+    *,
+    airspeed: Any = None,
+    mode: str | None = None,
+    level: float = 0.0,
+    **options: Any,
+) -> xarray.Dataset:
+    """Exact derivatives by inputs of a case's deck.
+
+    Parameters
+    ----------
+    case : Case
+    of : "flutter_speed", "damping" or "eigenvalue"
+        Damping is the ratio -Re λ/|λ|.
+    wrt : sequence of str, optional
+        Paths of inputs, see `proprotor.deck.vary.design_inputs`; all by default.
+    airspeed : float in m/s, text such as "300 kt", or pint quantity
+        Where damping or eigenvalues are; for the flutter speed optionally the airspeeds of the scan.
+    mode : str, optional
+        One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary at which this
+        moves, onset or not, instead of the lowest onset of any.
+    level : float
+        Damping ratio that counts as the boundary of the flutter speed.
+    **options
+        See `proprotor.rotor.options.Options`.
+
+    Returns
+    -------
+    xarray.Dataset
+        derivative (input,) or (input, mode), SI units per SI unit of the input; relative, the derivative times the
+        input: the change per change of the input by its own size; value, unit and status of every input; exact, whether
+        its matrices were derived by a complex step, or, those of finite elements, by extrapolated differences; defect
+        and nearly_defective of the modes (`proprotor.stability.eigenvalue_derivatives.defect`): there derivatives hold in a small
+        range only. For the flutter speed also frequency_derivative, of the frequency at the boundary as it moves.
+        warning is what makes the numbers doubtful. Attributes: of, its value where there is one, eigen_solves, and the
+        case and its options (`proprotor.model.stamp`).
+
+    Raises
+    ------
+    InputError
+        For an unknown quantity, input, mode or option, or where nothing becomes unstable.
+    """
+    if of not in QUANTITIES:
+        raise InputError("of", of, f"must be one of {', '.join(QUANTITIES)}")
+    inputs = _chosen(case, wrt)
+    if of == "flutter_speed":
+        return _of_flutter_speed(case, inputs, airspeed, mode, level, options)
+    if airspeed is None:
+        raise InputError("airspeed", None, f"must be given for the {of}")
+    return _of_modes(case, of, inputs, airspeed, mode, options)
+
+
+def _chosen(case: Case, wrt: Sequence[str] | None) -> dict[str, Datum]:
+    from proprotor.deck.vary import design_inputs
+
+    known = design_inputs(case)
+    for path in wrt or ():
+        if path not in known:
+            raise InputError("wrt", path, unknown_name(path, known, "input"))
+    return known if wrt is None else {path: known[path] for path in wrt}
+
+
+def _rates(
+    case: Case, inputs: Mapping[str, Datum], airspeed: float, modes: Modes, model: LinearModel, options: Any
+) -> tuple[Array, Array]:
+    """Derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) had them by a complex step."""
+
+    def linearize(values: Mapping[str, Array]) -> LinearModel:
+        return case.vary(values).linearize(airspeed, **options)
+
+    def of_one(path: str, value: Array) -> LinearModel:
+        return linearize({path: value})
+
+    values = {path: float(number.si) for path, number in inputs.items()}
+    try:
+        return input_rates(linearize, values, model, modes), np.ones(len(values), dtype=bool)
+    except InputError:
+        exact = np.array([_takes_complex(case, path, value) for path, value in values.items()])
+        if exact.all():  # something else is wrong
+            raise
+    rates = np.empty((len(values), len(modes.values)), dtype=complex)
+    if exact.any():
+        analytic = {path: value for (path, value), takes in zip(values.items(), exact, strict=True) if takes}
+        rates[exact] = input_rates(linearize, analytic, model, modes)
+    for place in np.flatnonzero(~exact):
+        path = list(values)[place]
+        changes = differences(partial(of_one, path), np.array(values[path]))
+        rates[place] = eigenvalue_change(model, changes, modes)
+    return rates, exact
+
+
+def _takes_complex(case: Case, path: str, value: float) -> bool:
+    try:
+        case.vary({path: np.array(value + 1j * STEP)})
+    except InputError:
+        return False
+    return True
+
+
+def _of_flutter_speed(
+    case: Case,
+    inputs: Mapping[str, Datum],
+    airspeeds: Any,
+    mode: str | None,
+    level: float,
+    options: Mapping[str, Any],
+) -> xarray.Dataset:
+    found = flutter_point(case, airspeeds, level=level, **options)
+    wanted = [b for b in found.boundaries if (b.onset if mode is None else b.mode == mode)]
+    if not wanted:
+        rule = "has no boundary" if mode else "nothing becomes unstable"
+        low, high = found.searched
+        raise InputError("flutter_speed", mode, f"{rule} between {low:.6g} and {high:.6g} m/s")
+    return at_boundary(case, wanted[0], inputs, options, found.eigen_solves)
+
+
+def at_boundary(
+    case: Case,
+    boundary: Boundary,
+    inputs: Mapping[str, Datum],
+    options: Mapping[str, Any],
+    eigen_solves: int = 0,
+) -> xarray.Dataset:
+    """Derivatives of the airspeed of one boundary: see `sensitivity`. One more eigen-solve, for the vectors.
+
+    The level and the options are the boundary's own; options may be repeated.
+
+    Raises
+    ------
+    InputError
+        For another case or another option than the boundary's.
+    """
+    options = stamp.options_of(boundary.stamp, case, options)
+    speed, level = boundary.position, boundary.level
+    model = case.linearize(speed, **options)
+    spectrum = decomposition(model)
+    modes = spectrum.modes(np.array([np.argmin(np.abs(spectrum.values - boundary.eigenvalue))]))
+    rates, exact = _rates(case, inputs, speed, modes, model, options)
+    rates = rates[:, 0]
+    moves = -growth_rate(modes.values, rates, level) / boundary.rate
+    frequency = rates.imag + boundary.eigenvalue_rate.imag * moves
+    data = _dataset(inputs, ("input",), moves, "m/s", exact)
+    data["frequency_derivative"] = ("input", frequency, {"units": "rad/s per SI unit of the input"})
+    data["defect"] = ((), float(defect(modes)[0]))
+    data["nearly_defective"] = ((), bool(data.defect > NEARLY_DEFECTIVE))
+    data["warning"] = _doubt(boundary.warning)
+    data.attrs = dict(boundary.stamp) | {
+        "of": "flutter_speed",
+        "value": speed,
+        "units": "m/s",
+        "mode": boundary.mode,
+        "branch": boundary.branch,
+        "level": level,
+        "eigen_solves": eigen_solves + 1,
+    }
+    return data
+
+
+def _of_modes(
+    case: Case,
+    of: str,
+    inputs: Mapping[str, Datum],
+    airspeed: Any,
+    mode: str | None,
+    options: Mapping[str, Any],
+) -> xarray.Dataset:
+    names, modes, model, speed, eigen_solves = named_modes(case, airspeed, mode, options)
+    rates, exact = _rates(case, inputs, speed, modes, model, options)
+    value, units = modes.values, "rad/s"
+    if of == "damping":
+        root = refined(model, modes)
+        at_zero = np.abs(root.values) <= root.error
+        value, units = np.where(at_zero, np.nan, -modes.values.real / np.abs(modes.values)), "1"
+        rates = np.where(at_zero, np.nan, damping_rate(modes.values, rates))
+    data = _dataset(inputs, ("input", "mode"), rates, units, exact).assign_coords(mode=names)
+    data[of] = ("mode", value, {"units": units})
+    data["defect"] = ("mode", defect(modes))
+    data["nearly_defective"] = ("mode", data.defect.values > NEARLY_DEFECTIVE)
+    data["warning"] = _doubt(model.trim.warning)
+    data.attrs = stamp.of_model(model) | {"of": of, "airspeed": speed, "eigen_solves": eigen_solves}
+    return data
+
+
+def _doubt(warning: Any) -> tuple[tuple[()], str, dict[str, str]]:
+    return (), str(warning), {"long_name": "what makes the numbers doubtful"}
+
+
+def _dataset(
+    inputs: Mapping[str, Datum], dims: tuple[str, ...], derivative: Array, units: str, exact: Array
+) -> xarray.Dataset:
+    import xarray  # here, because it takes long to import
+
+    size = np.array([float(number.si) for number in inputs.values()])
+    per = {"units": f"{units} per SI unit of the input"}
+    return xarray.Dataset(
+        {
+            "derivative": (dims, derivative, per),
+            "relative": (dims, derivative * size.reshape(-1, *[1] * (len(dims) - 1)), {"units": units}),
+        },
+        coords={
+            "input": list(inputs),
+            "value": ("input", size),
+            "unit": ("input", [number.unit for number in inputs.values()]),
+            "exact": ("input", exact),
+            "status": ("input", [number.status for number in inputs.values()]),
+        },
+    )

@@ -1,0 +1,183 @@
+"""A folder in which a study keeps each batch it has finished, so that it can be killed and go on.
+
+`.held` keeps other studies from the folder while one is running; only who holds it reads, writes or removes anything.
+`manifest.json` says of which study the batches are, and how it is divided; `batch-00000012` is a SHA-256 and then a
+NumPy archive of one batch. Every file is written beside its place and moved there when it is complete. The SHA-256 is
+of the study and of the batch's number too, so that a batch of another study, wherever it came from, is none of this.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from warnings import warn
+
+import numpy as np
+
+from proprotor.errors import InputError
+from proprotor.files.output import write_whole
+from proprotor.typing import Array
+
+_FORMAT = 2
+_MANIFEST, _LOCK = "manifest.json", ".held"
+_DIGEST = hashlib.sha256().digest_size
+
+
+class CorruptBatch(Exception):
+    """A stored batch that is not what was written."""
+
+
+class Checkpoint:
+    """The batches of one study in one folder.
+
+    Parameters
+    ----------
+    folder : path
+    """
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        self.folder = Path(folder)
+        self._study = b""  # what the batches are of
+
+    @contextmanager
+    def open(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+        """Hold the folder, and begin there or go on with what is there. The hold ends with the process at the latest.
+
+        Parameters
+        ----------
+        identity : mapping of str
+            A fingerprint of everything that the results depend on, by name.
+        division : mapping
+            How the study is divided into batches.
+
+        Yields
+        ------
+        dict
+            The division the study was begun with.
+
+        Raises
+        ------
+        InputError
+            When the folder holds another study, is held by one that is running, or cannot be used.
+        """
+        with self._held():
+            division = self._begun(identity, division)
+            self._study = json.dumps([dict(identity), division], sort_keys=True).encode()
+            yield division
+
+    @contextmanager
+    def _held(self) -> Iterator[None]:
+        """Keep all other threads and processes from the folder."""
+        from filelock import FileLock, Timeout  # here, because most studies keep nothing
+
+        lock = FileLock(self.folder / _LOCK, timeout=0)
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self._check_ours()  # before anything is put there
+            lock.acquire()
+        except Timeout:
+            raise InputError("checkpoint", self.folder, "is in use by a study that is running") from None
+        except (OSError, NotImplementedError) as error:
+            raise self._unusable(error) from None
+        try:
+            yield
+        finally:
+            lock.release()
+
+    def _check_ours(self) -> None:
+        if not (self.folder / _MANIFEST).exists() and any(self.folder.glob("[!.]*")):
+            rule = "must be an empty folder, or that of a study begun before"
+            raise InputError("checkpoint", self.folder, rule)
+
+    def _begun(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the division in the manifest, which is written where there is none."""
+        place = self.folder / _MANIFEST
+        manifest = {"format": _FORMAT, "identity": dict(identity), "division": dict(division)}
+        try:
+            self._check_ours()
+            for unfinished in self.folder.glob(".*.tmp"):  # of a study that was killed
+                unfinished.unlink()
+            if not place.exists():
+                write_whole(place, lambda file: file.write(json.dumps(manifest, indent=1).encode()))
+            manifest = json.loads(place.read_text(encoding="utf-8"))
+            stored, begun_with = manifest["identity"], dict(manifest["division"])
+            differ = [name for name in identity if stored.get(name) != identity[name]]
+        except OSError as error:
+            raise self._unusable(error) from None
+        except InputError:
+            raise
+        except (ValueError, KeyError, TypeError, AttributeError):
+            rule = "cannot be read: delete the folder to begin again"
+            raise InputError("checkpoint", place, rule) from None
+        if manifest.get("format") != _FORMAT or differ:
+            what = ", ".join(differ) or "its format"
+            rule = f"holds another study (different: {what}); give another folder, or delete this one"
+            raise InputError("checkpoint", self.folder, rule)
+        return begun_with
+
+    def _unusable(self, error: Exception) -> InputError:
+        reason = getattr(error, "strerror", None) or error
+        return InputError("checkpoint", self.folder, f"cannot be used ({reason})")
+
+    def save(self, number: int, found: Mapping[str, Array]) -> None:
+        """Keep a finished batch."""
+        content = io.BytesIO()
+        arrays: dict[str, Any] = {name: _plain(array) for name, array in found.items()}
+        np.savez(content, **arrays)
+        payload = content.getbuffer()
+        digest = self._digest(number, payload)
+        write_whole(self._place(number), lambda file: file.writelines((digest, payload)))
+
+    def _digest(self, number: int, payload: Any) -> bytes:
+        digest = hashlib.sha256(self._study)
+        digest.update(number.to_bytes(8, "big"))
+        digest.update(payload)
+        return digest.digest()
+
+    def load(self, number: int) -> dict[str, Array] | None:
+        """A batch kept before, None where there is none.
+
+        Raises
+        ------
+        CorruptBatch
+            When the file is not what this study has written.
+        """
+        try:
+            content = self._place(number).read_bytes()
+        except FileNotFoundError:
+            return None
+        digest, payload = content[:_DIGEST], memoryview(content)[_DIGEST:]
+        if self._digest(number, payload) != digest:
+            raise CorruptBatch(str(self._place(number)))
+        with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
+            return {name: _as_objects(stored[name]) for name in stored.files}
+
+    def finished(self, count: int) -> Iterator[tuple[int, dict[str, Array]]]:
+        """The batches kept before, of a study of so many; one that is damaged is told, removed and left out."""
+        for number in range(count):
+            try:
+                found = self.load(number)
+            except CorruptBatch as error:
+                warn(f"{error} is damaged: the batch is computed again", stacklevel=2)
+                self._place(number).unlink()
+                continue
+            if found is not None:
+                yield number, found
+
+    def _place(self, number: int) -> Path:
+        return self.folder / f"batch-{number:08d}"
+
+
+def _plain(array: Array) -> Array:
+    """Texts with a fixed width, which need no pickle."""
+    return array.astype(str) if array.dtype == object else array
+
+
+def _as_objects(array: Array) -> Array:
+    return array.astype(object) if array.dtype.kind == "U" else array

@@ -1,0 +1,250 @@
+"""How uncertain a result is, and because of which inputs: distributions and Sobol indices from a study of a sample."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.errors import InputError
+from proprotor.model import stamp
+from proprotor.model.doubts import reasons_for_doubt
+from proprotor.needs import check_memory, need
+from proprotor.study.batch import STABLE, UNSTABLE
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
+_MOST_LEFT_OUT = 0.05  # of the base samples, before indices say little about the sample that was drawn
+
+
+def distribution(
+    results: xarray.Dataset, of: str = "flutter_speed", percentiles: Sequence[float] = PERCENTILES
+) -> xarray.Dataset:
+    """Percentiles of a result over the designs of a sample.
+
+    Designs that stay stable throughout the airspeeds have a flutter speed above them, and those unstable from the
+    start one below: they count as such, and a percentile among them is inf or -inf, not a number made up. Failed
+    designs are left out and counted.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        A study of `latin_hypercube`, `sobol`, or `points`. Of a Saltelli sample too, whose designs repeat values.
+    of : str
+        A variable with one number for each design.
+    percentiles : sequence of float
+        0 to 100, dimensionless.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``value`` over ``percentile``, and how many designs are ``known``, ``above`` or ``below`` the range, ``failed``,
+        and of those known ``doubtful``; the attribute ``doubts`` says why. The case and its options stand there too.
+
+    Raises
+    ------
+    InputError
+        For a variable that is not there or not one number a design, or when no design is left.
+    """
+    import xarray
+
+    values, above, below = _one_a_design(results, of)
+    known = np.isfinite(values)
+    failed = ~(known | above | below)
+    if failed.all():
+        raise InputError(of, None, "has no value for any design")
+    wanted = np.asarray(percentiles, dtype=float)
+    if wanted.ndim != 1 or not np.all((wanted >= 0) & (wanted <= 100)):
+        raise InputError("percentiles", percentiles, "must be a list of numbers from 0 to 100")
+    ordered = np.where(above, np.inf, np.where(below, -np.inf, values))[~failed]
+    # The value itself that a share of the designs does not exceed: between a number and infinity nothing lies.
+    found = np.quantile(ordered, wanted / 100, method="inverted_cdf")
+    warnings = _warnings(results, of)
+    counts = {"known": known, "above": above, "below": below, "failed": failed, "doubtful": warnings != ""}
+    return xarray.Dataset(
+        {
+            "value": (
+                "percentile",
+                found,
+                {"units": results[of].attrs.get("units", "1"), "long_name": f"of {of}"},
+            )
+        }
+        | {name: ((), int(mask.sum())) for name, mask in counts.items()},
+        coords={"percentile": wanted},
+        attrs=_attributes(results, of, warnings),
+    )
+
+
+def _warnings(results: xarray.Dataset, of: str) -> Array:
+    """What makes the result of each design (designs,) doubtful."""
+    name = "flutter_warning" if of.startswith("flutter_") else "warning"
+    if name in results and results[name].dims == results[of].dims:
+        return np.asarray(results[name].values)
+    return np.full(results[of].shape, "")
+
+
+def _attributes(results: xarray.Dataset, of: str, warnings: Array) -> dict[str, Any]:
+    """Where a result over the designs comes from, and its doubts."""
+    doubts = {"doubts": "; ".join(reasons_for_doubt(warnings.tolist()))}
+    return stamp.of(results.attrs) | {"of": of} | doubts
+
+
+def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed") -> float:
+    """Share of the designs whose result is below a limit (SI), such as those that flutter below a speed.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        As for `distribution`.
+    limit : float
+        In the SI unit of the result.
+    of : str
+        A variable with one number for each design.
+
+    Returns
+    -------
+    float
+        A share of the designs that did not fail, 0 to 1.
+
+    Raises
+    ------
+    InputError
+        As `distribution`; and when designs beyond the range of the study leave it open.
+    """
+    values, above, below = _one_a_design(results, of)
+    known = np.isfinite(values)
+    if not (known | above | below).any():
+        raise InputError(of, None, "has no value for any design")
+    lowest, highest = _range(results)
+    if (above.any() and limit > highest) or (below.any() and limit < lowest):
+        raise InputError(
+            "limit", limit, f"must lie in the airspeeds of the study, {lowest:g} to {highest:g} m/s"
+        )
+    return float((below.sum() + (values[known] < limit).sum()) / (known | above | below).sum())
+
+
+def sobol_indices(
+    results: xarray.Dataset, of: str = "flutter_speed", confidence: float = 0.95, resamples: int = 100
+) -> xarray.Dataset:
+    """Share of the variance that each input of a Saltelli sample is behind (SALib).
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        A study of `proprotor.study.sampling.saltelli`.
+    of : str
+        A variable with one number for each design. Base samples with a design that has none are left out, at most
+        5 % of them.
+    confidence : float
+        Level of the intervals, dimensionless, from 0 to 1.
+    resamples : int
+        Of the bootstrap that finds them.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``input``: ``first``, the share of the input alone, ``total``, with all its interactions, and half the
+        width of their intervals; ``second`` over two inputs where the sample has what it needs. ``doubtful`` counts the
+        designs whose result is; the attribute ``doubts`` says why. The case and its options stand there too.
+
+    Raises
+    ------
+    InputError
+        When the results are of no Saltelli sample, too many designs have no value, or all have the same; when SALib is
+        not installed, or the resamples do not fit into memory.
+    """
+    need("SALib", "of", "Sobol indices", "study")
+    import xarray
+    from SALib.analyze import sobol as salib_sobol
+
+    sample = _saltelli_of(results)
+    _check_count("resamples", resamples, results.sizes.get("design", 0))
+    names, second_order = sample["inputs"], sample["second_order"]
+    block = len(names) * (2 if second_order else 1) + 2
+    values, above, below = _one_a_design(results, of)
+    values = values.reshape(-1, block)
+    whole = np.asarray(np.isfinite(values).all(axis=1))
+    _check_left_out(of, whole, int(above.sum() + below.sum()))
+    values = values[whole]
+    if np.ptp(values) == 0:
+        raise InputError(
+            of, float(values.flat[0]), "is the same for every design: there is no variance to share out"
+        )
+    problem = {"num_vars": len(names), "names": names, "bounds": [[0, 1]] * len(names)}
+    found = salib_sobol.analyze(
+        problem,
+        values.reshape(-1),
+        calc_second_order=second_order,
+        num_resamples=resamples,
+        conf_level=confidence,
+        seed=sample["seed"] + 1,  # SALib takes 0 for none
+    )
+    table: dict[str, Any] = {
+        "first": ("input", found["S1"]),
+        "first_half_interval": ("input", found["S1_conf"]),
+        "total": ("input", found["ST"]),
+        "total_half_interval": ("input", found["ST_conf"]),
+        "left_out": ((), int((~whole).sum()), {"long_name": "base samples with a design that has no value"}),
+    }
+    warnings = _warnings(results, of)
+    table["doubtful"] = (), int((warnings != "").sum()), {"long_name": "designs whose result is doubtful"}
+    if second_order:
+        table["second"] = (("input", "other_input"), _both_ways(found["S2"]))
+    coordinates = {"input": names} | ({"other_input": names} if second_order else {})
+    attributes = _attributes(results, of, warnings) | {"confidence": confidence}
+    return xarray.Dataset(table, coordinates, attributes)
+
+
+def _check_count(field: str, count: int, designs: int) -> None:
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+        raise InputError(field, count, "must be a whole number above zero")
+    check_memory(field, count, 24.0 * count * designs, "the bootstrap")  # places, and two values at each
+
+
+def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array]:
+    """Values of the designs, and which of them lie above and below the airspeeds of the study."""
+    if of not in results.data_vars:
+        known = ", ".join(str(name) for name in results.data_vars)
+        raise InputError("of", of, f"must be a variable of the results ({known})")
+    values = results[of]
+    if values.dims != ("design",) or values.dtype.kind not in "fiu":
+        rule = 'must have one number for each design: choose an airspeed, or quantities="flutter"'
+        raise InputError("of", of, rule)
+    notes = np.full(values.shape, "", dtype=object)
+    if of.startswith("flutter_") and "flutter_note" in results:
+        notes = results["flutter_note"].values
+    found = values.values.astype(float)
+    return found, notes == STABLE, (notes == UNSTABLE) & np.isnan(found)
+
+
+def _range(results: xarray.Dataset) -> tuple[float, float]:
+    if "airspeed" not in results.dims:
+        return -np.inf, np.inf
+    return float(results.airspeed.min()), float(results.airspeed.max())
+
+
+def _saltelli_of(results: xarray.Dataset) -> dict[str, Any]:
+    sample: dict[str, Any] = json.loads(results.attrs.get("sample", "{}"))
+    if sample.get("method") != "saltelli":
+        raise InputError(
+            "results", sample.get("method"), "must be a study of proprotor.study.sampling.saltelli"
+        )
+    return sample
+
+
+def _check_left_out(of: str, whole: Array, beyond: int) -> None:
+    left_out = len(whole) - whole.sum()
+    if left_out > _MOST_LEFT_OUT * len(whole):
+        hint = f"; {beyond} designs are stable or unstable throughout: widen the airspeeds" if beyond else ""
+        told = f"no value in {left_out} of {len(whole)} base samples"
+        raise InputError(of, told, f"must be known in {1 - _MOST_LEFT_OUT:.0%} of them{hint}")
+
+
+def _both_ways(upper: Array) -> Array:
+    """A symmetric table from the half that SALib fills; NaN on the diagonal."""
+    return np.where(np.isnan(upper), upper.T, upper)

@@ -1,0 +1,294 @@
+"""Who analyses the batches of a study: this process, processes of this computer, or a dask.distributed cluster.
+
+Each is a generator that takes batches by number and gives back (number, what was found), in no particular order, and
+never holds more than a few of them.
+
+Processes and not threads: most of the time beside LAPACK is spent in short NumPy calls that hold the interpreter. Each
+process has one BLAS thread, because matrices of this size gain nothing from more, and threads that share one BLAS wait
+for each other.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from itertools import islice
+from queue import SimpleQueue
+from threading import Lock, Thread
+from typing import TYPE_CHECKING, Any
+
+from proprotor.study.worker import receive, send
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+    from proprotor.study.batch import Analysis, Batch
+
+Numbered = Iterable[tuple[int, "Batch"]]
+Found = Iterator[tuple[int, dict[str, Any]]]
+
+_ONE_THREAD = (
+    "OPENBLAS_NUM_THREADS",
+    "OMP_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "BLIS_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+)
+_MOST_DEATHS = 3  # of workers at one batch: it is the batch that kills them
+_AHEAD = 2  # batches per worker of a cluster, so that none waits for the next
+
+
+class NotLoadable(Exception):
+    """What is to be analysed cannot be loaded in another process."""
+
+
+def cores() -> int:
+    """Processor cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def here(analysis: Analysis, batches: Numbered) -> Found:
+    """Batches one after another in this process."""
+    for number, batch in batches:
+        yield number, analysis(batch)
+
+
+# Processes ----------------------------------------------------------------------------------------
+
+
+class Worker:
+    """One process; it is kept from study to study, since starting it takes longer than a small study."""
+
+    def __init__(self) -> None:
+        environment = os.environ | dict.fromkeys(_ONE_THREAD, "1")
+        environment["PYTHONPATH"] = os.pathsep.join(path or os.getcwd() for path in sys.path)
+        command = [sys.executable, "-c", "from proprotor.study.worker import main; main()"]
+        pipe = subprocess.PIPE
+        self.process = subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe)
+        assert self.process.stdin is not None and self.process.stdout is not None  # pipes
+        self.questions, self.answers = self.process.stdin, self.process.stdout
+
+    def ask(self, message: Any) -> Any:
+        """The answer to a message.
+
+        Raises
+        ------
+        EOFError
+            When the process has died.
+        """
+        try:
+            send(self.questions, message)
+            answer = receive(self.answers)
+        except BrokenPipeError:
+            raise EOFError from None
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    @property
+    def lives(self) -> bool:
+        return self.process.poll() is None
+
+    def end(self) -> None:
+        """Have it end, at once."""
+        self.process.kill()
+        self.process.wait()
+        for pipe in (self.questions, self.answers):
+            with suppress(OSError):  # of what was not sent any more
+                pipe.close()
+
+
+_idle: list[Worker] = []
+_lock = Lock()
+
+
+def idle_workers() -> int:
+    """Workers that wait for a study."""
+    with _lock:
+        for worker in [worker for worker in _idle if not worker.lives]:
+            _idle.remove(worker)
+            worker.end()
+        return len(_idle)
+
+
+def process_ids() -> list[int]:
+    """Of the workers that wait for a study."""
+    with _lock:
+        return [worker.process.pid for worker in _idle]
+
+
+def _take() -> Worker:
+    with _lock:
+        while _idle:
+            worker = _idle.pop()
+            if worker.lives:
+                return worker
+            worker.end()
+    return Worker()
+
+
+def _give_back(worker: Worker) -> None:
+    with _lock:
+        _idle.append(worker)
+
+
+@atexit.register
+def end_workers() -> None:
+    """End the processes that wait for a study."""
+    with _lock:
+        while _idle:
+            _idle.pop().end()
+
+
+def check_loadable(analysis: Analysis) -> None:
+    """See whether a worker process can load what it is to do.
+
+    Raises
+    ------
+    NotLoadable
+        When the case holds something that only this process knows, such as a function of a script.
+    """
+    worker = _take()
+    try:
+        worker.ask(analysis)
+    except EOFError:
+        worker.end()
+        raise RuntimeError("a worker process of the study died as it started") from None
+    except Exception as error:
+        worker.end()
+        raise NotLoadable(str(error)) from error
+    _give_back(worker)
+
+
+def in_processes(analysis: Analysis, batches: Numbered, workers: int) -> Found:
+    """Batches in several processes; the batch of one that dies goes to another.
+
+    Raises
+    ------
+    RuntimeError
+        When one batch has killed three workers.
+    """
+    return _Processes(analysis, batches, workers).results()
+
+
+class _Processes:
+    """A thread for each process: it hands over batches and waits for what comes back."""
+
+    def __init__(self, analysis: Analysis, batches: Numbered, workers: int) -> None:
+        self.analysis, self.batches, self.workers = analysis, iter(batches), workers
+        self.lock, self.stopped = Lock(), False
+        self.found: SimpleQueue[Any] = SimpleQueue()
+        self.at_work: list[Worker] = []
+
+    def results(self) -> Found:
+        threads = [Thread(target=self._serve, daemon=True) for _ in range(self.workers)]
+        for thread in threads:
+            thread.start()
+        running = len(threads)
+        try:
+            while running:
+                item = self.found.get()
+                if item is None:
+                    running -= 1
+                elif isinstance(item, BaseException):
+                    raise item
+                else:
+                    yield item
+        finally:
+            self.stopped = True
+            if running:  # ended before all was done: nobody waits for what is still at work
+                with self.lock:
+                    for worker in self.at_work:
+                        worker.process.kill()
+            for thread in threads:
+                thread.join()
+
+    def _next(self) -> tuple[int, Batch] | None:
+        with self.lock:
+            return None if self.stopped else next(self.batches, None)
+
+    def _serve(self) -> None:
+        worker = None
+        try:
+            while (numbered := self._next()) is not None:
+                number, batch = numbered
+                for death in range(1, _MOST_DEATHS + 1):
+                    try:
+                        worker = worker or self._begin()
+                        self.found.put((number, worker.ask(batch)))
+                        break
+                    except EOFError:
+                        self._drop(worker)
+                        worker = None
+                        if self.stopped:
+                            return
+                        if death == _MOST_DEATHS:
+                            told = f"batch {number} of the study has killed {death} worker processes; is memory short?"
+                            raise RuntimeError(told) from None
+        except BaseException as error:
+            self.found.put(error)
+        finally:
+            if worker is not None:
+                with self.lock:
+                    self.at_work.remove(worker)
+                _give_back(worker) if worker.lives and not self.stopped else worker.end()
+            self.found.put(None)
+
+    def _begin(self) -> Worker:
+        worker = _take()
+        with self.lock:
+            self.at_work.append(worker)
+        try:
+            worker.ask(self.analysis)
+        except BaseException:
+            self._drop(worker)
+            raise
+        return worker
+
+    def _drop(self, worker: Worker | None) -> None:
+        if worker is not None:
+            with self.lock:
+                if worker in self.at_work:
+                    self.at_work.remove(worker)
+            worker.end()
+
+
+# A cluster ----------------------------------------------------------------------------------------
+
+
+def on_cluster(analysis: Analysis, batches: Numbered, client: Client) -> Found:
+    """Batches on a `dask.distributed` cluster, which gives those of a lost worker to another.
+
+    At most two batches a thread of the cluster are under way, so that neither side holds many results.
+    """
+    from distributed import as_completed
+
+    sent = client.scatter(analysis, broadcast=True, hash=False)
+    todo = iter(batches)
+
+    def submit(numbered: tuple[int, Batch]) -> Any:
+        return client.submit(_numbered, sent, *numbered, pure=False)
+
+    under_way = as_completed([submit(numbered) for numbered in islice(todo, _AHEAD * threads_of(client))])
+    try:
+        for future in under_way:
+            yield future.result()
+            future.release()
+            for numbered in islice(todo, 1):
+                under_way.add(submit(numbered))
+    finally:
+        client.cancel(list(under_way.futures))
+
+
+def threads_of(client: Client) -> int:
+    """Batches that a cluster analyses at once."""
+    threads: dict[str, int] = client.nthreads()
+    return max(1, sum(threads.values()))
+
+
+def _numbered(analysis: Analysis, number: int, batch: Batch) -> tuple[int, dict[str, Any]]:
+    return number, analysis(batch)

@@ -1,0 +1,402 @@
+"""A cantilever wing as beam finite elements, with a rigid pylon at its tip and the hub ahead of it.
+
+Elements are those of pystran (Euler-Bernoulli bending in two planes, free torsion, extension; consistent mass with
+torsional inertia). The elastic axis is straight, from the mount at the origin to the pylon, and all axes are the
+rotor's: I up, J outboard, K forward along the shaft. The pylon is rigid; it may turn about J against a spring at
+the wing tip, the downstop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.support.modal_reduction import ModalSupport, on_modes
+from proprotor.support.normal_modes import HUB_AXES, NormalModes
+from proprotor.typing import Array
+
+UP, OUTBOARD, FORWARD = np.eye(3)
+PYLON_PITCH = "pylon_pitch"
+SpanwiseProfile = float | tuple[ArrayLike, ArrayLike]
+_MOST_ELEMENTS = 200
+_PER_NODE = len(HUB_AXES)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wing:
+    """A straight cantilever along its elastic axis.
+
+    A property along the wing is one number or (stations, values), stations from 0 at the mount to 1 at the
+    pylon, linear between them.
+
+    Parameters
+    ----------
+    span : float
+        From the mount to the pylon along J, m.
+    beam_stiffness, chord_stiffness : number or profile
+        EI of bending up and down, and fore and aft, N m².
+    torsion_stiffness : number or profile
+        GJ, N m².
+    axial_stiffness : number or profile
+        EA, N.
+    mass_per_length : number or profile
+        kg/m along the elastic axis, the centre of mass on it.
+    torsional_inertia_per_length : number or profile
+        kg m²/m about the elastic axis.
+    sweep, dihedral : float
+        Of the elastic axis, rad: back and up positive.
+    elements : int
+        How many of equal length.
+
+    Raises
+    ------
+    InputError
+        When a value is not finite, out of its range, or a profile does not reach from 0 to 1.
+    """
+
+    span: float
+    beam_stiffness: SpanwiseProfile
+    chord_stiffness: SpanwiseProfile
+    torsion_stiffness: SpanwiseProfile
+    axial_stiffness: SpanwiseProfile
+    mass_per_length: SpanwiseProfile
+    torsional_inertia_per_length: SpanwiseProfile
+    sweep: float = 0.0
+    dihedral: float = 0.0
+    elements: int = 8
+
+    def __post_init__(self) -> None:
+        _check("span", self.span, above_zero=True)
+        for name in ("sweep", "dihedral"):
+            _check(name, getattr(self, name))
+            if abs(getattr(self, name)) >= np.pi / 2:
+                raise InputError(name, getattr(self, name), "must lie between -90 and 90 degrees")
+        for name in PROFILES:
+            _check_profile(name, getattr(self, name), above_zero=name.endswith("stiffness"))
+        if not isinstance(self.elements, int) or not 1 <= self.elements <= _MOST_ELEMENTS:
+            raise InputError("elements", self.elements, f"must be a whole number from 1 to {_MOST_ELEMENTS}")
+
+    @property
+    def tip(self) -> Array:
+        """Where the elastic axis meets the pylon, m (3,)."""
+        return self.span * np.array([np.tan(self.dihedral), 1.0, -np.tan(self.sweep)])
+
+
+PROFILES = (
+    "beam_stiffness",
+    "chord_stiffness",
+    "torsion_stiffness",
+    "axial_stiffness",
+    "mass_per_length",
+    "torsional_inertia_per_length",
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pylon:
+    """A rigid nacelle at the wing tip and what of the hub no rotor model holds.
+
+    Parameters
+    ----------
+    nacelle_mass : float
+        kg, without the rotor.
+    nacelle_pitch_inertia, nacelle_yaw_inertia, nacelle_roll_inertia : float
+        About the nacelle's centre of mass and the axes J, I and K, kg m².
+    mast_length, mast_height, mast_outboard : float
+        From the elastic axis at the tip to the hub along K, I and J, m.
+    nacelle_forward, nacelle_up, nacelle_outboard : float
+        From the elastic axis at the tip to the nacelle's centre of mass along K, I and J, m.
+    hub_mass : float
+        At the hub, kg: what belongs to the rotor and is not in its blades.
+    pitch_stiffness : float or None
+        Of the downstop about J, N m/rad; None holds the pylon rigidly to the wing tip.
+
+    Raises
+    ------
+    InputError
+        When a value is not finite, a mass or inertia negative, or the spring not above zero.
+    """
+
+    nacelle_mass: float
+    nacelle_pitch_inertia: float
+    nacelle_yaw_inertia: float
+    nacelle_roll_inertia: float
+    mast_length: float
+    mast_height: float = 0.0
+    mast_outboard: float = 0.0
+    nacelle_forward: float = 0.0
+    nacelle_up: float = 0.0
+    nacelle_outboard: float = 0.0
+    hub_mass: float = 0.0
+    pitch_stiffness: float | None = None
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            value = getattr(self, entry.name)
+            if entry.name == "pitch_stiffness":
+                if value is not None:
+                    _check(entry.name, value, above_zero=True)
+            else:
+                _check(entry.name, value)
+                if entry.name.endswith(("mass", "inertia")) and value < 0:
+                    raise InputError(entry.name, value, "must not be negative")
+
+    @property
+    def hub(self) -> Array:
+        """From the elastic axis at the tip to the hub, m (3,) along I, J, K."""
+        return np.array([self.mast_height, self.mast_outboard, self.mast_length])
+
+    @property
+    def nacelle(self) -> Array:
+        """From the elastic axis at the tip to the nacelle's centre of mass, m (3,)."""
+        return np.array([self.nacelle_up, self.nacelle_outboard, self.nacelle_forward])
+
+
+class BeamStructure(NamedTuple):
+    """Mass and stiffness of wing and pylon on the motions of the nodes between mount and tip, then of the hub.
+
+    names : tuple of str
+        The n coordinates: six for each node, six of the hub (m and rad), and with a downstop the pitch of the
+        pylon against the wing tip, nose up.
+    mass : array (n, n)
+    stiffness_parts : mapping of str to array (n, n)
+        The stiffness by what it comes from: beam, chord, torsion (with the downstop) and axial.
+    hub : array (6, n)
+        Hub motion.
+    nodes : array (elements + 1, 6, n)
+        Motion of each node of the elastic axis, the mount first.
+    positions : array (elements + 1, 3)
+        Where the nodes are, m.
+    """
+
+    names: tuple[str, ...]
+    mass: Array
+    stiffness_parts: dict[str, Array]
+    hub: Array
+    nodes: Array
+    positions: Array
+
+    @property
+    def stiffness(self) -> Array:
+        """The whole stiffness (n, n)."""
+        return sum(self.stiffness_parts.values(), start=np.zeros(()))
+
+
+def beam_structure(wing: Wing, pylon: Pylon) -> BeamStructure:
+    """The finite-element matrices of wing and pylon, without the rotor."""
+    mass, parts, positions = wing_elements(wing)
+    nodes, hub, names = _coordinates(wing, pylon)
+    motion = nodes.reshape(-1, len(names))
+    parts = {name: motion.T @ part @ motion for name, part in parts.items()}
+    if pylon.pitch_stiffness is not None:
+        parts["torsion"][-1, -1] += pylon.pitch_stiffness
+    mass = motion.T @ mass @ motion + hub.T @ _pylon_mass(pylon) @ hub
+    return BeamStructure(
+        names=names,
+        mass=_symmetric(mass),
+        stiffness_parts={name: _symmetric(part) for name, part in parts.items()},
+        hub=hub,
+        nodes=nodes,
+        positions=positions,
+    )
+
+
+def beam_wing(
+    wing: Wing,
+    pylon: Pylon,
+    *,
+    modes: int | None = None,
+    damping_ratio: ArrayLike | Mapping[str, float] = 0.0,
+    rotor_mass: float = 0.0,
+) -> NormalModes:
+    """The wing as a support.
+
+    Parameters
+    ----------
+    wing, pylon : Wing, Pylon
+    modes : int, optional
+        How many of the lowest modes to keep; all coordinates of the finite elements when left out. Modes are
+        named beam, chord, torsion or axial by where most of their strain energy is, with a number from the second on.
+    damping_ratio : float, array (j,) or mapping
+        Structural damping of the lowest modes, of critical, the last value for those above; or that of all beam, chord,
+        torsion and axial modes by these names. A loss factor g (hysteretic damping) is equivalent to g/2 at
+        the frequency of each mode.
+    rotor_mass : float
+        kg; the modes, those kept and those damped, are the ones with this mass at the hub. It does not stay in
+        the matrices: the rotor model brings it.
+
+    Returns
+    -------
+    NormalModes
+
+    Raises
+    ------
+    InputError
+        When there are fewer modes than asked for, or coordinates without mass are not reduced to modes.
+    """
+    structure = beam_structure(wing, pylon)
+    return on_coordinates(structure, modes, damping_ratio, rotor_mass).support
+
+
+def on_coordinates(
+    structure: BeamStructure,
+    count: int | None,
+    damping_ratio: ArrayLike | Mapping[str, float],
+    rotor_mass: float,
+) -> ModalSupport:
+    """The structure as a support on all coordinates, or on its `count` lowest modes, as `beam_wing` has it."""
+    given: ArrayLike | Callable[[Array], ArrayLike]
+    if isinstance(damping_ratio, Mapping):
+        _check_kinds(damping_ratio, structure)
+        given = partial(_ratios_by_kind, structure, damping_ratio)
+    else:
+        given = damping_ratio
+    return on_modes(
+        structure.names,
+        structure.mass,
+        structure.stiffness,
+        structure.hub,
+        count=count,
+        damping_ratio=given,
+        rotor_mass=rotor_mass,
+        name_modes=partial(_named_by_energy, structure),
+    )
+
+
+def _check_kinds(damping_ratio: Mapping[str, float], structure: BeamStructure) -> None:
+    for kind in structure.stiffness_parts:
+        if kind not in damping_ratio:
+            raise InputError(f"damping_ratio[{kind}]", None, "is missing")
+    for kind in damping_ratio:
+        if kind not in structure.stiffness_parts:
+            rule = unknown_name(kind, tuple(structure.stiffness_parts), "kind of mode")
+            raise InputError("damping_ratio", kind, rule)
+
+
+def _dominant(structure: BeamStructure, shapes: Array) -> list[str]:
+    """What most of the strain energy of each mode is in."""
+    energy = [np.einsum("ij,ij->j", shapes, part @ shapes) for part in structure.stiffness_parts.values()]
+    kinds = list(structure.stiffness_parts)
+    return [kinds[place] for place in np.argmax(energy, axis=0)]
+
+
+def _ratios_by_kind(structure: BeamStructure, ratios: Mapping[str, float], shapes: Array) -> list[float]:
+    return [ratios[kind] for kind in _dominant(structure, shapes)]
+
+
+def _named_by_energy(structure: BeamStructure, shapes: Array) -> tuple[str, ...]:
+    dominant = _dominant(structure, shapes)
+    counts = [dominant[: place + 1].count(kind) for place, kind in enumerate(dominant)]
+    return tuple(
+        kind if count == 1 else f"{kind}_{count}" for kind, count in zip(dominant, counts, strict=True)
+    )
+
+
+def wing_elements(wing: Wing) -> tuple[Array, dict[str, Array], Array]:
+    """Mass and stiffness parts on the motions of all nodes, the mount's included, and where the nodes are."""
+    from pystran import beam, model, section  # here, because it brings matplotlib along
+
+    stations = np.linspace(0, 1, wing.elements + 1)
+    positions = stations[:, None] * wing.tip
+    frame = model.create(3)
+    for node, position in enumerate(positions):
+        model.add_joint(frame, node, position, dof=_PER_NODE * node + np.arange(_PER_NODE))
+    joints = frame["joints"]
+    given = {name: _means(getattr(wing, name), stations) for name in PROFILES}
+    size = _PER_NODE * len(stations)
+    mass = np.zeros((size, size))
+    parts = {name: np.zeros((size, size)) for name in ("beam", "chord", "torsion", "axial")}
+    for place in range(wing.elements):
+        ends = joints[place], joints[place + 1]
+        own = {name: values[place] for name, values in given.items()}
+        # pystran's x is along the beam, z upwards and y forward; a section here has one stiffness and unit modulus.
+        stiffness = {
+            "beam": {"E": 1.0, "Iy": own["beam_stiffness"]},
+            "chord": {"E": 1.0, "Iz": own["chord_stiffness"]},
+            "torsion": {"G": 1.0, "J": own["torsion_stiffness"]},
+            "axial": {"E": 1.0, "A": own["axial_stiffness"]},
+        }
+        for name, properties in stiffness.items():
+            beam.assemble_stiffness(
+                parts[name], {"section": section.beam_3d_section(name, xz_vector=UP, **properties)}, *ends
+            )
+        inertia = {"A": own["mass_per_length"], "Ix": own["torsional_inertia_per_length"]}
+        whole = section.beam_3d_section("mass", rho=1.0, xz_vector=UP, **inertia)
+        beam.assemble_mass(mass, {"section": whole}, *ends)
+    return mass, parts, positions
+
+
+def _coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:
+    """Motion of the nodes and of the hub per coordinate, and the coordinates' names."""
+    inner = _PER_NODE * (wing.elements - 1)
+    free = pylon.pitch_stiffness is not None
+    names = [f"wing_{node}_{axis}" for node in range(1, wing.elements) for axis in HUB_AXES]
+    names += [f"hub_{axis}" for axis in HUB_AXES] + [PYLON_PITCH] * free
+    nodes = np.zeros((wing.elements + 1, _PER_NODE, len(names)))
+    nodes[1:-1, :, :inner] = np.eye(inner).reshape(wing.elements - 1, _PER_NODE, inner)
+    hub = np.zeros((_PER_NODE, len(names)))
+    hub[:, inner : inner + _PER_NODE] = np.eye(_PER_NODE)
+    nodes[-1] = rigid_motion(-pylon.hub) @ hub
+    if free:
+        nodes[-1, 3:, -1] = -OUTBOARD  # the wing tip turns by as much less than the pylon
+    return nodes, hub, tuple(names)
+
+
+def _pylon_mass(pylon: Pylon) -> Array:
+    """Mass of nacelle and hub hardware (6, 6) on the motion of the hub."""
+    inertia = (pylon.nacelle_yaw_inertia, pylon.nacelle_pitch_inertia, pylon.nacelle_roll_inertia)
+    nacelle = np.diag([pylon.nacelle_mass] * 3 + list(inertia))
+    motion = rigid_motion(pylon.nacelle - pylon.hub)
+    return motion.T @ nacelle @ motion + pylon.hub_mass * np.diag([1.0] * 3 + [0.0] * 3)
+
+
+def rigid_motion(offset: ArrayLike) -> Array:
+    """Motion (6, 6) of a point of a rigid body per motion of another, `offset` (3,) from it to the point, m."""
+    motion = np.eye(6)
+    motion[:3, 3:] = np.cross(np.eye(3), np.asarray(offset, dtype=float)).T
+    return motion
+
+
+def _means(profile: SpanwiseProfile, stations: Array) -> Array:
+    """The mean of a profile over each element."""
+    if not isinstance(profile, tuple):
+        return np.full(len(stations) - 1, float(profile))
+    given, values = (np.asarray(part, dtype=float) for part in profile)
+    corners = np.union1d(given, stations)
+    heights = np.interp(corners, given, values)
+    areas = np.concatenate([[0.0], np.cumsum(np.diff(corners) * (heights[1:] + heights[:-1]) / 2)])
+    means: Array = np.diff(np.interp(stations, corners, areas)) / np.diff(stations)
+    return means
+
+
+def _symmetric(matrix: Array) -> Array:
+    return (matrix + matrix.T) / 2  # products leave rounding
+
+
+def _check(name: str, value: float, above_zero: bool = False) -> None:
+    is_number = np.isscalar(value) and np.isreal(value) and np.isfinite(value)
+    if not is_number:
+        raise InputError(name, value, "must be a finite number")
+    if above_zero and value <= 0:
+        raise InputError(name, value, "must be above zero")
+
+
+def _check_profile(name: str, profile: SpanwiseProfile, above_zero: bool) -> None:
+    rule = "must be above zero" if above_zero else "must not be negative"
+    if not isinstance(profile, tuple):
+        _check(name, profile)
+        values = np.array([profile])
+    else:
+        stations, values = (np.asarray(part, dtype=float) for part in profile)
+        if stations.ndim != 1 or stations.shape != values.shape or not np.isfinite([stations, values]).all():
+            raise InputError(name, "a profile", "must have one finite value for each station")
+        if stations[0] != 0 or stations[-1] != 1 or (np.diff(stations) <= 0).any():
+            raise InputError(name, stations.tolist(), "must have stations that rise from 0 to 1")
+    if (values < 0).any() or (above_zero and (values == 0).any()):
+        raise InputError(name, values.min(), rule)

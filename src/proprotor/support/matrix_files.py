@@ -1,0 +1,274 @@
+"""A support from the matrices of any finite-element code: Matrix Market files or one .npz file.
+
+Coordinates are named, and six of them are the hub's: x, y, z in the length unit of the matrices, αx, αy, αz in rad,
+along the rotor's axes (I up, J outboard, K forward along the shaft). A finite-element axis that points the other
+way has a minus sign before its name.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.files.text import read_text
+from proprotor.support.matrix_market import MatrixMarketError, read_matrix
+from proprotor.support.modal_reduction import on_modes
+from proprotor.support.normal_modes import HUB_AXES, NormalModes
+from proprotor.typing import Array
+
+_LARGEST = 500_000_000  # bytes of a file, unpacked
+_LARGEST_UNIT = 1e12  # m or kg
+_LARGEST_ENTRY = 1e100  # beyond it products overflow
+_SYMMETRY = 1e-6  # files have few digits
+_KEYS = ("mass", "stiffness", "damping", "dofs")
+
+
+def read_npz(
+    file: str | os.PathLike[str], hub: Mapping[str, str] | None = None, **options: Any
+) -> NormalModes:
+    """A support from a NumPy file with the arrays mass, stiffness, dofs (n names) and perhaps damping.
+
+    Parameters
+    ----------
+    file : str or path
+    hub : mapping of str to str, optional
+        For each of x, y, z, alpha_x, alpha_y, alpha_z the name of the hub's coordinate, "-" before it where it
+        points the other way; when left out the names hub_x … hub_alpha_z are looked for.
+    **options
+        As for `support_from_matrices`.
+
+    Raises
+    ------
+    InputError
+        When the file is missing, damaged, too large or holds Python objects, or the matrices are not a support's.
+    """
+    path = _existing("file", file)
+    with _readable("file", path), zipfile.ZipFile(path) as archive:
+        unpacked = sum(entry.file_size for entry in archive.infolist())
+    if unpacked > _LARGEST:
+        raise InputError("file", str(path), f"must not hold more than {_LARGEST // 10**6} MB")
+    with _readable("file", path), np.load(path, allow_pickle=False) as archive:
+        for name in archive.files:
+            if name not in _KEYS:
+                raise InputError("file", str(path), unknown_name(name, _KEYS, "array"))
+        arrays = {name: archive[name] for name in archive.files}
+    for name in ("mass", "stiffness", "dofs"):
+        if name not in arrays:
+            raise InputError("file", str(path), f"has no array {name}")
+    names = _texts(path, np.atleast_1d(arrays["dofs"]))
+    return support_from_matrices(
+        arrays["mass"], arrays["stiffness"], arrays.get("damping"), dofs=names, hub=hub, **options
+    )
+
+
+def read_matrix_market(
+    mass: str | os.PathLike[str],
+    stiffness: str | os.PathLike[str],
+    damping: str | os.PathLike[str] | None = None,
+    *,
+    dofs: str | os.PathLike[str],
+    hub: Mapping[str, str] | None = None,
+    **options: Any,
+) -> NormalModes:
+    """A support from Matrix Market files, and a text file of the coordinates' names, one a line.
+
+    Parameters
+    ----------
+    mass, stiffness, damping, dofs : str or path
+    hub, **options
+        As for `read_npz`.
+
+    Raises
+    ------
+    InputError
+        When a file is missing, damaged or too large, or the matrices are not a support's.
+    """
+    given = {"mass": mass, "stiffness": stiffness, "damping": damping}
+    matrices = {name: _matrix_market(name, path) for name, path in given.items() if path is not None}
+    path = _existing("dofs", dofs)
+    names = read_text(path, "dofs", str(path), _LARGEST).split()
+    return support_from_matrices(
+        matrices["mass"], matrices["stiffness"], matrices.get("damping"), dofs=names, hub=hub, **options
+    )
+
+
+def support_from_matrices(
+    mass: Any,
+    stiffness: Any,
+    damping: Any = None,
+    *,
+    dofs: Sequence[str],
+    hub: Mapping[str, str] | None = None,
+    includes_rotor: bool | str = False,
+    shaft: str = "held",
+    modes: int | None = None,
+    damping_ratio: ArrayLike = 0.0,
+    rotor_mass: float = 0.0,
+    length_unit: float = 1.0,
+    mass_unit: float = 1.0,
+) -> NormalModes:
+    """A support from matrices, dense or sparse.
+
+    Parameters
+    ----------
+    mass, stiffness, damping : array or sparse array, shape (n, n)
+        Of the whole structure without the rotor, or with it.
+    dofs : sequence of str
+        The n coordinates' names.
+    hub : mapping of str to str, optional
+        As for `read_npz`.
+    includes_rotor, shaft : bool or str, str
+        How the mass holds the rotor's, as for `proprotor.support.normal_modes.NormalModes`.
+    modes : int, optional
+        How many of the lowest modes to keep, named mode_1 and so on; all coordinates when left out.
+    damping_ratio : float or array
+        Of the lowest modes, of critical, the last for all above, added to the damping matrix.
+    rotor_mass : float
+        kg at the hub while modes are looked for, as for `proprotor.support.beam_wing.beam_wing`.
+    length_unit, mass_unit : float
+        m and kg per unit of the file: a force is mass length/s², so that 0.0254 and 175.1268 are inches and lbf s²/in.
+
+    Raises
+    ------
+    InputError
+        When sizes differ, an entry is not finite, a matrix is not symmetric, a coordinate of the hub is missing, or a
+        rotor's mass is given beside the one that the mass includes.
+    """
+    if includes_rotor and np.any(rotor_mass):
+        raise InputError("rotor_mass", rotor_mass, "must not be given where the mass includes the rotor")
+    names = _names(dofs)
+    matrices = {"mass": mass, "stiffness": stiffness} | ({} if damping is None else {"damping": damping})
+    matrices = {name: _checked(name, matrix, len(names)) for name, matrix in matrices.items()}
+    for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
+        if not 1 / _LARGEST_UNIT <= unit <= _LARGEST_UNIT:
+            rule = f"must be above zero, from {1 / _LARGEST_UNIT:g} to {_LARGEST_UNIT:g}"
+            raise InputError(name, unit, rule)
+    # A translation counts lengths of the file's unit, a rotation radians: all entries then have one unit, of energy.
+    motion = _hub_motion(names, hub)
+    motion[:3] *= length_unit
+    matrices = {name: matrix * (mass_unit * length_unit**2) for name, matrix in matrices.items()}
+    return on_modes(
+        names,
+        hub=motion,
+        count=modes,
+        damping_ratio=damping_ratio,
+        rotor_mass=rotor_mass,
+        includes_rotor=includes_rotor,
+        shaft=shaft,
+        **matrices,
+    ).support
+
+
+def _texts(path: Path, dofs: Array) -> list[str]:
+    """The names of an array, which may hold numbers that are no characters."""
+    if dofs.dtype.kind == "U":
+        numbers = np.frombuffer(dofs.tobytes(), dtype=np.dtype("u4").newbyteorder(dofs.dtype.byteorder))
+        if (numbers > sys.maxunicode).any():
+            raise InputError("file", str(path), "is damaged: dofs holds what is no text")
+    return [str(name) for name in dofs]
+
+
+def _names(dofs: Sequence[str]) -> tuple[str, ...]:
+    names = tuple(dofs)
+    if len(set(names)) < len(names):
+        repeated = next(name for place, name in enumerate(names) if name in names[:place])
+        raise InputError("dofs", repeated, "must not name two coordinates")
+    return names
+
+
+def _hub_motion(names: Sequence[str], hub: Mapping[str, str] | None) -> Array:
+    """Φ (6, n): which coordinate, with which sign, is the motion of the hub along each axis."""
+    hub = {axis: f"hub_{axis}" for axis in HUB_AXES} if hub is None else hub
+    for axis in hub:
+        if axis not in HUB_AXES:
+            raise InputError(f"hub.{axis}", hub[axis], unknown_name(axis, HUB_AXES, "axis"))
+    motion = np.zeros((len(HUB_AXES), len(names)))
+    for row, axis in enumerate(HUB_AXES):
+        if axis not in hub:
+            raise InputError(f"hub.{axis}", None, "is missing: all six coordinates of the hub must be named")
+        written = str(hub[axis])
+        name = written.removeprefix("-")
+        if name not in names:
+            raise InputError(f"hub.{axis}", written, "is none of the coordinates of the matrices")
+        if motion[:, names.index(name)].any():
+            raise InputError(f"hub.{axis}", written, "must not be named for two axes")
+        motion[row, names.index(name)] = -1.0 if written.startswith("-") else 1.0
+    return motion
+
+
+def _checked(name: str, matrix: Any, n: int) -> Any:
+    """The matrix as float, when it is one of a structure with n coordinates."""
+    sparse = hasattr(matrix, "tocsc")
+    values = matrix.data if sparse else np.asarray(matrix)
+    if values.dtype.kind not in "fiu":
+        raise InputError(name, f"numbers of type {values.dtype}", "must be real numbers")
+    if matrix.shape != (n, n):
+        size = " x ".join(map(str, matrix.shape))
+        raise InputError(name, size, f"must be {n} x {n}, one row and column for each of the dofs")
+    if not np.isfinite(values).all():
+        raise InputError(name, None, "must be finite: it has an entry that is infinite or not a number")
+    with np.errstate(over="ignore"):  # of numbers wider than a float
+        matrix = matrix.tocsc().astype(float) if sparse else values.astype(float)
+    if not (np.abs(matrix.data if sparse else matrix) <= _LARGEST_ENTRY).all():
+        raise InputError(name, None, f"must not have an entry above {_LARGEST_ENTRY:g}")
+    _check_symmetry(name, matrix)
+    return (matrix + matrix.T) / 2
+
+
+def _check_symmetry(name: str, matrix: Any) -> None:
+    """Entries may differ from those across the diagonal by rounding, of what the diagonal says is large there."""
+    from scipy.sparse import diags_array
+
+    diagonal = np.sqrt(np.abs(matrix.diagonal()))
+    largest = float(np.sqrt(abs(matrix).max()))
+    scale = diags_array(1 / np.maximum(diagonal, 1e-6 * largest)) if largest else diags_array(diagonal)
+    difference = scale @ (matrix - matrix.T) @ scale
+    if abs(difference).max() > _SYMMETRY:
+        rule = f"must be symmetric: {(abs(difference) > _SYMMETRY).sum() // 2} entries differ from their opposite"
+        raise InputError(name, None, rule)
+
+
+def _matrix_market(field: str, path: str | os.PathLike[str]) -> Any:
+    path = _existing(field, path)
+    with _readable(field, path):
+        return read_matrix(path)
+
+
+def _existing(field: str, path: str | os.PathLike[str]) -> Path:
+    path = Path(path)
+    try:
+        if not path.is_file():
+            raise InputError(field, str(path), "no such file")
+        if path.stat().st_size > _LARGEST:
+            raise InputError(field, str(path), f"must not be larger than {_LARGEST // 10**6} MB")
+    except OSError as error:  # a name too long, a folder one may not enter
+        raise InputError(field, str(path), f"cannot be read ({error.strerror})") from None
+    return path
+
+
+@contextmanager
+def _readable(field: str, path: Path) -> Iterator[None]:
+    """Whatever a damaged file does to its reader, told in one line."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what an old file is warned of, it is read nevertheless
+            yield
+    except InputError:
+        raise
+    except OSError as error:
+        raise InputError(field, str(path), f"cannot be read ({error.strerror or error})") from None
+    except MatrixMarketError as error:
+        raise InputError(field, str(path), str(error)) from None
+    except Exception as error:  # a third-party reader may raise anything; the file is at fault
+        reason = "holds Python objects" if "pickle" in str(error) else "is damaged, or another kind of file"
+        raise InputError(field, str(path), reason) from None

@@ -1,0 +1,163 @@
+"""Matrix Market files: a heading, a line of sizes, and the entries.
+
+The reader is the package's own. SciPy's (`scipy.io.mmread` of 1.17) ends the process without a message at an array
+file that calls itself symmetric and is not square, and takes one that is cut short, with zeros for what is missing.
+"""
+
+from __future__ import annotations
+
+import io
+import warnings
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from proprotor.files.text import open_text
+from proprotor.typing import Array
+
+MOST_COORDINATES = 50_000  # of a file that leaves zeros out
+MOST_DENSE = 5_000  # of one that does not
+_LAYOUTS = ("coordinate", "array")
+_FIELDS = ("real", "double", "integer")
+_OTHER_FIELDS = ("complex", "pattern")
+_SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
+_LONGEST_LINE = 1024  # characters, as the format has it
+
+
+class MatrixMarketError(ValueError):
+    """What is wrong with a file, as the end of a sentence."""
+
+
+class _Heading(NamedTuple):
+    layout: str
+    symmetry: str
+    rows: int
+    columns: int
+    entries: int  # lines that follow
+
+
+def read_matrix(path: Path) -> Any:
+    """The matrix of a file with real or whole numbers.
+
+    Returns
+    -------
+    array or scipy.sparse.coo_array, shape (rows, columns)
+        Sparse where the file leaves zeros out. Entries given twice are to be added.
+
+    Raises
+    ------
+    MatrixMarketError
+        When the file is no Matrix Market file, is damaged or too large, or has no real numbers.
+    OSError
+        When the file cannot be read.
+    """
+    with open_text(path, encoding="latin-1") as file:  # any comment can be read
+        heading = _heading(file)
+        found = _numbers(file.read(), heading)
+    if heading.layout == "array":
+        return _full(found[:, 0], heading)
+    return _sparse(found, heading)
+
+
+def _heading(file: io.TextIOBase) -> _Heading:
+    """The heading and the sizes; the file is left at the first entry."""
+    words = file.readline(_LONGEST_LINE).lower().split()
+    if len(words) != 5 or words[:2] != ["%%matrixmarket", "matrix"]:
+        raise MatrixMarketError("is damaged, or another kind of file: it has no heading of Matrix Market")
+    layout, field, symmetry = words[2:]
+    if field in _OTHER_FIELDS:
+        raise MatrixMarketError(f"must hold real numbers, not {field}")
+    if layout not in _LAYOUTS or field not in _FIELDS or symmetry not in _SYMMETRIES:
+        raise MatrixMarketError("is damaged: its heading has unknown words")
+    count = 3 if layout == "coordinate" else 2
+    sizes = _sizes(file, count)
+    largest = MOST_COORDINATES if layout == "coordinate" else MOST_DENSE
+    rows, columns = sizes[:2]
+    if max(rows, columns) > largest:
+        raise MatrixMarketError(f"is too large: {rows} x {columns}")
+    if rows != columns and symmetry != "general":
+        raise MatrixMarketError(f"is damaged: it cannot be {symmetry} with {rows} x {columns} entries")
+    return _Heading(
+        layout, symmetry, rows, columns, sizes[2] if count == 3 else _given(symmetry, rows, columns)
+    )
+
+
+def _sizes(file: io.TextIOBase, count: int) -> list[int]:
+    for line in iter(lambda: file.readline(), ""):
+        if line.startswith("%") or not line.strip():
+            continue
+        words = line.split()
+        if len(words) == count and all(
+            word.isascii() and word.isdigit() and len(word) < 16 for word in words
+        ):
+            return [int(word) for word in words]
+        break
+    raise MatrixMarketError(f"is damaged: it must have {count} whole numbers after its heading, its sizes")
+
+
+def _given(symmetry: str, rows: int, columns: int) -> int:
+    """Numbers in an array file."""
+    if symmetry == "general":
+        return rows * columns
+    return rows * (rows - 1) // 2 if symmetry == "skew-symmetric" else rows * (rows + 1) // 2
+
+
+def _numbers(body: str, heading: _Heading) -> Array:
+    """The numbers of each line (entries, 1) or (entries, 3)."""
+    columns = 3 if heading.layout == "coordinate" else 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of a file without entries
+        try:
+            found = np.loadtxt(io.StringIO(body), comments="%", ndmin=2)
+        except (ValueError, OverflowError):
+            raise MatrixMarketError("is damaged: it has a line that is not its entries' numbers") from None
+    found = found if found.size else np.empty((0, columns))
+    if found.shape != (heading.entries, columns):
+        rule = f"is damaged: it must have {heading.entries} lines of {columns} numbers after its sizes"
+        raise MatrixMarketError(f"{rule}, not {found.shape[0]} of {found.shape[1]}")
+    return found
+
+
+def _full(numbers: Array, heading: _Heading) -> Array:
+    """Columns one after another; below the diagonal alone where what is above follows."""
+    n, m = heading.rows, heading.columns
+    if heading.symmetry == "general":
+        return numbers.reshape((m, n)).T
+    matrix = np.zeros((n, n))
+    columns, rows = np.triu_indices(n, k=_strict(heading))
+    matrix[rows, columns] = numbers
+    matrix[columns, rows] = _sign(heading) * numbers
+    return matrix
+
+
+def _sparse(found: Array, heading: _Heading) -> Any:
+    from scipy.sparse import coo_array
+
+    places, numbers = found[:, :2], found[:, 2]
+    sizes = (heading.rows, heading.columns)
+    if ((places < 1) | (places > sizes) | (places % 1 != 0)).any() or np.isnan(places).any():
+        raise MatrixMarketError(f"is damaged: it has an entry outside {sizes[0]} x {sizes[1]}")
+    rows, columns = places.astype(np.int64).T - 1
+    if heading.symmetry != "general":
+        side = rows - columns
+        if (side > 0).any() and (side < 0).any():
+            raise MatrixMarketError(
+                f"is damaged: it has entries on both sides, although it is {heading.symmetry}"
+            )
+        if _strict(heading) and (side == 0).any():
+            raise MatrixMarketError(
+                f"is damaged: it has entries on the diagonal, although it is {heading.symmetry}"
+            )
+        other = side != 0
+        rows, columns = np.append(rows, columns[other]), np.append(columns, rows[other])
+        numbers = np.append(numbers, _sign(heading) * numbers[other])
+    return coo_array((numbers, (rows, columns)), shape=sizes)
+
+
+def _strict(heading: _Heading) -> int:
+    return int(heading.symmetry == "skew-symmetric")
+
+
+def _sign(heading: _Heading) -> float:
+    return -1.0 if heading.symmetry == "skew-symmetric" else 1.0

@@ -1,0 +1,216 @@
+"""Lowest modes of a structure, and the structure as a support, whole or on a few of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError
+from proprotor.support.normal_modes import NormalModes
+from proprotor.typing import Array
+
+_MASSLESS = 1e-12  # of the largest 1/ω²: a motion that carries no mass has no mode
+_RIGID = 1e-9  # of the largest ω²: a motion that strains nothing
+_NONE = 1e-200  # N/m or N m/rad, whose inverse times a mass would overflow
+_DENSE = 1500  # coordinates up to which all modes are found at once
+_MOST_KEPT = 400  # coordinates of a support: a rotor's eigenvalues are found with all of them
+_TRANSLATION = np.diag([1.0] * 3 + [0.0] * 3)
+
+
+class StructuralModes(NamedTuple):
+    """Undamped modes: frequency (k,) in rad/s, rising, and shapes (n, k) with ΦᵀMΦ = 1."""
+
+    frequency: Array
+    shapes: Array
+
+
+class ModalSupport(NamedTuple):
+    """A support, the shapes (n, k) of its coordinates in those of the structure, and the structure's modes."""
+
+    support: NormalModes
+    shapes: Array
+    modes: StructuralModes
+
+
+def on_modes(
+    names: Sequence[str],
+    mass: Any,
+    stiffness: Any,
+    hub: Array,
+    *,
+    damping: Any = None,
+    count: int | None = None,
+    damping_ratio: ArrayLike | Callable[[Array], ArrayLike] = 0.0,
+    rotor_mass: float = 0.0,
+    includes_rotor: bool | str = False,
+    shaft: str = "held",
+    name_modes: Callable[[Array], Sequence[str]] | None = None,
+) -> ModalSupport:
+    """A structure as a support, on all its coordinates or on its lowest modes.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the n coordinates.
+    mass, stiffness, damping : array or sparse array, shape (n, n)
+    hub : array (6, n)
+    count : int, optional
+        How many of the lowest modes to keep; every coordinate when left out.
+    damping_ratio : float, array (j,) or callable
+        Structural damping added, of critical: for the lowest modes, the last value for all above them; or what gives
+        those of shapes (n, k).
+    rotor_mass : float
+        kg at the hub for the modes that are kept and damped. It does not stay in the mass: the rotor model brings
+        it. Modes without it would bend too little near the hub, and six would not be enough.
+    includes_rotor, shaft : bool or str, str
+        How the mass holds the rotor already, as for `proprotor.support.normal_modes.NormalModes`.
+    name_modes : callable, optional
+        The names of shapes (n, k); mode_1 and so on when left out.
+
+    Raises
+    ------
+    InputError
+        When there are fewer modes than asked for, coordinates without mass are kept, or too many coordinates.
+    """
+    if count is None and len(names) > _MOST_KEPT:
+        raise InputError("modes", None, f"must be given with more than {_MOST_KEPT} coordinates")
+    if not np.isfinite(rotor_mass) or rotor_mass < 0:
+        raise InputError("rotor_mass", rotor_mass, "must be finite and not negative")
+    loaded = _with_mass_at_hub(mass, hub, rotor_mass)
+    found = lowest_modes(loaded, stiffness, count)
+    if count is None and len(found.frequency) < len(names):
+        raise InputError("modes", None, "must be given: there are coordinates without mass")
+    given = damping_ratio(found.shapes) if callable(damping_ratio) else damping_ratio
+    ratio = per_mode(given, len(found.frequency))
+    if count is None:
+        shapes = np.eye(len(names))
+        structural = modal_damping(_dense(loaded), found, ratio)
+    else:
+        shapes = found.shapes
+        structural = np.diag(2 * ratio * found.frequency)
+        names = name_modes(shapes) if name_modes else [f"mode_{k}" for k in range(1, count + 1)]
+    matrices = {"mass": mass, "stiffness": stiffness, "damping": damping}
+    reduced = {name: _projected(matrix, shapes) for name, matrix in matrices.items() if matrix is not None}
+    reduced["damping"] = reduced.get("damping", 0.0) + _symmetric(structural)
+    support = NormalModes(
+        names=names, **reduced, hub=hub @ shapes, includes_rotor=includes_rotor, shaft=shaft
+    )
+    return ModalSupport(support, shapes, found)
+
+
+def lowest_modes(mass: Any, stiffness: Any, count: int | None = None) -> StructuralModes:
+    """The lowest modes of K φ = ω² M φ.
+
+    Parameters
+    ----------
+    mass, stiffness : array or sparse array, shape (n, n)
+        Symmetric, without negative directions, at least one of them without a massless or free one.
+    count : int, optional
+        How many modes; all that carry mass when left out.
+
+    Raises
+    ------
+    InputError
+        When both are singular or one is negative in some direction, or there are fewer modes than asked for.
+    """
+    if count is not None and mass.shape[0] > max(_DENSE, 3 * count):
+        return _lowest_of_many(mass, stiffness, count)
+    return _of_few(_dense(mass), _dense(stiffness), count)
+
+
+def modal_damping(mass: Array, modes: StructuralModes, damping_ratio: ArrayLike) -> Array:
+    """Viscous damping (n, n) that gives each mode of a mass its ratio (k,): C = M Φ (2ζω) Φᵀ M."""
+    forces = mass @ modes.shapes
+    damping: Array = (forces * (2 * np.asarray(damping_ratio) * modes.frequency)) @ forces.T
+    return damping
+
+
+def per_mode(damping_ratio: ArrayLike, count: int) -> Array:
+    """One ratio for each of `count` modes; the last given value is repeated.
+
+    Raises
+    ------
+    InputError
+        When a ratio is negative, 1 or more, or not finite.
+    """
+    given = np.atleast_1d(np.asarray(damping_ratio, dtype=float))
+    if given.ndim != 1 or not len(given) or not (np.isfinite(given) & (given >= 0) & (given < 1)).all():
+        raise InputError("damping_ratio", damping_ratio, "must be at least 0 and below 1 for each mode")
+    return given[np.minimum(np.arange(count), len(given) - 1)]
+
+
+def _of_few(mass: Array, stiffness: Array, count: int | None) -> StructuralModes:
+    from scipy.linalg import LinAlgError, eigh  # here, because scipy is slow to import
+
+    if not mass.any():
+        raise InputError("mass", None, "must not be zero")
+    diagonal = np.diagonal(stiffness)
+    scale = 1 / np.sqrt(np.where(diagonal > _NONE, diagonal, 1.0))
+    mass, stiffness = (matrix * np.outer(scale, scale) for matrix in (mass, stiffness))
+    try:
+        # Turned over, M φ = (1/ω²) K φ: the lowest modes come out most accurate, and massless motions as zeros.
+        compliance, shapes = eigh(mass, stiffness)
+        order = np.argsort(-compliance)
+        carrying = compliance[order] > _MASSLESS * np.abs(compliance).max()
+        if compliance.min() < -_MASSLESS * np.abs(compliance).max():
+            raise InputError("mass", None, "must not be negative in any direction")
+        order = order[carrying]
+        square, shapes = 1 / compliance[order], shapes[:, order] / np.sqrt(compliance[order])
+    except LinAlgError:  # free to move somewhere
+        try:
+            square, shapes = eigh(stiffness, mass)
+        except LinAlgError:
+            rule = "must hold the structure, or else the mass must be positive definite"
+            raise InputError("stiffness", None, rule) from None
+        if square[0] < -_RIGID * square[-1]:
+            raise InputError("stiffness", None, "must not be negative in any direction") from None
+        square = np.where(square < _RIGID * square[-1], 0.0, square)
+    count = len(square) if count is None else count
+    if not 1 <= count <= len(square):
+        raise InputError(
+            "modes", count, f"must be from 1 to {len(square)}, the number of modes that carry mass"
+        )
+    return StructuralModes(np.sqrt(square[:count]), (scale[:, None] * shapes)[:, :count])
+
+
+def _lowest_of_many(mass: Any, stiffness: Any, count: int) -> StructuralModes:
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import ArpackError, eigsh
+
+    start = np.random.default_rng(0).standard_normal(mass.shape[0])  # the same modes at each call
+    try:
+        square, shapes = eigsh(csc_array(stiffness), k=count, M=csc_array(mass), sigma=0.0, v0=start)
+    except (ArpackError, RuntimeError):  # a factor that is exactly singular
+        raise InputError("stiffness", None, "must hold the structure") from None
+    order = np.argsort(square)
+    square, shapes = square[order], shapes[:, order]
+    generalized = np.einsum("ij,ij->j", shapes, mass @ shapes)
+    if not (square > 0).all() or not (generalized > 0).all():
+        raise InputError("stiffness", None, "must hold the structure, with no negative direction")
+    return StructuralModes(np.sqrt(square), shapes / np.sqrt(generalized))
+
+
+def _with_mass_at_hub(mass: Any, hub: Array, rotor_mass: float) -> Any:
+    if rotor_mass == 0:
+        return mass
+    if not hasattr(mass, "toarray"):
+        return mass + rotor_mass * hub.T @ _TRANSLATION @ hub
+    from scipy.sparse import csc_array
+
+    moving = csc_array(hub[:3])
+    return csc_array(mass) + rotor_mass * (moving.T @ moving)
+
+
+def _projected(matrix: Any, shapes: Array) -> Array:
+    return _symmetric(shapes.T @ (matrix @ shapes))
+
+
+def _symmetric(matrix: Array) -> Array:
+    return (matrix + matrix.T) / 2  # products leave rounding
+
+
+def _dense(matrix: Any) -> Array:
+    return matrix.toarray() if hasattr(matrix, "toarray") else np.asarray(matrix, dtype=float)

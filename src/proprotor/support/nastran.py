@@ -1,0 +1,194 @@
+"""A support from a Nastran normal-modes run: eigenvectors at the hub and generalised masses of an .op2 file.
+
+pyNastran reads the file; it is the optional extra `nastran`.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.needs import need
+from proprotor.support.modal_reduction import per_mode
+from proprotor.support.normal_modes import HUB_AXES, NormalModes
+from proprotor.typing import Array
+
+COMPONENTS = ("T1", "T2", "T3", "R1", "R2", "R3")
+# Nastran's usual aircraft axes, X aft, Y to the right, Z up, in the rotor's: I up, J outboard, K forward.
+AIRCRAFT_AXES = {"x": "T3", "y": "T2", "z": "-T1", "alpha_x": "R3", "alpha_y": "R2", "alpha_z": "-R1"}
+_LARGEST = 2_000_000_000  # bytes
+
+
+def nastran_modes(
+    file: str | os.PathLike[str],
+    grid: int,
+    *,
+    includes_rotor: bool | str,
+    shaft: str = "held",
+    damping_ratio: ArrayLike = 0.0,
+    modes: int | None = None,
+    subcase: int | None = None,
+    hub: Mapping[str, str] | None = None,
+    length_unit: float = 1.0,
+    mass_unit: float = 1.0,
+    names: Sequence[str] | None = None,
+) -> NormalModes:
+    """The real modes of a Nastran run as a support.
+
+    Parameters
+    ----------
+    file : str or path
+        An .op2 file with eigenvectors (OUGV1, DISPLACEMENT(PLOT) = ALL or a set with the grid) and the eigenvalue
+        table LAMA.
+    grid : int
+        The grid point at the hub; its motion is read in its own output coordinate system.
+    includes_rotor, shaft : bool or str, str
+        How the run had the rotor on, as for `proprotor.support.normal_modes.NormalModes`: "mass only" for a point mass at the hub's
+        grid point (CONM2 without inertias), "rigid" with the rotor's inertias, "gimballed" with a gimbal between.
+    damping_ratio : float or array
+        Of critical for the lowest modes, the last for all above them.
+    modes : int, optional
+        How many of the lowest modes, all when left out.
+    subcase : int, optional
+        Needed when the file has several.
+    hub : mapping of str to str, optional
+        For each of x, y, z, alpha_x, alpha_y, alpha_z one of T1 … R3, "-" before it where it points the other way;
+        `AIRCRAFT_AXES` when left out.
+    length_unit, mass_unit : float
+        m and kg per unit of the run, such as 0.0254 and 175.1268 for inches and lbf s²/in.
+    names : sequence of str, optional
+        Of the modes; mode_1 and so on when left out.
+
+    Raises
+    ------
+    InputError
+        When pyNastran is not installed, the file is missing or damaged, or has no such grid, subcase or tables.
+    """
+    results = _read(Path(file))
+    vectors = _one_subcase(results.eigenvectors, subcase, file)
+    places = np.flatnonzero(np.asarray(vectors.node_gridtype)[:, 0] == grid)
+    if not len(places):
+        raise InputError("grid", grid, "has no eigenvectors in the file: the hub's grid point is missing")
+    table = _table(results.eigenvalues, vectors, file)
+    available = len(vectors.modes)
+    count = available if modes is None else modes
+    if not 1 <= count <= available:
+        raise InputError("modes", modes, f"must be from 1 to {available}, the modes of the file")
+    rows = [list(table.mode).index(mode) for mode in vectors.modes[:count]]
+    frequency = np.asarray(table.radians, dtype=float)[rows]
+    generalized_mass = np.asarray(table.generalized_mass, dtype=float)[rows]
+    motion = _turned(np.asarray(vectors.data[:count, places[0], :], dtype=float).T, hub)
+    if not (
+        np.isfinite(motion).all() and np.isfinite(generalized_mass).all() and (generalized_mass > 0).all()
+    ):
+        raise InputError("file", str(file), "must hold finite eigenvectors and generalised masses above zero")
+    motion[:3] *= (
+        length_unit  # the coordinate of a mode is a number: a translation counts lengths of the run's unit
+    )
+    return NormalModes.from_frequencies(
+        names=tuple(names) if names else [f"mode_{place}" for place in range(1, count + 1)],
+        generalized_mass=generalized_mass * mass_unit * length_unit**2,
+        frequency=frequency,
+        damping_ratio=per_mode(damping_ratio, count),
+        hub=motion,
+        includes_rotor=includes_rotor,
+        shaft=shaft,
+    )
+
+
+def _read(path: Path) -> Any:
+    if not path.is_file():
+        raise InputError("file", str(path), "no such file")
+    if path.stat().st_size > _LARGEST:
+        raise InputError("file", str(path), f"must not be larger than {_LARGEST // 10**9} GB")
+    with warnings.catch_warnings():  # pyNastran uses names that NumPy has deprecated
+        warnings.simplefilter("ignore")
+        with _names_of_older_numpy():
+            need("pyNastran.op2.op2", "file", "Nastran's results", "nastran")
+            from pyNastran.op2.op2 import OP2
+
+            results = OP2(debug=False, log=_Silent())
+            try:
+                with redirect_stdout(StringIO()):
+                    results.read_op2(str(path), build_dataframe=False)
+            except Exception as error:  # a reader of damaged binary files fails in every way there is
+                rule = f"is damaged, or no .op2 file with results ({type(error).__name__})"
+                raise InputError("file", str(path), rule) from None
+    return results
+
+
+class _Silent:
+    """A log that keeps what a reader has to say to itself."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return lambda *args, **kwargs: None
+
+
+@contextmanager
+def _names_of_older_numpy() -> Iterator[None]:
+    """numpy.in1d, which NumPy 2.4 dropped, while pyNastran 1.3 is at work."""
+    dropped = "in1d"
+    if hasattr(np, dropped):
+        yield
+        return
+    setattr(np, dropped, lambda tested, among, **options: np.isin(np.ravel(tested), among, **options))
+    try:
+        yield
+    finally:
+        delattr(np, dropped)
+
+
+def _one_subcase(eigenvectors: Mapping[Any, Any], subcase: int | None, path: Any) -> Any:
+    if not eigenvectors:
+        raise InputError("file", str(path), "has no real eigenvectors: ask Nastran for DISPLACEMENT(PLOT)")
+    real = {key: vectors for key, vectors in eigenvectors.items() if hasattr(vectors, "eigns")}
+    if not real:
+        raise InputError(
+            "file", str(path), "has complex eigenvectors alone: ask Nastran for real ones (SOL 103)"
+        )
+    numbers = {getattr(vectors, "isubcase", key): vectors for key, vectors in real.items()}
+    if subcase is None:
+        if len(numbers) > 1:
+            raise InputError("subcase", None, f"must be given: the file has {', '.join(map(str, numbers))}")
+        return next(iter(numbers.values()))
+    if subcase not in numbers:
+        raise InputError("subcase", subcase, f"is not in the file, which has {', '.join(map(str, numbers))}")
+    return numbers[subcase]
+
+
+def _table(tables: Mapping[Any, Any], vectors: Any, path: Any) -> Any:
+    """The eigenvalue table that belongs to the eigenvectors: the one with their eigenvalues."""
+    for table in tables.values():
+        known = dict(zip(table.mode, table.eigenvalues, strict=True))
+        given = zip(vectors.modes, vectors.eigns, strict=True)
+        if all(np.isclose(known.get(mode, np.nan), value, rtol=1e-4, atol=1e-3) for mode, value in given):
+            return table
+    raise InputError("file", str(path), "has no eigenvalue table (LAMA) for its eigenvectors")
+
+
+def _turned(motion: Array, hub: Mapping[str, str] | None) -> Array:
+    """Rows x … αz from rows T1 … R3."""
+    hub = AIRCRAFT_AXES if hub is None else hub
+    rows = []
+    for axis in hub:
+        if axis not in HUB_AXES:
+            raise InputError(f"hub.{axis}", hub[axis], unknown_name(axis, HUB_AXES, "axis"))
+    for axis in HUB_AXES:
+        if axis not in hub:
+            raise InputError(f"hub.{axis}", None, "is missing: all six motions of the hub must be named")
+        name = str(hub[axis]).removeprefix("-")
+        if name not in COMPONENTS:
+            raise InputError(f"hub.{axis}", hub[axis], unknown_name(name, COMPONENTS, "component"))
+        rows.append(motion[COMPONENTS.index(name)] * (-1 if str(hub[axis]).startswith("-") else 1))
+    return np.array(rows)

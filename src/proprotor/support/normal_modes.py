@@ -1,0 +1,241 @@
+"""What carries the rotor: coordinates of a support and their motion at the hub, a two-axis pivot, or nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from proprotor.datum import is_choice, told_choices
+from proprotor.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from proprotor.typing import Array
+
+HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
+INCLUDES_ROTOR = ("gimballed", "rigid", "mass only", True, False)
+SHAFT = ("held", "free")
+
+
+@dataclass(frozen=True, eq=False)
+class NormalModes:
+    """Generalised coordinates p of a support: M p̈ + C ṗ + K p = Φᵀ f, where Φ p is the motion of the hub.
+
+    Parameters
+    ----------
+    names : sequence of str
+        One name per coordinate, all different and none of them that of a coordinate or mode of a rotor.
+    mass, damping, stiffness : array_like, shape (..., n, n)
+        Symmetric, SI (kg or kg m² and so on, as the coordinate is a length in m or an angle in rad).
+        The mass must have no negative eigenvalue. Leading axes are many supports at once.
+    hub : array_like, shape (..., 6, n)
+        Φ: displacement (x, y, z) and rotation (αx, αy, αz) of the hub per unit of each coordinate, in the
+        inertial axes I, J, K of the rotor, K along the shaft.
+    includes_rotor : "gimballed", "rigid", "mass only", True or False
+        How the rotor was held when `mass` was measured or computed with the rotor on, its blades locked or stiff: free
+        to tilt on its gimbal; as one body with its shaft; a point mass at the hub. Its share, which follows from
+        that, is taken off, lest it count twice. False: no rotor was on. True: "gimballed" for a rotor
+        with a gimbal, "rigid" for one without.
+    shaft : "held" or "free"
+        Whether the rotor could turn about its shaft then; a point mass does not ask.
+    shapes : array, shape (..., m, n), optional
+        The coordinates as motions of the structure that they stand for, where designs differ in them: what tells the
+        coordinates of one design in those of the next.
+    warning : array of str, shape (...), optional
+        What makes a design doubtful, a text for each of many.
+
+    Raises
+    ------
+    InputError
+        When sizes differ, a name is taken, or a matrix is not finite, not symmetric, or (mass) negative, and for an
+        unknown word.
+    """
+
+    names: Sequence[str]
+    mass: Array  # these four are kept as arrays, whatever they were given as
+    damping: Array
+    stiffness: Array
+    hub: Array
+    includes_rotor: bool | str
+    shaft: str = "held"
+    shapes: Array | None = None
+    warning: Array | None = None
+
+    symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
+
+    def __post_init__(self) -> None:
+        names = tuple(self.names)
+        if len(set(names)) < len(names) or (not names and np.size(self.mass)):
+            raise InputError("names", ", ".join(names), "must name each mode, all differently")
+        for field, choices in (("includes_rotor", INCLUDES_ROTOR), ("shaft", SHAFT)):
+            if not is_choice(getattr(self, field), choices):
+                raise InputError(field, getattr(self, field), f"must be {told_choices(choices)}")
+        from proprotor.stability.mode_names import (
+            check_support_names,  # here, because it knows the rotor's coordinates
+        )
+
+        check_support_names("names", names)
+        n = len(names)
+        object.__setattr__(self, "names", names)
+        object.__setattr__(self, "hub", _finite("hub", self.hub, (6, n)))
+        for field in ("mass", "damping", "stiffness"):
+            matrix = _finite(field, getattr(self, field), (n, n))
+            turned = np.swapaxes(matrix, -1, -2)
+            rounding = 1e-12 * np.abs(matrix).max(axis=(-2, -1), keepdims=True, initial=0)
+            if field in self.symmetric and not np.allclose(matrix, turned, rtol=1e-9, atol=rounding):
+                raise InputError(field, matrix.tolist(), "must be symmetric")
+            object.__setattr__(self, field, matrix)
+        if not _nowhere_negative(np.real(self.mass)):
+            raise InputError("mass", self.mass.tolist(), "must not be negative in any direction")
+
+    def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
+        """The support at airspeeds and densities: itself, for its matrices depend on neither.
+
+        Parameters
+        ----------
+        airspeed : float or array (...)
+            m/s.
+        density : float or array (...)
+            kg/m³.
+
+        Returns
+        -------
+        NormalModes
+        """
+        return self
+
+    @classmethod
+    def from_frequencies(
+        cls,
+        names: Sequence[str],
+        generalized_mass: ArrayLike,
+        frequency: ArrayLike,
+        damping_ratio: ArrayLike,
+        hub: ArrayLike,
+        includes_rotor: bool | str,
+        shaft: str = "held",
+    ) -> NormalModes:
+        """Uncoupled modes: stiffness m ω², damping 2 ζ ω m, with the whole generalised mass m.
+
+        Parameters
+        ----------
+        names : sequence of str
+            As for `NormalModes`.
+        generalized_mass, frequency, damping_ratio : array_like, shape (..., n)
+            m in kg or kg m², ω in rad/s, ζ as a fraction of critical.
+        hub : array_like, shape (..., 6, n)
+            As for `NormalModes`, SI.
+        includes_rotor, shaft : bool or str, str
+            As for `NormalModes`.
+
+        Returns
+        -------
+        NormalModes
+
+        Raises
+        ------
+        InputError
+            When sizes differ, or a value is not finite or negative.
+        """
+        n = (len(names),)
+        m = _finite("generalized_mass", generalized_mass, n)
+        omega = _finite("frequency", frequency, n)
+        if np.any(np.real(omega) < 0):
+            raise InputError("frequency", np.min(np.real(omega)), "must not be negative")
+        zeta = _finite("damping_ratio", damping_ratio, n)
+        return cls(
+            names=names,
+            mass=_diagonal(m),
+            damping=_diagonal(2 * zeta * omega * m),
+            stiffness=_diagonal(m * omega**2),
+            hub=np.asarray(hub),
+            includes_rotor=includes_rotor,
+            shaft=shaft,
+        )
+
+
+def two_axis_pivot(
+    distance: float,
+    inertia: ArrayLike,
+    stiffness: ArrayLike,
+    damping: ArrayLike = (0.0, 0.0),
+    *,
+    includes_rotor: bool | str,
+    shaft: str = "held",
+) -> NormalModes:
+    """A rigid shaft that pitches and yaws about a point behind the hub, as a propeller in its nacelle does.
+
+    Pitch raises the hub along I and yaw moves it outboard along J, each by `distance` per radian.
+
+    Parameters
+    ----------
+    distance : float or array (...)
+        From the pivot forward to the hub, m.
+    inertia, stiffness, damping : array_like, shape (..., 2)
+        Of pitch and yaw about the pivot: kg m², N m/rad, N m s/rad (viscous; for hysteretic damping see
+        `proprotor.model.structural_damping`).
+    includes_rotor, shaft : bool or str, str
+        How the inertias include the rotor's, its mass at the hub included: as for `NormalModes`.
+
+    Returns
+    -------
+    NormalModes
+        With the coordinates pitch and yaw, rad.
+
+    Raises
+    ------
+    InputError
+        When a value is not finite or an inertia negative.
+    """
+    shape = (*np.shape(distance), len(HUB_AXES), 2)
+    hub = np.zeros(shape, dtype=np.result_type(distance, float))
+    hub[..., HUB_AXES.index("x"), 0], hub[..., HUB_AXES.index("alpha_y"), 0] = distance, 1.0
+    hub[..., HUB_AXES.index("y"), 1], hub[..., HUB_AXES.index("alpha_x"), 1] = distance, -1.0
+    return NormalModes(
+        names=("pitch", "yaw"),
+        mass=_diagonal(_finite("inertia", inertia, (2,))),
+        damping=_diagonal(_finite("damping", damping, (2,))),
+        stiffness=_diagonal(_finite("stiffness", stiffness, (2,))),
+        hub=hub,
+        includes_rotor=includes_rotor,
+        shaft=shaft,
+    )
+
+
+def rigid_support() -> NormalModes:
+    """A support that does not move: no coordinate, the hub fixed.
+
+    Returns
+    -------
+    NormalModes
+    """
+    none = np.zeros((0, 0))
+    return NormalModes((), none, none, none, hub=np.zeros((len(HUB_AXES), 0)), includes_rotor=False)
+
+
+def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
+    array = np.array(value, dtype=complex if np.iscomplexobj(value) else float)
+    if array.shape[-len(shape) :] != shape:
+        raise InputError(field, f"array of shape {array.shape}", f"must have the shape {shape}")
+    if not np.isfinite(array).all():
+        raise InputError(field, array.tolist(), "must be finite")
+    array.flags.writeable = False
+    return array
+
+
+def _nowhere_negative(matrix: Array) -> bool:
+    # Scaled to a unit diagonal, so that slug and slug·ft² in one matrix do not set the tolerance.
+    diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
+    if (diagonal < 0).any():
+        return False
+    scale = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    scaled = matrix / (scale[..., :, None] * scale[..., None, :])
+    return bool((np.linalg.eigvalsh(scaled) > -1e-9).all())
+
+
+def _diagonal(values: Array) -> Array:
+    return values[..., None] * np.eye(values.shape[-1])

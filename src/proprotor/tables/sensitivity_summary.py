@@ -1,0 +1,41 @@
+"""Sensitivities in the units people read, and those that the deck is written in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from proprotor.datum import deck_unit
+from proprotor.units import KNOT
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+
+# Of each quantity: the unit people read, and how many SI units it is.
+READ_IN = {"flutter_speed": ("kt", KNOT), "damping": ("% of critical", 0.01)}
+
+
+def sensitivity_records(case: Case, found: xarray.Dataset, of: str) -> list[dict[str, Any]]:
+    """Derivatives input by input, the largest effect of 1 % first."""
+    read_in, factor = READ_IN[of]
+    numbers = case.given
+    records = []
+    for place, path in enumerate(found.input.values.tolist()):
+        unit, size = deck_unit(numbers[path])
+        relative = float(found.relative.values[place]) / factor
+        records.append(
+            {
+                "input": path,
+                "value": numbers[path].written,
+                "unit": unit,
+                f"derivative ({read_in} per unit)": float(found.derivative.values[place]) * size / factor,
+                f"for +1 % ({read_in})": relative / 100 if found.value.values[place] else None,
+                "SI unit": numbers[path].unit,
+                "derivative (SI)": float(found.derivative.values[place]),
+                "exact": bool(found.exact.values[place]),
+                "status": numbers[path].status,
+                "warning": found.warning.item(),
+            }
+        )
+    return sorted(records, key=lambda record: -abs(record[f"for +1 % ({read_in})"] or 0.0))

@@ -1,0 +1,67 @@
+"""A study in a few numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.model.doubts import reasons_for_doubt
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def study_summary(results: xarray.Dataset) -> dict[str, Any]:
+    """What a study found, as plain data.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of `proprotor.study.study.study`.
+
+    Returns
+    -------
+    dict
+        title; points, how many failed and why, the most frequent reason first, and how many are doubtful and why;
+        reservations; of flutter speeds how many were found and are doubtful, the lowest, median and highest in m/s;
+        without them how many points are unstable, and the lowest damping.
+    """
+    reasons = Counter(str(text) for text in results.reason.values.ravel() if text)
+    summary: dict[str, Any] = {
+        "title": results.title,
+        "points": int(results.reason.size),
+        "failed": sum(reasons.values()),
+        "reasons": dict(reasons.most_common()),
+        "points doubtful": int((results.warning != "").sum()),
+        "doubts of points": _counted(results.warning.values),
+        "reservations": results.attrs["reservations"],
+    }
+    if "flutter_speed" in results:
+        return summary | _of_flutter_speeds(results)
+    if summary["failed"] == summary["points"]:
+        return summary
+    return summary | {
+        "points unstable": int((results.growth_rate > 0).sum()),
+        "lowest damping (% of critical)": 100 * float(results.damping_ratio.min()),
+    }
+
+
+def _counted(warnings: np.ndarray) -> dict[str, int]:
+    return {text: len(places) for text, places in reasons_for_doubt(warnings.ravel().tolist()).items()}
+
+
+def _of_flutter_speeds(results: xarray.Dataset) -> dict[str, Any]:
+    found = np.asarray(results.flutter_speed.values, dtype=float).ravel()
+    notes = Counter(str(text) for text in results.flutter_note.values.ravel() if text)
+    speeds = np.sort(found[np.isfinite(found)])
+    return {
+        "flutter speeds found": len(speeds),
+        "flutter speeds doubtful": len([text for text in results.flutter_warning.values.ravel() if text]),
+        "doubts": _counted(results.flutter_warning.values),
+        "lowest flutter speed (m/s)": float(speeds[0]) if len(speeds) else None,
+        "median flutter speed (m/s)": float(np.median(speeds)) if len(speeds) else None,
+        "highest flutter speed (m/s)": float(speeds[-1]) if len(speeds) else None,
+        "notes": dict(notes.most_common()),
+    }

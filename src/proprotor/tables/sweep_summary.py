@@ -1,0 +1,126 @@
+"""What a sweep says at a glance: frequency, damping, where modes are unstable, which move the support."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from proprotor_equations import FIXED_COORDINATES
+
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+# Of the way that both roots go, and of a root: a name that passes no farther goes on.
+_BRIDGED, _NEARLY = 2.0, 0.02
+
+
+class UnstableRange(NamedTuple):
+    """Airspeeds between which a root is unstable.
+
+    Attributes
+    ----------
+    mode : str
+        What moves in it at the first airspeed at which it is.
+    start, stop : float
+        m/s, by linear interpolation of Re s between neighbouring points of the sweep.
+    open_start, open_stop : bool
+        Whether the root is unstable at the first, or the last, point already, so that `start` or `stop`
+        is the end of the sweep and not a boundary.
+    branch : str
+        The exact root.
+    """
+
+    mode: str
+    start: float
+    stop: float
+    open_start: bool
+    open_stop: bool
+    branch: str
+
+
+def damped_frequency(sweep: xarray.Dataset) -> Array:
+    """|Im s| (airspeed, mode) in rad/s, NaN at failed points."""
+    eigenvalue = sweep.eigenvalue.values
+    return np.where(np.isnan(eigenvalue), np.nan, np.abs(eigenvalue.imag))
+
+
+def growth_rate(sweep: xarray.Dataset) -> Array:
+    """Re s (airspeed, mode) in rad/s, exactly zero where it is neutral: zero within the error of the root."""
+    real = sweep.eigenvalue.values.real
+    return np.where(np.abs(real) <= sweep.eigenvalue_error.values, 0.0, real)
+
+
+def damping_percent(sweep: xarray.Dataset) -> Array:
+    """Damping ratio -Re s/|s| (airspeed, mode) in percent of critical, negative where a mode is unstable."""
+    return np.where(growth_rate(sweep) == 0, 0.0, 100 * sweep.damping_ratio.values)
+
+
+def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
+    """Ranges of airspeed in which a root is unstable, by mode in the order of the sweep, then by airspeed.
+
+    Roots are followed, whatever their names: where a name passes from a stable root to an unstable one nothing crosses.
+    Boundaries are interpolated, so they are as good as the sweep is fine; failed points are passed over.
+    """
+    airspeed, names = sweep.airspeed.values, sweep.mode.values.tolist()
+    growth, branch = growth_rate(sweep), sweep.branch.values
+    ranges = []
+    for label in dict.fromkeys(branch[growth > 0].tolist()):
+        points, places = np.nonzero((branch == label) & np.isfinite(growth))
+        for first, start, stop, before, beyond in _ranges(airspeed[points], growth[points, places]):
+            ranges.append(UnstableRange(names[places[first]], start, stop, before, beyond, label))
+    return sorted(ranges, key=lambda found: (names.index(found.mode), found.start))
+
+
+def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[int, float, float, bool, bool]]:
+    """The first unstable point of each range, where it starts and stops, and whether these are ends of the sweep."""
+    unstable = np.concatenate([[False], growth > 0, [False]])
+    starts, ends = (
+        np.flatnonzero(~unstable[:-1] & unstable[1:]),
+        np.flatnonzero(unstable[:-1] & ~unstable[1:]),
+    )
+    for first, after in zip(starts.tolist(), ends.tolist(), strict=True):
+        open_start, open_stop = first == 0, after == len(growth)
+        start = airspeed[0] if open_start else _zero(airspeed, growth, first - 1)
+        stop = airspeed[-1] if open_stop else _zero(airspeed, growth, after - 1)
+        yield first, float(start), float(stop), open_start, open_stop
+
+
+def _zero(airspeed: Array, growth: Array, i: int) -> float:
+    """Where the line through points i and i + 1 is zero."""
+    return float(airspeed[i] - growth[i] * (airspeed[i + 1] - airspeed[i]) / (growth[i + 1] - growth[i]))
+
+
+def leaps(sweep: xarray.Dataset) -> Array:
+    """Where a name passes to a root that lies elsewhere (points - 1, mode): a line drawn across would be no root.
+
+    Where two roots veer and exchange their motions they are near each other: from one point to the next, the name goes
+    no farther than twice as far as both roots do, or by 2 % of the root. Then the line of the name goes on.
+    """
+    values, branch = sweep.eigenvalue.values, sweep.branch.values
+    both = np.isfinite(values[:-1]) & np.isfinite(values[1:])
+    found = np.zeros(both.shape, dtype=bool)
+    for point, mode in np.argwhere(both & (branch[:-1] != branch[1:])):
+        here, there = values[point], values[point + 1]
+        ways = [
+            there[branch[point + 1] == branch[point, mode]] - here[mode],
+            there[mode] - here[branch[point] == branch[point + 1, mode]],
+        ]
+        moved = sum(float(np.abs(way).max(initial=0)) for way in ways)
+        reach = max(_BRIDGED * moved, _NEARLY * float(np.abs(here[mode])))
+        found[point, mode] = np.abs(there[mode] - here[mode]) > reach
+    return found
+
+
+def support_coordinates(sweep: xarray.Dataset) -> list[str]:
+    """Coordinates that are not the rotor's."""
+    return [name for name in sweep.dof.values.tolist() if name not in FIXED_COORDINATES]
+
+
+def support_share(sweep: xarray.Dataset) -> Array:
+    """How much each mode (mode,) moves the support: its largest participation along the sweep, 0 to 1."""
+    share = sweep.participation.sel(dof=support_coordinates(sweep)).sum("dof").values
+    largest: Array = np.nanmax(share, axis=0, initial=0)
+    return largest

@@ -1,0 +1,87 @@
+"""What the command line prints on a sweep and on a case."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.text import Text
+
+from proprotor.errors import printable
+from proprotor.model.doubts import MARK
+from proprotor.model.provenance import doubtful_inputs, reservations
+from proprotor.model.stamp import in_words, options_told
+from proprotor.tables.tables import CONVENTION, SweepTable
+
+if TYPE_CHECKING:
+    from proprotor.case import Case
+
+
+def heading(case: Case) -> str:
+    """The case and its rotor speed."""
+    return f"{case.title or case.name}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
+
+
+def print_sweep(case: Case, table: SweepTable, all_modes: bool = False) -> None:
+    """Print what was analysed, what it rests on, the table and where modes are unstable.
+
+    Parameters
+    ----------
+    case : Case
+    table : SweepTable
+    all_modes : bool
+        Every mode, in as many tables as it takes, or those of interest only.
+    """
+    console = PlainConsole()
+    warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
+    for line in (
+        heading(case),
+        f"Model: {in_words(options_told(table.sweep.attrs))}.",
+        CONVENTION,
+        *reservations(case),
+        *warnings,
+        "",
+    ):
+        console.print(line)
+    for row in table.lines(console.width, all_modes):
+        console.print(row, soft_wrap=True)
+    for line in table.doubts():
+        console.print(f"{MARK} {line}", style="yellow")
+    if mixed := table.mixed():
+        console.print(mixed)
+    for line in table.verdict():
+        console.print(line, style="bold")
+
+
+def print_case(case: Case) -> None:
+    """Print what a case is, and each input that was not read in a source."""
+    console = PlainConsole()
+    warnings = (f"Warning: {text}" for text in case.warnings)
+    for paragraph in filter(None, (case.title, case.description, *reservations(case), *warnings)):
+        console.print(f"{paragraph}\n")
+    for path, number in doubtful_inputs(case).items():
+        console.print(f"{number.status:<11} {path} = {number.written}", soft_wrap=True)
+        console.print(f"{'':<11} {number.source}", soft_wrap=True)
+
+
+class PlainConsole(Console):
+    """A console that prints text as it is, and nothing of it that is not printable (`proprotor.errors`)."""
+
+    def __init__(self, *, stderr: bool = False) -> None:
+        super().__init__(markup=False, highlight=False, emoji=False, stderr=stderr)
+
+    def print(self, *objects: Any, **more: Any) -> None:
+        super().print(*map(_shown, objects), **more)
+
+
+def _shown(it: Any) -> Any:
+    if isinstance(it, Text):
+        it.plain = printable(it.plain, keep="\n")
+    return printable(it, keep="\n") if isinstance(it, str) else it
+
+
+def _shortened(text: str, case: Case, width: int) -> str:
+    """About two lines of a warning, and where the whole of it stands."""
+    return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")
