@@ -28,13 +28,14 @@ regenerate-equations: .venv/installed  ## Derive the equations again, write gene
 lint: .venv/installed  ## Check the style of the source
 	$(BIN)/ruff check src derive tests benchmarks notebooks docs
 	$(BIN)/ruff format --check src derive tests benchmarks notebooks docs
+	$(BIN)/python -m tests.rooms
 
 notebooks: .venv/installed  ## Run the audit's notebooks and render them into docs/notebooks/
 	$(BIN)/python -m derive.notebooks
 	$(BIN)/python -m derive.index
 
 figures: .venv/installed  ## Make every analytical figure of the paper, with its numbers, in figures/
-	$(BIN)/proprotor figures --out figures
+	$(BIN)/python -m benchmarks.paper_figures --out figures
 
 validation: .venv/installed  ## Write docs/validation.md and its figures
 	$(BIN)/python -m benchmarks.validation

@@ -25,8 +25,8 @@ from hypothesis import HealthCheck, Phase, given, settings
 from rich.console import Console
 
 import proprotor as pp
+from proprotor.model.first_order import held_coordinates
 from proprotor.stability.flutter import scan_speeds
-from proprotor.stability.modes import held_coordinates
 from proprotor.units import KNOT
 
 COARSE, FINE = 0.2, 0.002  # kt

@@ -22,9 +22,10 @@ import proprotor as pp
 from benchmarks.study import INPUTS
 from proprotor import sampling
 from proprotor.deck.vary import design_inputs
+from proprotor.model.first_order import state_matrix
 from proprotor.stability.flutter import find_crossings, flutter_point
 from proprotor.stability.following import Line
-from proprotor.stability.modes import decomposition, state_matrix
+from proprotor.stability.modes import decomposition
 from proprotor.stability.sensitivity import at_boundary
 from proprotor.study.study import study
 from proprotor.units import KNOT

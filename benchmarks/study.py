@@ -28,10 +28,10 @@ import proprotor as pp
 from proprotor import case as case_module
 from proprotor import sampling
 from proprotor.model import linear_model as model
+from proprotor.model.first_order import state_matrix
 from proprotor.rotor import section_loads as blade_airloads
 from proprotor.rotor import trim_balance
 from proprotor.stability import modes
-from proprotor.stability.modes import state_matrix
 from proprotor.study import workers as study_workers
 from proprotor.study.batch import DEFAULT_QUANTITIES
 from proprotor.study.study import BATCH, study

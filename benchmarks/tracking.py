@@ -21,9 +21,10 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from proprotor.model.first_order import state_matrix
 from proprotor.stability.following import Line, Path, follow, path_of
 from proprotor.stability.matching import chain, left_vectors, link
-from proprotor.stability.modes import decomposition, state_matrix
+from proprotor.stability.modes import decomposition
 from proprotor.units import KNOT
 
 COARSE, FINE, LESS_FINE, FINEST = 5.0, 0.1, 0.5, 0.002  # kt

@@ -26,7 +26,8 @@ from derive.counterparts import frequency_squared
 from derive.inertia import dependent_inertias
 from derive.printed import TABLES
 from derive.printed.tables import PrintedTable
-from proprotor.model.linear_model import HUB, rotor_quantities
+from proprotor.rotor.motions import HUB
+from proprotor.model.linear_model import rotor_quantities
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options
 from proprotor.rotor.trim import UNKNOWNS, Trim, with_trim

@@ -11,7 +11,7 @@ import pytest
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.stability.modes import state_matrix
+from proprotor.model.first_order import state_matrix
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, beam_wing, rigid_motion, wing_elements
 from proprotor.support.modal_reduction import lowest_modes, per_mode
 from proprotor.support.normal_modes import NormalModes

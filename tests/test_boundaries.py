@@ -6,10 +6,10 @@ from scipy.optimize import brentq
 
 import proprotor as pp
 from proprotor import sampling
+from proprotor.model.first_order import state_matrix
 from proprotor.stability.crossings import Brackets, Search
 from proprotor.stability.flutter import boundaries, find_crossings
 from proprotor.stability.following import Line
-from proprotor.stability.modes import state_matrix
 from proprotor.study.batch import STABLE, UNSTABLE
 from proprotor.study.study import study
 from tests.known_systems import along, roots

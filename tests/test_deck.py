@@ -19,7 +19,7 @@ from proprotor.deck.sections import validate
 from proprotor.errors import InputError
 from proprotor.units import as_si, speeds, to_si, unit_registry
 
-DECKS = Path(sys.modules["proprotor"].__file__).parent / "decks"
+DECKS = Path(sys.modules["proprotor"].__file__).parent / "deck" / "decks"
 XV15 = (DECKS / "xv15.toml").read_text(encoding="utf-8")
 
 US_DECK = """

@@ -5,11 +5,11 @@ import pytest
 from scipy.optimize import brentq
 
 import proprotor as pp
+from proprotor.model.first_order import state_matrix
 from proprotor.stability.crossings import growth
 from proprotor.stability.cubic import hermite, hermite_extrema, hermite_root
 from proprotor.stability.flutter import boundaries, find_crossings, flutter_point
 from proprotor.stability.following import Line
-from proprotor.stability.modes import state_matrix
 from tests.known_systems import along
 
 KNOT = 1852 / 3600

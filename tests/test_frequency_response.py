@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.model.frequency_response import frequency_response
-from proprotor.model.linear_model import HUB, INPUTS
+from proprotor.model.linear_model import INPUTS
+from proprotor.rotor.motions import HUB
+from proprotor.stability.frequency_response import frequency_response
 from tests.known_systems import linear_model
 
 MASS, DAMPING, STIFFNESS, FORCE = 40.0, 60.0, 9000.0, 7.0  # kg, N s/m, N/m, N per m/s of gust

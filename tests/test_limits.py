@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
-from proprotor.stability.modes import eigensystem, state_matrix
+from proprotor.model.first_order import state_matrix
+from proprotor.stability.modes import eigensystem
 from tests.c81_files import made_up_tables
 from tests.rotors import flights, random_support, seeds
 

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 
 from proprotor.commands.main import main
 
-DECKS = Path(sys.modules["proprotor"].__file__).parent / "decks"
+DECKS = Path(sys.modules["proprotor"].__file__).parent / "deck" / "decks"
 XV15 = (DECKS / "xv15.toml").read_text(encoding="utf-8")
 VARIANT = 'base = "xv15"\n[case]\nname = "my"\n'
 

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.stability.modes import decomposition, eigensystem, eigenvalues, participation, state_matrix
+from proprotor.model.first_order import state_matrix
+from proprotor.stability.modes import decomposition, eigensystem, eigenvalues, participation
 from proprotor.study.sampling import points
 
 SHAFT = "drive_train.shaft_stiffness"

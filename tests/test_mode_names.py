@@ -13,13 +13,15 @@ from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
 from proprotor.explore.analysis import live_modes
+from proprotor.model.first_order import state_matrix
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.plots.mode_motion import mode_motion
+from proprotor.rotor.motions import motions, name_list
 from proprotor.stability.boundary_lines import boundary_lines
 from proprotor.stability.branches import by_branch
 from proprotor.stability.matching import POOR
-from proprotor.stability.mode_names import DOUBTFUL, motions, moving, name_list
-from proprotor.stability.modes import decomposition, state_matrix
+from proprotor.stability.mode_names import DOUBTFUL, moving
+from proprotor.stability.modes import decomposition
 from tests.known_systems import continued, roots
 
 KNOT, RPM = 1852 / 3600, np.pi / 30

@@ -25,10 +25,10 @@ from proprotor import needs
 from proprotor.case import Case
 from proprotor.commands.main import main
 from proprotor.errors import InputError
-from proprotor.model.frequency_response import frequency_response
 from proprotor.needs import check_memory, free_memory
 from proprotor.plots.animation import animate_mode
 from proprotor.plots.mode_motion import mode_motion
+from proprotor.stability.frequency_response import frequency_response
 from proprotor.support import nastran
 
 ROOT = Path(pp.__file__).parent

@@ -9,10 +9,10 @@ from scipy.integrate import quad
 import proprotor as pp
 from benchmarks import reed_bland as report
 from proprotor.errors import InputError
-from proprotor.model.linear_model import HUB
 from proprotor.model.mount import mount
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
 from proprotor.model.structural_damping import neutral_damping
+from proprotor.rotor.motions import HUB
 from proprotor.stability.sweep import sweep
 from proprotor.support.normal_modes import two_axis_pivot
 

@@ -16,9 +16,9 @@ from proprotor.commands.main import main
 from proprotor.deck.settings import with_settings
 from proprotor.exchange.netcdf import save_results
 from proprotor.files.output import write_whole
-from proprotor.model.linear_model import HUB
 from proprotor.model.several_rotors import MountedRotor, mount_rotors
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.motions import HUB
 from proprotor.stability import flutter
 from proprotor.stability.following import Line
 from proprotor.stability.sweep import sweep

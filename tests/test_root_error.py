@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.stability.modes import decomposition, held_coordinates
+from proprotor.model.first_order import held_coordinates
+from proprotor.stability.modes import decomposition
 from proprotor.stability.root_error import error_near_zero, errors_of, refined, roots
 from tests.known_systems import linear_model
 

@@ -12,10 +12,11 @@ from scipy.linalg import eigh
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.model.linear_model import HUB, mass_at_rest, rotor_model
+from proprotor.model.linear_model import mass_at_rest, rotor_model
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.model.rotor_share import rotor_share, spring_warnings, without_rotors
 from proprotor.model.several_rotors import MountedRotor, mount_rotors
+from proprotor.rotor.motions import HUB
 from proprotor.support.matrix_files import support_from_matrices
 from proprotor.support.normal_modes import INCLUDES_ROTOR, SHAFT
 from tests.test_beam_wing import xv15_wing

@@ -31,7 +31,7 @@ from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
 from proprotor.deck.file import read_tables
-from proprotor.stability.modes import held_coordinates, state_matrix
+from proprotor.model.first_order import held_coordinates, state_matrix
 from tests.fuzz.decks import written
 from tests.rotors import DAMPERS, HUB, between, flights, random_support, seeds
 

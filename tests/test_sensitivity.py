@@ -5,9 +5,10 @@ import pytest
 
 import proprotor as pp
 from proprotor.deck.vary import design_inputs
+from proprotor.model.first_order import state_matrix
 from proprotor.stability.eigenvalue_derivatives import defect
 from proprotor.stability.flutter import flutter_point
-from proprotor.stability.modes import decomposition, state_matrix
+from proprotor.stability.modes import decomposition
 from proprotor.stability.sensitivity import NEARLY_DEFECTIVE, damping_rate, input_rates, sensitivity
 from tests.known_systems import linear_model
 

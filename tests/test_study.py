@@ -19,7 +19,7 @@ from proprotor import sampling
 from proprotor.commands.main import main
 from proprotor.errors import InputError
 from proprotor.exchange.netcdf import load_results, save_results
-from proprotor.stability.modes import state_matrix
+from proprotor.model.first_order import state_matrix
 from proprotor.study import workers as study_workers
 from proprotor.study.batch import QUANTITIES, STABLE, UNSTABLE, Analysis, Batch, variables
 from proprotor.study.study import study

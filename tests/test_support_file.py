@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, csc_array
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.stability.modes import state_matrix
+from proprotor.model.first_order import state_matrix
 from proprotor.support.beam_wing import beam_structure, beam_wing
 from proprotor.support.matrix_files import read_matrix_market, read_npz, support_from_matrices
 from proprotor.support.modal_reduction import lowest_modes

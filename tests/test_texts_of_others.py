@@ -15,9 +15,8 @@ import proprotor as pp
 from proprotor.commands.main import main
 from proprotor.deck.stations import read_stations
 from proprotor.errors import printable, unprintable
-from proprotor.model.linear_model import HUB, reactionless_coordinates
 from proprotor.rotor.airfoil_table import AirfoilTable
-from proprotor.stability.mode_names import SECOND, motions, name_list
+from proprotor.rotor.motions import HUB, SECOND, motions, name_list, reactionless_coordinates
 from proprotor.support.matrix_files import read_matrix_market
 from proprotor.support.matrix_market import read_matrix
 from proprotor.tables.terminal import PlainConsole

@@ -9,9 +9,10 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
+from proprotor.rotor.motions import motions, name_list
 from proprotor.stability.following import Line, follow
 from proprotor.stability.matching import POOR, link
-from proprotor.stability.mode_names import assign_names, motions, name_list
+from proprotor.stability.mode_names import assign_names
 from proprotor.stability.modes import decomposition
 from proprotor.stability.sweep import anchor_speed, sweep, sweep_case
 from tests.known_systems import along, continued, linear_model, oscillators, roots

@@ -7,9 +7,10 @@ import pytest
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.model.linear_model import HUB, rotor_model
+from proprotor.model.first_order import state_matrix
+from proprotor.model.linear_model import rotor_model
 from proprotor.model.several_rotors import MountedRotor, mount_rotors
-from proprotor.stability.modes import state_matrix
+from proprotor.rotor.motions import HUB
 
 TOLERANCE = 1e-9  # of an eigenvalue: a matrix of twice the size
 FLIPPED = np.array([1, -1, 1, -1, 1, -1.0])  # y and the turns about x and z, seen in a mirror across y

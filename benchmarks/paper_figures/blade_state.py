@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from proprotor_equations import pitch
 
-from proprotor.model.linear_model import HUB, rotor_model, rotor_quantities
+from proprotor.model.linear_model import rotor_model, rotor_quantities
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.motions import HUB
 from proprotor.rotor.options import Options
 from proprotor.rotor.trim import UNKNOWNS, with_trim
 from proprotor.stability.branches import by_branch

@@ -5,7 +5,6 @@ from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.exchange.matlab import save_matlab
 from proprotor.exchange.netcdf import load_results, save_results
-from proprotor.model.frequency_response import frequency_response
 from proprotor.model.linear_model import LinearModel, rotor_model
 from proprotor.model.mount import mount
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
@@ -18,6 +17,7 @@ from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
+from proprotor.stability.frequency_response import frequency_response
 from proprotor.study import sampling
 from proprotor.study.study import study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices

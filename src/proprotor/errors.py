@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import unicodedata
 from collections.abc import Collection, Iterable
+from typing import Any
 
 import numpy as np
 
@@ -103,3 +104,18 @@ def printable(text: str, keep: str = "") -> str:
     if text.isprintable():
         return text
     return "".join(c if c in keep or c.isprintable() else " " for c in text)
+
+
+def is_choice(value: Any, choices: tuple[bool | str, ...]) -> bool:
+    """Whether a value is one of some words, true or false; 1 is not true."""
+    return isinstance(value, bool | str) and value in choices
+
+
+def told_choices(choices: tuple[bool | str, ...]) -> str:
+    """The choices as a message lists them."""
+    return " or ".join(f'"{choice}"' if isinstance(choice, str) else as_toml(choice) for choice in choices)
+
+
+def as_toml(value: bool | str) -> str:
+    """A word, true or false as a deck has it, without quotation marks."""
+    return value if isinstance(value, str) else str(value).lower()

@@ -65,7 +65,7 @@ _SHARE_OF_LINEARIZED, _SHARE_OF_SWEPT = 0.3, 0.03
 @functools.cache
 def seeds() -> tuple[str, ...]:
     """The bundled decks, and one for each further kind of support and of airfoil."""
-    folder = resources.files("proprotor") / "decks"
+    folder = resources.files("proprotor.deck") / "decks"
     bundled = [(folder / f"{name}.toml").read_text(encoding="utf-8") for name in pp.list_cases()]
     more = [f'base = "xv15"\n[case]\nname = "fuzz"\n[support]\n{text}' for text in _MORE.values()]
     table = 'base = "xv15"\n[case]\nname = "fuzz"\n[rotor.airfoil]\ntable = "airfoil.c81"\n'

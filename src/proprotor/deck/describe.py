@@ -11,8 +11,8 @@ from dataclasses import MISSING, asdict, dataclass, fields
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
-from proprotor.datum import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound, told_choices
-from proprotor.errors import InputError
+from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
+from proprotor.errors import InputError, told_choices
 from proprotor.units import meaning
 
 if TYPE_CHECKING:

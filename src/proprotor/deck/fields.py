@@ -13,14 +13,14 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
-from proprotor.datum import (
+from proprotor.datum import Datum
+from proprotor.deck.reading import (
     ANY,
     BELOW_CRITICAL,
     FRACTION,
     NOT_NEGATIVE,
     POSITIVE,
     Bound,
-    Datum,
     read_choice,
     read_column,
     read_count,

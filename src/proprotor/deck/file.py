@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from proprotor.datum import FileName, PerRevolution, read_quantity
+from proprotor.deck.reading import FileName, PerRevolution, read_quantity
 from proprotor.errors import InputError, unknown_name
 from proprotor.files.text import read_text
 from proprotor.rotor.rotor import MASS_INTEGRALS

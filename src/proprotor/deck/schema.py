@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from proprotor.datum import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, STATUSES, Bound
+from proprotor.datum import STATUSES
+from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.units import meaning
 
 if TYPE_CHECKING:

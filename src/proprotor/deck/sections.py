@@ -53,7 +53,6 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema, model_validator
 
-from proprotor.datum import read_quantity
 from proprotor.deck.fields import (
     Abscissa,
     Angle,
@@ -91,6 +90,7 @@ from proprotor.deck.fields import (
     optional,
 )
 from proprotor.deck.file import AIR_ALTERNATIVES, AIRFOIL_ALTERNATIVES, ALTERNATIVES, TRIM_ALTERNATIVES
+from proprotor.deck.reading import read_quantity
 from proprotor.deck.schema import TRIM_SCHEMA
 from proprotor.deck.support_sections import SUPPORT_KINDS, SUPPORT_TABLES, SupportSection
 from proprotor.deck.text import plain_text

@@ -9,9 +9,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from proprotor.datum import FileName
 from proprotor.deck.describe import DeckField, deck_fields
 from proprotor.deck.file import as_one_file
+from proprotor.deck.reading import FileName
 from proprotor.units import meaning
 
 _HEAD = """\

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.case import assemble
+from proprotor.deck.build import C, assemble
 from proprotor.errors import InputError, unknown_name
+from proprotor.model.configuration import Configuration
 from proprotor.units import has_own_unit
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
     from proprotor.datum import Datum
     from proprotor.deck.sections import Deck
 
 _FIXED = (str, int, tuple)  # files, whole numbers and lists, which do not vary as others do
 
 
-def design_inputs(case: Case) -> dict[str, Datum]:
+def design_inputs(case: Configuration) -> dict[str, Datum]:
     """The numbers of a case's deck that may vary, by path, with value, SI unit, status and source.
 
     A path is the place in the deck: ``rotor.precone``, ``rotor.airfoil.lift_slope``, ``operation.rotor_speed``,
@@ -51,7 +51,7 @@ def design_inputs(case: Case) -> dict[str, Datum]:
     }
 
 
-def vary(case: Case, values: Mapping[str, Any]) -> Case:
+def vary(case: C, values: Mapping[str, Any]) -> C:
     """The case with other values of some numbers of its deck.
 
     What follows from a number follows: a spring from a frequency and an inertia, the chord from the Lock number. A
@@ -83,13 +83,14 @@ def vary(case: Case, values: Mapping[str, Any]) -> Case:
         number = _number(path, value, known[path].unit)
         written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
         numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
-    return assemble(_deck_of(case), numbers, tuple(case.support.names))
+    return assemble(_deck_of(case), numbers, tuple(case.support.names), kind=type(case))
 
 
-def _deck_of(case: Case) -> Deck:
+def _deck_of(case: Configuration) -> Deck:
     if case.deck is None:
         raise InputError("case", case.name, "must be made from a deck, whose numbers may then vary")
-    return case.deck
+    deck: Deck = case.deck
+    return deck
 
 
 def _number(path: str, value: Any, unit: str) -> np.ndarray:

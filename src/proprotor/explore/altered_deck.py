@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from proprotor.datum import PerRevolution
 from proprotor.deck.file import as_one_file, read_tables
+from proprotor.deck.reading import PerRevolution
 from proprotor.deck.settings import with_settings
 from proprotor.deck.template import toml
 from proprotor.explore.inputs import slider_input

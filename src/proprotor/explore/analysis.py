@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.model.first_order import some_points
 from proprotor.model.linear_model import LinearModel
+from proprotor.rotor.motions import name_list
 from proprotor.stability.branches import Named, branches
 from proprotor.stability.following import Line, Path, follow
-from proprotor.stability.mode_names import moving, name_list
-from proprotor.stability.modes import some_points
+from proprotor.stability.mode_names import moving
 from proprotor.stability.root_error import error_near_zero
 from proprotor.stability.sweep import ANCHORS, mode_columns, names_at, tip_speed
 from proprotor.tables.sweep_summary import UnstableRange, leaps, unstable_ranges

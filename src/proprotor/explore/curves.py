@@ -10,7 +10,7 @@ from proprotor_equations import FIXED_COORDINATES
 from proprotor.explore.analysis import LiveModes
 from proprotor.plots.line_of_sweep import with_gaps
 from proprotor.plots.style import COLOURS
-from proprotor.stability.mode_names import SECOND, name_list
+from proprotor.rotor.motions import SECOND, name_list
 
 _DASHES = ("solid", "dashed", "dotted")
 _ROTOR_NAMES = frozenset(name_list(FIXED_COORDINATES))  # of modes; what has another is the support's

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from types import ModuleType
@@ -21,11 +22,14 @@ from proprotor_equations import (
 )
 
 from proprotor.errors import InputError
+from proprotor.model import stamp
+from proprotor.model.doubts import reasons_for_doubt
 from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet, evaluate
+from proprotor.rotor.motions import HUB, ROTOR_SPEED, reactionless_coordinates
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -46,10 +50,11 @@ if TYPE_CHECKING:
 
     from proprotor.model.state_space import StateSpace
 
-HUB = FIXED_COORDINATES[:6]
+
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
-ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
+
+
 MASS_AT_REST = (*HUB, "gimbal_1c", "gimbal_1s")  # coordinates of a rotor at rest with locked blades
 COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
 _BYTES_PER_POINT, _BYTES_PER_ENTRY = 10_000.0, 80.0  # while a rotor is trimmed and its matrices are made
@@ -100,9 +105,21 @@ class LinearModel:
     origin: Origin | None = None
 
     def __repr__(self) -> str:
-        from proprotor.stability.summary import of_model
-
-        return of_model(self)
+        """Return the coordinates, the shape of the batch and what failed in the batch, in a few lines."""
+        converged = np.asarray(self.trim.converged)
+        shape = f"batch of shape {converged.shape}" if converged.ndim else "one point"
+        lines = [
+            f"LinearModel: {len(self.dofs)} coordinates, {shape}, {range_of(self.airspeed)} m/s",
+            f"  {', '.join(self.dofs)}",
+        ]
+        lines += [f"  {line}" for line in stamp.told_if_unusual(stamp.of_model(self))]
+        reasons = Counter(str(reason) for reason in np.ravel(self.trim.reason) if reason)
+        lines += [
+            f"  {count} of {converged.size} failed: {reason}" for reason, count in reasons.most_common(5)
+        ]
+        doubts = reasons_for_doubt(np.ravel(self.trim.warning).tolist())
+        lines += [f"  {len(at)} of {converged.size} doubtful: {text}" for text, at in doubts.items()]
+        return "\n".join(lines)
 
     @property
     def shaft_holds_azimuth(self) -> Array:
@@ -283,13 +300,6 @@ def _flat(target: Target, shape: tuple[int, ...]) -> Target:
         for name, value in (("collective", target.collective), ("load", target.load))
     }
     return replace(target, **flat)
-
-
-def reactionless_coordinates(n_blades: int) -> tuple[str, ...]:
-    """Blade motions beyond Eq. 17: harmonics 2 to below N/2, and for even N neighbours against each other."""
-    angles = ("flap", "lag", "pitch")
-    pairs = [f"{angle}_{n}{part}" for n in range(2, (n_blades + 1) // 2) for angle in angles for part in "cs"]
-    return tuple(pairs + [f"{angle}_d" for angle in angles] * (n_blades % 2 == 0))
 
 
 def _check_pitch(rotor: Rotor, options: Options) -> None:
@@ -512,3 +522,8 @@ def mass_at_rest(rotor: Rotor) -> Array:
     places = np.array([FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
     mass: Array = evaluate(multiblade.mass, pool, blade)[..., places[:, None], places]
     return mass
+
+
+def range_of(values: np.ndarray) -> str:
+    low, high = float(np.min(values.real)), float(np.max(values.real))
+    return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.linear_model import HUB, LinearModel
+from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.model.rotor_share import refuse, without_rotors
+from proprotor.rotor.motions import HUB, check_distinct
 from proprotor.rotor.trim import Trim
-from proprotor.stability.mode_names import check_distinct
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 

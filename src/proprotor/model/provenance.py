@@ -6,18 +6,18 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
     from proprotor.datum import Datum
+    from proprotor.model.configuration import Configuration
 
 _READ_IN_A_SOURCE = ("published", "derived")
 
 
-def doubtful_inputs(case: Case) -> dict[str, Datum]:
+def doubtful_inputs(case: Configuration) -> dict[str, Datum]:
     """Inputs by field that are assumed, recalled, calibrated or of unstated origin."""
     return {path: n for path, n in case.sources.items() if n.status not in _READ_IN_A_SOURCE}
 
 
-def reservations(case: Case) -> list[str]:
+def reservations(case: Configuration) -> list[str]:
     """Sentences to stand with every number and figure of the case: doubtful inputs, and the calibration."""
     doubtful = doubtful_inputs(case)
     counts = Counter(number.status for number in doubtful.values())

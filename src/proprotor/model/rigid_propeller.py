@@ -24,7 +24,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
-from proprotor.model.linear_model import HUB, LinearModel
+from proprotor.model.linear_model import LinearModel
+from proprotor.rotor.motions import HUB
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array, Numbers
 from proprotor.units import in_metres_per_second

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
 from proprotor.model import stamp
-from proprotor.model.linear_model import HUB, LinearModel
+from proprotor.model.linear_model import LinearModel
 from proprotor.model.mount import refused_where
 from proprotor.model.rotor_share import without_rotors
-from proprotor.stability.mode_names import check_distinct
+from proprotor.rotor.motions import HUB, check_distinct
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 

@@ -24,7 +24,7 @@ from proprotor.rotor.generated import EQUATION_SETS, EquationSet
 from proprotor.rotor.options import Options, parse_options
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
     from proprotor.model.linear_model import LinearModel
 
 Stamp = Mapping[str, str]
@@ -40,10 +40,10 @@ class Origin(NamedTuple):
     """
 
     options: Options
-    case: Case | None = None
+    case: Configuration | None = None
 
 
-def of_case(case: Case, options: Mapping[str, Any]) -> dict[str, str]:
+def of_case(case: Configuration, options: Mapping[str, Any]) -> dict[str, str]:
     """The stamp of what is computed of a case with options as they were given.
 
     Raises
@@ -88,7 +88,7 @@ def _version() -> str:
 # The case ------------------------------------------------------------------------------------------------------------
 
 
-def deck_fingerprint(case: Case) -> str:
+def deck_fingerprint(case: Configuration) -> str:
     """A text that is the same for the same numbers and choices of a deck, whatever they are called.
 
     What a case without a deck consists of stands for it.
@@ -164,7 +164,7 @@ def _plain(value: Any) -> Any:
     return array.tolist()
 
 
-def options_of(found: Mapping[Any, Any], case: Case, given: Mapping[str, Any]) -> dict[str, Any]:
+def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str, Any]) -> dict[str, Any]:
     """The options that a result of a case was computed with, to go on from it.
 
     Parameters
@@ -188,7 +188,7 @@ def options_of(found: Mapping[Any, Any], case: Case, given: Mapping[str, Any]) -
     }
 
 
-def check_options(found: Mapping[Any, Any], case: Case, given: Mapping[str, Any]) -> dict[str, Any]:
+def check_options(found: Mapping[Any, Any], case: Configuration, given: Mapping[str, Any]) -> dict[str, Any]:
     """The options in force of a result of a case, as plain data; refuse another case, and others than these.
 
     Raises
@@ -222,7 +222,7 @@ def _follows(name: str, value: Any) -> bool:
     return value is None and name != "drive_train"
 
 
-def _keyword(case: Case, name: str, value: Any, given: Mapping[str, Any]) -> Any:
+def _keyword(case: Configuration, name: str, value: Any, given: Mapping[str, Any]) -> Any:
     """The value of an option from plain data."""
     if given.get(name) is not None:
         return given[name]

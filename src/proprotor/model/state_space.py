@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.linear_model import HUB, INPUTS, ROTOR_SPEED, LinearModel
+from proprotor.model.first_order import held_coordinates, lack_azimuth, state_matrix, without_massless
+from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.stamp import Stamp, of_model
 from proprotor.needs import need
-from proprotor.stability.modes import held_coordinates, lack_azimuth, state_matrix, without_massless
+from proprotor.rotor.motions import HUB, ROTOR_SPEED
 from proprotor.typing import Array
 
 if TYPE_CHECKING:

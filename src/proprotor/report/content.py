@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.datum import Datum, FilePath, as_toml
+from proprotor.datum import Datum
+from proprotor.deck.reading import FilePath
+from proprotor.errors import as_toml
 from proprotor.model.doubts import MARK, doubt_at, footnotes, marked
 from proprotor.model.provenance import doubtful_inputs, reservations
 from proprotor.model.stamp import chosen, deck_fingerprint, option_told, options_told

@@ -26,7 +26,7 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
 
 
 def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
@@ -34,7 +34,9 @@ def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -
     return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
 
 
-def attribution(case: Case, airspeed: Any, mode: str | None = None, **options: Any) -> xarray.Dataset:
+def attribution(
+    case: Configuration, airspeed: Any, mode: str | None = None, **options: Any
+) -> xarray.Dataset:
     """What drives and what damps the modes of a case at one airspeed.
 
     Parameters

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError
 from proprotor.model.stamp import options_of
+from proprotor.rotor.motions import name_list
 from proprotor.stability.map import AIRSPEED
 from proprotor.stability.matching import Spectrum, conjugate, link
-from proprotor.stability.mode_names import name_list
 from proprotor.stability.modes import decomposition
 from proprotor.stability.sweep import names_at
 from proprotor.typing import Array
@@ -19,7 +20,7 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
     from proprotor.model.linear_model import LinearModel
 
 
@@ -46,7 +47,7 @@ class BoundaryLine(NamedTuple):
 
 
 def boundary_lines(
-    case: Case, found: xarray.Dataset, *, airspeed: Any = None, **options: Any
+    case: Configuration, found: xarray.Dataset, *, airspeed: Any = None, **options: Any
 ) -> list[BoundaryLine]:
     """The lines of a stability map by mode.
 
@@ -114,12 +115,12 @@ def _parted(boundary: Array) -> Iterator[Array]:
 
 
 def _model_at(
-    case: Case, names: list[str], points: Array, airspeed: float | None, options: dict[str, Any]
+    case: Configuration, names: list[str], points: Array, airspeed: float | None, options: dict[str, Any]
 ) -> LinearModel:
     """Models at points (k, 2) of the plane."""
     given: dict[str, Any] = dict(zip(names, points.T, strict=True))
     speed = given.pop(AIRSPEED, airspeed)
-    return case.vary(given).linearize(speed, **options)
+    return vary_case(case, given).linearize(speed, **options)
 
 
 def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice]:

@@ -10,7 +10,7 @@ from proprotor.model.doubts import doubt_at, marked
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
     from proprotor.stability.flutter import Boundary, Crossings, FlutterPoint
 
 COLUMNS = (
@@ -28,7 +28,7 @@ COLUMNS = (
 )
 
 
-def boundary_record(boundary: Boundary, case: Case) -> dict[str, Any]:
+def boundary_record(boundary: Boundary, case: Configuration) -> dict[str, Any]:
     """A boundary in the units people read, by `COLUMNS`."""
     values = (
         boundary.position / KNOT,

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from proprotor.rotor.motions import SECOND
 from proprotor.stability.following import Path
 from proprotor.stability.matching import NOT_TOLD, POOR, conjugate
-from proprotor.stability.mode_names import SECOND
 from proprotor.typing import Array
 
 if TYPE_CHECKING:

@@ -23,11 +23,12 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.model.first_order import held_coordinates, missing_roots, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.cubic import hermite_root
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, second_order_left, with_changes
 from proprotor.stability.matching import POOR, Modes, Spectrum, link
-from proprotor.stability.modes import decomposition, held_coordinates, missing_roots, some_points
+from proprotor.stability.modes import decomposition
 from proprotor.stability.root_error import growth, growth_error, refined_near, roots
 from proprotor.stability.root_pairs import MANY, along_scan
 from proprotor.stability.screening import steps_by_values

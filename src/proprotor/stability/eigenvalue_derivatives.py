@@ -13,9 +13,9 @@ from collections.abc import Callable
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.matching import Modes
-from proprotor.stability.modes import held_coordinates
 from proprotor.typing import Array
 
 _DIFFERENCE = 1e-3  # of an input that takes no complex step

@@ -30,7 +30,7 @@ from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
 
 _TOLD = 0.05  # of a mode: the least participation that its mechanism names
 _TOGETHER = 1e-3  # of a position: stretches that cannot be followed and lie nearer to each other are one
@@ -414,7 +414,7 @@ def _boundary(found: Crossing, branch: str, moves: Moving, row: int) -> Boundary
 
 
 def boundaries(
-    case: Case,
+    case: Configuration,
     airspeeds: Any = None,
     vary: Mapping[str, ArrayLike] | None = None,
     *,
@@ -464,7 +464,7 @@ def boundaries(
     return found._replace(boundaries=carried, stamp=own)
 
 
-def _widest_step(case: Case) -> float:
+def _widest_step(case: Configuration) -> float:
     """Return the widest step of airspeed in m/s that a search takes: the default scan's; wider ones hide crossings."""
     low, high, points = _RANGE
     return (high - low) / (points - 1) * tip_speed(case)
@@ -481,7 +481,7 @@ def _in_small_steps(positions: Array, widest: float) -> Array:
     return np.append(between, positions[-1:])
 
 
-def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:
+def scan_speeds(case: Configuration, points: int = _RANGE[2]) -> Array:
     """Airspeeds where boundaries are looked for: 0.2 to 1.2 of the tip speed.
 
     Parameters
@@ -498,7 +498,9 @@ def scan_speeds(case: Case, points: int = _RANGE[2]) -> Array:
     return np.linspace(*_RANGE[:2], points) * tip_speed(case)
 
 
-def flutter_point(case: Case, airspeeds: Any = None, *, level: float = 0.0, **options: Any) -> FlutterPoint:
+def flutter_point(
+    case: Configuration, airspeeds: Any = None, *, level: float = 0.0, **options: Any
+) -> FlutterPoint:
     """The lowest airspeed at which a mode becomes unstable, with all boundaries of the range.
 
     Parameters

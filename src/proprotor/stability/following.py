@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.matching import POOR, Spectrum, Steps, chain, keep_upper, link
-from proprotor.stability.modes import decomposition, held_coordinates
+from proprotor.stability.modes import decomposition
 from proprotor.typing import Array
 
 Linearize = Callable[[Array], LinearModel]  # positions (k,) along a line to the models there

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
@@ -27,7 +28,7 @@ from proprotor.units import in_metres_per_second
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
 
 AIRSPEED = "airspeed"
 _AT_ONCE = 4096  # points of one batch
@@ -61,7 +62,7 @@ def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array
 
 
 def stability_map(
-    case: Case,
+    case: Configuration,
     axes: Mapping[str, ArrayLike],
     *,
     airspeed: Any = None,
@@ -135,7 +136,7 @@ def stability_map(
     return found
 
 
-def _axes(case: Case, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[Array, Array]]:
+def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[Array, Array]]:
     if len(axes) != 2:
         raise InputError("axes", ", ".join(axes), "must be two inputs")
     from proprotor.deck.vary import design_inputs
@@ -157,7 +158,7 @@ def _axes(case: Case, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], t
     return (x, y), (along_x, along_y)
 
 
-def _plane(case: Case, names: tuple[str, str], airspeed: Any, options: Mapping[str, Any]) -> Plane:
+def _plane(case: Configuration, names: tuple[str, str], airspeed: Any, options: Mapping[str, Any]) -> Plane:
     if AIRSPEED not in names and airspeed is None:
         raise InputError("airspeed", None, "must be given, or be one of the axes")
     if AIRSPEED in names and airspeed is not None:
@@ -166,7 +167,7 @@ def _plane(case: Case, names: tuple[str, str], airspeed: Any, options: Mapping[s
     def linearize(x: Array, y: Array) -> LinearModel:
         given = dict(zip(names, (x, y), strict=True))
         speed = given.pop(AIRSPEED, airspeed)
-        return case.vary(given).linearize(speed, **options)
+        return vary_case(case, given).linearize(speed, **options)
 
     return linearize
 

@@ -16,7 +16,7 @@ from proprotor.stability.sweep import mode_columns
 from proprotor.units import in_metres_per_second
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
 
 
 class NamedModes(NamedTuple):
@@ -32,7 +32,9 @@ class NamedModes(NamedTuple):
     eigen_solves: int
 
 
-def named_modes(case: Case, airspeed: Any, mode: str | None, options: Mapping[str, Any]) -> NamedModes:
+def named_modes(
+    case: Configuration, airspeed: Any, mode: str | None, options: Mapping[str, Any]
+) -> NamedModes:
     """The modes of a case at one airspeed, or one of them by its name.
 
     Raises

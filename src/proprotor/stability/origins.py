@@ -42,7 +42,7 @@ from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
 
 _COUPLINGS_TOLD = {
     "pitch_flap_coupling": "pitch-flap coupling K_Pβ",
@@ -87,7 +87,7 @@ class _SomeCoefficients:
         return found._replace(**dropped)
 
 
-def model_parts(case: Case, model: LinearModel, **options: Any) -> dict[str, Part]:
+def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict[str, Part]:
     """M, C and K of a case by origin; their sum is the model.
 
     Parameters
@@ -130,7 +130,7 @@ def model_parts(case: Case, model: LinearModel, **options: Any) -> dict[str, Par
     return {name: part for name, part in found.items() if any(np.any(matrix) for matrix in part)}
 
 
-def _pool(case: Case, choice: Options, model: LinearModel, shape: tuple[int, ...]) -> dict[str, Any]:
+def _pool(case: Configuration, choice: Options, model: LinearModel, shape: tuple[int, ...]) -> dict[str, Any]:
     """All quantities at the trim of the model, arrays flattened over the batch."""
     quantities = model_quantities(case.rotor, case.operation, choice, model.airspeed, shape)
     state = {name: np.broadcast_to(getattr(model.trim, name), shape).reshape(-1) for name in UNKNOWNS}
@@ -264,7 +264,7 @@ def _mounted(part: Part, carrier: NormalModes, model: LinearModel, shape: tuple[
 
 
 def _support_parts(
-    case: Case, support: NormalModes, model: LinearModel, shape: tuple[int, ...]
+    case: Configuration, support: NormalModes, model: LinearModel, shape: tuple[int, ...]
 ) -> dict[str, Part]:
     """What the support adds; its mass is that without the rotor's."""
     n, modes = len(model.dofs), len(support.names)

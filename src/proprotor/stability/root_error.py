@@ -20,10 +20,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.eigenvalue_derivatives import real_times, second_order_left
 from proprotor.stability.matching import Modes, Spectrum, size_of
-from proprotor.stability.modes import decomposition, eigenvalues, held_coordinates, some_points
+from proprotor.stability.modes import decomposition, eigenvalues
 from proprotor.typing import Array
 
 _EPSILON = float(np.finfo(float).eps)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
@@ -35,8 +36,8 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.case import Case
     from proprotor.datum import Datum
+    from proprotor.model.configuration import Configuration
 
 QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
 NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
@@ -78,7 +79,7 @@ def damping_rate(values: Array, changes: Array) -> Array:
 
 
 def sensitivity(
-    case: Case,
+    case: Configuration,
     of: str = "flutter_speed",
     wrt: Sequence[str] | None = None,
     *,
@@ -132,7 +133,7 @@ def sensitivity(
     return _of_modes(case, of, inputs, airspeed, mode, options)
 
 
-def _chosen(case: Case, wrt: Sequence[str] | None) -> dict[str, Datum]:
+def _chosen(case: Configuration, wrt: Sequence[str] | None) -> dict[str, Datum]:
     from proprotor.deck.vary import design_inputs
 
     known = design_inputs(case)
@@ -143,12 +144,17 @@ def _chosen(case: Case, wrt: Sequence[str] | None) -> dict[str, Datum]:
 
 
 def _rates(
-    case: Case, inputs: Mapping[str, Datum], airspeed: float, modes: Modes, model: LinearModel, options: Any
+    case: Configuration,
+    inputs: Mapping[str, Datum],
+    airspeed: float,
+    modes: Modes,
+    model: LinearModel,
+    options: Any,
 ) -> tuple[Array, Array]:
     """Derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) had them by a complex step."""
 
     def linearize(values: Mapping[str, Array]) -> LinearModel:
-        return case.vary(values).linearize(airspeed, **options)
+        return vary_case(case, values).linearize(airspeed, **options)
 
     def of_one(path: str, value: Array) -> LinearModel:
         return linearize({path: value})
@@ -171,16 +177,16 @@ def _rates(
     return rates, exact
 
 
-def _takes_complex(case: Case, path: str, value: float) -> bool:
+def _takes_complex(case: Configuration, path: str, value: float) -> bool:
     try:
-        case.vary({path: np.array(value + 1j * STEP)})
+        vary_case(case, {path: np.array(value + 1j * STEP)})
     except InputError:
         return False
     return True
 
 
 def _of_flutter_speed(
-    case: Case,
+    case: Configuration,
     inputs: Mapping[str, Datum],
     airspeeds: Any,
     mode: str | None,
@@ -197,7 +203,7 @@ def _of_flutter_speed(
 
 
 def at_boundary(
-    case: Case,
+    case: Configuration,
     boundary: Boundary,
     inputs: Mapping[str, Datum],
     options: Mapping[str, Any],
@@ -239,7 +245,7 @@ def at_boundary(
 
 
 def _of_modes(
-    case: Case,
+    case: Configuration,
     of: str,
     inputs: Mapping[str, Datum],
     airspeed: Any,

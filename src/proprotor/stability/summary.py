@@ -3,60 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from proprotor.model import stamp
-from proprotor.model.doubts import MARK, doubt_at, footnotes, marked, reasons_for_doubt
-from proprotor.model.provenance import reservations
+from proprotor.model.doubts import MARK, doubt_at, footnotes, marked
 from proprotor.stability.boundary_summary import failed_told, least_told
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
-    from proprotor.model.linear_model import LinearModel
     from proprotor.stability.flutter import Boundary, Crossings, FlutterPoint
-    from proprotor.support.normal_modes import NormalModes
-
-_RPM = math.pi / 30  # rad/s
-
-
-def of_case(case: Case) -> str:
-    """The rotor, what carries it, and what its numbers rest on."""
-    rotor, speed = case.rotor, np.asarray(case.operation.rotor_speed) / _RPM
-    lines = [
-        f"Case {case.name}" + (f": {case.title}" if case.title else ""),
-        f"  rotor: {rotor.n_blades} blades, radius {_range(np.asarray(rotor.radius))} m, {_range(speed)} rpm",
-        f"  support: {', '.join(case.support.names) or 'a rigid hub'}{_held(case.support)}",
-    ]
-    return "\n".join(lines + [f"  {sentence}" for sentence in reservations(case)])
-
-
-def _held(support: NormalModes) -> str:
-    """How the rotor was held when the modes were found with it on."""
-    if not support.includes_rotor:
-        return ""
-    shaft = "" if support.includes_rotor == "mass only" else f", shaft {support.shaft}"
-    return f"; found with the rotor on, {support.includes_rotor}{shaft}"
-
-
-def of_model(model: LinearModel) -> str:
-    """Coordinates, shape of the batch and what failed in it."""
-    converged = np.asarray(model.trim.converged)
-    shape = f"batch of shape {converged.shape}" if converged.ndim else "one point"
-    lines = [
-        f"LinearModel: {len(model.dofs)} coordinates, {shape}, {_range(model.airspeed)} m/s",
-        f"  {', '.join(model.dofs)}",
-    ]
-    lines += [f"  {line}" for line in stamp.told_if_unusual(stamp.of_model(model))]
-    reasons = Counter(str(reason) for reason in np.ravel(model.trim.reason) if reason)
-    lines += [f"  {count} of {converged.size} failed: {reason}" for reason, count in reasons.most_common(5)]
-    doubts = reasons_for_doubt(np.ravel(model.trim.warning).tolist())
-    lines += [f"  {len(at)} of {converged.size} doubtful: {text}" for text, at in doubts.items()]
-    return "\n".join(lines)
 
 
 def of_boundary(boundary: Boundary) -> str:
@@ -118,8 +74,3 @@ def _at_start(found: Crossings | FlutterPoint) -> Iterator[str]:
 def _failed(found: Crossings | FlutterPoint, unit: str, factor: float) -> Iterator[str]:
     for told in failed_told(found, unit, factor):
         yield f"  {told}"
-
-
-def _range(values: np.ndarray) -> str:
-    low, high = float(np.min(values.real)), float(np.max(values.real))
-    return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"

@@ -8,21 +8,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
+from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel, batch_shape
 from proprotor.needs import check_memory
+from proprotor.rotor.motions import SECOND, name_list
 from proprotor.stability.branches import Named, branches
 from proprotor.stability.following import Line, Path, follow, path_of
 from proprotor.stability.matching import Modes, Spectrum, link, side_by_side
-from proprotor.stability.mode_names import SECOND, Moving, moving, name_list, whirl
+from proprotor.stability.mode_names import Moving, moving, whirl
 from proprotor.stability.modes import (
     Eigensystem,
     coordinate_motion,
     coordinate_shares,
-    held_coordinates,
     mode_dataset,
-    some_points,
     with_azimuth,
 )
 from proprotor.stability.root_error import errors_of
@@ -32,7 +33,7 @@ from proprotor.units import in_metres_per_second
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.case import Case
+    from proprotor.model.configuration import Configuration
 
 ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where branches get labels, the first that has a trim
 _BYTES_PER_POINT = 230_000.0  # while modes are followed and boundaries found; measured with wings of beams
@@ -204,7 +205,7 @@ def mode_columns(found: Moving, values: Array) -> tuple[Array, list[str]]:
 
 
 def sweep_case(
-    case: Case, airspeeds: Any, vary: Mapping[str, ArrayLike] | None = None, **options: Any
+    case: Configuration, airspeeds: Any, vary: Mapping[str, ArrayLike] | None = None, **options: Any
 ) -> xarray.Dataset:
     """Modes of a case along airspeeds, or along one input at one airspeed: see `sweep`.
 
@@ -237,7 +238,7 @@ def sweep_case(
 
 
 def _sweep_of(
-    case: Case, airspeeds: Any, vary: Mapping[str, ArrayLike] | None, options: Mapping[str, Any]
+    case: Configuration, airspeeds: Any, vary: Mapping[str, ArrayLike] | None, options: Mapping[str, Any]
 ) -> xarray.Dataset:
     line = line_of_case(case, airspeeds, vary, options)
     if line is None:  # points differ in more than their airspeed
@@ -247,7 +248,7 @@ def _sweep_of(
 
 
 def line_of_case(
-    case: Case, airspeeds: Any, vary: Mapping[str, ArrayLike] | None, options: Mapping[str, Any]
+    case: Configuration, airspeeds: Any, vary: Mapping[str, ArrayLike] | None, options: Mapping[str, Any]
 ) -> Line | None:
     """The line of airspeeds, or of an input; None where points differ in more than one number.
 
@@ -275,7 +276,7 @@ def _check_points(field: str, points: int) -> None:
 
 
 def _line_of_input(
-    case: Case, speed: Array, vary: Mapping[str, ArrayLike], options: Mapping[str, Any]
+    case: Configuration, speed: Array, vary: Mapping[str, ArrayLike], options: Mapping[str, Any]
 ) -> Line:
     from proprotor.deck.vary import design_inputs
     from proprotor.units import values_in_si
@@ -293,13 +294,15 @@ def _line_of_input(
     _check_points(path, values.size)
 
     def linearize(positions: Array) -> LinearModel:
-        return case.vary({path: positions}).linearize(speed[0], **options)
+        return vary_case(case, {path: positions}).linearize(speed[0], **options)
 
-    case.vary({path: values})  # which tells what is wrong with the values
+    vary_case(case, {path: values})  # which tells what is wrong with the values
     return Line(values, linearize, path, unit)
 
 
-def approach_to(case: Case, line: Line, model: LinearModel, options: Mapping[str, Any]) -> Line | None:
+def approach_to(
+    case: Configuration, line: Line, model: LinearModel, options: Mapping[str, Any]
+) -> Line | None:
     """The way to a line from the anchor: the case's own inputs near cruise (`anchor_speed`).
 
     Along airspeeds to the line's own, or to its one airspeed; there, from the case's own value of the input to its
@@ -322,19 +325,19 @@ def approach_to(case: Case, line: Line, model: LinearModel, options: Mapping[str
     def linearize(way: Array) -> LinearModel:
         done = np.clip(way / first, 0, 1) if first > 0 else np.ones_like(way)
         beyond = np.clip((way - first) / second, 0, 1) if second > 0 else np.zeros_like(way)
-        varied = case.vary({line.name: own + beyond * (end - own)})
+        varied = vary_case(case, {line.name: own + beyond * (end - own)})
         return varied.linearize(start + done * (speed - start), **options)
 
     count = 2 + int((first + second) / _STRIDE)
     return Line(np.linspace(0.0, first + second, count), linearize, "way from the anchor", "1", end)
 
 
-def tip_speed(case: Case) -> float:
+def tip_speed(case: Configuration) -> float:
     """Rotor speed times radius of a case, m/s."""
     return float(case.operation.rotor_speed) * float(case.rotor.radius)
 
 
-def anchor_speed(case: Case, **options: Any) -> float | None:
+def anchor_speed(case: Configuration, **options: Any) -> float | None:
     """Airspeed in m/s at which the branches of a case get their labels.
 
     Seven tenths of the tip speed, which is near cruise; less where there is no trim; None where there is none at all.
@@ -344,7 +347,7 @@ def anchor_speed(case: Case, **options: Any) -> float | None:
     return float(speeds[works[0]]) if len(works) else None
 
 
-def _is_batch(case: Case, options: Mapping[str, Any]) -> bool:
+def _is_batch(case: Configuration, options: Mapping[str, Any]) -> bool:
     train = case.model_options(options).get("drive_train")
     return batch_shape(case.rotor, case.operation, np.zeros(()), train) != () or any(
         np.ndim(value) > 0 for name, value in options.items() if name.endswith("_coupling")

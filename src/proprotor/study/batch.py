@@ -12,17 +12,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.model.first_order import held_coordinates, missing_roots
 from proprotor.stability.crossings import Brackets, Crossing, Search
 from proprotor.stability.matching import NOT_TOLD, Spectrum
 from proprotor.stability.mode_names import moving
-from proprotor.stability.modes import (
-    coordinate_motion,
-    coordinate_shares,
-    decomposition,
-    eigenvalues,
-    held_coordinates,
-    missing_roots,
-)
+from proprotor.stability.modes import coordinate_motion, coordinate_shares, decomposition, eigenvalues
 from proprotor.stability.root_error import error_near_zero
 from proprotor.study.mode_histories import follow_designs
 from proprotor.study.sampling import AIRSPEED

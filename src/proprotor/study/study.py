@@ -17,8 +17,8 @@ from proprotor_equations import FIXED_COORDINATES
 from proprotor.errors import InputError, unknown_name
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
-from proprotor.model.linear_model import HUB, ROTOR_SPEED
 from proprotor.needs import check_memory, free_memory
+from proprotor.rotor.motions import HUB, ROTOR_SPEED
 from proprotor.rotor.options import parse_options
 from proprotor.study import workers as study_workers
 from proprotor.study.batch import (

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from proprotor.datum import is_choice, told_choices
-from proprotor.errors import InputError
+from proprotor.errors import InputError, is_choice, told_choices
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -74,9 +73,7 @@ class NormalModes:
         for field, choices in (("includes_rotor", INCLUDES_ROTOR), ("shaft", SHAFT)):
             if not is_choice(getattr(self, field), choices):
                 raise InputError(field, getattr(self, field), f"must be {told_choices(choices)}")
-        from proprotor.stability.mode_names import (
-            check_support_names,  # here, because it knows the rotor's coordinates
-        )
+        from proprotor.rotor.motions import check_support_names
 
         check_support_names("names", names)
         n = len(names)

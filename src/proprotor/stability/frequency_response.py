@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from proprotor.errors import InputError, unknown_name
-from proprotor.model.linear_model import HUB, SWASHPLATE, LinearModel
+from proprotor.model.linear_model import SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
 from proprotor.needs import check_memory
+from proprotor.rotor.motions import HUB
 from proprotor.stability.root_error import roots
 from proprotor.typing import Array
 from proprotor.units import values_in_si
