@@ -42,7 +42,7 @@ Signed = tuple[float, bool]  # position in kt, and whether a root becomes unstab
 
 def random_decks(count: int) -> Iterator[tuple[Any, Any]]:
     """Flights on modes, the same ones every time."""
-    from tests.test_random_decks import flights_on_modes
+    from tests.deck.test_random_decks import flights_on_modes
 
     made: list[tuple[Any, Any]] = []
 
@@ -268,7 +268,7 @@ def main() -> None:
     parser.add_argument("--verbose", action="store_true")
     chosen = parser.parse_args()
     console, totals = Console(width=120), {}
-    from tests.test_random_decks import load
+    from tests.deck.test_random_decks import load
 
     warnings.simplefilter("ignore")
     begin = time.process_time()

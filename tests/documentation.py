@@ -37,18 +37,18 @@ DOCS = ROOT / "docs"
 
 # Commands and blocks that no test of a page runs: how they begin, and why.
 NOT_RUN = {
-    "make": "a whole environment, or minutes; tests/test_readme.py holds the targets, CI runs most of them",
+    "make": "a whole environment, or minutes; tests/project/test_readme.py holds the targets, CI runs most of them",
     "python -m benchmarks": "minutes; writes the tables of pages",
-    "proprotor figures": "minutes; tests/test_figures.py makes figures",
+    "proprotor figures": "minutes; tests/paper_figures/test_figures.py makes figures",
     "proprotor explore": "a server, which its own tests start",
-    "proprotor report": "half a minute each; tests/test_report.py makes reports",
+    "proprotor report": "half a minute each; tests/report/test_report.py makes reports",
     "source ": "the shell that a reader works in",
     "derive/ ──▶": "a drawing",
-    "radius = {": "a line of a deck; tests/test_deck.py reads such",
-    "from distributed import Client": "needs a cluster at that address; tests/test_study_distributed.py has one",
+    "radius = {": "a line of a deck; tests/deck/test_deck.py reads such",
+    "from distributed import Client": "needs a cluster at that address; tests/study/test_study_distributed.py has one",
 }
 # Pages that another test runs whole.
-RUN_ELSEWHERE = {"notebooks": "tests/test_notebooks.py runs the notebooks and compares what they show"}
+RUN_ELSEWHERE = {"notebooks": "tests/derive/test_notebooks.py runs the notebooks and compares what they show"}
 INDENTED_COMMAND = re.compile(
     r"(\.venv/bin/)?(proprotor|python|make|git|cd|pip|source|eval|PYTHONPATH=|open) ?|make$"
 )

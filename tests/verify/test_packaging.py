@@ -22,7 +22,7 @@ NEEDED_OF_SOURCE = (
     "templates",
     "generated/proprotor_equations/multiblade.py",
     "src/proprotor/deck/decks/xv15.toml",
-    "tests/test_closed_forms.py",
+    "tests/derive/test_closed_forms.py",
 )
 NEEDED_OF_WHEEL = (
     "proprotor/deck/decks/xv15.toml",

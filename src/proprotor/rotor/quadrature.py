@@ -14,7 +14,7 @@ from proprotor.typing import Array
 POWERS = 3  # moments of r^0, r^1 and r^2
 # Points for a panel of a given share of the radius: at high airspeed section loads vary over the radius. At low
 # airspeed they turn within V/Ω of the axis: panels near the root double outward, with points by distance from the
-# axis. These keep every radial moment within 1e-10 of itself (tests/test_quadrature.py).
+# axis. These keep every radial moment within 1e-10 of itself (tests/rotor/test_quadrature.py).
 _LONGEST_PANEL = 0.1
 _SHARES, _POINTS = np.array([0.021, 0.03, 0.06]), np.array([3, 4, 6, 8])
 _NEAR_ROOT = 0.2 / 2.0 ** np.arange(7)  # of the radius

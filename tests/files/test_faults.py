@@ -30,7 +30,7 @@ from proprotor.study.checkpoint import Checkpoint
 from tests import accept_golden
 from tests.csv_files import without_comments
 from tests.golden.modes import Mode, Record
-from tests.test_study_resume import run as study
+from tests.study.test_study_resume import run as study
 
 
 def run(*arguments):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from tests.derive.test_airloads_virtual_work import CASES, Case
 from tests.oracles.comparison import GROUPS
 from tests.oracles.inputs import (
     control_columns,
@@ -18,7 +19,6 @@ from tests.oracles.inputs import (
 )
 from tests.oracles.nonlinear_rotor import DOFS
 from tests.oracles.virtual_work import airload_rows, lift_slope_rows
-from tests.test_airloads_virtual_work import CASES, Case
 
 INPUTS = ("collective", "cyclic_1c", "cyclic_1s", "gust_x", "gust_y", "gust_z")
 SWASHPLATE, GUSTS = slice(0, 3), slice(3, 6)

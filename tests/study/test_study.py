@@ -549,7 +549,7 @@ def test_a_study_in_which_all_fails_ends_with_code_1(run):
 
 # Documentation ------------------------------------------------------------------------------------
 
-DOCS = (Path(__file__).parents[1] / "docs" / "studies.md").read_text(encoding="utf-8")
+DOCS = (Path(__file__).parents[2] / "docs" / "studies.md").read_text(encoding="utf-8")
 
 
 def test_the_examples_of_the_documentation_run(tmp_path, monkeypatch, capsys):

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from tests.derive.test_airloads_virtual_work import Case
 from tests.oracles.nonlinear_rotor import DOFS, FLAP, LAG, PITCH, linearised, rows_in_vacuum
 from tests.oracles.virtual_work import airload_rows
-from tests.test_airloads_virtual_work import Case
 
 ANGLES = ("flap", "lag", "pitch")
 BEYOND = {

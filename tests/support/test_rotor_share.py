@@ -19,8 +19,8 @@ from proprotor.model.several_rotors import MountedRotor, mount_rotors
 from proprotor.rotor.motions import HUB
 from proprotor.support.matrix_files import support_from_matrices
 from proprotor.support.normal_modes import INCLUDES_ROTOR, SHAFT
-from tests.test_beam_wing import xv15_wing
-from tests.test_nastran import to_aircraft, write_op2
+from tests.support.test_beam_wing import xv15_wing
+from tests.support.test_nastran import to_aircraft, write_op2
 
 ROUNDING = 1e-11  # of the largest entry, with products of some hundred terms
 SLUG, FT, LB = 14.593902937, 0.3048, 0.45359237

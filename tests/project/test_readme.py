@@ -1,9 +1,9 @@
-"""What the README points to exists. Its code runs in tests/test_docs_code.py."""
+"""What the README points to exists. Its code runs in tests/project/test_docs_code.py."""
 
 import re
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 

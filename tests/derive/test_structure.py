@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from tests.derive.test_airloads_virtual_work import CASES, Case, steady_rows
+from tests.derive.test_lagrangian import assert_model_matches, expected_matrices
 from tests.oracles import nonlinear_rotor
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import AZIMUTH, FLAP, LAG, PITCH, hinge_spring_energy, rows_in_vacuum
 from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
-from tests.test_airloads_virtual_work import CASES, Case, steady_rows
-from tests.test_lagrangian import assert_model_matches, expected_matrices
 
 SPEED = 47.0
 BLADES = ("flap_0", "flap_1c", "flap_1s", "lag_0", "lag_1c", "lag_1s")

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 import proprotor as pp
 from tests.fuzz.decks import written
+from tests.rotor.test_limits import ROUNDING, TOGETHER
+from tests.rotor.test_scaling import assert_same_entries, in_si_units, in_us_units
 from tests.rotors import DAMPERS, between, flights
-from tests.test_limits import ROUNDING, TOGETHER
-from tests.test_scaling import assert_same_entries, in_si_units, in_us_units
 
 any_deck = settings(
     max_examples=12,

@@ -22,7 +22,7 @@ from tests.mutation.mutants import Mutant, MutatedFunction, generated_functions,
 from tests.mutation.report import report
 from tests.mutation.survey import Outcome, mutant_counts, outcomes_of
 
-PAGE = Path(__file__).parents[1] / "docs" / "mutation.md"
+PAGE = Path(__file__).parents[2] / "docs" / "mutation.md"
 EVERY = 40  # of the mutants of a function
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from tests.derive.test_airloads_virtual_work import DENSITY, Case
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import AZIMUTH, HUB_MOMENT, UNIT, blades, clock, linearised
 from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
@@ -17,7 +18,6 @@ from tests.oracles.virtual_work import (
     section_flow,
     section_loads,
 )
-from tests.test_airloads_virtual_work import DENSITY, Case
 
 TARGETS = {
     "climb": {"thrust_coefficient": 0.008},

@@ -25,7 +25,7 @@ from proprotor.deck.template import case_name, deck_text, example
 from proprotor.errors import InputError
 
 DECKS = Path(sys.modules["proprotor"].__file__).parent / "deck" / "decks"
-DOCS = Path(__file__).parent.parent / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 DEG, SLUG_FT2 = np.pi / 180, 14.593902937206365 * 0.3048**2
 
 

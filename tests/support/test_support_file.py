@@ -15,7 +15,7 @@ from proprotor.support.beam_wing import beam_structure, beam_wing
 from proprotor.support.matrix_files import read_matrix_market, read_npz, support_from_matrices
 from proprotor.support.modal_reduction import lowest_modes
 from proprotor.support.normal_modes import HUB_AXES
-from tests.test_beam_wing import furthest, on_the_rotor, xv15_wing
+from tests.support.test_beam_wing import furthest, on_the_rotor, xv15_wing
 
 RATIO = [0.01, 0.02, 0.01]
 

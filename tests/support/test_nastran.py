@@ -14,7 +14,7 @@ from proprotor.errors import InputError
 from proprotor.support.beam_wing import beam_structure, beam_wing
 from proprotor.support.modal_reduction import lowest_modes
 from proprotor.support.nastran import _names_of_older_numpy, _one_subcase, nastran_modes
-from tests.test_beam_wing import furthest, on_the_rotor, with_rotor, xv15_wing
+from tests.support.test_beam_wing import furthest, on_the_rotor, with_rotor, xv15_wing
 
 SINGLE = 1e-6  # the file holds single precision
 INCH, SLINCH = 0.0254, 4.4482216152605 / 0.0254  # lbf s²/in

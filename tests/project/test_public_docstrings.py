@@ -22,11 +22,11 @@ from proprotor.deck.vary import vary
 from proprotor.exchange import matlab as matlab_file
 from proprotor.exchange import netcdf as results_file
 from proprotor.exchange import openmdao
-from proprotor.model import frequency_response, state_space
+from proprotor.model import state_space
 from proprotor.plots import animation, mode_motion
 from proprotor.rotor.options import Options
 from proprotor.rotor.trim import Trim
-from proprotor.stability import boundary_lines, flutter
+from proprotor.stability import boundary_lines, flutter, frequency_response
 from proprotor.stability.attribution import attribution
 from proprotor.stability.map import stability_map
 from proprotor.stability.modes import modes

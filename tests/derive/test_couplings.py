@@ -13,10 +13,10 @@ from proprotor_equations.pitch import couplings
 
 import proprotor as pp
 from benchmarks.couplings import SPEEDS, pitch_couplings
+from tests.derive.test_airloads_virtual_work import CASES, Case
 from tests.oracles.comparison import assert_matrices_match
 from tests.oracles.nonlinear_rotor import FLAP, LAG, PITCH, central_difference, inertia_rows, linearised
 from tests.oracles.virtual_work import airload_rows
-from tests.test_airloads_virtual_work import CASES, Case
 
 SPRINGS = (
     "flap_stiffness",

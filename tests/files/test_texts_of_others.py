@@ -20,7 +20,7 @@ from proprotor.rotor.motions import HUB, SECOND, motions, name_list, reactionles
 from proprotor.support.matrix_files import read_matrix_market
 from proprotor.support.matrix_market import read_matrix
 from proprotor.tables.terminal import PlainConsole
-from tests.test_command_contract import SUCCEED
+from tests.commands.test_command_contract import SUCCEED
 
 DECK = 'base = "xv15"\n[case]\nname = "mine"\ntitle = "Mine"\n'
 C81 = "MINE" + " " * 26 + " 1 2 1 2 1 2\n" + (" " * 7 + "   0.00\n" + "  -10.0  0.100\n   10.0  0.200\n") * 3

@@ -151,7 +151,7 @@ def test_no_text_of_a_figure_overlaps_another_or_leaves_it(coarse):
         assert ax.title.get_window_extent(renderer).x1 <= figure.bbox.x1
 
 
-# What the figures must show (relative statements of the paper; sizes by tests/test_xv15.py's tables) -------------
+# What the figures must show (relative statements of the paper; sizes by tests/paper_figures/test_xv15.py's tables) -------------
 
 
 def test_couplings_lower_every_boundary_of_the_xv15(analyses):

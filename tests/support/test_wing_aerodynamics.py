@@ -15,7 +15,7 @@ from proprotor.support.wing_aerodynamics import (
     cantilever_strips,
     in_airstream,
 )
-from tests.test_beam_wing import BODY, wing
+from tests.support.test_beam_wing import BODY, wing
 
 RHO, V, A, C, SPAN = 1.1, 90.0, 5.6, 1.6, 4.9
 QUADRATURE = 1e-12

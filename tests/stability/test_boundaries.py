@@ -14,7 +14,7 @@ from proprotor.study.batch import STABLE, UNSTABLE
 from proprotor.study.study import study
 from tests.known_systems import along, roots
 from tests.rotors import Flight, random_support
-from tests.test_root_error import exact_roots
+from tests.stability.test_root_error import exact_roots
 
 KNOT = 1852 / 3600
 STIFFNESS, PRECONE = "rotor.control_stiffness", "rotor.precone"

@@ -48,7 +48,7 @@ def batches(folder):
 
 
 SCRIPT = """
-from tests.test_study_resume import run
+from tests.study.test_study_resume import run
 import sys
 run(sys.argv[1], workers=2)
 """
@@ -142,7 +142,7 @@ RESUMED = """
 import sys
 from proprotor.study import batch as study_batch
 from proprotor import InputError
-from tests.test_study_resume import run
+from tests.study.test_study_resume import run
 
 def computed(self, batch):
     raise AssertionError("a batch that is there was computed again")
@@ -155,7 +155,7 @@ except InputError as error:
 else:
     print("resumed")
 """
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
