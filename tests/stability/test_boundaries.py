@@ -110,6 +110,21 @@ def test_a_pair_that_is_two_real_roots_for_a_while_diverges_meanwhile(points):
     assert [(b.kind, b.onset) for b in found.boundaries] == [("divergence", True), ("divergence", False)]
 
 
+@pytest.mark.parametrize("points", [2, 3, 4, 5, 7, 12])
+def test_a_real_root_that_crosses_and_comes_back_before_it_joins_another_is_seen(points):
+    """λ² + 2aλ + c(p - r)(p - s): real roots at one end of a step, a pair at the other, divergence from r to s."""
+    random = np.random.default_rng(3)
+    for _ in range(60):
+        first, second = np.sort(random.uniform(1, 9, 2))
+        damping, stiffness = random.uniform(0.3, 2.0), random.uniform(0.02, 2.0)
+
+        def matrices(x, a=damping, c=stiffness, r=first, s=second):
+            return np.eye(1), 2 * a * np.eye(1) + 0 * x, c * (x - r) * (x - s) * np.eye(1)
+
+        found = told(crossings(matrices, np.linspace(0, 10, points)))
+        assert found == [(pytest.approx(first), True), (pytest.approx(second), False)]
+
+
 @pytest.mark.parametrize("points", [2, 3, 4, 9])
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_real_roots_on_both_sides_of_the_level_that_join_below_it_cross_it_twice(points, mirrored):
