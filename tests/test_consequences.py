@@ -5,7 +5,7 @@ import inspect
 import numpy as np
 import pytest
 
-from derive import consequences, printed, table_audit
+from derive.audit import consequences, printed, tables
 from derive.equations import REDUCED_MODULES
 from derive.published import DROPPED_TERMS, PUBLISHED
 from proprotor.options import Options
@@ -87,21 +87,21 @@ def test_a_steady_tilt_shakes_the_blade_once_per_revolution_with_half_of_the_pai
 def test_a_printed_number_keeps_its_digits():
     """0.200 is known to a thousandth, 0.2 to a tenth."""
     model = printed.TABLES[1].values
-    assert table_audit.rounding(model["I_βα"]) == pytest.approx(0.0005)
-    assert table_audit.rounding(model["S_β"]) == pytest.approx(0.00005)
-    assert table_audit.rounding(model["R_β"]) == pytest.approx(0.005)
-    assert table_audit.rounding(printed.TABLES[0].values["I_b"]) == pytest.approx(0.5)
+    assert tables.rounding(model["I_βα"]) == pytest.approx(0.0005)
+    assert tables.rounding(model["S_β"]) == pytest.approx(0.00005)
+    assert tables.rounding(model["R_β"]) == pytest.approx(0.005)
+    assert tables.rounding(printed.TABLES[0].values["I_b"]) == pytest.approx(0.5)
 
 
 def test_the_search_for_a_blade_does_not_stop_at_the_grid():
     """Table 2: on the grid no blade is within the printed digits, beside it one is."""
     v = printed.TABLES[1].values
-    least, flap, lag = table_audit.nearest_blade(v, table_audit.INTEGRALS)
+    least, flap, lag = tables.nearest_blade(v, tables.INTEGRALS)
     assert least <= 1
-    assert table_audit.misfit(v, table_audit.INTEGRALS, flap[0], lag[0]) == pytest.approx(least)
+    assert tables.misfit(v, tables.INTEGRALS, flap[0], lag[0]) == pytest.approx(least)
     grid = np.linspace(0.19, 0.26, 8)
-    implied = table_audit.implied_offset(v, "ζ")
-    assert min(table_audit.misfit(v, table_audit.INTEGRALS, offset, implied) for offset in grid) > 1
+    implied = tables.implied_offset(v, "ζ")
+    assert min(tables.misfit(v, tables.INTEGRALS, offset, implied) for offset in grid) > 1
 
 
 @pytest.mark.parametrize("options", [{}, {"equations": "published"}, {"pitch": "coupling"}])

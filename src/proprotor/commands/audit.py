@@ -65,7 +65,7 @@ def _repository() -> Path:
     import proprotor
 
     root = Path(proprotor.__file__).resolve().parents[2]
-    if not (root / "derive" / "audit.py").is_file() or not (root / _RECORD).is_file():
+    if not (root / "derive" / "audit" / "__main__.py").is_file() or not (root / _RECORD).is_file():
         rule = "needs the repository, which has the derivation: clone it and run `make audit` there"
         raise InputError("audit", None, rule)
     return root

@@ -20,18 +20,18 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from derive import consequences, invariants, printed
-from derive.comparison import ABSENT_FROM_PRINT, AFTER_READING, VERDICTS, EquationVerdict, audit
-from derive.consequences import in_knots
-from derive.counterparts import COUNTERPARTS
-from derive.headings import anchor, heading
-from derive.invariants import Finding
-from derive.printed.notation import latex_names
+from derive.audit import consequences, invariants, printed
+from derive.audit.comparison import ABSENT_FROM_PRINT, AFTER_READING, VERDICTS, EquationVerdict, audit
+from derive.audit.consequences import in_knots
+from derive.audit.counterparts import COUNTERPARTS
+from derive.audit.headings import anchor, heading
+from derive.audit.invariants import Finding
+from derive.audit.printed.notation import latex_names
+from derive.audit.tables import TableVerdict, audit_table
 from derive.published import DROPPED_TERMS
-from derive.table_audit import TableVerdict, audit_table
 from proprotor.output_file import write_whole
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 RECORD = ROOT / "tests" / "golden" / "audit.csv"
 REPORT = ROOT / "docs" / "audit.md"
 HEADER = ("number", "part", "term", "printed", "derived", "verdict", "note")
@@ -221,7 +221,7 @@ def _markdown_table(header: Sequence[str], rows: Iterable[Iterable[object]]) -> 
 def _derived_by(number: str) -> str:
     """The function, with a link to where the index has it."""
     known = {str(key): key for key in COUNTERPARTS}
-    name = "table_audit.audit_table"
+    name = "tables.audit_table"
     if number in known:
         function = COUNTERPARTS[known[number]]
         name = f"counterparts.{getattr(function, 'func', function).__name__}"

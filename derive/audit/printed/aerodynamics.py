@@ -3,8 +3,8 @@
 import sympy as sp
 
 from derive import symbols as s
+from derive.audit.printed.notation import TIME, PrintedEquation, e
 from derive.multiblade import FIXED_COORDINATES, psi
-from derive.printed.notation import TIME, PrintedEquation, e
 
 r, speed = s.radial_station, s.airspeed
 sine, cosine = sp.sin(psi), sp.cos(psi)

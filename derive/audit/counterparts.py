@@ -16,10 +16,10 @@ import sympy as sp
 from derive import airloads, flap_lag_springs, inertia, multiblade, pitch
 from derive import kinematics as kin
 from derive import symbols as s
+from derive.audit.printed import notation as n
+from derive.audit.printed.kinematics import VECTORS
+from derive.audit.printed.notation import AZIMUTH, FIXED_NAMES, TIME
 from derive.polynomials import SEGMENT_ANGLES, WHOLE_BLADE_ANGLES, temporaries
-from derive.printed import notation as n
-from derive.printed.kinematics import VECTORS
-from derive.printed.notation import AZIMUTH, FIXED_NAMES, TIME
 from derive.published import CONSISTENT
 
 Parts = dict[str, sp.Expr]

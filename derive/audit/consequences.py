@@ -25,11 +25,11 @@ from proprotor_equations import pitch as pitch_equations
 import proprotor as pp
 from derive import multiblade
 from derive import symbols as s
-from derive.counterparts import COUNTERPARTS
+from derive.audit.counterparts import COUNTERPARTS
+from derive.audit.printed import TABLES
+from derive.audit.printed.notation import TIME
 from derive.emit import MODULE_TITLES, render_module
 from derive.equations import REDUCED_MODULES, STEPS
-from derive.printed import TABLES
-from derive.printed.notation import TIME
 from derive.published import DROPPED_TERMS, PUBLISHED
 from proprotor import model as runtime
 from proprotor.branches import by_branch

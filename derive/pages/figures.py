@@ -18,14 +18,15 @@ from matplotlib.figure import Figure
 from proprotor_equations import pitch
 
 import proprotor as pp
-from derive import consequences, flap_lag_springs, table_audit
+from derive import flap_lag_springs
 from derive import symbols as s
-from derive.comparison import CANDIDATES
-from derive.consequences import KNOT, SPEEDS, xv15
-from derive.counterparts import frequency_squared
+from derive.audit import consequences, tables
+from derive.audit.comparison import CANDIDATES
+from derive.audit.consequences import KNOT, SPEEDS, xv15
+from derive.audit.counterparts import frequency_squared
+from derive.audit.printed import TABLES
+from derive.audit.printed.tables import PrintedTable
 from derive.inertia import dependent_inertias
-from derive.printed import TABLES
-from derive.printed.tables import PrintedTable
 from proprotor.arrays import Array
 from proprotor.branches import by_branch
 from proprotor.evaluation import evaluate
@@ -169,8 +170,8 @@ def _of_table(table: PrintedTable) -> dict[sp.Symbol, float]:
         s.lag_inertia: v["I_ζ"],
         s.flap_first_moment: v["S_β"],
         s.lag_first_moment: v["S_ζ"],
-        s.flap_hinge_offset: table_audit.implied_offset(v, "β"),
-        s.lag_hinge_offset: table_audit.implied_offset(v, "ζ"),
+        s.flap_hinge_offset: tables.implied_offset(v, "β"),
+        s.lag_hinge_offset: tables.implied_offset(v, "ζ"),
         s.rotor_speed: v["rpm"] * np.pi / 30,
     }
 
@@ -370,8 +371,8 @@ def _draw_bound(ax: Axes, table: PrintedTable) -> None:
             color=color,
             label=f"$(I_{angle} + e S_{angle})/\\sqrt{{I_b I_{angle}}}$",
         )
-        implied = table_audit.implied_offset(v, angle) / v["R"]
-        error = table_audit.rounding(v[f"I_{angle}α"]) / bound
+        implied = tables.implied_offset(v, angle) / v["R"]
+        error = tables.rounding(v[f"I_{angle}α"]) / bound
         label = f"$I_{{{angle}α}}$ as printed"
         ax.errorbar(implied, v[f"I_{angle}α"] / bound, error, fmt="o", color=color, label=label, capsize=3)
     _titled(ax, f"Table {table.number}: {table.title}", "Hinge offset e/R", "Inertia/its bound")

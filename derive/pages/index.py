@@ -1,7 +1,7 @@
 """The index of the paper's equations: print, derivation, generated function and notebook of each, in docs/equations.md.
 
-python -m derive.index            write the page
-python -m derive.index --check    write nothing; exit 1 if the page is stale
+python -m derive.pages.index            write the page
+python -m derive.pages.index --check    write nothing; exit 1 if the page is stale
 
 Every place is found in the sources: the print and the counterpart by their numbers, the derivation by what the
 counterpart calls, generated functions by the equations their docstrings name, notebook cells by their headings.
@@ -19,14 +19,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from derive import printed
-from derive.audit import LETTERS, RECORD
-from derive.comparison import VERDICTS
-from derive.headings import anchor, heading
-from derive.notebooks import page_of, sources
+from derive.audit import printed
+from derive.audit.comparison import VERDICTS
+from derive.audit.headings import anchor, heading
+from derive.audit.report import LETTERS, RECORD
+from derive.pages.notebooks import page_of, sources
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 DERIVE = ROOT / "derive"
+AUDIT = DERIVE / "audit"
 GENERATED = ROOT / "generated" / "proprotor_equations"
 PAGE = ROOT / "docs" / "equations.md"
 COUNTERPARTS = "counterparts"
@@ -84,7 +85,7 @@ def _definitions(path: Path) -> dict[str, ast.stmt]:
 def prints() -> dict[Number, Place]:
     """Where each equation and table is transcribed."""
     found: dict[Number, Place] = {}
-    for path in sorted((DERIVE / "printed").glob("*.py")):
+    for path in sorted((AUDIT / "printed").glob("*.py")):
         for call in ast.walk(_tree(path)):
             if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.args:
                 first = call.args[0]
@@ -105,8 +106,8 @@ def _place_in_print(path: Path, call: ast.Call) -> Place:
 
 @functools.cache
 def counterparts() -> dict[Number, Place]:
-    """The function that derives each equation: that of `derive.counterparts`, or of the tables' audit."""
-    path = DERIVE / f"{COUNTERPARTS}.py"
+    """The function that derives each equation: that of `derive.audit.counterparts`, or of the tables' audit."""
+    path = AUDIT / f"{COUNTERPARTS}.py"
     found: dict[Number, Place] = {}
     for function in _tree(path).body:
         if not isinstance(function, ast.FunctionDef):
@@ -115,8 +116,8 @@ def counterparts() -> dict[Number, Place]:
             if isinstance(decorator, ast.Call) and getattr(decorator.func, "id", "") == "counterpart":
                 place = Place(f"{COUNTERPARTS}.{function.name}", path, function.lineno)
                 found |= {ast.literal_eval(argument): place for argument in decorator.args}
-    audit = DERIVE / "table_audit.py"
-    table = Place("table_audit.audit_table", audit, _definitions(audit)["audit_table"].lineno)
+    tables = AUDIT / "tables.py"
+    table = Place("tables.audit_table", tables, _definitions(tables)["audit_table"].lineno)
     return found | {f"Table {of.number}": table for of in printed.TABLES}
 
 
@@ -299,10 +300,10 @@ def page() -> str:
     lines = [
         "# Where each equation is",
         "",
-        "Written by `python -m derive.index`. Of each equation of AIAA-2002-1604: its transcription, the function",
-        "that derives it and the steps of the derivation it calls, the generated functions whose docstrings name it,",
-        "and the notebook cell that shows print and derivation side by side. Verdicts are the recorded ones of",
-        "[the audit](audit.md).",
+        "Written by `python -m derive.pages.index`. Of each equation of AIAA-2002-1604: its transcription, the",
+        "function that derives it and the steps of the derivation it calls, the generated functions whose docstrings",
+        "name it, and the notebook cell that shows print and derivation side by side. Verdicts are the recorded ones",
+        "of [the audit](audit.md).",
         "",
         *_overview(),
     ]
@@ -347,7 +348,7 @@ def main() -> int:
         stale = not PAGE.exists() or PAGE.read_text(encoding="utf-8") != text
         print(
             f"{PAGE.relative_to(ROOT)} is "
-            + ("stale: python -m derive.index" if stale else "as it should be")
+            + ("stale: python -m derive.pages.index" if stale else "as it should be")
         )
         return int(stale)
     PAGE.write_text(text, encoding="utf-8")
