@@ -7,14 +7,11 @@ from __future__ import annotations
 
 import difflib
 import hashlib
-import os
-import secrets
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import jinja2
@@ -24,7 +21,8 @@ from sympy.printing.numpy import NumPyPrinter
 from derive import kinematics as kin
 from derive import multiblade
 from derive.equations import REDUCED_MODULES, STEPS, Function, consistent_functions, reduced_functions
-from derive.published import DROPPED_TERMS, check_names
+from derive.files import write_whole
+from derive.published import DROPPED_TERMS
 from derive.symbols import QUANTITIES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -276,16 +274,6 @@ def render() -> Iterator[tuple[str, str]]:
     yield "published/__init__.py", formatted(published, "__init__.py")
 
 
-def reduced_modules(dropped: frozenset[str]) -> dict[str, ModuleType]:
-    """Modules without some terms, made in memory: what one dropped term does can be asked for without emitting it."""
-    check_names(dropped)
-    modules = {}
-    for module in REDUCED_MODULES:
-        modules[module] = ModuleType(f"reduced_{module}")
-        exec(render_module(reduced_functions(module, dropped), MODULE_TITLES[module]), vars(modules[module]))
-    return modules
-
-
 def derive_files(progress: Progress = print) -> dict[str, str]:
     """All generated files, with a progress line per step."""
     files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 2
@@ -313,20 +301,9 @@ def update(folder: Path = GENERATED, progress: Progress = print) -> None:
     files = derive_files(progress)
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        _write_whole(folder / name, text)
+        write_whole(folder / name, text)
     for orphan in generated_paths(folder) - set(files):
         (folder / orphan).unlink()
-
-
-def _write_whole(path: Path, text: str) -> None:
-    """As `proprotor.output_file.write_whole`, which cannot be imported while the equations are not there."""
-    unfinished = path.with_name(f".proprotor-{secrets.token_hex(8)}.tmp")
-    try:
-        with unfinished.open("x", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def differences(folder: Path = GENERATED, progress: Progress = print) -> list[str]:

@@ -4,6 +4,7 @@ import inspect
 
 import numpy as np
 import pytest
+from proprotor_equations import BLADE_COORDINATES
 
 from derive.audit import consequences, printed, tables
 from derive.equations import REDUCED_MODULES
@@ -38,15 +39,52 @@ def test_yoke_roll_reaches_every_module_that_has_the_gimbal():
 
 
 def test_with_all_terms_dropped_a_variant_is_the_published_set():
-    """The module made in memory and the one checked in are the same function."""
+    """The module derived again and the one checked in are the same function."""
     made = consequences.equations_without(PUBLISHED, "consistent", frozenset({"propeller_moment"})).pitch
-    checked_in = consequences.EQUATION_SETS["published"].pitch
+    checked_in = consequences.equation_set("published").pitch
     quantities = {
         name: 0.1 + 0.37 * place
         for place, name in enumerate(inspect.signature(checked_in.stiffness).parameters)
     }
     assert inspect.signature(made.stiffness) == inspect.signature(checked_in.stiffness)
     np.testing.assert_array_equal(made.stiffness(**quantities), checked_in.stiffness(**quantities))
+
+
+def test_a_term_that_nobody_drops_is_told():
+    with pytest.raises(ValueError, match="no such term: weight; known: "):
+        consequences.consistent_but("weight")
+
+
+def test_the_modules_of_a_set_are_those_that_its_name_stands_for():
+    for equations in ("consistent", "published"):
+        assert consequences.equation_set(equations) == Options(equations=equations).equation_set
+
+
+def test_eq_13_as_printed_turns_one_entry_of_the_gyroscopic_matrix_round():
+    changed, derived = (
+        of("published").inertia.gyroscopic
+        for of in (consequences.with_printed_coriolis_sign, consequences.equation_set)
+    )
+    quantities = {
+        name: 0.2 + 0.31 * place for place, name in enumerate(inspect.signature(derived).parameters)
+    }
+    sign = np.ones_like(derived(**quantities))
+    sign[BLADE_COORDINATES.index("flap"), BLADE_COORDINATES.index("lag")] = -1
+    assert np.count_nonzero(derived(**quantities) * (sign == -1)) == 1
+    np.testing.assert_array_equal(changed(**quantities), sign * derived(**quantities))
+
+
+def test_the_couplings_turned_round_are_those_of_the_model_with_the_other_sign():
+    """Given values in place of the closed form: the same values make the same model, the opposite ones the turned."""
+    case, options = consequences.xv15(), {"pitch": "coupling"}
+    model = case.linearize(150.0, **options)
+    flap, lag = consequences.couplings(model)
+    given = case.linearize(150.0, **options, pitch_flap_coupling=flap, pitch_lag_coupling=lag)
+    opposite = case.linearize(150.0, **options, pitch_flap_coupling=-flap, pitch_lag_coupling=-lag)
+    turned = consequences.couplings_turned().linearize(150.0, **options)
+    np.testing.assert_allclose(given.K, model.K, rtol=1e-12)
+    np.testing.assert_array_equal(turned.K, opposite.K)
+    assert not np.allclose(turned.K, model.K)
 
 
 def test_boundaries_are_told_by_mode():

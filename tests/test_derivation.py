@@ -234,11 +234,6 @@ def test_one_name_is_one_index_in_a_module():
         emit.index_groups(functions)
 
 
-def test_a_term_that_nobody_drops_is_told():
-    with pytest.raises(ValueError, match="no such term: weight; known: "):
-        emit.reduced_modules(frozenset({"weight"}))
-
-
 def test_a_harmonic_that_the_sum_over_three_blades_does_not_take_is_refused():
     with pytest.raises(ValueError, match="harmonic above 2"):
         multiblade.azimuth_mean(sp.cos(multiblade.psi) ** 3)

@@ -1,26 +1,28 @@
-"""What a difference between print and derivation does to the XV-15's stability boundary, in knots.
+"""What a difference between print and derivation does to the stability boundary of the XV-15, in knots.
 
-Each variant of the equations is made in memory, below the runtime's own checks where those would refuse it. The
-boundary is the lowest speed at which a mode loses its damping.
+A term is dropped, or put back, by deriving the modules again that have it. A sign of the print is put into the derived
+matrix. A number of the print that no rotor can have goes into a rotor without checks. The boundary is the lowest speed
+at which a mode loses its damping.
+
+No other module of `derive` imports the runtime, and this one does by its public names.
 """
 
 from __future__ import annotations
 
-import contextlib
-import copy
 import functools
-from collections.abc import Callable, Iterator
-from dataclasses import replace
-from types import ModuleType, SimpleNamespace
-from typing import Any, cast
-from unittest import mock
+import importlib.util
+import tempfile
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 import numpy as np
+import proprotor_equations
 import sympy as sp
 import xarray
-from numpy.typing import NDArray
-from proprotor_equations import BLADE_COORDINATES
-from proprotor_equations import pitch as pitch_equations
+from numpy.typing import ArrayLike, NDArray
 
 import proprotor as pp
 from derive import multiblade
@@ -29,42 +31,51 @@ from derive.audit.counterparts import COUNTERPARTS
 from derive.audit.printed import TABLES
 from derive.audit.printed.notation import TIME
 from derive.emit import MODULE_TITLES, render_module
-from derive.equations import REDUCED_MODULES, STEPS
-from derive.published import DROPPED_TERMS, PUBLISHED
-from proprotor import model as runtime
-from proprotor.branches import by_branch
-from proprotor.equation_set import EQUATION_SETS, EquationSet
+from derive.equations import REDUCED_MODULES, STEPS, Function, reduced_functions
+from derive.published import CONSISTENT, DROPPED_TERMS, PUBLISHED, check_names
 
-_FLAP, _LAG = (BLADE_COORDINATES.index(name) for name in ("flap", "lag"))
 KNOT = 1852 / 3600
 SPEEDS = np.arange(100, 521, 5) * KNOT
 SLUG_FT2 = 1.3558179483
 
+Boundary = tuple[str, float, float]
+"""What was changed, the boundary with the change and the boundary without it, kt."""
 
-# The audit is of the paper's equations: what is not of the derivation by dropped terms is as the paper has it.
+# The audit is of the paper's equations: an option that stands for a dropped term is set as the paper has it.
 AS_THE_PAPER: dict[str, Any] = {term.option: False for term in DROPPED_TERMS.values() if term.option}
+
+
+# Modes and boundaries
 
 
 @functools.cache
 def xv15() -> pp.Case:
+    """Return the XV-15 of the paper's Table 1."""
     return pp.load_case("xv15")
 
 
-def modes_of(case: pp.Case | None = None, **options: Any) -> xarray.Dataset:
-    """Return the roots of the XV-15, or another case, over `SPEEDS`; no section damping where nothing else is chosen.
+@functools.cache
+def hub_held() -> pp.Case:
+    """Return the XV-15 with its rotor on a hub that does not move."""
+    return replace(xv15(), support=pp.rigid_support())
 
-    By branch, for what moves is handed from root to root, and its damping then jumps.
+
+def modes_of(case: pp.Case | None = None, speeds: NDArray[Any] = SPEEDS, **options: Any) -> xarray.Dataset:
+    """Return the roots of the XV-15, or of another case, at some airspeeds, by branch.
+
+    A branch is one root, followed from speed to speed. A name of a mode would pass from root to root where motions are
+    exchanged, and the damping would jump there. Section damping is off where no option says otherwise.
     """
-    return by_branch((case or xv15()).sweep(SPEEDS, **AS_THE_PAPER | options))
+    return pp.by_branch((case or xv15()).sweep(speeds, **AS_THE_PAPER | options))
 
 
 def boundary(case: pp.Case | None = None, **options: Any) -> float:
-    """Lowest speed at which the damping of a mode goes through zero, kt; NaN where none does."""
+    """Return the lowest speed at which the damping of a mode goes through zero, kt; NaN where none does."""
     return lowest(boundaries(modes_of(case, **options)))
 
 
 def boundaries(modes: xarray.Dataset) -> dict[str, float]:
-    """Lowest speed at which each root loses its damping, kt; roots that do not lose it are left out."""
+    """Return the lowest speed at which each root loses its damping, kt, without the roots that keep it."""
     found: dict[str, float] = {}
     for name, damping in zip(modes.branch.values.tolist(), modes.damping_ratio.values.T, strict=True):
         for i in np.flatnonzero((damping[:-1] > 0) & (damping[1:] <= 0))[:1]:
@@ -73,22 +84,30 @@ def boundaries(modes: xarray.Dataset) -> dict[str, float]:
     return found
 
 
-def lowest(of: dict[str, float]) -> float:
-    return min(of.values(), default=np.nan)
+def lowest(boundaries: dict[str, float]) -> float:
+    """Return the lowest of the boundaries, kt; NaN where there is none."""
+    return min(boundaries.values(), default=np.nan)
 
 
 def in_knots(boundary: float) -> str:
-    """A boundary as tables show it."""
+    """Return a boundary as tables show it."""
     return f"none below {SPEEDS[-1] / KNOT:.0f} kt" if np.isnan(boundary) else f"{boundary:.1f} kt"
 
 
 @functools.cache
 def base(equations: str = "consistent", pitch: str = "dynamic") -> float:
+    """Return the boundary without a change, kt."""
     return boundary(equations=equations, pitch=pitch)
 
 
+# Equations without some terms
+
+
 class _Asking(frozenset[str]):
-    """No dropped term at all; keeps the names it is asked for. Equal to nothing else, so no cached result answers."""
+    """An empty set of dropped terms that keeps the names that the derivation looks up in it.
+
+    It equals nothing else, so that no result of an earlier derivation is taken from a cache.
+    """
 
     def __init__(self) -> None:
         self.asked: set[str] = set()
@@ -102,67 +121,98 @@ class _Asking(frozenset[str]):
 
 
 @functools.cache
-def _derivation(module: str) -> tuple[frozenset[str], dict[str, tuple[Any, ...]]]:
-    """Dropped terms the derivation of a module asks for, and the arguments of its functions with none dropped."""
-    _, changing = STEPS[module]
+def _terms_of(module: str) -> frozenset[str]:
+    """Return the dropped terms that the derivation of a module asks for."""
     dropped = _Asking()
-    arguments = {function.name: tuple(function.arguments) for function in changing(dropped)}
-    return frozenset(dropped.asked), arguments
+    _, changing = STEPS[module]
+    for _ in changing(dropped):
+        pass
+    return frozenset(dropped.asked)
 
 
 def reached_by(term: str) -> tuple[str, ...]:
-    """Modules whose derivation asks whether a term is dropped: no other one can change without it."""
-    return tuple(module for module in REDUCED_MODULES if term in _derivation(module)[0])
+    """Return the modules that change without a term: those whose derivation asks whether the term is dropped."""
+    return tuple(module for module in REDUCED_MODULES if term in _terms_of(module))
+
+
+def _imported(module: str, functions: list[Function]) -> ModuleType:
+    """Import generated functions that no file of the repository has, from a temporary file."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, f"{module}.py")
+        path.write_text(render_module(functions, MODULE_TITLES[module]), encoding="utf-8")
+        spec = importlib.util.spec_from_file_location(f"changed_{module}", path)
+        assert spec is not None and spec.loader is not None
+        found = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(found)
+    return found
 
 
 @functools.cache
-def _module(name: str, dropped: frozenset[str]) -> ModuleType:
-    _, changing = STEPS[name]
-    _, arguments = _derivation(name)
-    functions = [replace(function, signature=arguments[function.name]) for function in changing(dropped)]
-    module = ModuleType(f"reduced_{name}")
-    exec(render_module(functions, MODULE_TITLES[name]), vars(module))
-    return module
+def _without(module: str, dropped: frozenset[str]) -> ModuleType:
+    """Return a generated module derived without some terms."""
+    return _imported(module, reduced_functions(module, dropped))
 
 
-def equations_without(dropped: frozenset[str], of: str, changed: frozenset[str]) -> EquationSet:
-    """The set `of` with the modules derived again that the terms of `changed` reach."""
-    names = sorted({module for term in changed for module in reached_by(term)})
-    in_module = {name: dropped & _derivation(name)[0] for name in names}
-    return replace(EQUATION_SETS[of], **{name: _module(name, in_module[name]) for name in names})
+def equation_set(equations: str) -> pp.EquationSet:
+    """Return the modules of ``"consistent"`` or ``"published"`` equations, as they are generated."""
+    package = {"consistent": proprotor_equations, "published": proprotor_equations.published}[equations]
+    return pp.EquationSet(**{module: getattr(package, module) for module in REDUCED_MODULES})
 
 
-def consistent_but(*terms: str) -> EquationSet:
-    """The consistent equations without some terms."""
+def equations_without(dropped: frozenset[str], equations: str, changed: frozenset[str]) -> pp.EquationSet:
+    """Return a set of equations with the modules derived again that some terms reach.
+
+    Parameters
+    ----------
+    dropped : frozenset of str
+        Terms that the modules derived again do without.
+    equations : "consistent" or "published"
+        The set that has the other modules.
+    changed : frozenset of str
+        Terms that the set has and the result has not, or the other way round.
+
+    Raises
+    ------
+    ValueError
+        For a term that is not in the list.
+    """
+    check_names(dropped | changed)
+    modules = {module for term in changed for module in reached_by(term)}
+    again = {module: _without(module, dropped & _terms_of(module)) for module in sorted(modules)}
+    return replace(equation_set(equations), **again)
+
+
+def consistent_but(*terms: str) -> pp.EquationSet:
+    """Return the consistent equations without some terms."""
     dropped = frozenset(terms)
     return equations_without(dropped, "consistent", dropped)
 
 
-def published_and(*terms: str) -> EquationSet:
-    """The published equations with terms put back."""
+def published_and(*terms: str) -> pp.EquationSet:
+    """Return the published equations with some terms put back."""
     back = frozenset(terms)
     return equations_without(PUBLISHED - back, "published", back)
 
 
 @functools.cache
 def boundaries_without(term: str) -> dict[str, float]:
-    """Boundary of each mode by the consistent equations without one term."""
+    """Return the boundary of each mode by the consistent equations without one term, kt."""
     return boundaries(modes_of(equations=consistent_but(term)))
 
 
 def without(term: str) -> float:
-    """Boundary of the consistent equations without one term."""
+    """Return the boundary of the consistent equations without one term, kt."""
     return lowest(boundaries_without(term))
 
 
 @functools.cache
 def published_with(*terms: str) -> float:
-    """Boundary of the published equations with terms put back."""
+    """Return the boundary of the published equations with some terms put back, kt."""
     return boundary(equations=published_and(*terms))
 
 
 def gimbal_question() -> dict[str, float]:
-    """Eq. 3's gimbal terms in the published equations: none, either alone, both."""
+    """Return boundaries with the gimbal's two terms in Eq. 3 of the published equations: none, either alone, both."""
     return {
         "as published, neither": base("published"),
         "with the gimbal's Coriolis term alone": published_with("gimbal_coriolis"),
@@ -174,55 +224,101 @@ def gimbal_question() -> dict[str, float]:
     }
 
 
-def with_printed_coriolis_sign(of: str) -> EquationSet:
-    """The flap row's lag rate with the sign of Eq. 13; the lag row keeps its own."""
-    inertia = EQUATION_SETS[of].inertia
-
-    @functools.wraps(inertia.gyroscopic)
-    def gyroscopic(**quantities: Any) -> NDArray[Any]:
-        matrix = np.array(inertia.gyroscopic(**quantities))
-        matrix[..., _FLAP, _LAG] *= -1
-        return matrix
-
-    changed = SimpleNamespace(**vars(inertia) | {"gyroscopic": gyroscopic})
-    return replace(EQUATION_SETS[of], inertia=cast(ModuleType, changed))
+# Conflicts
 
 
-def printed_coriolis_sign() -> tuple[str, float, float]:
+@functools.cache
+def with_printed_coriolis_sign(equations: str) -> pp.EquationSet:
+    """Return a set of equations whose flap row has the lag rate with the sign of Eq. 13; the lag row stays."""
+    dropped = {"consistent": CONSISTENT, "published": PUBLISHED}[equations]
+    functions = [
+        _with_flap_lag_turned(function) if function.name == "gyroscopic" else function
+        for function in reduced_functions("inertia", dropped)
+    ]
+    return replace(equation_set(equations), inertia=_imported("inertia", functions))
+
+
+def _with_flap_lag_turned(gyroscopic: Function) -> Function:
+    place = ("flap", "lag")
+    entry = gyroscopic.entries[place]
+    return replace(gyroscopic, entries=gyroscopic.entries | {place: replace(entry, value=-entry.value)})
+
+
+def printed_coriolis_sign() -> Boundary:
+    """Return what the sign of the lag rate in Eq. 13 does to the published equations."""
     changed = boundary(equations=with_printed_coriolis_sign("published"))
     return "published, ζ' term of Eq. 13 as printed", changed, base("published")
 
 
-@contextlib.contextmanager
-def couplings_turned() -> Iterator[None]:
-    """Eq. 35 taken by its sign turns both couplings round."""
-    couplings = pitch_equations.couplings
+def couplings(model: pp.LinearModel, lag: ArrayLike | None = None) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return K_Pβ and K_Pζ of Eqs. 36 and 37 at the trim of a model of the XV-15.
 
-    @functools.wraps(couplings)
-    def turned(**quantities: Any) -> Any:
-        values = couplings(**quantities)
-        return values._replace(**{name: -value for name, value in values._asdict().items()})
+    Parameters
+    ----------
+    model : LinearModel
+    lag : float or array (...), optional
+        Trim lag in rad in place of the model's own.
+    """
+    rotor, trim = xv15().rotor, model.trim
+    springs = proprotor_equations.flap_lag_springs.effective_stiffness(
+        flap_stiffness=rotor.flap_stiffness,
+        lag_stiffness=rotor.lag_stiffness,
+        flap_outboard_fraction=rotor.flap_outboard_fraction,
+        lag_outboard_fraction=rotor.lag_outboard_fraction,
+        structural_pitch=trim.pitch + rotor.structural_pitch_offset,
+    )
+    found = proprotor_equations.pitch.couplings(
+        control_stiffness=rotor.control_stiffness,
+        coning=trim.coning,
+        lag=trim.lag if lag is None else lag,
+        flap_flap_stiffness_slope=springs.flap_flap_stiffness_slope,
+        flap_lag_stiffness_slope=springs.flap_lag_stiffness_slope,
+        lag_lag_stiffness_slope=springs.lag_lag_stiffness_slope,
+    )
+    return found.pitch_flap_coupling, found.pitch_lag_coupling
 
-    with mock.patch.object(
-        runtime, "pitch", SimpleNamespace(**vars(pitch_equations) | {"couplings": turned})
-    ):
-        yield
+
+class _CouplingsTurned(pp.Case):
+    """The XV-15 with both couplings of opposite sign at every airspeed."""
+
+    def linearize(self, airspeed: Any, **options: Any) -> pp.LinearModel:
+        flap, lag = couplings(super().linearize(airspeed, **options))
+        return super().linearize(airspeed, **options, pitch_flap_coupling=-flap, pitch_lag_coupling=-lag)
 
 
-def printed_coupling_sign() -> tuple[str, float, float]:
-    with couplings_turned():
-        changed = boundary(pitch="coupling")
+def couplings_turned() -> pp.Case:
+    """Return the XV-15 with K_Pβ and K_Pζ turned round, as Eq. 35 by its sign turns them."""
+    return _CouplingsTurned(**_fields(xv15()))
+
+
+def printed_coupling_sign() -> Boundary:
+    """Return what the sign of Eq. 35 does."""
+    changed = boundary(couplings_turned(), pitch="coupling")
     return "K_Pβ and K_Pζ by the sign of Eq. 35", changed, base(pitch="coupling")
 
 
+class _Unchecked(pp.Rotor):
+    """A rotor that may have an I_βα that no blade has, which `pp.Rotor` refuses."""
+
+    def __post_init__(self) -> None:
+        """Check nothing."""
+
+
 def with_flap_hub_inertia(value: float) -> pp.Case:
-    """The XV-15 with an I_βα (kg m²) of its own. `Rotor` would refuse it, so it goes in after validation."""
-    rotor = copy.copy(xv15().rotor)
-    rotor.__dict__["_dependent"] = rotor._dependent._replace(flap_hub_inertia=value)
-    return replace(xv15(), rotor=rotor)
+    """Return the XV-15 with another I_βα (kg m²), which may be one that no blade has."""
+
+    class Printed(_Unchecked):
+        flap_hub_inertia = value
+
+    return replace(xv15(), rotor=Printed(**_fields(xv15().rotor)))
 
 
-def printed_flap_hub_inertia() -> tuple[str, float, float]:
+def _fields(record: Any) -> dict[str, Any]:
+    return {entry.name: getattr(record, entry.name) for entry in fields(record)}
+
+
+def printed_flap_hub_inertia() -> Boundary:
+    """Return what the I_βα of Table 1 does."""
     printed = TABLES[0].values["I_βα"] * SLUG_FT2
     consistent = xv15().rotor.flap_hub_inertia / SLUG_FT2
     case = with_flap_hub_inertia(printed)
@@ -234,32 +330,49 @@ def printed_flap_hub_inertia() -> tuple[str, float, float]:
 
 
 def least_damping_at_best(case: pp.Case) -> float:
-    """Damping ratio of the worst mode where it is best; below zero, the case is unstable at every speed."""
+    """Return the damping ratio of the worst mode at the speed where it is best.
+
+    The case is unstable at every speed when the ratio is below zero.
+    """
     return float(modes_of(case).damping_ratio.min("branch").max())
 
 
-# Consequences of conflicts, by equation or table; those of absent terms are `without` each.
-OF_CONFLICT: dict[int | str, Callable[[], tuple[str, float, float]]] = {
+# What a conflict does, by equation or table. `without` tells what an absent term does.
+OF_CONFLICT: dict[int | str, Callable[[], Boundary]] = {
     13: printed_coriolis_sign,
     35: printed_coupling_sign,
     "Table 1": printed_flap_hub_inertia,
 }
 
 
+# Steady tilt
+
+
 def steady_tilt(azimuth: float = 0.0) -> dict[str, float]:
-    """In-plane acceleration of the XV-15's tip per degree of steady tilt beta_GS, m/s²: a term alone, rigid yoke."""
-    of = {
+    """Return the in-plane acceleration of the XV-15's tip under a steady tilt beta_GS, m/s² per degree.
+
+    Parameters
+    ----------
+    azimuth : float
+        Of the blade, rad.
+
+    Returns
+    -------
+    dict of str to float
+        With either of the gimbal's two terms alone, and with both, which is the rigid yoke.
+    """
+    dropped = {
         "Coriolis term alone": frozenset({"yoke_roll"}),
         "roll of the yoke alone": frozenset({"gimbal_coriolis"}),
         "rigid yoke": frozenset(),
     }
     at = {multiblade.psi: azimuth}
-    return {label: float(_tip_acceleration(dropped).subs(at)) for label, dropped in of.items()}
+    return {label: float(_tip_acceleration(terms).subs(at)) for label, terms in dropped.items()}
 
 
 @functools.cache
 def _tip_acceleration(dropped: frozenset[str]) -> sp.Expr:
-    """Along i, of the azimuth."""
+    """Return the tip's acceleration along i as an expression in the azimuth."""
     rotor = xv15().rotor
     numbers = {
         s.radial_station: rotor.radius,

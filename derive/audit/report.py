@@ -28,8 +28,8 @@ from derive.audit.headings import anchor, heading
 from derive.audit.invariants import Finding
 from derive.audit.printed.notation import latex_names
 from derive.audit.tables import TableVerdict, audit_table
+from derive.files import write_whole
 from derive.published import DROPPED_TERMS
-from proprotor.output_file import write_whole
 
 ROOT = Path(__file__).resolve().parents[2]
 RECORD = ROOT / "tests" / "golden" / "audit.csv"
@@ -107,7 +107,7 @@ def record(rows: list[Row]) -> None:
     RECORD.parent.mkdir(parents=True, exist_ok=True)
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator="\n").writerows([HEADER, *rows])
-    write_whole(RECORD, lambda file: file.write(text.getvalue().encode()))
+    write_whole(RECORD, text.getvalue())
 
 
 def changes(was: list[Row], now: list[Row]) -> list[str]:
@@ -336,8 +336,7 @@ def main(arguments: list[str] | None = None) -> int:
     if options.accept:
         record(now)
     if not options.quick:
-        report = markdown().encode()
-        write_whole(REPORT, lambda file: file.write(report))
+        write_whole(REPORT, markdown())
         print(f"written: {REPORT.relative_to(ROOT)}")
     found = changes(recorded() if RECORD.exists() else [], now)
     print("\n".join(found) if found else f"{len(now)} verdicts, all as recorded")

@@ -18,6 +18,7 @@ from typing import Any
 import sympy as sp
 
 from derive.emit import MODULE_TITLES
+from derive.files import write_whole
 from derive.symbols import QUANTITIES, Quantity
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "symbols.md"
@@ -94,7 +95,7 @@ def main() -> int:
             "the glossary is current" if current else "the glossary is stale: python -m derive.pages.glossary"
         )
         return 0 if current else 1
-    PAGE.write_text(page(), encoding="utf-8")
+    write_whole(PAGE, page())
     return 0
 
 

@@ -23,6 +23,7 @@ from derive.audit import printed
 from derive.audit.comparison import VERDICTS
 from derive.audit.headings import anchor, heading
 from derive.audit.report import LETTERS, RECORD
+from derive.files import write_whole
 from derive.pages.notebooks import page_of, sources
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -351,7 +352,7 @@ def main() -> int:
             + ("stale: python -m derive.pages.index" if stale else "as it should be")
         )
         return int(stale)
-    PAGE.write_text(text, encoding="utf-8")
+    write_whole(PAGE, text)
     print(f"written: {PAGE.relative_to(ROOT)}")
     return 0
 

@@ -17,6 +17,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from derive.files import write_whole
+
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
@@ -109,8 +111,8 @@ def write(source: Path) -> None:
     for old in PAGES.glob(f"{source.stem}-[0-9]*.png"):
         old.unlink()
     for name, data in pictures.items():
-        (PAGES / name).write_bytes(data)
-    page_of(source).write_text(text, encoding="utf-8")
+        write_whole(PAGES / name, data)
+    write_whole(page_of(source), text)
 
 
 def main() -> int:

@@ -6,9 +6,11 @@ from proprotor.airfoil_table import AirfoilTable
 from proprotor.assembly import mount
 from proprotor.atmosphere import standard_air
 from proprotor.beam_wing import Pylon, Wing, beam_wing
+from proprotor.branches import by_branch
 from proprotor.case import Case, list_cases, load_case
 from proprotor.design import design_inputs
 from proprotor.drive_train import DriveTrain
+from proprotor.equation_set import EquationSet
 from proprotor.errors import InputError
 from proprotor.frequencies import BladeFrequencies
 from proprotor.frequency_response import frequency_response
@@ -30,6 +32,7 @@ __all__ = [
     "BladeFrequencies",
     "Case",
     "DriveTrain",
+    "EquationSet",
     "InputError",
     "LinearModel",
     "NormalModes",
@@ -39,6 +42,7 @@ __all__ = [
     "WhirlDerivatives",
     "Wing",
     "beam_wing",
+    "by_branch",
     "design_inputs",
     "distribution",
     "frequency_response",
