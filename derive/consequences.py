@@ -26,7 +26,7 @@ import proprotor as pp
 from derive import multiblade
 from derive import symbols as s
 from derive.counterparts import COUNTERPARTS
-from derive.emit import MODULE_TITLES, render_module
+from derive.emit import render_module
 from derive.equations import REDUCED_MODULES, STEPS
 from derive.printed import TABLES
 from derive.printed.notation import TIME
@@ -104,9 +104,9 @@ class _Asking(frozenset[str]):
 @functools.cache
 def _derivation(module: str) -> tuple[frozenset[str], dict[str, tuple[Any, ...]]]:
     """Dropped terms the derivation of a module asks for, and the arguments of its functions with none dropped."""
-    _, changing = STEPS[module]
     dropped = _Asking()
-    arguments = {function.name: tuple(function.arguments) for function in changing(dropped)}
+    changing = STEPS[module].functions(dropped, drops=True)
+    arguments = {function.name: tuple(function.arguments) for function in changing}
     return frozenset(dropped.asked), arguments
 
 
@@ -117,11 +117,11 @@ def reached_by(term: str) -> tuple[str, ...]:
 
 @functools.cache
 def _module(name: str, dropped: frozenset[str]) -> ModuleType:
-    _, changing = STEPS[name]
     _, arguments = _derivation(name)
-    functions = [replace(function, signature=arguments[function.name]) for function in changing(dropped)]
+    changing = STEPS[name].functions(dropped, drops=True)
+    functions = [replace(function, signature=arguments[function.name]) for function in changing]
     module = ModuleType(f"reduced_{name}")
-    exec(render_module(functions, MODULE_TITLES[name]), vars(module))
+    exec(render_module(functions, STEPS[name].title), vars(module))
     return module
 
 
