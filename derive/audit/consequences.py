@@ -30,8 +30,9 @@ from derive import symbols as s
 from derive.audit.counterparts import COUNTERPARTS
 from derive.audit.printed import TABLES
 from derive.audit.printed.notation import TIME
-from derive.emit import MODULE_TITLES, render_module
-from derive.equations import REDUCED_MODULES, STEPS, Function, reduced_functions
+from derive.emit import render_module
+from derive.equations import REDUCED_MODULES, STEPS, reduced_functions
+from derive.function import Function
 from derive.published import CONSISTENT, DROPPED_TERMS, PUBLISHED, check_names
 
 KNOT = 1852 / 3600
@@ -124,9 +125,7 @@ class _Asking(frozenset[str]):
 def _terms_of(module: str) -> frozenset[str]:
     """Return the dropped terms that the derivation of a module asks for."""
     dropped = _Asking()
-    _, changing = STEPS[module]
-    for _ in changing(dropped):
-        pass
+    STEPS[module].functions(dropped, drops=True)
     return frozenset(dropped.asked)
 
 
@@ -139,7 +138,7 @@ def _imported(module: str, functions: list[Function]) -> ModuleType:
     """Import generated functions that no file of the repository has, from a temporary file."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, f"{module}.py")
-        path.write_text(render_module(functions, MODULE_TITLES[module]), encoding="utf-8")
+        path.write_text(render_module(functions, STEPS[module].title), encoding="utf-8")
         spec = importlib.util.spec_from_file_location(f"changed_{module}", path)
         assert spec is not None and spec.loader is not None
         found = importlib.util.module_from_spec(spec)

@@ -17,7 +17,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive.emit import MODULE_TITLES
+from derive.equations import STEPS
 from derive.files import write_whole
 from derive.symbols import QUANTITIES, Quantity
 
@@ -26,7 +26,7 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "symbols.md"
 TITLES = {
     "symbols": "Inputs and trim",
     "kinematics": "Kinematics",
-    **{name: title for name, title in MODULE_TITLES.items() if name != "published"},
+    **{name: step.title for name, step in STEPS.items()},
 }
 
 HEAD = """\

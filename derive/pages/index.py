@@ -18,7 +18,9 @@ from collections import Counter, deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
+from derive import equations
 from derive.audit import printed
 from derive.audit.comparison import VERDICTS
 from derive.audit.headings import anchor, heading
@@ -33,8 +35,7 @@ GENERATED = ROOT / "generated" / "proprotor_equations"
 PAGE = ROOT / "docs" / "equations.md"
 COUNTERPARTS = "counterparts"
 # Steps of the derivation; what only declares symbols, holds polynomials or prints is none.
-STEPS: tuple[str, ...] = ("kinematics", "inertia", "flap_lag_springs", "pitch", "section", "airloads")
-STEPS += ("lift_slope", "trim", "multiblade", "drive_train")
+STEPS = ("kinematics", *equations.STEPS)
 
 Number = int | str
 
@@ -219,22 +220,23 @@ def generated(number: Number) -> tuple[Place, ...]:
 
 @functools.cache
 def _emitted() -> dict[str, set[tuple[str, str]]]:
-    """What of the derivation each record of `derive.equations` is made from, by module.name."""
+    """What of the derivation each line of `derive.equations` is made from, by module.name."""
     path = DERIVE / "equations.py"
     aliases = _aliases(path)
     found: dict[str, set[tuple[str, str]]] = {}
-    for call in ast.walk(_tree(path)):
-        if not isinstance(call, ast.Call):
-            continue
-        texts = [str(argument.value) for argument in call.args[:2] if isinstance(argument, ast.Constant)]
-        if len(texts) == 2 and texts[0] in STEPS:
-            found[".".join(texts)] = {
-                (aliases[node.value.id], node.attr)
-                for node in ast.walk(call)
-                if isinstance(node, ast.Attribute)
-                and isinstance(node.value, ast.Name)
-                and node.value.id in aliases
-            }
+    known = _definitions(path)
+    for step in ast.walk(_tree(path)):
+        if isinstance(step, ast.Call) and getattr(step.func, "id", "") == "Step":
+            module, lines = ast.literal_eval(step.args[0]), known[cast(ast.Name, step.args[2]).id]
+            for call in ast.walk(lines):
+                if isinstance(call, ast.Call) and call.args and isinstance(call.args[0], ast.Constant):
+                    found.setdefault(f"{module}.{call.args[0].value!s}", set()).update(
+                        (aliases[node.value.id], node.attr)
+                        for node in ast.walk(call)
+                        if isinstance(node, ast.Attribute)
+                        and isinstance(node.value, ast.Name)
+                        and node.value.id in aliases
+                    )
     return found
 
 
