@@ -15,8 +15,10 @@ from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.generated import EquationSet
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
+from proprotor.stability.branches import by_branch
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.study import sampling
 from proprotor.study.study import study
@@ -30,6 +32,7 @@ __all__ = [
     "BladeFrequencies",
     "Case",
     "DriveTrain",
+    "EquationSet",
     "InputError",
     "LinearModel",
     "NormalModes",
@@ -39,6 +42,7 @@ __all__ = [
     "WhirlDerivatives",
     "Wing",
     "beam_wing",
+    "by_branch",
     "design_inputs",
     "distribution",
     "frequency_response",

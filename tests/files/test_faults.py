@@ -22,7 +22,8 @@ from click.testing import CliRunner
 
 import proprotor as pp
 from derive import __main__ as derivation
-from derive import audit, emit
+from derive import emit
+from derive.audit import report
 from proprotor.commands.main import main
 from proprotor.files.output import write_whole
 from proprotor.stability.mode_names import assign_names
@@ -181,11 +182,11 @@ def test_accepted_modes_that_do_not_fit_leave_those_before(tmp_path):
 
 
 def test_verdicts_that_do_not_fit_leave_those_before(tmp_path, monkeypatch):
-    monkeypatch.setattr(audit, "RECORD", tmp_path / "audit.csv")
-    audit.record([("1",) * len(audit.HEADER)])
+    monkeypatch.setattr(report, "RECORD", tmp_path / "audit.csv")
+    report.record([("1",) * len(report.HEADER)])
     before = content(tmp_path)
     with full_disk(), pytest.raises(OSError):
-        audit.record([("1" * 100,) * len(audit.HEADER)] * 10)
+        report.record([("1" * 100,) * len(report.HEADER)] * 10)
     assert content(tmp_path) == before
 
 

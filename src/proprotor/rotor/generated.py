@@ -15,9 +15,15 @@ from proprotor_equations import published
 
 @dataclass(frozen=True)
 class EquationSet:
-    """Generated modules that a dropped term can change; what both sets share is imported where it is used.
+    """Generated modules that a dropped term can change, for the option ``equations``.
 
-    `derive.emit.reduced_modules` makes such modules for any choice of dropped terms.
+    The functions that all sets share are imported from `proprotor_equations` where they are used.
+
+    Parameters
+    ----------
+    inertia, flap_lag_springs, pitch, airloads : module
+        Each with the functions of the module of `proprotor_equations.published` that has its name, under the arguments
+        of that module. A set of one's own has modules of its own in some of the four places.
     """
 
     inertia: ModuleType

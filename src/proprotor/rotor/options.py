@@ -48,7 +48,7 @@ class Options:
     ----------
     equations : "consistent" or "published"
         Every first-order term, or what AIAA-2002-1604 keeps of the perturbation equations (the trim is the same); an
-        `EquationSet` of generated modules stands for itself.
+        `EquationSet` has generated modules of its own.
     pitch : "dynamic", "coupling" or "rigid"
         Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
     structure : "coupled", "diagonal" or "tabulated"

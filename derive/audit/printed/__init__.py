@@ -1,8 +1,8 @@
 """The equations and tables of AIAA-2002-1604 as they are printed, as data: nothing here is derived."""
 
-from derive.printed import aerodynamics, flap, kinematics, pitch, springs
-from derive.printed.notation import PrintedEquation
-from derive.printed.tables import TABLES, PrintedTable
+from derive.audit.printed import aerodynamics, flap, kinematics, pitch, springs
+from derive.audit.printed.notation import PrintedEquation
+from derive.audit.printed.tables import TABLES, PrintedTable
 
 EQUATIONS: dict[int | str, PrintedEquation] = {
     equation.number: equation

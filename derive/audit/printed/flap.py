@@ -4,8 +4,7 @@ import sympy as sp
 
 from derive import flap_lag_springs
 from derive import symbols as s
-from derive.multiblade import psi
-from derive.printed.notation import (
+from derive.audit.printed.notation import (
     AZIMUTH,
     TIME,
     M_beta_aero,
@@ -17,6 +16,7 @@ from derive.printed.notation import (
     m,
     printed,
 )
+from derive.multiblade import psi
 
 r, omega = s.radial_station, s.rotor_speed
 sine, cosine = sp.sin(psi), sp.cos(psi)

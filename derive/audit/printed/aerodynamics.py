@@ -3,8 +3,8 @@
 import sympy as sp
 
 from derive import symbols as s
-from derive.multiblade import FIXED_COORDINATES, psi
-from derive.printed.notation import TIME, PrintedEquation, e
+from derive.audit.printed.notation import TIME, PrintedEquation, e
+from derive.multiblade import psi
 
 r, speed = s.radial_station, s.airspeed
 sine, cosine = sp.sin(psi), sp.cos(psi)
@@ -57,6 +57,6 @@ EQUATIONS = (
         5,
         "coordinates of rotor and hub in the fixed frame",
         {f"{place + 1}": TIME[name][0] for place, name in enumerate(ORDER_OF_EQ_17)},
-        unit={f"{place + 1}": "m" if place < 3 else "" for place in range(len(FIXED_COORDINATES))},
+        unit={f"{place + 1}": "m" if place < 3 else "" for place in range(len(ORDER_OF_EQ_17))},
     ),
 )

@@ -1,9 +1,9 @@
 """Eqs. 32-37: the pitch equation and the pitch-flap and pitch-lag couplings."""
 
 from derive import symbols as s
-from derive.printed import notation as n
-from derive.printed.notation import TIME, PrintedEquation
-from derive.printed.springs import K_bb, K_bz, K_zz, beta, zeta
+from derive.audit.printed import notation as n
+from derive.audit.printed.notation import TIME, PrintedEquation
+from derive.audit.printed.springs import K_bb, K_bz, K_zz, beta, zeta
 
 r = s.radial_station
 theta, _, theta_ddot = TIME["pitch"]

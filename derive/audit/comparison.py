@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive import symbols as s
-from derive.counterparts import COUNTERPARTS, meaning
-from derive.printed import PrintedEquation
-from derive.printed import notation as n
+from derive.audit.counterparts import COUNTERPARTS, meaning
+from derive.audit.printed import PrintedEquation
+from derive.audit.printed import notation as n
 from derive.published import CONSISTENT, DROPPED_TERMS
 
 REPRODUCED = "reproduced"

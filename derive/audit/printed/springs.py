@@ -3,9 +3,9 @@
 import sympy as sp
 
 from derive import symbols as s
+from derive.audit.printed import notation as n
+from derive.audit.printed.notation import TIME, PrintedEquation
 from derive.flap_lag_springs import STIFFNESS, series_determinant
-from derive.printed import notation as n
-from derive.printed.notation import TIME, PrintedEquation
 
 K_beta, K_zeta = s.flap_stiffness, s.lag_stiffness
 R_beta, R_zeta = s.flap_outboard_fraction, s.lag_outboard_fraction

@@ -1,7 +1,7 @@
 """Execute the notebooks and write what they show to docs/notebooks.
 
-python -m derive.notebooks                 all of them
-python -m derive.notebooks 3-springs       some
+python -m derive.pages.notebooks                 all of them
+python -m derive.pages.notebooks 3-springs       some
 
 A page is the notebook's own text, its code, and the Markdown and pictures of its outputs. To work in one of them, start
 Jupyter where `derive` can be imported: PYTHONPATH=. jupyter lab notebooks (with jupytext).
@@ -17,10 +17,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from derive.files import write_whole
+
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = ROOT / "notebooks"
 PAGES = ROOT / "docs" / "notebooks"
 TIMEOUT = 300  # s for a cell
@@ -68,7 +70,9 @@ def executed(source: Path) -> NotebookNode:
 def rendered(source: Path, notebook: NotebookNode) -> tuple[str, dict[str, bytes]]:
     """The page as Markdown, and its pictures by file name."""
     pictures: dict[str, bytes] = {}
-    blocks = [f"<!-- Written by python -m derive.notebooks from notebooks/{source.name}; edit that. -->"]
+    blocks = [
+        f"<!-- Written by python -m derive.pages.notebooks from notebooks/{source.name}; edit that. -->"
+    ]
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
             blocks.append(cell.source)
@@ -107,8 +111,8 @@ def write(source: Path) -> None:
     for old in PAGES.glob(f"{source.stem}-[0-9]*.png"):
         old.unlink()
     for name, data in pictures.items():
-        (PAGES / name).write_bytes(data)
-    page_of(source).write_text(text, encoding="utf-8")
+        write_whole(PAGES / name, data)
+    write_whole(page_of(source), text)
 
 
 def main() -> int:

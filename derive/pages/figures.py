@@ -15,27 +15,19 @@ import sympy as sp
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from proprotor_equations import pitch
+from numpy.typing import NDArray
 
-import proprotor as pp
-from derive import consequences, flap_lag_springs, table_audit
+from derive import flap_lag_springs
 from derive import symbols as s
-from derive.comparison import CANDIDATES
-from derive.consequences import KNOT, SPEEDS, xv15
-from derive.counterparts import frequency_squared
+from derive.audit import consequences, tables
+from derive.audit.comparison import CANDIDATES
+from derive.audit.consequences import KNOT, SPEEDS, xv15
+from derive.audit.counterparts import frequency_squared
+from derive.audit.printed import TABLES
+from derive.audit.printed.tables import PrintedTable
 from derive.inertia import dependent_inertias
-from derive.printed import TABLES
-from derive.printed.tables import PrintedTable
-from proprotor.rotor.motions import HUB
-from proprotor.model.linear_model import rotor_quantities
-from proprotor.rotor.generated import evaluate
-from proprotor.rotor.options import Options
-from proprotor.rotor.trim import UNKNOWNS, Trim, with_trim
-from proprotor.stability.branches import by_branch
-from proprotor.stability.modes import eigensystem
-from proprotor.stability.sweep import sweep
-from proprotor.typing import Array
 
+Array = NDArray[Any]
 BLACK, BLUE, RED, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"  # Okabe and Ito
 LOW_SPEEDS = np.arange(50, 451, 10) * KNOT
 WING = ("beam", "chord", "torsion")
@@ -93,9 +85,7 @@ def false_growth() -> Figure:
         "as derived": ("published", BLACK, "--"),
     }
     for label, (equations, color, style) in signs.items():
-        model = pp.rotor_model(
-            xv15().rotor,
-            xv15().operation,
+        model = consequences.hub_held().linearize(
             LOW_SPEEDS,
             equations=equations,
             airloads="none",
@@ -103,9 +93,8 @@ def false_growth() -> Figure:
             rotor_speed="constant",
             locked=("gimbal", "pitch"),
         )
-        alone = model.submodel(tuple(name for name in model.dofs if name not in HUB))
-        growth = eigensystem(alone).values.real.max(axis=-1) / xv15().operation.rotor_speed
-        ax.plot(_collective(model.trim), growth, style, color=color, label=label, linewidth=2)
+        growth = model.modes().eigenvalue.real.max("mode") / xv15().operation.rotor_speed
+        ax.plot(_structural_pitch(model.trim.pitch), growth, style, color=color, label=label, linewidth=2)
     _titled(
         ax,
         "XV-15 flap and lag in a vacuum, no dampers, hub held",
@@ -116,9 +105,9 @@ def false_growth() -> Figure:
     return figure
 
 
-def _collective(trim: Trim) -> Array:
-    collective: Array = np.degrees(trim.pitch + xv15().rotor.structural_pitch_offset)
-    return collective
+def _structural_pitch(pitch: Array) -> Array:
+    """Return the pitch of the structural axes, deg, from the blade's pitch in rad."""
+    return np.degrees(pitch + xv15().rotor.structural_pitch_offset)
 
 
 # Springs
@@ -141,7 +130,7 @@ def _springs_in(expression: sp.Expr) -> sp.Expr:
     return expression.subs(stiffness)
 
 
-def _of_rotor(case: pp.Case) -> dict[sp.Symbol, float]:
+def _of_xv15() -> dict[sp.Symbol, float]:
     symbols = (
         s.flap_stiffness,
         s.lag_stiffness,
@@ -154,8 +143,8 @@ def _of_rotor(case: pp.Case) -> dict[sp.Symbol, float]:
         s.flap_hinge_offset,
         s.lag_hinge_offset,
     )
-    values = {symbol: getattr(case.rotor, symbol.name) for symbol in symbols}
-    return values | {s.rotor_speed: case.operation.rotor_speed}
+    values = {symbol: getattr(xv15().rotor, symbol.name) for symbol in symbols}
+    return values | {s.rotor_speed: xv15().operation.rotor_speed}
 
 
 def _of_table(table: PrintedTable) -> dict[sp.Symbol, float]:
@@ -170,8 +159,8 @@ def _of_table(table: PrintedTable) -> dict[sp.Symbol, float]:
         s.lag_inertia: v["I_ζ"],
         s.flap_first_moment: v["S_β"],
         s.lag_first_moment: v["S_ζ"],
-        s.flap_hinge_offset: table_audit.implied_offset(v, "β"),
-        s.lag_hinge_offset: table_audit.implied_offset(v, "ζ"),
+        s.flap_hinge_offset: tables.implied_offset(v, "β"),
+        s.lag_hinge_offset: tables.implied_offset(v, "ζ"),
         s.rotor_speed: v["rpm"] * np.pi / 30,
     }
 
@@ -180,7 +169,7 @@ def frequencies_against_collective() -> Figure:
     """Flap and lag frequency in rotating axes and their coupling against the pitch of the structural axes."""
     figure, axes = _figure(columns=2)
     angle = np.radians(np.linspace(0, 90, 91))
-    rotors = {"XV-15, Table 1": _of_rotor(xv15()), f"{TABLES[1].title}, Table 2": _of_table(TABLES[1])}
+    rotors = {"XV-15, Table 1": _of_xv15(), f"{TABLES[1].title}, Table 2": _of_table(TABLES[1])}
     for ax, (name, values) in zip(axes, rotors.items(), strict=True):
         inertia = sp.sqrt(s.flap_inertia * s.lag_inertia) * s.rotor_speed**2
         curves = (
@@ -232,10 +221,10 @@ def lag_frequency() -> Figure:
 
 
 def _regressive_lag(**options: Any) -> Array:
-    model = pp.rotor_model(xv15().rotor, xv15().operation, LOW_SPEEDS, **options)
-    roots = by_branch(sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB))))
-    per_rev: Array = roots.frequency.sel(branch="regressive lag").values / xv15().operation.rotor_speed
-    return per_rev
+    """Return the frequency of the regressive lag mode per revolution, with the section damping of each set."""
+    modes = consequences.modes_of(consequences.hub_held(), LOW_SPEEDS, section_damping=None, **options)
+    frequency: Array = modes.frequency.sel(branch="regressive lag").values
+    return frequency / xv15().operation.rotor_speed
 
 
 def published_and_consistent() -> Figure:
@@ -275,12 +264,9 @@ def _of_chord(ax: Axes) -> None:
 @functools.cache
 def _couplings() -> tuple[Array, ...]:
     """Structural pitch in degrees, K_Pβ, K_Pζ and K_Pζ without the trim lag, at the trim of each airspeed."""
-    rotor, operation = xv15().rotor, xv15().operation
-    trim = pp.rotor_model(rotor, operation, LOW_SPEEDS, pitch="coupling").trim
-    quantities = rotor_quantities(rotor, operation, LOW_SPEEDS, LOW_SPEEDS.shape)
-    pool = with_trim(quantities, Options(pitch="coupling"), {name: getattr(trim, name) for name in UNKNOWNS})
-    flap, lag = evaluate(pitch.couplings, pool)
-    return _collective(trim), flap, lag, evaluate(pitch.couplings, pool | {"lag": 0.0}).pitch_lag_coupling
+    model = consequences.hub_held().linearize(LOW_SPEEDS, pitch="coupling")
+    _, without_lag = consequences.couplings(model, lag=0.0)
+    return _structural_pitch(model.trim.pitch), *consequences.couplings(model), without_lag
 
 
 def couplings_against_collective() -> Figure:
@@ -306,10 +292,8 @@ def damping_by_coupling_sign() -> Figure:
     """The chord mode with the couplings of Eqs. 36 and 37, with both turned round by Eq. 35, and with none."""
     figure, (ax,) = _figure()
     _draw_damping(ax, consequences.modes_of(pitch="coupling"), "Eqs. 36 and 37", BLACK, "-")
-    with consequences.couplings_turned():
-        _draw_damping(
-            ax, consequences.modes_of(pitch="coupling"), "turned round, by the sign of Eq. 35", RED, "--"
-        )
+    turned = consequences.modes_of(consequences.couplings_turned(), pitch="coupling")
+    _draw_damping(ax, turned, "turned round, by the sign of Eq. 35", RED, "--")
     none: dict[str, Any] = {"pitch_flap_coupling": 0.0, "pitch_lag_coupling": 0.0}
     _draw_damping(ax, consequences.modes_of(pitch="coupling", **none), "no coupling", BLUE, ":")
     _of_chord(ax)
@@ -371,8 +355,8 @@ def _draw_bound(ax: Axes, table: PrintedTable) -> None:
             color=color,
             label=f"$(I_{angle} + e S_{angle})/\\sqrt{{I_b I_{angle}}}$",
         )
-        implied = table_audit.implied_offset(v, angle) / v["R"]
-        error = table_audit.rounding(v[f"I_{angle}α"]) / bound
+        implied = tables.implied_offset(v, angle) / v["R"]
+        error = tables.rounding(v[f"I_{angle}α"]) / bound
         label = f"$I_{{{angle}α}}$ as printed"
         ax.errorbar(implied, v[f"I_{angle}α"] / bound, error, fmt="o", color=color, label=label, capsize=3)
     _titled(ax, f"Table {table.number}: {table.title}", "Hinge offset e/R", "Inertia/its bound")

@@ -16,13 +16,20 @@ from matplotlib.figure import Figure
 from PIL import Image
 from sympy.printing.latex import LatexPrinter
 
-from derive import audit, consequences, invariants, printed
 from derive import symbols as s
-from derive.comparison import AFTER_READING, CONTRADICTS, REPRODUCED, VERDICTS, EquationVerdict, TermVerdict
-from derive.counterparts import meaning
-from derive.headings import anchor, heading
-from derive.printed import notation as n
-from derive.printed.flap import nu_beta_squared, radius
+from derive.audit import consequences, invariants, printed, report
+from derive.audit.comparison import (
+    AFTER_READING,
+    CONTRADICTS,
+    REPRODUCED,
+    VERDICTS,
+    EquationVerdict,
+    TermVerdict,
+)
+from derive.audit.counterparts import meaning
+from derive.audit.headings import anchor, heading
+from derive.audit.printed import notation as n
+from derive.audit.printed.flap import nu_beta_squared, radius
 from derive.published import DROPPED_TERMS
 from derive.symbols import QUANTITIES
 
@@ -305,19 +312,19 @@ def rows_of_table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 def equation(number: int | str) -> Shown:
     """Print and derivation of an equation side by side, with the audit's verdict on every term."""
-    result = audit.equation_verdict(number)
+    result = report.equation_verdict(number)
     blocks = [_summary(result)]
     if _is_rearranged(result.equation):
         blocks.append(_as_printed(result.equation))
     blocks.append(_side_by_side(result))
-    broken = [finding for finding in audit.broken_invariants().get(number, [])] if result.conflicts else []
+    broken = [finding for finding in report.broken_invariants().get(number, [])] if result.conflicts else []
     blocks += [f"Breaks **{finding.invariant}**: {_in_notation(finding.evidence)}." for finding in broken]
     return Shown("\n\n".join(blocks))
 
 
 def _summary(result: EquationVerdict) -> str:
     equation = result.equation
-    counts = ", ".join(f"{result.count(v)} {audit.LETTERS[v]}" for v in VERDICTS if result.count(v))
+    counts = ", ".join(f"{result.count(v)} {report.LETTERS[v]}" for v in VERDICTS if result.count(v))
     text = f"**{equation.title[0].upper()}{equation.title[1:]}** (page {equation.page}): {_marked(result.verdict)}. "
     text += f"Terms: {counts}. See the {in_index(equation.number)}."
     return f"{text}  \nDoubt: {equation.doubt}." if equation.doubt else text
@@ -398,7 +405,7 @@ def _in_notation(evidence: str) -> str:
 
 def table(number: int) -> Shown:
     """A printed table, and what its values say of each other."""
-    result = audit.table_verdicts()[f"Table {number}"]
+    result = report.table_verdicts()[f"Table {number}"]
     of = result.table
     values = rows_of_table(of.values, [(value.text for value in of.values.values())])
     rows = [
@@ -426,7 +433,7 @@ def dropped_terms(*names: str) -> Shown:
 def invariants_checked() -> Shown:
     """Every invariant, how many equations it was asked of, and which break it."""
     found: dict[str, list[invariants.Finding]] = {}
-    for finding in audit.findings():
+    for finding in report.findings():
         found.setdefault(finding.invariant, []).append(finding)
     rows = (
         (
@@ -471,18 +478,18 @@ def boundaries(of: Mapping[str, float]) -> Shown:
 def errata() -> Shown:
     """Every conflict: the print, the derivation, the invariant the print breaks, what it does to the XV-15."""
     rows = []
-    for number in audit.broken_invariants():
+    for number in report.broken_invariants():
         unexplained = [
-            t for t in audit.equation_verdict(number).terms if t.printed != t.derived and not t.note
+            t for t in report.equation_verdict(number).terms if t.printed != t.derived and not t.note
         ]
         columns = [
             _column({t.term: getattr(t, side) for t in unexplained}) for side in ("printed", "derived")
         ]
-        breaks = ", ".join(audit.invariants_of(number))
-        rows.append((heading(number), *columns, breaks, audit.consequence_of_conflict(number)))
-    for name, result in audit.table_verdicts().items():
+        breaks = ", ".join(report.invariants_of(number))
+        rows.append((heading(number), *columns, breaks, report.consequence_of_conflict(number)))
+    for name, result in report.table_verdicts().items():
         if result.conflicts:
-            breaks = ", ".join(audit.invariants_of(name))
+            breaks = ", ".join(report.invariants_of(name))
             evidence = "<br>".join(relation.evidence for relation in result.conflicts[:1])
-            rows.append((name, evidence, "≤ 1", breaks, audit.consequence_of_conflict(name)))
+            rows.append((name, evidence, "≤ 1", breaks, report.consequence_of_conflict(name)))
     return Shown(rows_of_table(("", "printed", "derived", "breaks", "XV-15 boundary"), rows))

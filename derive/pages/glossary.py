@@ -1,7 +1,7 @@
 """The glossary of the derivation's symbols: docs/symbols.md.
 
-python -m derive.glossary            write the page
-python -m derive.glossary --check    write nothing; exit 1 if the page is stale
+python -m derive.pages.glossary            write the page
+python -m derive.pages.glossary --check    write nothing; exit 1 if the page is stale
 
 Every symbol is declared once, with its unit and meaning, in the module where it is first needed; the page has the same
 order.
@@ -17,21 +17,22 @@ from typing import Any
 
 import sympy as sp
 
-from derive.emit import MODULE_TITLES
+from derive.equations import STEPS
+from derive.files import write_whole
 from derive.symbols import QUANTITIES, Quantity
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "symbols.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "symbols.md"
 # Where symbols are declared, in the order of the derivation: a symbol belongs to the first module that has it.
 TITLES = {
     "symbols": "Inputs and trim",
     "kinematics": "Kinematics",
-    **{name: title for name, title in MODULE_TITLES.items() if name != "published"},
+    **{name: step.title for name, step in STEPS.items()},
 }
 
 HEAD = """\
 # Symbols
 
-Written by `python -m derive.glossary` from the declarations in `derive/`. The name is the keyword argument of the
+Written by `python -m derive.pages.glossary` from the declarations in `derive/`. The name is the keyword argument of the
 [generated functions](reference/equations.md) and, for inputs, the field of [a deck](decks.md). SI units; angles are in
 rad. Signs and axes are those of [the conventions](theory/conventions.md).
 """
@@ -90,9 +91,11 @@ def page() -> str:
 def main() -> int:
     if "--check" in sys.argv[1:]:
         current = PAGE.read_text(encoding="utf-8") == page()
-        print("the glossary is current" if current else "the glossary is stale: python -m derive.glossary")
+        print(
+            "the glossary is current" if current else "the glossary is stale: python -m derive.pages.glossary"
+        )
         return 0 if current else 1
-    PAGE.write_text(page(), encoding="utf-8")
+    write_whole(PAGE, page())
     return 0
 
 

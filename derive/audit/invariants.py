@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from derive import printed
 from derive import symbols as s
+from derive.audit import printed
+from derive.audit.printed import PrintedEquation
+from derive.audit.printed import notation as n
+from derive.audit.printed.notation import AZIMUTH, TIME
 from derive.flap_lag_springs import STIFFNESS, series_determinant
 from derive.multiblade import psi
-from derive.printed import PrintedEquation
-from derive.printed import notation as n
-from derive.printed.notation import AZIMUTH, TIME
 from derive.symbols import QUANTITIES, Dimension
 
 SKEWNESS = "gyroscopic skewness"

@@ -1,7 +1,7 @@
 """The index of the paper's equations: print, derivation, generated function and notebook of each, in docs/equations.md.
 
-python -m derive.index            write the page
-python -m derive.index --check    write nothing; exit 1 if the page is stale
+python -m derive.pages.index            write the page
+python -m derive.pages.index --check    write nothing; exit 1 if the page is stale
 
 Every place is found in the sources: the print and the counterpart by their numbers, the derivation by what the
 counterpart calls, generated functions by the equations their docstrings name, notebook cells by their headings.
@@ -18,21 +18,24 @@ from collections import Counter, deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
-from derive import printed
-from derive.audit import LETTERS, RECORD
-from derive.comparison import VERDICTS
-from derive.headings import anchor, heading
-from derive.notebooks import page_of, sources
+from derive import equations
+from derive.audit import printed
+from derive.audit.comparison import VERDICTS
+from derive.audit.headings import anchor, heading
+from derive.audit.report import LETTERS, RECORD
+from derive.files import write_whole
+from derive.pages.notebooks import page_of, sources
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 DERIVE = ROOT / "derive"
+AUDIT = DERIVE / "audit"
 GENERATED = ROOT / "generated" / "proprotor_equations"
 PAGE = ROOT / "docs" / "equations.md"
 COUNTERPARTS = "counterparts"
 # Steps of the derivation; what only declares symbols, holds polynomials or prints is none.
-STEPS: tuple[str, ...] = ("kinematics", "inertia", "flap_lag_springs", "pitch", "section", "airloads")
-STEPS += ("lift_slope", "trim", "multiblade", "drive_train")
+STEPS = ("kinematics", *equations.STEPS)
 
 Number = int | str
 
@@ -84,7 +87,7 @@ def _definitions(path: Path) -> dict[str, ast.stmt]:
 def prints() -> dict[Number, Place]:
     """Where each equation and table is transcribed."""
     found: dict[Number, Place] = {}
-    for path in sorted((DERIVE / "printed").glob("*.py")):
+    for path in sorted((AUDIT / "printed").glob("*.py")):
         for call in ast.walk(_tree(path)):
             if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.args:
                 first = call.args[0]
@@ -105,8 +108,8 @@ def _place_in_print(path: Path, call: ast.Call) -> Place:
 
 @functools.cache
 def counterparts() -> dict[Number, Place]:
-    """The function that derives each equation: that of `derive.counterparts`, or of the tables' audit."""
-    path = DERIVE / f"{COUNTERPARTS}.py"
+    """The function that derives each equation: that of `derive.audit.counterparts`, or of the tables' audit."""
+    path = AUDIT / f"{COUNTERPARTS}.py"
     found: dict[Number, Place] = {}
     for function in _tree(path).body:
         if not isinstance(function, ast.FunctionDef):
@@ -115,8 +118,8 @@ def counterparts() -> dict[Number, Place]:
             if isinstance(decorator, ast.Call) and getattr(decorator.func, "id", "") == "counterpart":
                 place = Place(f"{COUNTERPARTS}.{function.name}", path, function.lineno)
                 found |= {ast.literal_eval(argument): place for argument in decorator.args}
-    audit = DERIVE / "table_audit.py"
-    table = Place("table_audit.audit_table", audit, _definitions(audit)["audit_table"].lineno)
+    tables = AUDIT / "tables.py"
+    table = Place("tables.audit_table", tables, _definitions(tables)["audit_table"].lineno)
     return found | {f"Table {of.number}": table for of in printed.TABLES}
 
 
@@ -217,22 +220,23 @@ def generated(number: Number) -> tuple[Place, ...]:
 
 @functools.cache
 def _emitted() -> dict[str, set[tuple[str, str]]]:
-    """What of the derivation each record of `derive.equations` is made from, by module.name."""
+    """What of the derivation each line of `derive.equations` is made from, by module.name."""
     path = DERIVE / "equations.py"
     aliases = _aliases(path)
     found: dict[str, set[tuple[str, str]]] = {}
-    for call in ast.walk(_tree(path)):
-        if not isinstance(call, ast.Call):
-            continue
-        texts = [str(argument.value) for argument in call.args[:2] if isinstance(argument, ast.Constant)]
-        if len(texts) == 2 and texts[0] in STEPS:
-            found[".".join(texts)] = {
-                (aliases[node.value.id], node.attr)
-                for node in ast.walk(call)
-                if isinstance(node, ast.Attribute)
-                and isinstance(node.value, ast.Name)
-                and node.value.id in aliases
-            }
+    known = _definitions(path)
+    for step in ast.walk(_tree(path)):
+        if isinstance(step, ast.Call) and getattr(step.func, "id", "") == "Step":
+            module, lines = ast.literal_eval(step.args[0]), known[cast(ast.Name, step.args[2]).id]
+            for call in ast.walk(lines):
+                if isinstance(call, ast.Call) and call.args and isinstance(call.args[0], ast.Constant):
+                    found.setdefault(f"{module}.{call.args[0].value!s}", set()).update(
+                        (aliases[node.value.id], node.attr)
+                        for node in ast.walk(call)
+                        if isinstance(node, ast.Attribute)
+                        and isinstance(node.value, ast.Name)
+                        and node.value.id in aliases
+                    )
     return found
 
 
@@ -299,10 +303,10 @@ def page() -> str:
     lines = [
         "# Where each equation is",
         "",
-        "Written by `python -m derive.index`. Of each equation of AIAA-2002-1604: its transcription, the function",
-        "that derives it and the steps of the derivation it calls, the generated functions whose docstrings name it,",
-        "and the notebook cell that shows print and derivation side by side. Verdicts are the recorded ones of",
-        "[the audit](audit.md).",
+        "Written by `python -m derive.pages.index`. Of each equation of AIAA-2002-1604: its transcription, the",
+        "function that derives it and the steps of the derivation it calls, the generated functions whose docstrings",
+        "name it, and the notebook cell that shows print and derivation side by side. Verdicts are the recorded ones",
+        "of [the audit](audit.md).",
         "",
         *_overview(),
     ]
@@ -347,10 +351,10 @@ def main() -> int:
         stale = not PAGE.exists() or PAGE.read_text(encoding="utf-8") != text
         print(
             f"{PAGE.relative_to(ROOT)} is "
-            + ("stale: python -m derive.index" if stale else "as it should be")
+            + ("stale: python -m derive.pages.index" if stale else "as it should be")
         )
         return int(stale)
-    PAGE.write_text(text, encoding="utf-8")
+    write_whole(PAGE, text)
     print(f"written: {PAGE.relative_to(ROOT)}")
     return 0
 

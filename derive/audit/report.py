@@ -20,18 +20,18 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from derive import consequences, invariants, printed
-from derive.comparison import ABSENT_FROM_PRINT, AFTER_READING, VERDICTS, EquationVerdict, audit
-from derive.consequences import in_knots
-from derive.counterparts import COUNTERPARTS
-from derive.headings import anchor, heading
-from derive.invariants import Finding
-from derive.printed.notation import latex_names
+from derive.audit import consequences, invariants, printed
+from derive.audit.comparison import ABSENT_FROM_PRINT, AFTER_READING, VERDICTS, EquationVerdict, audit
+from derive.audit.consequences import in_knots
+from derive.audit.counterparts import COUNTERPARTS
+from derive.audit.headings import anchor, heading
+from derive.audit.invariants import Finding
+from derive.audit.printed.notation import latex_names
+from derive.audit.tables import TableVerdict, audit_table
+from derive.files import write_whole
 from derive.published import DROPPED_TERMS
-from derive.table_audit import TableVerdict, audit_table
-from proprotor.files.output import write_whole
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 RECORD = ROOT / "tests" / "golden" / "audit.csv"
 REPORT = ROOT / "docs" / "audit.md"
 HEADER = ("number", "part", "term", "printed", "derived", "verdict", "note")
@@ -107,7 +107,7 @@ def record(rows: list[Row]) -> None:
     RECORD.parent.mkdir(parents=True, exist_ok=True)
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator="\n").writerows([HEADER, *rows])
-    write_whole(RECORD, lambda file: file.write(text.getvalue().encode()))
+    write_whole(RECORD, text.getvalue())
 
 
 def changes(was: list[Row], now: list[Row]) -> list[str]:
@@ -221,7 +221,7 @@ def _markdown_table(header: Sequence[str], rows: Iterable[Iterable[object]]) -> 
 def _derived_by(number: str) -> str:
     """The function, with a link to where the index has it."""
     known = {str(key): key for key in COUNTERPARTS}
-    name = "table_audit.audit_table"
+    name = "tables.audit_table"
     if number in known:
         function = COUNTERPARTS[known[number]]
         name = f"counterparts.{getattr(function, 'func', function).__name__}"
@@ -336,8 +336,7 @@ def main(arguments: list[str] | None = None) -> int:
     if options.accept:
         record(now)
     if not options.quick:
-        report = markdown().encode()
-        write_whole(REPORT, lambda file: file.write(report))
+        write_whole(REPORT, markdown())
         print(f"written: {REPORT.relative_to(ROOT)}")
     found = changes(recorded() if RECORD.exists() else [], now)
     print("\n".join(found) if found else f"{len(now)} verdicts, all as recorded")

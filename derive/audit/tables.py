@@ -15,9 +15,9 @@ from decimal import Decimal
 import numpy as np
 from scipy.optimize import linprog, minimize
 
-from derive.comparison import AFTER_READING, CONTRADICTS, REPRODUCED, VERDICTS
-from derive.printed import PrintedTable
-from derive.printed.tables import PrintedNumber
+from derive.audit.comparison import AFTER_READING, CONTRADICTS, REPRODUCED, VERDICTS
+from derive.audit.printed import PrintedTable
+from derive.audit.printed.tables import PrintedNumber
 
 CAUCHY_SCHWARZ = "Cauchy-Schwarz"
 MASS_DISTRIBUTION = "non-negative mass"

@@ -3,8 +3,8 @@
 import sympy as sp
 
 from derive import symbols as s
+from derive.audit.printed.notation import TIME, PrintedEquation, e, printed
 from derive.multiblade import psi
-from derive.printed.notation import TIME, PrintedEquation, e, printed
 
 r, omega = s.radial_station, s.rotor_speed
 sine, cosine = sp.sin(psi), sp.cos(psi)
