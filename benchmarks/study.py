@@ -33,8 +33,8 @@ from proprotor.rotor import section_loads as blade_airloads
 from proprotor.rotor import trim_balance
 from proprotor.stability import modes
 from proprotor.study import workers as study_workers
-from proprotor.study.batch import DEFAULT_QUANTITIES
 from proprotor.study.study import BATCH, study
+from proprotor.study.variables import DEFAULT_QUANTITIES
 
 POINTS = 10_000
 TURNS = 3

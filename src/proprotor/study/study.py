@@ -21,20 +21,23 @@ from proprotor.needs import check_memory, free_memory
 from proprotor.rotor.motions import HUB, ROTOR_SPEED
 from proprotor.rotor.options import parse_options
 from proprotor.study import workers as study_workers
-from proprotor.study.batch import (
+from proprotor.study.batch import Analysis, Batch
+from proprotor.study.checkpoint import Checkpoint
+from proprotor.study.designs import AIRSPEED, Designs, Plan
+from proprotor.study.progress import progress_bar
+from proprotor.study.sampling import as_plan
+from proprotor.study.source_code import code_fingerprint
+from proprotor.study.variables import (
     ALONG_AIRSPEEDS,
     DEFAULT_QUANTITIES,
     POINT,
     QUANTITIES,
-    Analysis,
-    Batch,
-    empty,
+    blank,
+    bytes_of,
+    dataset_of,
+    shape_of,
     variables,
 )
-from proprotor.study.checkpoint import Checkpoint
-from proprotor.study.progress import progress_bar
-from proprotor.study.sampling import AIRSPEED, Designs, Plan, as_plan
-from proprotor.study.source_code import code_fingerprint
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
@@ -74,14 +77,14 @@ def study(
     case : Case
     inputs : mapping or plan
         What varies, by deck path (`proprotor.design_inputs`): a mapping of lists is a grid of all combinations; lists
-        point by point, Latin hypercube, Sobol and Saltelli samples are plans of `proprotor.study.sampling`. Values are in SI,
+        point by point, Latin hypercube, Sobol and Saltelli samples are plans of `proprotor.sampling`. Values are in SI,
         pint quantities or text with a unit. ``"airspeed"`` may be among them.
     airspeed : float or array in m/s, text such as "100:300:20kt", pint quantity or xarray.DataArray
         For every design; not where it is among the inputs.
     quantities : str or sequence of str
         "eigenvalue", "least_stable", "trim" (these three by default); "flutter", the lowest airspeed of the range at
         which each design loses stability; "vectors", mode shapes; "modes", eigenvalues followed along the airspeeds.
-        See `proprotor.study.batch.VARIABLES`.
+        See `proprotor.study.variables.VARIABLES`.
     workers : int, optional
         Processes, by default one for each core, and none for a small study; 1 is this process alone.
     client : distributed.Client, optional
@@ -226,22 +229,17 @@ class _Study:
     def size(self) -> float:
         """Bytes of all results at most, before the coordinates are known."""
         dofs = _most_coordinates(self.analysis.case, self.analysis.options)
-        sizes = {"state": 2 * dofs, "dof": dofs}
         return float(
             sum(
-                math.prod(self.shape if it.on == POINT else self.shape[:1])
-                * math.prod(sizes[dim] for dim in it.dims)
-                * empty(it, ()).itemsize
-                for it in variables(self.analysis.quantities).values()
+                math.prod(shape_of(one, self.shape, 2 * dofs, dofs)) * bytes_of(one)
+                for one in variables(self.analysis.quantities).values()
             )
         )
 
     def allocate(self) -> None:
-        """Arrays for all results, once."""
-        sizes = {"state": self.analysis.states, "dof": len(self.analysis.dofs)}
-        for name, it in variables(self.analysis.quantities).items():
-            leading = self.shape if it.on == POINT else self.shape[:1]
-            self.found[name] = empty(it, (*leading, *(sizes[dim] for dim in it.dims)))
+        """Make the arrays of all results, once."""
+        it = self.analysis
+        self.found.update(blank(it.quantities, self.shape, it.states, len(it.dofs)))
 
     def put(self, block: tuple[slice, slice], results: Mapping[str, Array]) -> int:
         """Put the results of a batch into their place; how many points failed."""
@@ -252,29 +250,15 @@ class _Study:
 
     def dataset(self) -> xarray.Dataset:
         """The results over the inputs and airspeeds."""
-        import xarray  # here, because it takes long to import
-
-        axes, shape = tuple(self.designs.axes), self.designs.shape
         over_speeds = self.airspeed is not None and not self.scalar_airspeed
-        data = {}
-        for name, it in variables(self.analysis.quantities).items():
-            array = self.found[name]
-            if name == "missing" and not (array != "").any():
-                continue
-            if it.on == POINT:
-                array = array.reshape(*shape, *self.shape[1:] * over_speeds, *array.shape[2:])
-            else:
-                array = array.reshape(*shape, *array.shape[1:])
-            dims = (*axes, *[AIRSPEED] * (over_speeds and it.on == POINT), *it.dims)
-            attributes = {"long_name": it.meaning} | ({"units": it.units} if it.units else {})
-            data[name] = (dims, array, attributes)
         coordinates: dict[str, Any] = dict(self.designs.coordinates)
         if self.airspeed is not None:
             speeds = self.airspeed if over_speeds else self.airspeed[0]
             coordinates[AIRSPEED] = ((AIRSPEED,) * over_speeds, speeds, {"units": "m/s"})
         if "vectors" in self.analysis.quantities:
             coordinates["dof"] = list(self.analysis.dofs)
-        return xarray.Dataset(data, coords=coordinates, attrs=self._attributes())
+        axes = dict(zip(self.designs.axes, self.designs.shape, strict=True))
+        return dataset_of(self.found, axes, coordinates, self._attributes(), over_speeds)
 
     def _attributes(self) -> dict[str, str]:
         return stamp.of_case(self.analysis.case, self.analysis.options) | self.designs.attributes

@@ -12,7 +12,7 @@ from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.needs import check_memory, need
-from proprotor.study.batch import STABLE, UNSTABLE
+from proprotor.study.variables import STABLE, UNSTABLE
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def sobol_indices(
     Parameters
     ----------
     results : xarray.Dataset
-        A study of `proprotor.study.sampling.saltelli`.
+        A study of `proprotor.sampling.saltelli`.
     of : str
         A variable with one number for each design. Base samples with a design that has none are left out, at most
         5 % of them.
@@ -231,9 +231,7 @@ def _range(results: xarray.Dataset) -> tuple[float, float]:
 def _saltelli_of(results: xarray.Dataset) -> dict[str, Any]:
     sample: dict[str, Any] = json.loads(results.attrs.get("sample", "{}"))
     if sample.get("method") != "saltelli":
-        raise InputError(
-            "results", sample.get("method"), "must be a study of proprotor.study.sampling.saltelli"
-        )
+        raise InputError("results", sample.get("method"), "must be a study of proprotor.sampling.saltelli")
     return sample
 
 
