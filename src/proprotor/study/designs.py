@@ -195,3 +195,9 @@ def check_size(field: str, given: object, designs: int, inputs: int) -> None:
         raise InputError(field, given, f"must be at most {_MOST_DESIGNS} designs")
     size = float(_BYTES_OF_INPUT * designs * max(1, inputs))
     check_memory(field, given, size, f"the inputs of {designs:.4g} designs")
+
+
+def check_count(field: str, count: object) -> None:
+    """Refuse anything but a whole number above zero."""
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+        raise InputError(field, count, "must be a whole number above zero")

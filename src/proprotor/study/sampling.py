@@ -16,6 +16,7 @@ from proprotor.needs import need
 from proprotor.study.designs import (
     Designs,
     Plan,
+    check_count,
     check_size,
     drawn,
     label_of,
@@ -195,8 +196,7 @@ def _sampled(
     """Return the plan of a sample, whose shares `draw` finds once the plan is resolved."""
     if not inputs:
         raise InputError("inputs", None, "must have at least one input to sample")
-    if isinstance(size, bool) or not isinstance(size, int | np.integer) or size < 1:
-        raise InputError("size", size, "must be a whole number above zero")
+    check_count("size", size)
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError("seed", seed, "must be a whole number, not negative")
     rows = {"saltelli": (2 if extra.get("second_order") else 1) * len(inputs) + 2}.get(method, 1)

@@ -12,6 +12,7 @@ from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.needs import check_memory, need
+from proprotor.study.designs import check_count
 from proprotor.study.variables import STABLE, UNSTABLE
 from proprotor.typing import Array
 
@@ -163,7 +164,9 @@ def sobol_indices(
     from SALib.analyze import sobol as salib_sobol
 
     sample = _saltelli_of(results)
-    _check_count("resamples", resamples, results.sizes.get("design", 0))
+    check_count("resamples", resamples)
+    size = 24.0 * resamples * results.sizes.get("design", 0)  # places, and two values at each
+    check_memory("resamples", resamples, size, "the bootstrap")
     names, second_order = sample["inputs"], sample["second_order"]
     block = len(names) * (2 if second_order else 1) + 2
     values, above, below = _one_a_design(results, of)
@@ -198,12 +201,6 @@ def sobol_indices(
     coordinates = {"input": names} | ({"other_input": names} if second_order else {})
     attributes = _attributes(results, of, warnings) | {"confidence": confidence}
     return xarray.Dataset(table, coordinates, attributes)
-
-
-def _check_count(field: str, count: int, designs: int) -> None:
-    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
-        raise InputError(field, count, "must be a whole number above zero")
-    check_memory(field, count, 24.0 * count * designs, "the bootstrap")  # places, and two values at each
 
 
 def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array]:
