@@ -33,12 +33,12 @@ from proprotor.rotor import section_loads as blade_airloads
 from proprotor.rotor import trim_balance
 from proprotor.stability import modes
 from proprotor.study import workers as study_workers
-from proprotor.study.division import MOST_POINTS
 from proprotor.study.study import study
 from proprotor.study.variables import DEFAULT_QUANTITIES
 
 POINTS = 10_000
 TURNS = 3
+BATCH = 2000  # points: as many as a study analyses at once
 SPEEDS = np.linspace(160, 380, 20) * 1852 / 3600  # m/s
 INPUTS = {
     "rotor.precone": ("1.5 deg", "3.5 deg"),
@@ -229,7 +229,7 @@ def print_ratios(console: Console, case: pp.Case, points: int) -> None:
 
 
 def print_profile(console: Console, case: pp.Case, points: int) -> None:
-    times, least = profile(case, points), floors(case, MOST_POINTS)
+    times, least = profile(case, points), floors(case, BATCH)
     whole, lapack = sum(times.values()), times["eigenvalues (LAPACK)"]
     columns = ("part", "µs a point", "% of the study", "of LAPACK's time", "floor, µs")
     table = Table(*columns, title="where one process spends its time")
@@ -239,8 +239,8 @@ def print_profile(console: Console, case: pp.Case, points: int) -> None:
             part, f"{1e6 * spent / points:.1f}", f"{100 * spent / whole:.1f}", f"{spent / lapack:.3f}", floor
         )
     console.print(table)
-    for (stations, kind), spent in evaluations(case, MOST_POINTS).items():
-        told = ", ".join(f"{1e6 * one / MOST_POINTS:.1f}" for one in spent)
+    for (stations, kind), spent in evaluations(case, BATCH).items():
+        told = ", ".join(f"{1e6 * one / BATCH:.1f}" for one in spent)
         console.print(f"section loads in the trim of a batch, {stations} stations, {kind}: {told} µs a point")
 
 

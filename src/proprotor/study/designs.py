@@ -17,14 +17,14 @@ from proprotor.study.input_ranges import has_number
 from proprotor.typing import Array
 
 AIRSPEED = "airspeed"
-DESIGN = "design"  # the dimension of a list or a sample
+_DESIGN = "design"  # the dimension of a list or a sample
 _SPEED = Datum("", None, "m/s")  # airspeed is no number of the deck
 _FACTOR = Datum("", 1.0, "")  # on several numbers of the deck, which vary together
-_MOST_DESIGNS = 100_000_000
+_MOST__DESIGNS = 100_000_000
 # Of each design, while designs are laid out: the number drawn, its value, and a copy of both.
 _BYTES_OF_INPUT = 32
 
-Path = str | tuple[str, ...]  # of one input, or of several that vary together
+_Path = str | tuple[str, ...]  # of one input, or of several that vary together
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,10 +58,10 @@ class Designs:
     @property
     def coordinates(self) -> dict[str, tuple[Any, ...]]:
         """Coordinates of an `xarray.Dataset` over the axes: the inputs, with units."""
-        if DESIGN not in self.axes:
+        if _DESIGN not in self.axes:
             return {name: (name, axis, {"units": self.units[name]}) for name, axis in self.axes.items()}
-        own = {name: (DESIGN, array, {"units": self.units[name]}) for name, array in self.values.items()}
-        return {DESIGN: (DESIGN, self.axes[DESIGN])} | own
+        own = {name: (_DESIGN, array, {"units": self.units[name]}) for name, array in self.values.items()}
+        return {_DESIGN: (_DESIGN, self.axes[_DESIGN])} | own
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -118,12 +118,12 @@ def paths_of(inputs: Mapping[Any, Any]) -> list[str]:
     return [path for name in inputs for path in ([name] if isinstance(name, str) else name)]
 
 
-def label_of(name: Path) -> str:
+def label_of(name: _Path) -> str:
     """Return the name of an input for tables: the path, or the paths that vary together."""
     return name if isinstance(name, str) else ", ".join(name)
 
 
-def _number(name: Path, known: Mapping[str, Datum]) -> Datum:
+def _number(name: _Path, known: Mapping[str, Datum]) -> Datum:
     """Return the number of the deck that an input varies, or the factor of several numbers."""
     if isinstance(name, str):
         return known[name]
@@ -139,7 +139,7 @@ def outer_product(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs
     designs = math.prod(len(axis) for axis in axes.values())
     check_size("inputs", f"{designs:.4g} designs", designs, len(axes))
     values = [part.reshape(-1) for part in np.meshgrid(*axes.values(), indexing="ij")]
-    along = axes or {DESIGN: np.arange(1)}  # a study of nothing but airspeeds
+    along = axes or {_DESIGN: np.arange(1)}  # a study of nothing but airspeeds
     return Designs(dict(zip(axes, values, strict=True)), along, _units(axes, known))
 
 
@@ -153,11 +153,11 @@ def side_by_side(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs:
     """
     lengths = {name: values.size for name, values in read.items() if values.ndim}
     if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{name} has {length}" for name, length in lengths.items())
-        raise InputError("inputs", told, "must be lists of equal lengths")
+        given = ", ".join(f"{name} has {length}" for name, length in lengths.items())
+        raise InputError("inputs", given, "must be lists of equal lengths")
     size = max(lengths.values(), default=1)
     values = {name: np.broadcast_to(array, (size,)).copy() for name, array in read.items()}
-    return Designs(values, {DESIGN: np.arange(size)}, _units(values, known))
+    return Designs(values, {_DESIGN: np.arange(size)}, _units(values, known))
 
 
 def drawn(read: dict[Any, Any], known: Mapping[str, Datum], shares: Array, sample: dict[str, Any]) -> Designs:
@@ -182,7 +182,7 @@ def drawn(read: dict[Any, Any], known: Mapping[str, Datum], shares: Array, sampl
     for name, factor in of_each.items():
         for path in () if isinstance(name, str) else name:
             values[path] = values.get(path, known[path].si) * factor
-    return Designs(values, {DESIGN: np.arange(len(shares))}, _units(values, known), sample)
+    return Designs(values, {_DESIGN: np.arange(len(shares))}, _units(values, known), sample)
 
 
 def _units(values: Mapping[str, Array], known: Mapping[str, Datum]) -> dict[str, str]:
@@ -191,8 +191,8 @@ def _units(values: Mapping[str, Array], known: Mapping[str, Datum]) -> dict[str,
 
 def check_size(field: str, given: object, designs: int, inputs: int) -> None:
     """Refuse more designs than there is memory for their inputs, before any are laid out."""
-    if designs > _MOST_DESIGNS:
-        raise InputError(field, given, f"must be at most {_MOST_DESIGNS} designs")
+    if designs > _MOST__DESIGNS:
+        raise InputError(field, given, f"must be at most {_MOST__DESIGNS} designs")
     size = float(_BYTES_OF_INPUT * designs * max(1, inputs))
     check_memory(field, given, size, f"the inputs of {designs:.4g} designs")
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from proprotor.study.request import Request
 
-MOST_POINTS = 2000  # of a batch: enough for NumPy's own cost to vanish beside LAPACK's
+_MOST_POINTS = 2000  # of a batch: enough for NumPy's own cost to vanish beside LAPACK's
 _FEWEST_POINTS = 50
 _BYTES_PER_POINT = 100_000  # while a batch is analysed; the XV-15 takes 30 kB, 46 kB with vectors
 _BYTES_PER_WORKER = 150e6  # of a process with NumPy, SciPy and a case
@@ -50,8 +50,8 @@ def check_needs(request: Request, batch: int | None, workers: int | None, client
         if count is not None:
             check_count(name, count)
     designs, speeds = request.shape
-    told = f"{designs} designs at {speeds} airspeeds"
-    check_memory("inputs", told, request.size, "the results", "take fewer, or fewer quantities")
+    given = f"{designs} designs at {speeds} airspeeds"
+    check_memory("inputs", given, request.size, "the results", "take fewer, or fewer quantities")
     if client is not None:  # whose computers have memory of their own
         return
     at_once = min(batch or 1, designs * speeds)
@@ -64,11 +64,11 @@ def check_needs(request: Request, batch: int | None, workers: int | None, client
 def points_at_once(request: Request, workers: int | None, client: Client | None) -> int:
     """Return the points of a batch: the batches of all workers fit into memory and come out even."""
     if client is not None:
-        workers, most = threads_of(client), MOST_POINTS
+        workers, most = threads_of(client), _MOST_POINTS
     else:
         workers = workers or cores()
         fitting = _SHARE_OF_MEMORY * free_memory() / workers / _BYTES_PER_POINT
-        most = int(np.clip(fitting, _FEWEST_POINTS, MOST_POINTS))
+        most = int(np.clip(fitting, _FEWEST_POINTS, _MOST_POINTS))
     points = int(np.prod(request.shape))
     rounds = -(-points // (most * workers))
     return -(-points // (rounds * workers))

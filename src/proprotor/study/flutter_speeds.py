@@ -19,13 +19,13 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     from proprotor.study.batch import Batch
 
-Models = Callable[
+_Models = Callable[
     [Array, Array], LinearModel
 ]  # rows of a batch, and an airspeed for each, to the models there
 
 
 def put_flutter_speeds(
-    found: dict[str, Array], batch: Batch, rows: Array, models: Models, states: int, tolerance: float
+    found: dict[str, Array], batch: Batch, rows: Array, models: _Models, states: int, tolerance: float
 ) -> None:
     """Put the variables of the quantity "flutter" of some designs in their places.
 
@@ -66,7 +66,7 @@ def put_flutter_speeds(
         _put_onsets(found, first, models)
 
 
-def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: Models) -> None:
+def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: _Models) -> None:
     """Put the lowest onset of each design that has one in its place, with what moves there."""
     rows, onsets = np.array(list(first)), list(first.values())
     model = models(rows, np.array([one.position for one in onsets]))

@@ -44,8 +44,8 @@ def follow_modes(model: LinearModel) -> xarray.Dataset:
         When the batch has another number of axes, or designs have different airspeeds.
     """
     if model.airspeed.ndim != 2:
-        told = f"array of shape {model.airspeed.shape}"
-        raise InputError("airspeed", told, "must be a batch of designs by airspeeds")
+        given = f"array of shape {model.airspeed.shape}"
+        raise InputError("airspeed", given, "must be a batch of designs by airspeeds")
     if np.ptp(model.airspeed, axis=0).any():
         raise InputError("airspeed", None, "must be the same for all designs")
     found = modes_along(model, decomposition(model))

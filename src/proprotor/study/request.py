@@ -174,8 +174,8 @@ def _known_quantities(quantities: str | Sequence[str]) -> tuple[str, ...]:
 
 def _check_range(speeds: Array | None, quantity: str) -> None:
     if speeds is None or speeds.ndim != 1 or speeds.size < 2 or not np.all(np.diff(speeds) > 0):
-        told = "among the inputs" if speeds is None else np.array2string(speeds, threshold=4)
-        raise InputError(AIRSPEED, told, f'must be a range of increasing speeds for quantities="{quantity}"')
+        given = "among the inputs" if speeds is None else np.array2string(speeds, threshold=4)
+        raise InputError(AIRSPEED, given, f'must be a range of increasing speeds for quantities="{quantity}"')
 
 
 def _above_zero(name: str, value: Any) -> float:
