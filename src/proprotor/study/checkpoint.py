@@ -48,7 +48,7 @@ class Checkpoint:
 
     @contextmanager
     def open(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-        """Hold the folder, and begin a study there or go on with its batches; the hold ends at the latest with the process.
+        """Hold the folder, and begin a study there or go on with its batches; it ends with the process or earlier.
 
         Parameters
         ----------
