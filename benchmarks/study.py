@@ -33,11 +33,12 @@ from proprotor.rotor import section_loads as blade_airloads
 from proprotor.rotor import trim_balance
 from proprotor.stability import modes
 from proprotor.study import workers as study_workers
-from proprotor.study.batch import DEFAULT_QUANTITIES
-from proprotor.study.study import BATCH, study
+from proprotor.study.study import study
+from proprotor.study.variables import DEFAULT_QUANTITIES
 
 POINTS = 10_000
 TURNS = 3
+BATCH = 2000  # points: as many as a study analyses at once
 SPEEDS = np.linspace(160, 380, 20) * 1852 / 3600  # m/s
 INPUTS = {
     "rotor.precone": ("1.5 deg", "3.5 deg"),

@@ -32,6 +32,7 @@ from proprotor.stability.map import stability_map
 from proprotor.stability.modes import modes
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case
+from proprotor.study import first_boundary, follow_modes, mode_damping
 
 # All functions and classes of these are public, and of others those that are named.
 MODULES: tuple[ModuleType, ...] = (
@@ -47,6 +48,8 @@ MODULES: tuple[ModuleType, ...] = (
     state_space,
 )
 OTHERS = (attribution, vary, modes, Options, sensitivity, stability_map, sweep_case, Trim)
+OTHERS += (first_boundary, follow_modes, mode_damping)
+OTHERS += tuple(entry for entry in map(vars(sampling).get, sampling.__all__) if inspect.isclass(entry))
 # What says that a number has no dimension, or which it has.
 DIMENSION = re.compile(
     r"(?i:\bdimensionless\b)|\bratio|\bfraction|\bshare\b|\bfactor|per revolution|\bSI\b|\bunit|\bcoefficient"
@@ -313,8 +316,8 @@ def test_an_unknown_keyword_is_refused(name):
     if name in OTHER_KEYWORDS:
         with pytest.raises(TypeError, match="precne"):
             pp.Rotor.from_mass_distribution([0, 1], [1.0, 1.0], precne=0.1)
-    elif name in ("openmdao.WhirlFlutter", "sampling.Quantity"):
-        with pytest.raises((KeyError, TypeError)):  # options that OpenMDAO keeps; a protocol
+    elif name == "openmdao.WhirlFlutter":
+        with pytest.raises((KeyError, TypeError)):  # options that OpenMDAO keeps
             entry(no_such_keyword=1)
     else:
         with pytest.raises(TypeError):

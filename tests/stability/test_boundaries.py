@@ -10,8 +10,8 @@ from proprotor.model.first_order import state_matrix
 from proprotor.stability.crossings import Brackets, Search
 from proprotor.stability.flutter import boundaries, find_crossings
 from proprotor.stability.following import Line
-from proprotor.study.batch import STABLE, UNSTABLE
 from proprotor.study.study import study
+from proprotor.study.variables import STABLE, UNSTABLE
 from tests.known_systems import along, roots
 from tests.rotors import Flight, random_support
 from tests.stability.test_root_error import exact_roots

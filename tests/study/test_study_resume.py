@@ -203,7 +203,7 @@ STUDIES = """
 import sys
 import proprotor as pp
 from proprotor.study import source_code
-from proprotor.study.batch import QUANTITIES
+from proprotor.study.variables import QUANTITIES
 
 for name in pp.list_cases():
     found = pp.study(pp.load_case(name), {"operation.density": [1.0, 1.1]}, [60.0, 70.0], QUANTITIES, workers=1)

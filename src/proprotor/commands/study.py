@@ -86,8 +86,8 @@ def study(
         --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter --out study.nc --checkpoint batches
     """
     from proprotor.exchange.netcdf import check_path, save_results
-    from proprotor.study.batch import DEFAULT_QUANTITIES
     from proprotor.study.study import study as analyse
+    from proprotor.study.variables import DEFAULT_QUANTITIES
     from proprotor.tables.study_summary import study_summary
     from proprotor.units import speeds
 

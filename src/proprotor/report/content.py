@@ -20,8 +20,7 @@ from proprotor.report.analyses import Findings
 from proprotor.report.document import Document, Section, Table, Text
 from proprotor.stability.boundary_summary import boundary_record, mechanism_told, verdict
 from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records
-from proprotor.tables.tables import SweepTable
-from proprotor.tables.terminal import heading
+from proprotor.tables.sweep_table import SweepTable, heading
 from proprotor.typing import Array
 from proprotor.units import factor_to_si
 

@@ -1,4 +1,4 @@
-"""A sweep as a table on a terminal, as CSV and as JSON."""
+"""A sweep as a table: lines for a terminal, records for JSON and CSV, and sentences on what the table shows."""
 
 from __future__ import annotations
 
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     import xarray
     from rich.text import Text
 
+    from proprotor.case import Case
+
 CONVENTION = (
     "Frequency |Im s| per revolution (/rev); damping -Re s/|s| in percent of critical (%), "
     "negative and marked * where a mode is unstable."
@@ -38,9 +40,14 @@ _SPEED_WIDTH = 7
 _MODE_WIDTH = 14
 
 
+def heading(case: Case) -> str:
+    """Return the title of a case and its rotor speed, as they stand above its tables."""
+    return f"{case.title or case.name}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
+
+
 @dataclass(frozen=True, eq=False)
 class SweepTable:
-    """The numbers of a sweep in the units people read.
+    """The numbers of a sweep in the units that people read.
 
     Parameters
     ----------
@@ -90,7 +97,7 @@ class SweepTable:
         return failed
 
     def lines(self, width: int = 80, all_modes: bool = False) -> Iterator[Text]:
-        """Lines of one or more tables no wider than asked for, a row for each airspeed."""
+        """Yield the lines of one or more tables no wider than `width`, a row for each airspeed."""
         from rich.text import Text  # here, because rich takes long to import
 
         fit = max(1, (width - _SPEED_WIDTH - 1) // _MODE_WIDTH)
@@ -99,31 +106,31 @@ class SweepTable:
             yield from self._table(shown[start : start + fit])
         left_out = [str(name) for i, name in enumerate(self.sweep.mode.values) if i not in shown]
         if left_out and not self.failed.all():
-            told = f"{len(left_out)} more modes (--all-modes): {', '.join(left_out)}."
-            yield from map(Text, (*textwrap.wrap(told, width), ""))
+            more = f"{len(left_out)} more modes (--all-modes): {', '.join(left_out)}."
+            yield from map(Text, (*textwrap.wrap(more, width), ""))
 
     def doubts(self) -> list[str]:
-        """A sentence on each warning of single airspeeds; their rows have a question mark."""
+        """Return a sentence on each warning of single airspeeds, whose rows have a question mark."""
         return list(footnotes(doubts_along(self.airspeed, self.sweep.warning.values), self.unit))
 
     def mixed(self) -> str:
-        """A sentence on modes in the name of which little moves at some airspeeds; empty where there are none."""
+        """Return a sentence on modes whose names say little at some airspeeds; empty without such modes."""
         with np.errstate(invalid="ignore"):
             low = self.sweep.share.values < DOUBTFUL
-        told = []
+        mixed = []
         for place in np.flatnonzero(low.any(axis=0)):
             speeds = self.airspeed[low[:, place]]
-            told.append(f"{self.sweep.mode.values[place]} {self._range(np.sort(speeds))}")
-        if not told:
+            mixed.append(f"{self.sweep.mode.values[place]} {self._range(np.sort(speeds))}")
+        if not mixed:
             return ""
-        return f"Mixed, less than a third of the mode is what its name says: {', '.join(told)}."
+        return f"Mixed, less than a third of the mode is what its name says: {', '.join(mixed)}."
 
     def _range(self, speeds: Array) -> str:
         ends = f"{speeds[0]:g} {self.unit}", f"{speeds[-1]:g} {self.unit}"
         return f"at {ends[0]}" if len(speeds) == 1 else f"from {ends[0]} to {ends[1]}"
 
     def _of_interest(self, count: int) -> list[int]:
-        """Unstable modes, the support's, then those that move it the most; in the order of the sweep."""
+        """Return unstable modes, the support's, and those that move the support most, in the order of the sweep."""
         if self.failed.all():
             return []
         unstable = self.unstable.any(axis=0)
@@ -159,13 +166,15 @@ class SweepTable:
         return row
 
     def verdict(self) -> list[str]:
-        """A sentence on each range of airspeed in which a mode is unstable, or that there is none."""
+        """Return a sentence on each range of airspeed in which a mode is unstable, or one that says that none is."""
         if self.failed.all():
             return ["No airspeed could be analysed."]
         ranges = sorted(unstable_ranges(self.sweep), key=lambda found: found.start)
-        return [self._told(found) for found in ranges] or ["No mode is unstable at the airspeeds analysed."]
+        return [self._sentence(found) for found in ranges] or [
+            "No mode is unstable at the airspeeds analysed."
+        ]
 
-    def _told(self, found: UnstableRange) -> str:
+    def _sentence(self, found: UnstableRange) -> str:
         along = self.sweep.airspeed.values, self.sweep.warning.values
         start, stop = (
             marked(self._rounded(at), doubtful_near(*along, at)) for at in (found.start, found.stop)
@@ -177,42 +186,45 @@ class SweepTable:
         return f"{found.mode}: unstable {since}{until}"
 
     def _rounded(self, speed: float) -> str:
-        """A speed to three digits and at least to whole units."""
+        """Return a speed with its unit, to three digits and at least to whole units."""
         value = speed / units.factor_to_si(self.unit, self.unit, "m/s")
         digits = 0 if value == 0 else max(0, 2 - math.floor(math.log10(value)))
         return f"{value:.{digits}f} {self.unit}"
 
     def records(self) -> Iterator[dict[str, Any]]:
-        """Airspeed by airspeed and mode by mode, with units in the names; None at failed points.
+        """Yield a record for each airspeed and mode, with units in the names; None at failed points.
 
-        Where every airspeed failed there is no mode, and each has one record without.
+        Where every airspeed failed there is no mode, and each airspeed has one record without mode.
         """
-        for i in range(len(self.airspeed)):
-            for j in range(self.damping.shape[1]):
-                yield self._record(i, str(self.sweep.mode.values[j]), self.sweep.eigenvalue.values[i, j], j)
-            if not self.damping.shape[1]:
-                yield self._record(i, None, np.nan)
-
-    def _record(self, i: int, mode: str | None, s: complex, j: int | None = None) -> dict[str, Any]:
-        return {
-            f"airspeed ({self.unit})": self.airspeed[i].item(),
-            "airspeed (m/s)": self.sweep.airspeed.values[i].item(),
-            "mode": mode,
-            "share of its motion": None if j is None else _finite(self.sweep.share.values[i, j]),
-            "branch": None if j is None else str(self.sweep.branch.values[i, j]) or None,
-            "frequency (per rev)": None if j is None else _finite(self.frequency[i, j]),
-            "damping (% of critical)": None if j is None else _finite(self.damping[i, j]),
-            "Re s (rad/s)": _finite(s.real),
-            "Im s (rad/s)": None if np.isnan(s) else float(s.imag),
-            "warning": str(self.sweep.warning.values[i]),
-            "failure": str(self.sweep.reason.values[i]),
+        eigenvalue, modes = self.sweep.eigenvalue.values, len(self.sweep.mode)
+        columns = {
+            "mode": np.broadcast_to(self.sweep.mode.values, eigenvalue.shape),
+            "share of its motion": self.sweep.share.values,
+            "branch": self.sweep.branch.values,
+            "frequency (per rev)": self.frequency,
+            "damping (% of critical)": self.damping,
+            "Re s (rad/s)": eigenvalue.real,
+            "Im s (rad/s)": eigenvalue.imag,
         }
+        for i in range(len(self.airspeed)):
+            for j in range(modes) if modes else [None]:
+                of_mode = {name: None if j is None else _plain(part[i, j]) for name, part in columns.items()}
+                yield {
+                    f"airspeed ({self.unit})": self.airspeed[i].item(),
+                    "airspeed (m/s)": self.sweep.airspeed.values[i].item(),
+                    **of_mode,
+                    "warning": str(self.sweep.warning.values[i]),
+                    "failure": str(self.sweep.reason.values[i]),
+                }
 
     def csv(self) -> bytes:
-        """`records` as CSV in UTF-8, see `proprotor.tables.csv_text`; empty cells at failed points."""
+        """Return `records` as CSV in UTF-8, see `proprotor.tables.csv_text`; empty cells at failed points."""
         records = list(self.records())
         return csv_of(records, list(records[0]), self.sweep.attrs)
 
 
-def _finite(number: float) -> float | None:
-    return float(number) if np.isfinite(number) else None
+def _plain(entry: Any) -> float | str | None:
+    """Return a number or a text of a record; None for what is not finite or empty."""
+    if isinstance(entry, str):
+        return str(entry) or None
+    return float(entry) if np.isfinite(entry) else None

@@ -1,8 +1,7 @@
-"""What the command line prints on a sweep and on a case."""
+"""The texts that the command line prints on a sweep and on a case, and the console that prints them."""
 
 from __future__ import annotations
 
-import math
 import textwrap
 from typing import TYPE_CHECKING, Any
 
@@ -13,26 +12,21 @@ from proprotor.errors import printable
 from proprotor.model.doubts import MARK
 from proprotor.model.provenance import doubtful_inputs, reservations
 from proprotor.model.stamp import in_words, options_told
-from proprotor.tables.tables import CONVENTION, SweepTable
+from proprotor.tables.sweep_table import CONVENTION, SweepTable, heading
 
 if TYPE_CHECKING:
     from proprotor.case import Case
 
 
-def heading(case: Case) -> str:
-    """The case and its rotor speed."""
-    return f"{case.title or case.name}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
-
-
 def print_sweep(case: Case, table: SweepTable, all_modes: bool = False) -> None:
-    """Print what was analysed, what it rests on, the table and where modes are unstable.
+    """Print the case, the inputs that it rests on, the table of a sweep and where modes are unstable.
 
     Parameters
     ----------
     case : Case
     table : SweepTable
     all_modes : bool
-        Every mode, in as many tables as it takes, or those of interest only.
+        Whether to print every mode, in as many tables as needed, and not only the modes of interest.
     """
     console = PlainConsole()
     warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
@@ -56,7 +50,7 @@ def print_sweep(case: Case, table: SweepTable, all_modes: bool = False) -> None:
 
 
 def print_case(case: Case) -> None:
-    """Print what a case is, and each input that was not read in a source."""
+    """Print the description of a case, and each input that was not read in a source."""
     console = PlainConsole()
     warnings = (f"Warning: {text}" for text in case.warnings)
     for paragraph in filter(None, (case.title, case.description, *reservations(case), *warnings)):
@@ -67,7 +61,7 @@ def print_case(case: Case) -> None:
 
 
 class PlainConsole(Console):
-    """A console that prints text as it is, and nothing of it that is not printable (`proprotor.errors`)."""
+    """A console that prints text without markup, and a space for each character that may not be shown."""
 
     def __init__(self, *, stderr: bool = False) -> None:
         super().__init__(markup=False, highlight=False, emoji=False, stderr=stderr)
@@ -77,11 +71,12 @@ class PlainConsole(Console):
 
 
 def _shown(it: Any) -> Any:
+    """Return text with its unprintable characters replaced, and anything else as it is."""
     if isinstance(it, Text):
         it.plain = printable(it.plain, keep="\n")
     return printable(it, keep="\n") if isinstance(it, str) else it
 
 
 def _shortened(text: str, case: Case, width: int) -> str:
-    """About two lines of a warning, and where the whole of it stands."""
+    """Return about two lines of a warning, and the command that prints the whole warning."""
     return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")
