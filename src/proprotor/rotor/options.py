@@ -122,7 +122,7 @@ class Options:
                 continue
             if self.pitch != "coupling":
                 raise InputError(name, value, 'goes with pitch="coupling"')
-            if not np.all(np.isfinite(np.asarray(value, dtype=float))):
+            if not np.all(np.isfinite(np.asarray(np.real(value), dtype=float))):
                 raise InputError(name, value, "must be finite")
         if self.drive_train is not None and not isinstance(self.drive_train, DriveTrain):
             raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
