@@ -23,7 +23,8 @@ from benchmarks.paper_figures.analyses import XV15
 from benchmarks.paper_figures.blade_state import AS_THE_PAPER, blade_state, on_rigid_hub
 from benchmarks.paper_figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES, XV15_FLUTTER
 from benchmarks.paper_figures.uncertainty_band import boundary, least_damping
-from proprotor.model.linear_model import LinearModel, rotor_model
+from proprotor.model.linear_model import LinearModel
+from proprotor.model.rotor_model import rotor_model
 from proprotor.rotor.motions import HUB
 from proprotor.stability.modes import eigensystem, participation
 from proprotor.units import KNOT

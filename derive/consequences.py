@@ -31,7 +31,7 @@ from derive.equations import REDUCED_MODULES, STEPS
 from derive.printed import TABLES
 from derive.printed.notation import TIME
 from derive.published import DROPPED_TERMS, PUBLISHED
-from proprotor.model import linear_model as runtime
+from proprotor.model import quantities as runtime
 from proprotor.rotor.generated import EQUATION_SETS, EquationSet
 from proprotor.stability.branches import by_branch
 

@@ -26,9 +26,9 @@ from derive.counterparts import frequency_squared
 from derive.inertia import dependent_inertias
 from derive.printed import TABLES
 from derive.printed.tables import PrintedTable
-from proprotor.rotor.motions import HUB
-from proprotor.model.linear_model import rotor_quantities
+from proprotor.model.quantities import rotor_quantities
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.motions import HUB
 from proprotor.rotor.options import Options
 from proprotor.rotor.trim import UNKNOWNS, Trim, with_trim
 from proprotor.stability.branches import by_branch

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from proprotor_equations import pitch
 
-from proprotor.model.linear_model import rotor_model, rotor_quantities
+from proprotor.model.quantities import rotor_quantities
+from proprotor.model.rotor_model import rotor_model
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.motions import HUB
 from proprotor.rotor.options import Options

@@ -20,9 +20,9 @@ from benchmarks.paper_figures.published import (
 )
 from benchmarks.paper_figures.uncertainty_band import boundary
 from proprotor.errors import InputError
+from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import doubtful_near, marked
 from proprotor.model.provenance import reservations
-from proprotor.model.stamp import deck_fingerprint
 from proprotor.typing import Array
 
 _DAMPING = "Modal damping"

@@ -5,9 +5,10 @@ from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.exchange.matlab import save_matlab
 from proprotor.exchange.netcdf import load_results, save_results
-from proprotor.model.linear_model import LinearModel, rotor_model
+from proprotor.model.linear_model import LinearModel
 from proprotor.model.mount import mount
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
+from proprotor.model.rotor_model import rotor_model
 from proprotor.model.several_rotors import mount_rotors
 from proprotor.model.structural_damping import neutral_damping
 from proprotor.rotor.airfoil import Airfoil

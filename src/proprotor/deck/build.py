@@ -16,7 +16,7 @@ from proprotor.deck.file import ALTERNATIVES, read_tables
 from proprotor.deck.support_of_deck import support_of
 from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
-from proprotor.model.linear_model import mass_at_rest
+from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.rotor_share import settled, spring_warnings
 from proprotor.rotor.airfoil import Airfoil, SectionModel
 from proprotor.rotor.airfoil_table import AirfoilTable

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from proprotor.datum import Datum
-from proprotor.model.linear_model import LinearModel, range_of, rotor_model
+from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
 from proprotor.model.provenance import reservations
+from proprotor.model.rotor_model import rotor_model
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
@@ -70,7 +71,7 @@ class Configuration:
         rotor, speed = self.rotor, np.asarray(self.operation.rotor_speed) / _RPM
         lines = [
             f"Case {self.name}" + (f": {self.title}" if self.title else ""),
-            f"  rotor: {rotor.n_blades} blades, radius {range_of(np.asarray(rotor.radius))} m, {range_of(speed)} rpm",
+            f"  rotor: {rotor.n_blades} blades, radius {range_text(np.asarray(rotor.radius))} m, {range_text(speed)} rpm",
             f"  support: {', '.join(self.support.names) or 'a rigid hub'}{_held(self.support)}",
         ]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])

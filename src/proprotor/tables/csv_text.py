@@ -45,7 +45,7 @@ def head(found: Mapping[Any, Any]) -> Iterator[str]:
         return
     if "title" in own:
         yield own["title"]
-    yield f"{stamp.told(own)} {own['made_by']}."
+    yield f"{stamp.line(own)} {own['made_by']}."
     yield f"options: {own['options']}"
     yield from filter(None, (own.get("reservations"), own.get("case_warnings")))
 
