@@ -11,15 +11,16 @@ import jsonschema
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from proprotor.deck.fields_page import markdown
+from proprotor.deck.validation import validate
 
 import proprotor as pp
 from proprotor.case import load_case
 from proprotor.commands.main import main
 from proprotor.datum import Datum
-from proprotor.deck.describe import deck_fields, find_fields, markdown
+from proprotor.deck.describe import deck_fields, find_fields
 from proprotor.deck.file import list_cases, read_tables
 from proprotor.deck.schema import deck_schema
-from proprotor.deck.sections import validate
 from proprotor.deck.settings import with_settings
 from proprotor.deck.template import case_name, deck_text, example
 from proprotor.errors import InputError

@@ -9,16 +9,20 @@ import difflib
 from collections.abc import Callable, Iterator
 from dataclasses import MISSING, asdict, dataclass, fields
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+from typing import Any, Literal, get_args, get_origin
 
+from pydantic.fields import FieldInfo
+
+from proprotor.deck import sections as deck
+from proprotor.deck import support_sections
+from proprotor.deck.fields import Reading, Section
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
+from proprotor.deck.sections import section_places, sections_at
 from proprotor.errors import InputError, told_choices
+from proprotor.rotor import airfoil, drive_train, rotor
+from proprotor.support import wing_aerodynamics
+from proprotor.support.beam_wing import Pylon, Wing
 from proprotor.units import meaning
-
-if TYPE_CHECKING:
-    from pydantic.fields import FieldInfo
-
-    from proprotor.deck.fields import Reading, Section
 
 _RANGES: dict[Bound, str] = {
     POSITIVE: "above 0",
@@ -87,10 +91,10 @@ def find_fields(path: str) -> tuple[DeckField, ...]:
     InputError
         For a path that no deck has, with the nearest one.
     """
-    wanted = _plain(path.strip())
+    wanted = plain_path(path.strip())
     here: tuple[Callable[[DeckField], bool], ...] = (
-        lambda field: _plain(field.path) == wanted,
-        lambda field: _plain(field.path).startswith(f"{wanted}."),
+        lambda field: plain_path(field.path) == wanted,
+        lambda field: plain_path(field.path).startswith(f"{wanted}."),
         lambda field: field.kind == wanted,
         lambda field: field.path.rpartition(".")[2] == wanted,
     )
@@ -102,21 +106,19 @@ def find_fields(path: str) -> tuple[DeckField, ...]:
 
 def _hint(wanted: str) -> str:
     """The nearest field, by its whole path or its last name."""
-    known = {_plain(field.path): _plain(field.path) for field in deck_fields()}
+    known = {plain_path(field.path): plain_path(field.path) for field in deck_fields()}
     by_last_name = {path.rpartition(".")[2]: path for path in known}
     names = known if "." in wanted else by_last_name
     nearest = difflib.get_close_matches(wanted.lower(), names, n=1)
     return f"did you mean {names[nearest[0]]}?" if nearest else "`proprotor describe` lists them"
 
 
-def _plain(path: str) -> str:
+def plain_path(path: str) -> str:
     """A path without the names of entries of lists."""
     return "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
 
 
 def _fields() -> Iterator[DeckField]:
-    from proprotor.deck.sections import section_places, sections_at
-
     for place in section_places():
         if not place:
             continue
@@ -148,15 +150,13 @@ def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[Deck
 
 
 def _reading(field: FieldInfo) -> Reading | None:
-    from proprotor.deck.fields import Reading
-
     return next((part for part in field.metadata if isinstance(part, Reading)), None)
 
 
 def _takes(field: FieldInfo, reading: Reading | None) -> str:
     """What a value may be; "" for a section of its own."""
     if reading is None:
-        return _takes_plain(field.annotation)
+        return _takesplain_path(field.annotation)
     if reading.form == "count":
         return "a whole number"
     if reading.form == "file":
@@ -174,7 +174,7 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
     return f"{told}; {_ALONG[reading.form]}" if reading.form in _ALONG else told
 
 
-def _takes_plain(annotation: Any) -> str:
+def _takesplain_path(annotation: Any) -> str:
     if annotation in _PLAIN:
         return _PLAIN[annotation]
     if get_origin(annotation) is Literal:
@@ -230,12 +230,6 @@ def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
 @cache
 def _defaults(section: type[Section]) -> dict[str, Any]:
     """What the class that a section describes takes where a field is left out."""
-    from proprotor.deck import sections as deck
-    from proprotor.deck import support_sections
-    from proprotor.rotor import airfoil, drive_train, rotor
-    from proprotor.support import wing_aerodynamics
-    from proprotor.support.beam_wing import Pylon, Wing
-
     described: dict[type[Section], tuple[type, ...]] = {
         deck.RotorSection: (rotor.Rotor,),
         deck.AirfoilSection: (airfoil.Airfoil,),
@@ -256,9 +250,6 @@ def _default(field: FieldInfo, reading: Reading | None, constructed: Any) -> str
     if isinstance(value, bool):
         return str(value).lower()
     return f'"{value}"' if isinstance(value, str) and value else ""
-
-
-# In words -------------------------------------------------------------------------------------------------------
 
 
 def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:
@@ -285,62 +276,3 @@ def _needed(field: DeckField) -> str:
 def field_records(found: tuple[DeckField, ...]) -> list[dict[str, Any]]:
     """Fields as plain data, for JSON."""
     return [asdict(field) for field in found]
-
-
-_HEAD = """# Fields of a deck
-
-Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py` and `support_sections.py`.
-
-A deck is a TOML file. A number with a dimension is text with its unit, `radius = "12.5 ft"`, US and SI units as one
-likes; a plain number has none. Either may be a table that says where it comes from:
-
-    radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
-
-with a status of published, derived, recalled, calibrated or assumed. `base = "xv15"` above all sections alters another
-deck: a field given replaces the base's and its alternatives.
-
-A frequency per revolution, `"0.42/rev"`, is one of the rotor speed that is written in the same file, or in its base
-where the file gives none. Another rotor speed, by `--set`, `vary`, a study, a map, a slider or a deck that alters this
-one, leaves it its hertz: a wing does not know how fast the rotor turns. A frequency that is set in /rev is one of the
-deck's own rotor speed too.
-
-    proprotor new my.toml --from xv15                       # a commented deck that runs as it is
-    proprotor describe rotor.precone                        # one field
-    proprotor describe --schema > deck.schema.json          # for editors
-    proprotor sweep my.toml --speed 50:400:5kt --set rotor.precone="1.5 deg"
-
-An editor that knows JSON schemas for TOML (Even Better TOML, taplo) completes and checks a deck whose first line is
-`#:schema ./deck.schema.json`.
-"""
-
-
-def markdown() -> str:
-    """docs/decks.md."""
-    return "\n".join([_HEAD, *_sections()]) + "\n"
-
-
-def _sections() -> Iterator[str]:
-    from proprotor.deck.sections import section_places, sections_at
-
-    for place in section_places():
-        for kind, section in sections_at(place).items() if place else ():
-            name = ".".join(place)
-            own = [
-                field
-                for field in deck_fields()
-                if field.kind == kind and _plain(field.path).rpartition(".")[0] == name
-            ]
-            brackets = f"[[{name}]]" if name == "support.modes" else f"[{name}]"
-            yield f"## {brackets}{f' of kind {kind}' if kind else ''}\n"
-            yield f"{' '.join((section.__doc__ or '').split())}\n"
-            yield "| field | meaning | takes | range | default | instead of |"
-            yield "|---|---|---|---|---|---|"
-            yield from map(_row, own)
-            yield ""
-
-
-def _row(field: DeckField) -> str:
-    name = field.path.rpartition(".")[2]
-    default = "**needed**" if field.required and not field.default else field.default
-    cells = (f"`{name}`", field.meaning, field.takes, field.range, default, ", ".join(field.instead_of))
-    return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"

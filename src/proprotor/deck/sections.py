@@ -51,8 +51,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema, model_validator
+from pydantic import Field, PlainValidator, model_validator
 
+from proprotor.deck.alternatives import (
+    AIR_ALTERNATIVES,
+    AIRFOIL_ALTERNATIVES,
+    ALTERNATIVES,
+    TRIM_ALTERNATIVES,
+)
 from proprotor.deck.fields import (
     Abscissa,
     Angle,
@@ -89,11 +95,8 @@ from proprotor.deck.fields import (
     needed,
     optional,
 )
-from proprotor.deck.file import AIR_ALTERNATIVES, AIRFOIL_ALTERNATIVES, ALTERNATIVES, TRIM_ALTERNATIVES
 from proprotor.deck.reading import read_quantity
-from proprotor.deck.schema import TRIM_SCHEMA
-from proprotor.deck.support_sections import SUPPORT_KINDS, SUPPORT_TABLES, SupportSection
-from proprotor.deck.text import plain_text
+from proprotor.deck.support_sections import SUPPORT_TABLES, SupportSection
 from proprotor.errors import InputError, unknown_name
 
 
@@ -278,7 +281,7 @@ class OperationSection(Section):
     temperature_offset: TemperatureDifference = optional(
         "Above the standard temperature of that altitude; none by default."
     )
-    trim: Annotated[Any, PlainValidator(_read_trim), WithJsonSchema(TRIM_SCHEMA)] = optional(
+    trim: Annotated[Any, PlainValidator(_read_trim)] = optional(
         '"windmill", the collective without torque, or one target: { collective = "30 deg" }, '
         "{ thrust_coefficient = 0.008 } or { power_coefficient = 0.01 }.",
         "windmill",
@@ -320,7 +323,7 @@ class Deck(Section):
     support: SupportSection = needed("What carries the rotor.")
 
 
-_SECTIONS: dict[tuple[str, ...], type[Section]] = {
+SECTIONS: dict[tuple[str, ...], type[Section]] = {
     (): Deck,
     ("case",): CaseSection,
     ("rotor",): RotorSection,
@@ -337,82 +340,19 @@ def sections_at(place: tuple[str, ...]) -> dict[str, type[Section]]:
     """The sections that may stand at a place, such as ``("support", "modes")``, by kind of support; "" elsewhere."""
     return {
         known[1] if known[:1] == ("support",) else "": section
-        for known, section in _SECTIONS.items()
-        if _in_the_deck(known) == place
+        for known, section in SECTIONS.items()
+        if in_the_deck(known) == place
     }
 
 
 def section_places() -> list[tuple[str, ...]]:
     """Every place of a deck at which a section may stand, the deck itself first."""
-    return list(dict.fromkeys(tuple(map(str, _in_the_deck(known))) for known in _SECTIONS))
+    return list(dict.fromkeys(tuple(map(str, in_the_deck(known))) for known in SECTIONS))
 
 
-# How a message states what pydantic found, by pydantic's name for it.
-_RULES = {
-    "model_type": "must be a table",
-    "model_attributes_type": "must be a table",
-    "dict_type": "must be a table",
-    "int_type": "must be a whole number",
-    "list_type": "must be a list",
-    "string_type": "must be text",
-    "bool_type": "must be true or false",
-    "too_short": "must not be empty",
-    "string_too_short": "must not be empty",
-    "string_pattern_mismatch": "must be letters, digits, spaces, dots, dashes and underscores",
-}
-
-
-def validate(tables: dict[str, Any]) -> Deck:
-    """The tables of a TOML file as a deck.
-
-    Raises
-    ------
-    InputError
-        With every problem found, one line each.
-    """
-    tables = plain_text(tables, field_name)
-    try:
-        return Deck.model_validate(tables)
-    except ValidationError as error:
-        first, *others = [_input_error(problem, tables) for problem in error.errors(include_url=False)]
-        raise InputError(first.field, first.value, first.rule, others) from None
-
-
-def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
-    place, kind = problem["loc"], problem["type"]
-    field = field_name(_in_the_deck(place), tables)
-    if kind == "value_error":
-        error: InputError = problem["ctx"]["error"]
-        return error.within(field)
-    if kind == "extra_forbidden":
-        known = _SECTIONS[tuple(part for part in place[:-1] if isinstance(part, str))].model_fields
-        return InputError(field, problem["input"], unknown_name(str(place[-1]), known))
-    if kind == "literal_error":
-        return InputError(field, problem["input"], f"must be {problem['ctx']['expected']}")
-    if kind in ("missing", "union_tag_not_found"):
-        return InputError(field if kind == "missing" else f"{field}.kind", None, "is missing")
-    if kind == "union_tag_invalid":
-        rule = f"must be {', '.join(map(repr, SUPPORT_KINDS))}"
-        return InputError(f"{field}.kind", problem["ctx"]["tag"], rule)
-    return InputError(field, problem["input"], _RULES.get(kind, problem["msg"]))
-
-
-def _in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
+def in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
     """A place without the kind of support, which pydantic puts in."""
     return (place[0], *place[2:]) if place[:1] == ("support",) and len(place) > 1 else place
-
-
-def field_name(place: tuple[str | int, ...], tables: Any) -> str:
-    """``("support", "modes", 0, "x")`` as ``support.modes[beam].x``, an entry of a list by its name."""
-    text = ""
-    for part in place:
-        tables = tables[part] if not isinstance(tables, dict) or part in tables else None
-        if isinstance(part, str):
-            text += f".{part}" if text else part
-        else:
-            name = tables.get("name") if isinstance(tables, dict) else None
-            text += f"[{name if isinstance(name, str) and name else part}]"
-    return text
 
 
 def _listed(names: tuple[str, ...]) -> str:

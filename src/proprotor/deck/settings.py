@@ -8,7 +8,11 @@ import tomllib
 from collections.abc import Mapping
 from typing import Any, Literal, get_args, get_origin
 
-from proprotor.deck.file import altered, per_revolution_of
+from proprotor.deck.alternatives import altered
+from proprotor.deck.describe import deck_fields
+from proprotor.deck.fields import Reading
+from proprotor.deck.per_revolution import per_revolution_of
+from proprotor.deck.sections import Deck, sections_at
 from proprotor.errors import InputError, unknown_name
 
 _STEP = re.compile(r"([^.\[\]]+)(?:\[([^\[\]]+)\])?(?:\.|$)")
@@ -59,8 +63,6 @@ def with_settings(tables: Mapping[str, Any], settings: Mapping[str, str]) -> dic
 
 def _steps(path: str, text: str) -> list[tuple[str, str]]:
     """A place as names, each with the entry of a list or ""."""
-    from proprotor.deck.sections import Deck
-
     found = [match.groups(default="") for match in _STEP.finditer(path)]
     if "".join(match[0] for match in _STEP.finditer(path)) != path or path.endswith("."):
         raise InputError(path, text, "must be a field of a deck, such as rotor.precone")
@@ -76,9 +78,6 @@ def _place(steps: list[tuple[str, str]]) -> Place:
 
 def _nearest(path: str) -> str:
     """What is told of a field that stands in no section of a deck."""
-    from proprotor.deck.describe import deck_fields
-    from proprotor.deck.sections import Deck
-
     by_name = {field.path.rpartition(".")[2]: field.path for field in deck_fields()}
     close = difflib.get_close_matches(path.rpartition(".")[2].lower(), by_name, n=1)
     if "." not in path and close:
@@ -88,8 +87,6 @@ def _nearest(path: str) -> str:
 
 def _value(text: str, steps: list[tuple[str, str]]) -> Any:
     """Text as TOML has it where it does, and as a number with its provenance where the field is one."""
-    from proprotor.deck.fields import Reading
-
     field = _field([name for name, _ in steps])
     try:
         read = tomllib.loads(f"value = {text}")
@@ -106,8 +103,6 @@ def _value(text: str, steps: list[tuple[str, str]]) -> Any:
 
 def _field(names: list[str]) -> Any:
     """The definition of a field, which is one of several kinds of support perhaps; None where there is none."""
-    from proprotor.deck.sections import sections_at
-
     found = [
         section.model_fields[names[-1]]
         for section in sections_at(tuple(names[:-1])).values()

@@ -35,6 +35,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from proprotor.deck.alternatives import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
 from proprotor.deck.fields import (
     Angle,
     AxialStiffness,
@@ -68,7 +69,6 @@ from proprotor.deck.fields import (
     needed,
     optional,
 )
-from proprotor.deck.file import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
 from proprotor.errors import InputError
 from proprotor.support.normal_modes import HUB_AXES
 

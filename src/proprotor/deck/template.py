@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from proprotor.deck.describe import DeckField, deck_fields
-from proprotor.deck.file import as_one_file
-from proprotor.deck.reading import FileName
+from proprotor.deck.per_revolution import as_one_file
+from proprotor.deck.written import FileName
 from proprotor.units import meaning
 
 _HEAD = """\

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.datum import Datum
-from proprotor.deck.reading import FilePath
+from proprotor.deck.written import FilePath
 from proprotor.errors import as_toml
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import MARK, doubt_at, footnotes, marked
