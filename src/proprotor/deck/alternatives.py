@@ -29,7 +29,7 @@ _BY_SECTION = (
     (("support",), (*DAMPING_ALTERNATIVES, *FILE_ALTERNATIVES)),
 )
 
-Place = tuple[str, ...]
+_Place = tuple[str, ...]
 
 
 def fields_instead_of(name: str) -> tuple[str, ...]:
@@ -52,7 +52,7 @@ def altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     return _merged(base, changes)
 
 
-def without(tables: Any, place: Place) -> Any:
+def without(tables: Any, place: _Place) -> Any:
     """Return tables without the entry at a place."""
     key, *further = place
     if not isinstance(tables, dict) or key not in tables:
@@ -61,7 +61,7 @@ def without(tables: Any, place: Place) -> Any:
     return rest | {key: without(tables[key], tuple(further))} if further else rest
 
 
-def _superseded(changes: Any, section: Place, alternatives: Any) -> list[Place]:
+def _superseded(changes: Any, section: _Place, alternatives: Any) -> list[_Place]:
     """Return the places of a section whose fields the changes in that section replace."""
     for key in section:
         changes = changes.get(key) if isinstance(changes, dict) else None

@@ -9,7 +9,8 @@ from proprotor.deck.sections import section_places, sections_at
 
 _HEAD = """# Fields of a deck
 
-Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py` and `support_sections.py`.
+Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py` and
+`support_sections.py`.
 
 A deck is a TOML file. A number with a dimension is text with its unit, `radius = "12.5 ft"`, US and SI units as one
 likes; a plain number has none. Either may be a table that says where it comes from:
@@ -35,7 +36,7 @@ An editor that knows JSON schemas for TOML (Even Better TOML, taplo) completes a
 
 
 def markdown() -> str:
-    """docs/decks.md."""
+    """Return the text of docs/decks.md."""
     return "\n".join([_HEAD, *_sections()]) + "\n"
 
 

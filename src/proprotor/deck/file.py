@@ -40,8 +40,8 @@ def list_cases() -> tuple[str, ...]:
 def read_tables(name_or_path: str | os.PathLike[str]) -> dict[str, Any]:
     """Return the tables of a deck by its bundled name or path; a deck with a base is merged into the base.
 
-    A frequency per revolution is a `PerRevolution`: it has the rotor speed of its own file, or of the file's base if the
-    file gives none.
+    A frequency per revolution is a `PerRevolution`: it has the rotor speed of its own file, or of the file's base if
+    the file gives none.
 
     Raises
     ------

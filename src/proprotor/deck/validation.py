@@ -11,7 +11,7 @@ from proprotor.deck.support_sections import SUPPORT_KINDS
 from proprotor.deck.text import plain_text
 from proprotor.errors import InputError, unknown_name
 
-# How a message states what pydantic found, by pydantic's name for it.
+# Rules in messages, by pydantic's name of an error.
 _RULES = {
     "model_type": "must be a table",
     "model_attributes_type": "must be a table",
@@ -27,14 +27,14 @@ _RULES = {
 
 
 def validate(tables: dict[str, Any]) -> Deck:
-    """The tables of a TOML file as a deck.
+    """Return the deck in the tables of a TOML file.
 
     Raises
     ------
     InputError
-        With every problem found, one line each.
+        With a line for every problem.
     """
-    tables = plain_text(tables, field_name)
+    tables = plain_text(tables, _field_name)
     try:
         return Deck.model_validate(tables)
     except ValidationError as error:
@@ -43,8 +43,9 @@ def validate(tables: dict[str, Any]) -> Deck:
 
 
 def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
+    """Return an error of pydantic with the field's name in the deck and our rule."""
     place, kind = problem["loc"], problem["type"]
-    field = field_name(in_the_deck(place), tables)
+    field = _field_name(in_the_deck(place), tables)
     if kind == "value_error":
         error: InputError = problem["ctx"]["error"]
         return error.within(field)
@@ -61,8 +62,8 @@ def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
     return InputError(field, problem["input"], _RULES.get(kind, problem["msg"]))
 
 
-def field_name(place: tuple[str | int, ...], tables: Any) -> str:
-    """``("support", "modes", 0, "x")`` as ``support.modes[beam].x``, an entry of a list by its name."""
+def _field_name(place: tuple[str | int, ...], tables: Any) -> str:
+    """Return the name of a field, ``support.modes[beam].x`` for ``("support", "modes", 0, "x")``."""
     text = ""
     for part in place:
         tables = tables[part] if not isinstance(tables, dict) or part in tables else None
