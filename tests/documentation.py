@@ -30,7 +30,7 @@ from click.testing import CliRunner
 
 from proprotor.commands.main import main
 from proprotor.deck.file import read_tables
-from proprotor.deck.sections import validate
+from proprotor.deck.validation import validate
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

@@ -8,6 +8,7 @@ import dataclasses
 import inspect
 import re
 import typing
+from collections import ChainMap
 from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import Any
@@ -70,13 +71,18 @@ def public_objects() -> dict[str, Any]:
     for entry in (*own, *OTHERS):
         known = any(entry is other for other in named.values())
         if (inspect.isfunction(entry) or inspect.isclass(entry)) and not known and entry.__name__[0] != "_":
-            named[f"{entry.__module__.removeprefix('proprotor.')}.{entry.__name__}"] = entry
+            named[f"{entry.__module__.rpartition('.')[2]}.{entry.__name__}"] = entry
     return named
 
 
+def own_bases(cls: type) -> list[type]:
+    """A class and those of its bases that are the package's own."""
+    return [base for base in cls.__mro__ if base.__module__.partition(".")[0] == "proprotor"]
+
+
 def members(cls: type) -> Iterator[tuple[str, Any]]:
-    """Public methods and properties that a class defines itself."""
-    for name, entry in vars(cls).items():
+    """Public methods and properties that a class or a base of the package defines."""
+    for name, entry in ChainMap(*(vars(base) for base in own_bases(cls))).items():
         if name.startswith("_"):
             continue
         inner = entry.__func__ if isinstance(entry, classmethod | staticmethod) else entry
@@ -164,10 +170,10 @@ def test_a_function_says_what_it_takes_gives_and_raises(name):
 @pytest.mark.parametrize("name", CLASSES)
 def test_a_class_says_what_it_is_made_of(name):
     cls = CLASSES[name]
-    told = docstring(cls)
+    told, every = docstring(cls), [docstring(base) for base in own_bases(cls)]
     assert told["Summary"]
     own = own_parameters(cls)
-    given = documented([*told["Parameters"], *told["Attributes"]])
+    given = documented([part for one in every for part in (*one["Parameters"], *one["Attributes"])])
     if own and not getattr(cls, "_is_protocol", False):
         assert {entry for entry in given if entry in own or not hasattr(cls, entry)} == own
     for entry, (kind, text) in given.items():
@@ -283,7 +289,7 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "flutter.flutter_point": lambda case, **more: flutter.flutter_point(case, SPEEDS, **more),
     "mode_motion.mode_motion": lambda case, **more: mode_motion.mode_motion(case, 150.0, "beam", **more),
     "sensitivity.sensitivity": lambda case, **more: sensitivity(case, airspeed=SPEEDS, **more),
-    "stability_map.stability_map": lambda case, **more: stability_map(case, AXES, **more),
+    "map.stability_map": lambda case, **more: stability_map(case, AXES, **more),
     "sweep.sweep_case": lambda case, **more: sweep_case(case, SPEEDS, **more),
 }
 OTHER_KEYWORDS = {"Rotor.from_mass_distribution"}  # those of Rotor

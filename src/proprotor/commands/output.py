@@ -99,7 +99,7 @@ def print_head(case: Case, found: Mapping[Any, Any]) -> None:
     from proprotor.tables.sweep_table import heading
 
     out = console()
-    for line in (heading(case), *stamp.told_if_unusual(found), *reservations(case), ""):
+    for line in (heading(case), *stamp.unusual_options(found), *reservations(case), ""):
         out.print(line)
 
 

@@ -174,7 +174,7 @@ def _print(results: xarray.Dataset) -> None:
         out.print(f"{found['points unstable']} points unstable; lowest damping {told} %")
     for text, count in found["doubts of points"].items():
         out.print(f"{MARK} Doubtful at {count} of {found['points']} points: {text}.", style="yellow")
-    for line in (*stamp.told_if_unusual(results.attrs), results.attrs["reservations"]):
+    for line in (*stamp.unusual_options(results.attrs), results.attrs["reservations"]):
         out.print(line)
 
 

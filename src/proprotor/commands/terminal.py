@@ -10,8 +10,8 @@ from rich.text import Text
 
 from proprotor.errors import printable
 from proprotor.model.doubts import MARK
+from proprotor.model.options_in_force import options_in_result, options_text
 from proprotor.model.provenance import doubtful_inputs, reservations
-from proprotor.model.stamp import in_words, options_told
 from proprotor.tables.sweep_table import CONVENTION, SweepTable, heading
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def print_sweep(case: Case, table: SweepTable, all_modes: bool = False) -> None:
     warnings = [_shortened(f"Warning: {text}", case, console.width) for text in case.warnings]
     for line in (
         heading(case),
-        f"Model: {in_words(options_told(table.sweep.attrs))}.",
+        f"Model: {options_text(options_in_result(table.sweep.attrs))}.",
         CONVENTION,
         *reservations(case),
         *warnings,

@@ -9,7 +9,7 @@ import numpy as np
 
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError
-from proprotor.model.stamp import options_of
+from proprotor.model.options_of_result import options_of
 from proprotor.rotor.motions import name_list
 from proprotor.stability.map import AIRSPEED
 from proprotor.stability.matching import Spectrum, conjugate, link

@@ -29,7 +29,7 @@ def of_crossings(found: Crossings) -> str:
         ratio, mode, position = found.least
         lines[0] += f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
     lines += [f"  {of_boundary(boundary)}" for boundary in found.boundaries]
-    options = [f"  {line}" for line in stamp.told_if_unusual(found.stamp)]
+    options = [f"  {line}" for line in stamp.unusual_options(found.stamp)]
     return "\n".join([*lines, *_at_start(found), *_failed(found, "", 1.0), *options])
 
 
@@ -50,7 +50,7 @@ def of_flutter_point(found: FlutterPoint) -> str:
         for boundary in others
     ]
     doubts = [f"  {MARK} {line}" for line in footnotes(found.doubts, "kt", KNOT)]
-    options = [f"  {line}" for line in stamp.told_if_unusual(found.stamp)]
+    options = [f"  {line}" for line in stamp.unusual_options(found.stamp)]
     return "\n".join([first, *lines, *_at_start(found), *_failed(found, "kt", KNOT), *doubts, *options])
 
 

@@ -12,7 +12,8 @@ from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.first_order import held_coordinates, some_points
-from proprotor.model.linear_model import LinearModel, batch_shape
+from proprotor.model.linear_model import LinearModel
+from proprotor.model.quantities import batch_shape
 from proprotor.needs import check_memory
 from proprotor.rotor.motions import SECOND, name_list
 from proprotor.stability.branches import Named, branches

@@ -49,7 +49,7 @@ def _comments(found: Mapping[Any, Any]) -> Iterator[str]:
         return
     if "title" in own:
         yield own["title"]
-    yield f"{stamp.told(own)} {own['made_by']}."
+    yield f"{stamp.line(own)} {own['made_by']}."
     yield f"options: {own['options']}"
     yield from filter(None, (own.get("reservations"), own.get("case_warnings")))
 

@@ -1,4 +1,4 @@
-"""The support of a deck, for one design or a batch of designs."""
+"""Build the support of a deck, for one design or a batch of designs."""
 
 from __future__ import annotations
 
@@ -8,8 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.deck.numbers import own_numbers
 from proprotor.errors import InputError
+from proprotor.support.beam_wing import Pylon, Wing, beam_structure, on_coordinates
+from proprotor.support.matrix_files import read_matrix_market, read_npz
+from proprotor.support.nastran import nastran_modes
 from proprotor.support.normal_modes import HUB_AXES, NormalModes, rigid_support, two_axis_pivot
+from proprotor.support.wing_aerodynamics import (
+    Strips,
+    WingAerodynamics,
+    beam_strips,
+    cantilever_strips,
+    in_airstream,
+)
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
@@ -23,29 +34,28 @@ if TYPE_CHECKING:
         RigidSection,
         SupportSection,
     )
-    from proprotor.support.wing_aerodynamics import Strips
 
 _KINDS_OF_STRAIN = ("beam", "chord", "torsion")
 
 
-def support_of(
+def build_support(
     section: SupportSection, numbers: Mapping[str, Datum], names: tuple[str, ...] = ()
 ) -> NormalModes:
-    """The support of a section of a deck.
+    """Return the support of the section [support] of a deck.
 
     Parameters
     ----------
     section : SupportSection
     numbers : mapping of str to Datum
-        The deck's numbers by path, perhaps arrays of many designs, or complex. Those of the structure of a beam
+        The deck's numbers by path, perhaps arrays of many designs, or complex. Numbers of the structure of a beam
         wing, and the units of a file, must be real.
     names : tuple of str
-        The order of the coordinates of many designs of a beam wing, by default that of the first design.
+        The order of the coordinates of many designs of a beam wing, by default the order of the first design.
 
     Raises
     ------
     InputError
-        When a number or a file is not that of a support.
+        When a number is not physical, or a file cannot be used.
     """
     if section.kind == "beam-wing":
         return _beam_wing(section, numbers, names)
@@ -83,27 +93,24 @@ def _rigid(section: RigidSection, numbers: Mapping[str, Datum]) -> NormalModes:
 
 
 def _matrices(section: MatricesSection, numbers: Mapping[str, Datum]) -> NormalModes:
-    from proprotor.support.matrix_files import read_matrix_market, read_npz
-
-    given = _values(numbers, "support")
-    _must_be_real(given)
     read = read_matrix_market if section.file is None else read_npz
-    support = read(**given, hub=section.hub)
-    return _with_assumed_airloads(support, section, numbers)
+    return _from_files(read, section, numbers)
 
 
 def _nastran(section: NastranSection, numbers: Mapping[str, Datum]) -> NormalModes:
-    from proprotor.support.nastran import nastran_modes
+    return _from_files(nastran_modes, section, numbers)
 
+
+def _from_files(
+    read: Callable[..., NormalModes], section: MatricesSection | NastranSection, numbers: Mapping[str, Datum]
+) -> NormalModes:
+    """Return the support that a function reads from the files of a section."""
     given = _values(numbers, "support")
     _must_be_real(given)
-    support = nastran_modes(**given, hub=section.hub)
-    return _with_assumed_airloads(support, section, numbers)
+    return _with_assumed_airloads(read(**given, hub=section.hub), section, numbers)
 
 
 def _beam_wing(section: BeamWingSection, numbers: Mapping[str, Datum], names: tuple[str, ...]) -> NormalModes:
-    from proprotor.support.wing_aerodynamics import WingAerodynamics, in_airstream
-
     given = _values(numbers, "support")
     _must_be_real(given)
     made = _each_design(given, lambda one: _one_beam_wing(one, section.downstop))
@@ -115,9 +122,6 @@ def _beam_wing(section: BeamWingSection, numbers: Mapping[str, Datum], names: tu
 
 
 def _one_beam_wing(given: dict[str, Any], downstop: bool) -> tuple[NormalModes, Strips]:
-    from proprotor.support.beam_wing import Pylon, Wing, beam_structure, on_coordinates
-    from proprotor.support.wing_aerodynamics import beam_strips
-
     spring = given.get("downstop_stiffness_on" if downstop else "downstop_stiffness_off")
     wing, pylon = (
         {entry.name: given[entry.name] for entry in fields(kind) if entry.name in given}
@@ -132,10 +136,9 @@ def _one_beam_wing(given: dict[str, Any], downstop: bool) -> tuple[NormalModes, 
 
 
 def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[str, Datum]) -> NormalModes:
+    """Return the support with the airloads of a wing that bends as a cantilever, if the section has any."""
     if section.wing_aerodynamics is None:
         return support
-    from proprotor.support.wing_aerodynamics import WingAerodynamics, cantilever_strips, in_airstream
-
     given = _values(numbers, "support.wing_aerodynamics")
     strips = cantilever_strips(support, given.pop("span"), given.pop("mast_length"))
     return in_airstream(support, strips, WingAerodynamics(**given))
@@ -151,9 +154,9 @@ _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
 
 
 def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any]) -> Any:
-    """What `build` makes of each design of a batch, in an array of the batch's shape.
+    """Return the result of `build` for each design of a batch, in an array of the batch's shape.
 
-    Designs that are alike are built once: a search asks for one design at many airspeeds.
+    Equal designs are built once, because a search evaluates one design at many airspeeds.
     """
     varied = {name: value for name, value in given.items() if isinstance(value, np.ndarray)}
     spread = np.broadcast_arrays(*varied.values())
@@ -168,12 +171,10 @@ def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any
 
 
 def _stacked(made: Array, names: tuple[str, ...]) -> tuple[NormalModes, Strips]:
-    """One support and its strips, with the axes of the batch in front.
+    """Return the designs of a batch as one support and its strips, with the axes of the batch in front.
 
-    The coordinates of each design are put in the order of the names, so that it is the same in every batch.
+    The coordinates of each design are put in the order of the names, so that the order is the same in every batch.
     """
-    from proprotor.support.wing_aerodynamics import Strips
-
     first, strips = made.flat[0]
     if not made.shape:
         return replace(first, shapes=None), strips
@@ -188,14 +189,14 @@ def _stacked(made: Array, names: tuple[str, ...]) -> tuple[NormalModes, Strips]:
     }
     if first.shapes is not None:
         matrices["shapes"] = stack([support.shapes for support, _ in ordered])
-        told = [_named_otherwise(support.names, names) for support, _ in made.flat]
-        matrices["warning"] = np.array(told, dtype=object).reshape(made.shape)
+        warnings = [_named_otherwise(support.names, names) for support, _ in made.flat]
+        matrices["warning"] = np.array(warnings, dtype=object).reshape(made.shape)
     together = zip(*(own for _, own in ordered), strict=True)
     return replace(first, names=names, **matrices), Strips(*(stack(list(parts)) for parts in together))
 
 
 def _in_order(support: NormalModes, strips: Strips, names: Sequence[str]) -> tuple[NormalModes, Strips]:
-    """A support and its strips with coordinates in the order of names; those with other names fill what is left."""
+    """Return a support and its strips with coordinates in the order of names; other names fill the free places."""
     if support.names == names:
         return support, strips
     own = list(support.names)
@@ -208,14 +209,15 @@ def _in_order(support: NormalModes, strips: Strips, names: Sequence[str]) -> tup
 
 
 def _named_otherwise(own: Sequence[str], names: Sequence[str]) -> str:
-    """What to say of a design that has modes of other kinds than the case's own design."""
+    """Return a warning for a design whose modes have other names than the modes of the case's own design, or ""."""
     others = [name for name in own if name not in names]
     missing = [name for name in names if name not in own]
-    told = [f"{name} is told as {place}" for name, place in zip(others, missing, strict=True)]
-    return f"the wing has other modes than in the case's own design: {', '.join(told)}" if told else ""
+    renamed = [f"{name} is told as {place}" for name, place in zip(others, missing, strict=True)]
+    return f"the wing has other modes than in the case's own design: {', '.join(renamed)}" if renamed else ""
 
 
 def _must_be_real(given: Mapping[str, Any]) -> None:
+    """Refuse complex numbers."""
     for name, value in given.items():
         if np.iscomplexobj(value):
             raise InputError(
@@ -224,17 +226,13 @@ def _must_be_real(given: Mapping[str, Any]) -> None:
 
 
 def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
-    """The SI values of a section's own numbers by field; one along the wing as (stations, values)."""
-    own = {
-        path.removeprefix(f"{section}."): n for path, n in numbers.items() if path.startswith(f"{section}.")
-    }
+    """Return the SI values of a section's own numbers by field; along the wing as (stations, values)."""
     return {
         name: n.si if n.r_over_R is None else (np.array(n.r_over_R), np.array(n.si))
-        for name, n in own.items()
-        if "." not in name
+        for name, n in own_numbers(numbers, section).items()
     }
 
 
 def _side_by_side(values: Iterable[Any]) -> Array:
-    """Numbers of the modes along a last axis; leading axes are those of many designs."""
+    """Return the numbers of the modes along a last axis; leading axes are those of many designs."""
     return np.stack(np.broadcast_arrays(*values), axis=-1)
