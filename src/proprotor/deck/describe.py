@@ -12,7 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
-from proprotor.errors import InputError, told_choices
+from proprotor.errors import InputError, list_choices
 from proprotor.units import meaning
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
     if reading.form == "file":
         return "the name of a file"
     if reading.form == "choice":
-        return told_choices(reading.choices)
+        return list_choices(reading.choices)
     by_angle = getattr(reading, "of_angle", None)
     if reading.form == "rising list":
         return "{ value = [...], unit = ... }"

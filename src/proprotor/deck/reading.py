@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from proprotor.datum import PER_REV, STATUSES, Datum
-from proprotor.errors import InputError, as_toml, is_choice, told_choices, unknown_name
+from proprotor.errors import InputError, as_toml, is_choice, list_choices, unknown_name
 from proprotor.units import LARGEST, factor_to_si, meaning, to_si
 
 _MOST_STATIONS = 10_000
@@ -94,7 +94,7 @@ def read_choice(raw: Any, choices: tuple[bool | str, ...]) -> Datum:
     table = _as_table(raw, ("value",))
     value = table["value"]
     if not is_choice(value, choices):
-        raise InputError("", value, f"must be {told_choices(choices)}")
+        raise InputError("", value, f"must be {list_choices(choices)}")
     return _datum(table, as_toml(value), value, "")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from proprotor.errors import InputError, is_choice, told_choices
+from proprotor.errors import InputError, is_choice, list_choices
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -72,7 +72,7 @@ class NormalModes:
             raise InputError("names", ", ".join(names), "must name each mode, all differently")
         for field, choices in (("includes_rotor", INCLUDES_ROTOR), ("shaft", SHAFT)):
             if not is_choice(getattr(self, field), choices):
-                raise InputError(field, getattr(self, field), f"must be {told_choices(choices)}")
+                raise InputError(field, getattr(self, field), f"must be {list_choices(choices)}")
         from proprotor.rotor.motions import check_support_names
 
         check_support_names("names", names)
