@@ -125,7 +125,7 @@ def _packages(entries):
 EXTRAS = PROJECT["project"]["optional-dependencies"]
 MODULES = {package for extra in EXTRAS.values() for package in _packages(extra)} | {"distributed"}
 # A client of a cluster is made by whoever has `distributed`, and `openmdao` is told where it is imported.
-ELSEWHERE = {("study_workers.py", "distributed"), ("openmdao.py", "openmdao")}
+ELSEWHERE = {("workers.py", "distributed"), ("openmdao.py", "openmdao")}
 
 
 def test_every_package_of_an_extra_is_asked_for():

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.files.source_code import check_code
 from proprotor.model.first_order import held_coordinates, missing_roots
 from proprotor.stability.crossings import Brackets, Crossing, Search
 from proprotor.stability.matching import NOT_TOLD, Spectrum
@@ -20,7 +21,6 @@ from proprotor.stability.modes import coordinate_motion, coordinate_shares, deco
 from proprotor.stability.root_error import error_near_zero
 from proprotor.study.mode_histories import follow_designs
 from proprotor.study.sampling import AIRSPEED
-from proprotor.study.source_code import check_code
 from proprotor.typing import Array
 
 if TYPE_CHECKING:

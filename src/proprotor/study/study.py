@@ -16,6 +16,7 @@ from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.errors import InputError, unknown_name
 from proprotor.files.fingerprint import fingerprint
+from proprotor.files.source_code import code_fingerprint
 from proprotor.model import stamp
 from proprotor.needs import check_memory, free_memory
 from proprotor.rotor.motions import HUB, ROTOR_SPEED
@@ -34,7 +35,6 @@ from proprotor.study.batch import (
 from proprotor.study.checkpoint import Checkpoint
 from proprotor.study.progress import progress_bar
 from proprotor.study.sampling import AIRSPEED, Designs, Plan, as_plan
-from proprotor.study.source_code import code_fingerprint
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
