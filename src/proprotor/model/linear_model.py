@@ -329,7 +329,7 @@ def _matrices(
     points, n, rows = len(settled.trim.converged), len(FIXED_COORDINATES) + len(extra), settled.rows
     found: dict[str, Array] = {}
     if len(rows):
-        pool = settled.pool | couplings(options, settled.pool)
+        pool = settled.quantities | couplings(options, settled.quantities)
         *blade, gusts = _blade_matrices(sections.take(rows), pool, settled.segments, options)
         inputs = [_swashplate(pool, options, blade), evaluate(multiblade.gust_loads, pool, gusts)]
         found = _fixed_frame(pool, options, blade, extra)
