@@ -232,17 +232,19 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
     """What the class that a section describes takes where a field is left out."""
     from proprotor.deck import sections as deck
     from proprotor.deck import support_sections
-    from proprotor.rotor import airfoil, drive_train, rotor
-    from proprotor.support import wing_aerodynamics
+    from proprotor.rotor.airfoil import Airfoil
+    from proprotor.rotor.drive_train import DriveTrain
+    from proprotor.rotor.rotor import Rotor
     from proprotor.support.beam_wing import Pylon, Wing
+    from proprotor.support.wing_aerodynamics import WingAerodynamics
 
     described: dict[type[Section], tuple[type, ...]] = {
-        deck.RotorSection: (rotor.Rotor,),
-        deck.AirfoilSection: (airfoil.Airfoil,),
-        deck.DriveTrainSection: (drive_train.DriveTrain,),
+        deck.RotorSection: (Rotor,),
+        deck.AirfoilSection: (Airfoil,),
+        deck.DriveTrainSection: (DriveTrain,),
         support_sections.BeamWingSection: (Wing, Pylon),
-        support_sections.WingAerodynamicsSection: (wing_aerodynamics.WingAerodynamics,),
-        support_sections.AssumedShapeSection: (wing_aerodynamics.WingAerodynamics,),
+        support_sections.WingAerodynamicsSection: (WingAerodynamics,),
+        support_sections.AssumedShapeSection: (WingAerodynamics,),
     }
     return {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
 

@@ -85,7 +85,7 @@ def _balance_control(balance: Balance, state: State, rows: Array) -> None:
 
 
 def _rigid_pitch(balance: Balance, state: State, rows: Array) -> tuple[Array, Array]:
-    """Return the pitch (n,) at which the undeflected blade has its torque or thrust, and which points have such a pitch.
+    """Return the pitch (n,) that gives the undeflected blade its torque or thrust, and which points have such a pitch.
 
     Of several pitches the nearest to the direction of the air is taken: the search moves away from this direction on
     both sides at once.
