@@ -19,10 +19,12 @@ from proprotor.deck import support_sections
 from proprotor.deck.fields import Reading, Section
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.deck.sections import section_places, sections_at
-from proprotor.errors import InputError, told_choices
-from proprotor.rotor import airfoil, drive_train, rotor
-from proprotor.support import wing_aerodynamics
+from proprotor.errors import InputError, list_choices
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.rotor import Rotor
 from proprotor.support.beam_wing import Pylon, Wing
+from proprotor.support.wing_aerodynamics import WingAerodynamics
 from proprotor.units import meaning
 
 _RANGES: dict[Bound, str] = {
@@ -167,7 +169,7 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
     if reading.form == "file":
         return "the name of a file"
     if reading.form == "choice":
-        return told_choices(reading.choices)
+        return list_choices(reading.choices)
     by_angle = getattr(reading, "of_angle", None)
     if reading.form == "rising list":
         return "{ value = [...], unit = ... }"
@@ -234,12 +236,12 @@ def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
 def _defaults(section: type[Section]) -> dict[str, Any]:
     """Return the defaults of the class that a section describes, by field."""
     described: dict[type[Section], tuple[type, ...]] = {
-        deck.RotorSection: (rotor.Rotor,),
-        deck.AirfoilSection: (airfoil.Airfoil,),
-        deck.DriveTrainSection: (drive_train.DriveTrain,),
+        deck.RotorSection: (Rotor,),
+        deck.AirfoilSection: (Airfoil,),
+        deck.DriveTrainSection: (DriveTrain,),
         support_sections.BeamWingSection: (Wing, Pylon),
-        support_sections.WingAerodynamicsSection: (wing_aerodynamics.WingAerodynamics,),
-        support_sections.AssumedShapeSection: (wing_aerodynamics.WingAerodynamics,),
+        support_sections.WingAerodynamicsSection: (WingAerodynamics,),
+        support_sections.AssumedShapeSection: (WingAerodynamics,),
     }
     return {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
 

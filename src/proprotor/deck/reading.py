@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from proprotor.datum import PER_REV, STATUSES, Datum
 from proprotor.deck.written import FileName, FilePath, PerRevolution
-from proprotor.errors import InputError, as_toml, is_choice, told_choices, unknown_name
+from proprotor.errors import InputError, as_toml, is_choice, list_choices, unknown_name
 from proprotor.units import meaning, to_si
 
 
@@ -52,7 +52,7 @@ def read_choice(raw: Any, choices: tuple[bool | str, ...]) -> Datum:
     table = as_table(raw, ("value",))
     value = table["value"]
     if not is_choice(value, choices):
-        raise InputError("", value, f"must be {told_choices(choices)}")
+        raise InputError("", value, f"must be {list_choices(choices)}")
     return datum(table, as_toml(value), value, "")
 
 

@@ -142,7 +142,7 @@ def _matrices(
     points, n, rows = len(settled.trim.converged), len(FIXED_COORDINATES) + len(extra), settled.rows
     found: dict[str, Array] = {}
     if len(rows):
-        quantities = settled.pool | couplings(options, settled.pool)
+        quantities = settled.quantities | couplings(options, settled.quantities)
         *blade, gusts = _blade_matrices(sections.take(rows), quantities, settled.segments, options)
         inputs = [_swashplate(quantities, options, blade), evaluate(multiblade.gust_loads, quantities, gusts)]
         found = _fixed_frame(quantities, options, blade, extra)

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.files.source_code import check_code
 from proprotor.model.first_order import missing_roots
 from proprotor.stability.modes import decomposition, eigenvalues
 from proprotor.study.designs import AIRSPEED
 from proprotor.study.flutter_speeds import put_flutter_speeds
 from proprotor.study.followed_modes import doubted, modes_along
 from proprotor.study.roots import least_stable, ordered, vectors
-from proprotor.study.source_code import check_code
 from proprotor.study.variables import POINT, VARIABLE, VARIABLES, blank
 from proprotor.typing import Array
 

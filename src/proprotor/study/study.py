@@ -10,6 +10,7 @@ from warnings import warn
 
 import numpy as np
 
+from proprotor.files.source_code import code_fingerprint
 from proprotor.study import workers as study_workers
 from proprotor.study.batch import Analysis, Batch
 from proprotor.study.checkpoint import Checkpoint
@@ -17,7 +18,6 @@ from proprotor.study.designs import Plan
 from proprotor.study.division import Block, blocks_of, check_needs, points_at_once
 from proprotor.study.progress import progress_bar
 from proprotor.study.request import Request, requested
-from proprotor.study.source_code import code_fingerprint
 from proprotor.study.variables import DEFAULT_QUANTITIES, POINT, VARIABLE, blank
 from proprotor.typing import Array
 

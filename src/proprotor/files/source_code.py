@@ -1,6 +1,6 @@
-"""Which code computes: a fingerprint of the text of all modules that a result can depend on.
+"""A fingerprint of the text of all modules that a result can depend on.
 
-A version does not tell: between two of them code changes, and results with it.
+A version number is not enough: between two versions the code changes, and results with the code.
 """
 
 from __future__ import annotations
@@ -16,13 +16,12 @@ import proprotor_equations
 from proprotor.errors import InputError
 
 _IMPORTED = time.time()
-_PACKAGES = (Path(__file__).parent, Path(proprotor_equations.__file__).parent)
-# What only shows results; no study imports it.
-SHOWING = ("commands", "explore", "figures", "plots", "report_page")
+_PACKAGES = (Path(__file__).parents[1], Path(proprotor_equations.__file__).parent)
+SHOWING = ("commands", "explore", "plots", "report")  # rooms that only show results: no study imports them
 
 
 def modules() -> Iterator[tuple[str, Path]]:
-    """Name and place of every module of the package and of the equations, but those that only show results."""
+    """Yield name and path of every module of the package and of the equations, except those that only show results."""
     for package in _PACKAGES:
         for path in sorted(package.rglob("*.py")):
             within = path.relative_to(package)
@@ -32,16 +31,18 @@ def modules() -> Iterator[tuple[str, Path]]:
 
 @functools.cache
 def code_fingerprint() -> str:
-    """SHA-256 of the code of this process, in hexadecimal.
+    """Return the SHA-256 of the code that this process runs, in hexadecimal.
 
     Raises
     ------
     InputError
-        When a file is newer than what was imported of it: what this process runs is no longer there to be read.
+        When a file was changed after its import: the code that this process runs can then no longer be read.
     """
     digest = hashlib.sha256()
     for name, path in modules():
-        if _IMPORTED < path.stat().st_mtime <= time.time():  # a time to come is a wrong clock, and no change
+        if (
+            _IMPORTED < path.stat().st_mtime <= time.time()
+        ):  # a time in the future is a wrong clock, not a change
             raise InputError("code", path, "was changed after this process had read it: start Python again")
         text = path.read_bytes()
         digest.update(f"{name}:{len(text)}:".encode() + text)
@@ -49,7 +50,7 @@ def code_fingerprint() -> str:
 
 
 def check_code(expected: str) -> None:
-    """Raise an InputError unless this process runs the code that a study was begun with."""
+    """Raise an `InputError` unless this process runs the code with which a study was begun."""
     if code_fingerprint() != expected:
         import platform
 
