@@ -105,7 +105,7 @@ class _Asking(frozenset[str]):
 def _derivation(module: str) -> tuple[frozenset[str], dict[str, tuple[Any, ...]]]:
     """Dropped terms the derivation of a module asks for, and the arguments of its functions with none dropped."""
     dropped = _Asking()
-    changing = STEPS[module].functions(dropped, drops=True)
+    changing = STEPS[module].changing(dropped)
     arguments = {function.name: tuple(function.arguments) for function in changing}
     return frozenset(dropped.asked), arguments
 
@@ -118,7 +118,7 @@ def reached_by(term: str) -> tuple[str, ...]:
 @functools.cache
 def _module(name: str, dropped: frozenset[str]) -> ModuleType:
     _, arguments = _derivation(name)
-    changing = STEPS[name].functions(dropped, drops=True)
+    changing = STEPS[name].changing(dropped)
     functions = [replace(function, signature=arguments[function.name]) for function in changing]
     module = ModuleType(f"reduced_{name}")
     exec(render_module(functions, STEPS[name].title), vars(module))
