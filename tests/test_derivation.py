@@ -46,9 +46,9 @@ from derive import emit
 
 functions, render_module = [], emit.render_module
 
-def recorded(module_functions, title):
+def recorded(module_functions, title, *template):
     functions.extend(module_functions)
-    return render_module(module_functions, title)
+    return render_module(module_functions, title, *template)
 
 emit.render_module = recorded
 files = emit.derive_files(progress=lambda line: None)

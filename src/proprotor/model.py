@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from proprotor_equations import (
-    BLADE_COORDINATES,
     FIXED_COORDINATES,
     FIXED_GUSTS,
     airloads,
-    drive_train,
     inertia,
     multiblade,
     pitch,
 )
+from proprotor_equations import coordinates as known
+from proprotor_equations import rotor as whole_rotor
+from proprotor_equations.coordinates import Coordinate
 
 from proprotor.airfoil import Airfoil
 from proprotor.arrays import Array
 from proprotor.blade_airloads import (
+    LOAD_MOMENTS,
     BladeSections,
     closed_form_moments,
     has_closed_form,
@@ -30,7 +31,6 @@ from proprotor.blade_airloads import (
     segment_quantities,
 )
 from proprotor.drive_train import DriveTrain
-from proprotor.equation_set import EquationSet
 from proprotor.errors import InputError
 from proprotor.evaluation import evaluate
 from proprotor.needs import check_memory
@@ -48,11 +48,13 @@ if TYPE_CHECKING:
     from proprotor.state_space import StateSpace
 
 HUB = FIXED_COORDINATES[:6]
-SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
+SWASHPLATE = tuple(motion.name for motion in known.SWASHPLATE)
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
 MASS_AT_REST = (*HUB, "gimbal_1c", "gimbal_1s")  # coordinates of a rotor at rest with locked blades
 COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
+_PITCH = [place for place, coordinate in enumerate(known.FIXED) if coordinate.angle == "pitch"]
+_KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}
 _BYTES_PER_POINT, _BYTES_PER_ENTRY = 10_000.0, 80.0  # while a rotor is trimmed and its matrices are made
 _SOFTEST_SPRING = 1e-100  # of the other spring: a free hinge, without a division by zero in series
 
@@ -248,9 +250,10 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     trim = settled.trim
     if choice.reactionless and np.ndim(rotor.n_blades):
         raise InputError("n_blades", rotor.n_blades, "must be one number with reactionless=True")
-    extra = reactionless_coordinates(int(np.max(rotor.n_blades))) if choice.reactionless else ()
-    matrices = _matrices(sections, choice, settled, extra)
-    coordinates = (*FIXED_COORDINATES, *extra)
+    reactionless = int(np.max(rotor.n_blades)) if choice.reactionless else None
+    matrices = _matrices(sections, choice, settled, reactionless)
+    coordinates = (*known.FIXED, *_reactionless(reactionless))
+    names = tuple(coordinate.name for coordinate in coordinates)
     dofs = _free_coordinates(choice, coordinates)
     parts: dict[str, Any] = {
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in matrices.items()
@@ -258,13 +261,13 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     shaped = Trim(**{e.name: getattr(trim, e.name).reshape(shape) for e in fields(trim)})
     model = LinearModel(
         **parts,
-        dofs=coordinates,
+        dofs=names,
         trim=shaped,
         airspeed=np.broadcast_to(speed, shape),
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice),
     )
-    return model if dofs == coordinates else model.submodel(dofs)
+    return model if dofs == names else model.submodel(dofs)
 
 
 def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
@@ -288,9 +291,23 @@ def _flat(target: Target, shape: tuple[int, ...]) -> Target:
 
 def reactionless_coordinates(n_blades: int) -> tuple[str, ...]:
     """Blade motions beyond Eq. 17: harmonics 2 to below N/2, and for even N neighbours against each other."""
-    angles = ("flap", "lag", "pitch")
-    pairs = [f"{angle}_{n}{part}" for n in range(2, (n_blades + 1) // 2) for angle in angles for part in "cs"]
-    return tuple(pairs + [f"{angle}_d" for angle in angles] * (n_blades % 2 == 0))
+    return tuple(coordinate.name for coordinate in _reactionless(n_blades))
+
+
+def _reactionless(n_blades: int | None) -> list[Coordinate]:
+    if n_blades is None:
+        return []
+    pairs = [
+        c._replace(name=f"{c.angle}_{n}{c.part}", harmonic=n)
+        for n in _harmonics(n_blades)
+        for c in known.REACTIONLESS_PAIR
+    ]
+    return pairs + list(known.DIFFERENTIAL) * (n_blades % 2 == 0)
+
+
+def _harmonics(n_blades: int) -> range:
+    """Harmonics of reactionless pairs, 2 to below N/2."""
+    return range(2, (n_blades + 1) // 2)
 
 
 def _check_pitch(rotor: Rotor, options: Options) -> None:
@@ -302,39 +319,53 @@ def _check_pitch(rotor: Rotor, options: Options) -> None:
         )
 
 
-def _free_coordinates(options: Options, coordinates: tuple[str, ...]) -> tuple[str, ...]:
+def _free_coordinates(options: Options, coordinates: tuple[Coordinate, ...]) -> tuple[str, ...]:
     removed = set(options.locked)
     if not options.pitch_is_free:
         removed.add("pitch")
     if options.rotor_speed == "constant":
         removed.add(ROTOR_SPEED)
-    return tuple(
-        name for name in coordinates if name.rpartition("_")[0] not in removed and name not in removed
-    )
+    return tuple(coordinate.name for coordinate in coordinates if coordinate.angle not in removed)
 
 
 def _matrices(
-    sections: BladeSections, options: Options, settled: Settled, extra: tuple[str, ...]
+    sections: BladeSections, options: Options, settled: Settled, reactionless: int | None
 ) -> dict[str, Array]:
-    """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame, reactionless last; NaN without trim."""
-    points, n, rows = len(settled.trim.converged), len(FIXED_COORDINATES) + len(extra), settled.rows
+    """M, C, K (points, n, n) and B (points, n, 6) in the fixed frame; NaN without trim.
+
+    `reactionless` is the number of blades whose reactionless motions follow the coordinates of Eq. 17, or None.
+    """
+    points, rows = len(settled.trim.converged), settled.rows
+    n = len(FIXED_COORDINATES) + len(_reactionless(reactionless))
     found: dict[str, Array] = {}
     if len(rows):
         pool = settled.pool | couplings(options, settled.pool)
-        *blade, gusts = _blade_matrices(sections.take(rows), pool, settled.segments, options)
-        inputs = [_swashplate(pool, options, blade), evaluate(multiblade.gust_loads, pool, gusts)]
-        found = _fixed_frame(pool, options, blade, extra)
-        found["B"] = np.zeros((len(rows), n, len(INPUTS)), dtype=gusts.dtype)
-        found["B"][:, : len(FIXED_COORDINATES)] = np.concatenate(inputs, axis=-1)
+        given = _segments(sections.take(rows), pool, settled.segments, options) | pool
+        given["equations"] = options.equation_set
+        blade = evaluate(whole_rotor.blade_matrices, given)
+        found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
+        if not options.pitch_is_free:
+            found["B"] = _without_pitch_equations(found["K"], found["B"])
+        if reactionless is not None:
+            found = _with_reactionless(found, list(_reactionless_blocks(given, blade, reactionless)), n)
     return {
         name: _at_all_points(found.get(name), points, rows, (n, columns))
         for name, columns in (dict.fromkeys("MCK", n) | {"B": len(INPUTS)}).items()
     }
 
 
+def _without_pitch_equations(stiffness: Array, inputs: Array) -> Array:
+    """Loads per unit of the inputs where the blades follow the swashplate at once."""
+    followed = -stiffness[..., _PITCH]
+    gusts = inputs[..., len(SWASHPLATE) :]
+    return np.concatenate(
+        [followed, np.broadcast_to(gusts, (*followed.shape[:-1], gusts.shape[-1]))], axis=-1
+    )
+
+
 def _at_all_points(matrix: Array | None, points: int, rows: Array, shape: tuple[int, int]) -> Array:
     """A matrix of the rows that have one at all points, NaN at the others."""
-    if matrix is not None and matrix.shape[0] == points == len(rows):
+    if matrix is not None and matrix.ndim == 3 and matrix.shape[0] == points == len(rows):
         return matrix
     whole = np.full((points, *shape), np.nan, dtype=float if matrix is None else matrix.dtype)
     if matrix is not None:
@@ -342,86 +373,39 @@ def _at_all_points(matrix: Array | None, points: int, rows: Array, shape: tuple[
     return whole
 
 
-def _blade_matrices(
-    sections: BladeSections, pool: Mapping[str, Any], at_trim: Mapping[str, Any], options: Options
-) -> tuple[Array, ...]:
-    """Mass, damping and stiffness (points, 12, 12) of one blade in rotating axes, and its gusts (points, 12, 3)."""
-    mass, damping, stiffness = _structure(pool, options.equation_set)
-    points = np.shape(pool["pitch"])
-    damping, stiffness = (
-        np.broadcast_to(matrix, (*points, *matrix.shape[-2:])) for matrix in (damping, stiffness)
-    )
-    gusts = np.zeros((*stiffness.shape[:-1], 3), dtype=stiffness.dtype)
-    if options.airloads != "none":
-        air_damping, air_stiffness, gusts = _airloads(sections, pool, at_trim, options)
-        damping, stiffness = damping + air_damping, stiffness + air_stiffness
-        gusts = np.broadcast_to(gusts, (*stiffness.shape[:-1], 3))  # the same at all points, it may be one
-    return mass, damping, stiffness, gusts
-
-
-def _swashplate(pool: Mapping[str, Any], options: Options, blade: list[Array]) -> Array:
-    """Loads (points, 18, 3) on the rotor per unit of swashplate collective and cyclics, held in the fixed frame.
-
-    With the pitch equations kept, the pitch coordinates are then the whole perturbation of blade pitch, and the
-    swashplate pulls at them through control system and pitch damper. Without them the blades follow at once. Rates of
-    the swashplate are left out.
-    """
-    place = BLADE_COORDINATES.index("pitch")
-    if options.pitch_is_free:
-        mass, damping, stiffness = (np.zeros_like(matrix) for matrix in blade)
-        damping[..., place, place], stiffness[..., place, place] = (
-            pool["pitch_damping"],
-            pool["control_stiffness"],
-        )
-        sign = 1.0
-    else:
-        (mass, damping, stiffness), sign = blade, -1.0
-    columns = [FIXED_COORDINATES.index(name) for name in ("pitch_0", "pitch_1c", "pitch_1s")]
-    loads: Array = sign * evaluate(multiblade.stiffness, pool, mass, damping, stiffness)[..., columns]
-    return loads
-
-
-_KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}
-
-
-def _fixed_frame(
-    pool: Mapping[str, Any], options: Options, blade: list[Array], extra: tuple[str, ...]
-) -> dict[str, Array]:
-    """M, C, K of the rotor from those of one blade."""
-    matrices = {}
-    for count, (name, kind) in enumerate(_KINDS.items(), start=1):
-        matrix = evaluate(getattr(multiblade, kind), pool, *blade[:count])
-        if options.drive_train is not None:
-            matrix = matrix + evaluate(getattr(drive_train, kind), pool)
-        matrices[name] = matrix
-    if "cyclic_flap_stiffness_excess" in pool:
-        matrices["K"] = matrices["K"] + evaluate(multiblade.cyclic_restraint, pool)
-    return {name: _with_reactionless(pool, blade, extra, name, matrix) for name, matrix in matrices.items()}
+def _reactionless_blocks(
+    given: Mapping[str, Any], blade: tuple[Array, ...], n_blades: int
+) -> Iterator[dict[str, Array]]:
+    """M, C, K of each group of `reactionless_coordinates`, in their order; the groups do not couple."""
+    groups = [("reactionless", {"harmonic": n}) for n in _harmonics(n_blades)]
+    groups += [("differential", {})] * (n_blades % 2 == 0)
+    for prefix, more in groups:
+        yield {
+            name: evaluate(getattr(multiblade, f"{prefix}_{kind}"), {**given, **more}, *blade[:count])
+            for count, (name, kind) in enumerate(_KINDS.items(), start=1)
+        }
 
 
 def _with_reactionless(
-    pool: Mapping[str, Any], blade: list[Array], extra: tuple[str, ...], name: str, matrix: Array
-) -> Array:
-    """The matrix with the blocks of the reactionless coordinates, which couple with nothing else."""
-    if not extra:
-        return matrix
-    count, kind = list(_KINDS).index(name) + 1, _KINDS[name]
-    whole = np.zeros((*matrix.shape[:-2], *[len(FIXED_COORDINATES) + len(extra)] * 2))
+    found: Mapping[str, Array], blocks: list[dict[str, Array]], n: int
+) -> dict[str, Array]:
+    """The matrices with blocks of reactionless coordinates, which couple with nothing else and have no inputs."""
+    whole = {
+        name: _filled(matrix, n, n if name in _KINDS else matrix.shape[-1]) for name, matrix in found.items()
+    }
     start = len(FIXED_COORDINATES)
-    whole[..., :start, :start] = matrix
-    while start < whole.shape[-1]:
-        first = extra[start - len(FIXED_COORDINATES)]
-        if first.endswith("_d"):
-            block = evaluate(getattr(multiblade, f"differential_{kind}"), pool, *blade[:count])
-        else:
-            harmonic = {"harmonic": int(first.split("_")[1][:-1])}
-            block = evaluate(
-                getattr(multiblade, f"reactionless_{kind}"), dict(pool) | harmonic, *blade[:count]
-            )
-        end = start + block.shape[-1]
-        whole[..., start:end, start:end] = block
+    for block in blocks:
+        end = start + block["M"].shape[-1]
+        for name, matrix in block.items():
+            whole[name][..., start:end, start:end] = matrix
         start = end
     return whole
+
+
+def _filled(matrix: Array, rows: int, columns: int) -> Array:
+    """The matrix with zeros below and beside it."""
+    missing = [(0, 0)] * (matrix.ndim - 2) + [(0, rows - matrix.shape[-2]), (0, columns - matrix.shape[-1])]
+    return np.pad(matrix, missing)
 
 
 def couplings(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
@@ -432,46 +416,20 @@ def couplings(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
     return closed_form | {name: pool[name] for name in COUPLINGS if name in pool}
 
 
-def _structure(pool: Mapping[str, Any], equations: EquationSet) -> tuple[Array, Array, Array]:
-    """Inertia, springs and dampers of one blade."""
-    pool = dict(pool) | evaluate(equations.inertia.trim_integrals, pool)._asdict()
-    mass = evaluate(equations.inertia.mass, pool) + evaluate(equations.pitch.mass, pool)
-    damping = evaluate(equations.inertia.gyroscopic, pool) + evaluate(pitch.damping, pool)
-    stiffness = evaluate(equations.inertia.centrifugal_stiffness, pool) + evaluate(
-        equations.pitch.stiffness, pool
-    )
-    return mass, damping, stiffness + evaluate(equations.flap_lag_springs.stiffness, pool)
-
-
-def _airloads(
+def _segments(
     sections: BladeSections, pool: Mapping[str, Any], at_trim: Mapping[str, Any], options: Options
-) -> tuple[Array, Array, Array]:
-    """Airload damping and stiffness of one blade, and what gusts load it with."""
+) -> dict[str, Any]:
+    """What the blade's segments have: on which side of the hinges they are, and the radial moments of their loads."""
+    if options.airloads == "none":
+        hinges = ("beyond_flap_hinge", "beyond_lag_hinge")
+        return dict.fromkeys(LOAD_MOMENTS, 0.0) | {
+            name: getattr(sections.quadrature, name) for name in hinges
+        }
     equations = options.equation_set.airloads
     if equations is airloads and options.airloads == "full":
-        segments = dict(at_trim) | {name: np.asarray(pool[name])[..., None] for name in COUPLINGS}
-    else:
-        segments = segment_quantities(sections, pool, equations)
-        segments |= _moments(sections, segments, options)
-    return airload_matrices(segments, equations)
-
-
-def airload_matrices(segments: Mapping[str, Any], equations: ModuleType) -> tuple[Array, Array, Array]:
-    """Airload damping, stiffness (points, 12, 12) and gust loads (points, 12, 3) of one blade from its segments.
-
-    Parameters
-    ----------
-    segments : mapping
-        Quantities of each segment, with the couplings of its pitch and the radial moments of its loads.
-    equations : module
-        Generated airloads, of the consistent or a reduced set.
-    """
-    motions = ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion")
-    pool = dict(segments) | {name: evaluate(getattr(equations, name), segments) for name in motions}
-    pool["load_derivatives"] = evaluate(airloads.load_derivatives, pool)
-    products = (airloads.damping, airloads.stiffness, airloads.gust_loads)
-    damping, stiffness, gusts = (evaluate(product, pool) for product in products)
-    return damping, stiffness, gusts
+        return dict(at_trim)
+    segments = segment_quantities(sections, pool, equations)
+    return segments | _moments(sections, segments, options)
 
 
 def _moments(sections: BladeSections, segments: Mapping[str, Any], options: Options) -> dict[str, Array]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_train, multiblade, pitch
+from proprotor_equations import rotor as whole_rotor
 
 from proprotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.arrays import Array
@@ -28,7 +29,6 @@ from proprotor.evaluation import evaluate
 from proprotor.model import (
     COUPLINGS,
     LinearModel,
-    airload_matrices,
     batch_shape,
     couplings,
     in_closed_form,
@@ -226,8 +226,8 @@ def _moments(
 
 def _loads(pool: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
     """Airload damping and stiffness of one blade."""
-    coupled = dict(segments) | {name: np.asarray(pool[name])[..., None] for name in COUPLINGS}
-    damping, stiffness, _ = airload_matrices(coupled, choice.equation_set.airloads)
+    given = {**segments, **pool, "equations": choice.equation_set}
+    damping, stiffness, _ = evaluate(whole_rotor.blade_airloads, given)
     return damping, stiffness
 
 
