@@ -28,6 +28,12 @@ LOAD_MOMENTS = tuple(
     for load in (*section.Forces._fields, *section.PitchingMoment._fields)
     for power in range(POWERS)
 )
+# Places of a velocity at r = 0 and per unit radius among those of a segment.
+_VELOCITIES = {
+    "tangential_velocity": (airloads.UT_0, airloads.UT_1),
+    "axial_velocity": (airloads.UP_0, airloads.UP_1),
+    "radial_velocity": (airloads.UR_0, airloads.UR_1),
+}
 # Inflow ratio that stands for no airspeed: its square vanishes against the logarithm of a blade without cutout.
 _STILL = 1e-150
 
@@ -124,9 +130,9 @@ def _air(sections: BladeSections, segments: Quantities, equations: ModuleType, s
     line = evaluate(equations.trim_velocity, segments)[..., 0]
     along_lines = sections.quadrature.along_lines
     stations = {name: segments[name] for name in ("density", "speed_of_sound", "section_damping")}
-    for place, name in enumerate(("tangential_velocity", "axial_velocity", "radial_velocity")):
-        stations[name] = along_lines(line[..., place], line[..., place + 3])
-    stations["section_spin"] = along_lines(line[..., 6]) if spins else 0.0
+    for name, (at_axis, per_radius) in _VELOCITIES.items():
+        stations[name] = along_lines(line[..., at_axis], line[..., per_radius])
+    stations["section_spin"] = along_lines(line[..., airloads.SPIN]) if spins else 0.0
     stations |= {"chord": sections.chord, "section_pitch": segments["pitch"] + sections.twist}
     air: dict[str, Any] = evaluate(section.air_at_section, stations)._asdict()
     return stations | air

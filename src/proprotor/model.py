@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
     from proprotor.state_space import StateSpace
 
-HUB = FIXED_COORDINATES[:6]
+HUB = tuple(coordinate.name for coordinate in known.FIXED if coordinate.angle in ("hub", "turn"))
 SWASHPLATE = tuple(motion.name for motion in known.SWASHPLATE)
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from proprotor_equations import flap_lag_springs, inertia
+from proprotor_equations import trim as balances
 
 from proprotor.arrays import Array
 from proprotor.evaluation import evaluate
@@ -16,7 +17,8 @@ from proprotor.options import Options
 from proprotor.rotor import Rotor
 
 UNKNOWNS = ("coning", "lag", "elastic_pitch", "collective")
-TORQUE, THRUST = 3, 4  # rows of a blade's balance
+TORQUE, THRUST = balances.AZIMUTH, balances.HUB_K  # rows of a blade's balance
+_FLAP_LAG = ("flap_lag_stiffness", "flap_lag_stiffness_slope", "flap_lag_stiffness_curvature")
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,5 +127,5 @@ def _springs(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
         return none | given
     springs: dict[str, Any] = evaluate(flap_lag_springs.effective_stiffness, pool)._asdict()
     if options.structure == "diagonal":
-        springs |= {name: 0.0 for name in springs if name.startswith("flap_lag_")}
+        springs |= dict.fromkeys(_FLAP_LAG, 0.0)
     return springs
