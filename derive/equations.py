@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from typing import Any
 
 from derive import (
     airloads,
@@ -18,13 +19,23 @@ from derive import (
     lift_slope,
     multiblade,
     pitch,
+    rotor,
     section,
     trim,
 )
 from derive import kinematics as kin
-from derive.coordinates import BLADE_GUSTS, DIFFERENTIAL, FIXED_GUSTS, LOAD, MOTION, REACTIONLESS_PAIR, names
+from derive.coordinates import (
+    BLADE_GUSTS,
+    DIFFERENTIAL,
+    FIXED_GUSTS,
+    LOAD,
+    MOTION,
+    REACTIONLESS_PAIR,
+    SWASHPLATE,
+    names,
+)
 from derive.coordinates import SEGMENT_MOTIONS as MOTIONS
-from derive.function import Function, force_per, plus
+from derive.function import Function, coordinate_dimension, force_per, plus
 from derive.kinds import (
     ROW_EQUATION,
     Dropped,
@@ -40,7 +51,8 @@ from derive.kinds import (
     values,
     virtual_motion,
 )
-from derive.published import PUBLISHED
+from derive.published import CONSISTENT, PUBLISHED
+from derive.rotor import Assembly, Call
 
 PAPER = "AIAA-2002-1604"
 REFERENCE_LINE = "the blade's reference line with precone, coning and lag, Eq. 2"
@@ -76,6 +88,35 @@ def _reactionless(kind: str, order: int, pair: bool) -> Line:
     )
 
 
+def assembly(
+    name: str,
+    summary: str,
+    origin: str,
+    lines: rotor.Lines,
+    results: dict[str, str] | None = None,
+    **more: Any,
+) -> Line:
+    """A function that calls others of the catalogue."""
+
+    def derive(_: Dropped) -> Function:
+        return Assembly(
+            "", name, summary, origin, lines=rotor.made(lines, _found), results=results or {}, **more
+        )
+
+    return Line(name, False, derive)
+
+
+COORDINATES = (
+    matrix(
+        "transform",
+        multiblade.transform,
+        f"{PAPER}, Eqs. 7-9: hub motion and gimbal tilt along the blade's axes, angles as multiblade sums",
+        BLADE,
+        multiblade.FIXED_COORDINATES,
+        lambda row, column: plus(coordinate_dimension(row), minus=coordinate_dimension(column)),
+        row_prefix="BLADE_",
+    ),
+)
 INERTIA = (
     values(
         "dependent_inertias",
@@ -193,6 +234,7 @@ MULTIBLADE = (
     rotor_matrix("mass", multiblade.mass, ANY_SUM, 2, blade_matrices=M),
     rotor_matrix("damping", multiblade.damping, ANY_SUM, 1, blade_matrices=MC),
     rotor_matrix("stiffness", multiblade.stiffness, ANY_SUM, 0, blade_matrices=MCK),
+    rotor_matrix("swashplate_loads", multiblade.swashplate_loads, SUM, 0, columns=names(SWASHPLATE)),
     rotor_matrix(
         "gust_loads", multiblade.gust_loads, SUM, 0, columns=names(FIXED_GUSTS), blade_matrices=("gusts",)
     ),
@@ -215,9 +257,42 @@ DRIVE_TRAIN = (
     rotor_matrix("stiffness", drive_train.stiffness, ENGINE, 0),
 )
 
+ROTOR = (
+    assembly(
+        "blade_airloads",
+        "Airload damping and stiffness of one blade, and loads of gusts on it, from the loads of its segments.",
+        f"{PAPER}, virtual work of Eqs. 12 and 32",
+        rotor.AIRLOADS,
+        rotor.AIRLOAD_RESULTS,
+        segments=True,
+    ),
+    assembly(
+        "blade_matrices",
+        "Mass, damping and stiffness of one blade in rotating axes with its airloads, and loads of gusts on it.",
+        f"{PAPER}, Eqs. 4-16 and 32-34",
+        rotor.BLADE,
+        rotor.BLADE_RESULTS,
+    ),
+    assembly(
+        "fixed_frame",
+        "M, C, K and B of N blades in the fixed frame, with engine and shaft, from the matrices of one blade.",
+        f"{PAPER}, Eqs. 7-9 and 17",
+        rotor.FIXED_FRAME,
+        rotor.ROTOR_RESULTS,
+        blade_matrices=("mass", "damping", "stiffness", "gusts"),
+    ),
+    assembly(
+        "matrices",
+        "M, C, K and B of a whole rotor, from its quantities in trim and the radial moments of its section loads.",
+        f"{PAPER}, Eqs. 4-17 and 32-34",
+        rotor.ROTOR,
+    ),
+)
+
 STEPS = {
     step.module: step
     for step in (
+        Step("coordinates", "Coordinates, loads and motions", COORDINATES, "coordinates.py.jinja"),
         Step("inertia", "Inertia of one blade in rotating axes", INERTIA),
         Step("flap_lag_springs", "Flap-lag springs of one blade, which turn with its pitch", SPRINGS),
         Step("pitch", "Blade pitch, control system, dampers and gimbal restraint", PITCH),
@@ -227,6 +302,7 @@ STEPS = {
         Step("trim", "Trim balance of one blade", TRIM),
         Step("multiblade", "From one blade to N blades in the fixed frame", MULTIBLADE),
         Step("drive_train", "Engine and shaft on the rotor's azimuth", DRIVE_TRAIN),
+        Step("rotor", "A whole rotor in one call", ROTOR, "rotor.py.jinja"),
     )
 }
 """Every step by the name of its module."""
@@ -235,19 +311,24 @@ REDUCED_MODULES = tuple(module for module, step in STEPS.items() if step.changes
 
 
 @functools.cache
-def _consistent(module: str) -> tuple[Function, ...]:
-    return tuple(STEPS[module].functions(drops=True))
+def _consistent(module: str, name: str) -> Function:
+    step = STEPS[module]
+    return step.derived(step.line(name), CONSISTENT)
+
+
+def _found(name: str) -> Call:
+    module, function = name.split(".")
+    return Call(_consistent(module, function), STEPS[module].line(function).drops)
 
 
 def consistent_functions(module: str) -> list[Function]:
     """All functions of a module, with every first-order term."""
-    return [*STEPS[module].functions(drops=False), *_consistent(module)]
+    return [_consistent(module, line.name) for line in STEPS[module].lines]
 
 
 def reduced_functions(module: str, dropped: Dropped = PUBLISHED) -> list[Function]:
     """The functions that dropped terms can change, without those terms, under the consistent signatures."""
-    signatures = {function.name: tuple(function.arguments) for function in _consistent(module)}
     return [
-        dataclasses.replace(function, signature=signatures[function.name])
-        for function in STEPS[module].functions(dropped, drops=True)
+        dataclasses.replace(function, signature=tuple(_consistent(module, function.name).arguments))
+        for function in STEPS[module].changing(dropped)
     ]

@@ -25,7 +25,6 @@ from derive.function import (
     plus,
     row_dimension,
 )
-from derive.published import CONSISTENT
 from derive.symbols import Dimension
 
 Dropped = frozenset[str]
@@ -63,14 +62,17 @@ class Step:
     module: str
     title: str
     lines: tuple[Line, ...]
+    template: str = "module.py.jinja"
 
-    def functions(self, dropped: Dropped = CONSISTENT, *, drops: bool) -> list[Function]:
-        """Derive the functions that a dropped term can change, or those that it cannot."""
-        return [
-            dataclasses.replace(line.derive(dropped), module=self.module)
-            for line in self.lines
-            if line.drops == drops
-        ]
+    def line(self, name: str) -> Line:
+        return next(line for line in self.lines if line.name == name)
+
+    def derived(self, line: Line, dropped: Dropped) -> Function:
+        return dataclasses.replace(line.derive(dropped), module=self.module)
+
+    def changing(self, dropped: Dropped) -> list[Function]:
+        """Derive the functions that a dropped term can change."""
+        return [self.derived(line, dropped) for line in self.lines if line.drops]
 
     @property
     def changes(self) -> bool:

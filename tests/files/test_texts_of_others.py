@@ -134,7 +134,7 @@ def support(*names):
 def test_no_support_has_a_name_of_a_motion_of_any_rotor(n_blades):
     case = pp.load_case("xv15")
     own = case.linearize(100.0).rotor.dofs[len(HUB) :]
-    dofs = (*own, *reactionless_coordinates(n_blades))
+    dofs = (*own, *(coordinate.name for coordinate in reactionless_coordinates(n_blades)))
     for name in (*dofs, *name_list(dofs)):
         for taken in (name, name + SECOND):
             with pytest.raises(pp.InputError, match="must not be the name that a motion of a rotor has"):
