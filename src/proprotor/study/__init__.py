@@ -8,7 +8,7 @@ study               `study`: from a case and a plan to a dataset, on all cores o
 sampling            plans: grids, lists, Latin hypercubes, Sobol and Saltelli samples
 input_ranges        what an input may be: values, or a distribution of values, read into SI
 designs             a plan, and the designs that it gives with the numbers of a deck
-request             what is asked of a study, read and checked
+request             the request that a study answers: its arguments, read and checked
 division            how many points a batch has, so that all batches at work fit into memory
 variables           the quantities of a study and their variables, as arrays and as a dataset
 batch               the analysis of one batch, with a reason for each design or point that fails

@@ -13,7 +13,7 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import xarray
 
-_OF_THE_SUPPORT = 0.1  # participation of the support from which on a mode counts as one that moves it
+_LEAST_SHARE = 0.1  # participation of the support in a mode that counts as moving the support
 
 
 def mode_damping(
@@ -54,7 +54,7 @@ def mode_damping(
     with np.errstate(all="ignore"):
         ratio = -values.real / np.abs(values)
     if mode is None:
-        counts = (in_order.mode_support_share.values >= _OF_THE_SUPPORT) & (values.imag > 0)
+        counts = (in_order.mode_support_share.values >= _LEAST_SHARE) & (values.imag > 0)
         least = np.where(counts, ratio, np.inf).min(axis=-1)
         damping = np.where(np.isfinite(least), least, np.nan)
     else:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def follow_modes(model: LinearModel) -> xarray.Dataset:
     """Return the modes of many designs, followed along the airspeeds: what a study has of ``quantities="modes"``.
 
-    For models that no study makes, such as those with options that are arrays over the airspeeds.
+    For models that no study makes, such as models with options that are arrays over the airspeeds.
 
     Parameters
     ----------

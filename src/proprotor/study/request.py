@@ -1,4 +1,4 @@
-"""What is asked of a study, read and checked: designs and airspeeds in SI, and the analysis that each batch gets."""
+"""The request that a study answers: designs and airspeeds in SI, read and checked, and the analysis of each batch."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _MOST_TRIED = 25  # airspeeds, to see the coordinates of the model
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """What is asked of a study.
+    """The request that a study answers.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def requested(
     options: Mapping[str, Any],
     code: str,
 ) -> Request:
-    """Return what is asked of a study, from the arguments of `proprotor.study`.
+    """Return the request that the arguments of `proprotor.study` make.
 
     Raises
     ------
