@@ -1,17 +1,12 @@
-"""The variables of a study's results: which quantities there are, and the arrays and the dataset that hold them."""
+"""The quantities of a study, their variables, and the arrays that hold these."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from proprotor.study.designs import AIRSPEED
 from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
 
 QUANTITIES = ("eigenvalue", "least_stable", "trim", "flutter", "vectors", "modes")
 ALONG_AIRSPEEDS = ("flutter", "modes")  # need all airspeeds of a design at once
@@ -141,38 +136,3 @@ def bytes_of(variable: _Variable) -> int:
 def _nothing(variable: _Variable) -> tuple[Any, Any]:
     """Return what stands for a number or text that is not found, and its type."""
     return ("", object) if variable.dtype is str else (np.nan, variable.dtype)
-
-
-def dataset_of(
-    found: Mapping[str, Array],
-    axes: Mapping[str, int],
-    coordinates: Mapping[str, Any],
-    attributes: Mapping[str, Any],
-    over_airspeeds: bool = True,
-) -> xarray.Dataset:
-    """Return arrays of variables as a dataset.
-
-    Parameters
-    ----------
-    found : mapping of array
-        By variable: (designs, airspeeds, …) of points, (designs, …) of designs.
-    axes : mapping of int
-        Name and length of each axis of the designs.
-    coordinates, attributes : mapping
-        Of the dataset.
-    over_airspeeds : bool
-        Whether there is an axis of airspeeds.
-    """
-    import xarray  # here, because it takes long to import
-
-    data = {}
-    for name, array in found.items():
-        if name == "missing" and not (array != "").any():
-            continue
-        one = VARIABLE[name]
-        along = over_airspeeds and one.on == POINT
-        tail = array.shape[1 + (one.on == POINT) :]
-        dims = (*axes, *[AIRSPEED] * along, *one.dims)
-        own = {"long_name": one.meaning} | ({"units": one.units} if one.units else {})
-        data[name] = (dims, array.reshape(*axes.values(), *array.shape[1:2] * along, *tail), own)
-    return xarray.Dataset(data, dict(coordinates), dict(attributes))
