@@ -97,7 +97,7 @@ class Analysis:
     code: str = ""
 
     def __call__(self, batch: Batch) -> dict[str, Array]:
-        """Return all variables of a batch: (designs, speeds, …) those of points, (designs, …) those of designs.
+        """Return all variables of a batch: (designs, speeds, …) if points have them, (designs, …) if designs have them.
 
         Raises
         ------
@@ -161,7 +161,7 @@ class Analysis:
         return " ".join(str(error).split("\n"))
 
     def _fill(self, found: dict[str, Array], batch: Batch, rows: Array, columns: Array) -> None:
-        """Analyse designs and airspeeds at once; where that fails, halve them until what is wrong stands alone."""
+        """Analyse designs and airspeeds at once; if that fails, halve them until each bad design or point is alone."""
         if not len(rows) or not len(columns):
             return
         part = batch.some(rows, columns)
@@ -217,7 +217,7 @@ class Analysis:
         return found
 
     def _roots(self, model: LinearModel) -> dict[str, Array]:
-        """Return the eigenvalues, and of vectors and modes what is asked for."""
+        """Return the eigenvalues, and the variables of vectors and modes if they are among the quantities."""
         if not {"modes", "vectors"} & set(self.quantities):
             needed = {"eigenvalue", "least_stable"} & set(self.quantities)
             return {"eigenvalue": ordered(eigenvalues(model))} if needed else {}

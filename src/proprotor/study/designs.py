@@ -39,7 +39,7 @@ class Designs:
         Values of each input along its own axis of a grid, SI; ``{"design": 0, 1, 2, …}`` for lists and samples.
     units : dict of str
     sample : dict
-        How a sample was drawn: method, size, seed and what is needed to analyse it; empty for grids and lists.
+        How a sample was drawn: method, size, seed and inputs; empty for grids and lists.
     """
 
     values: dict[str, Array]
@@ -103,7 +103,7 @@ class Plan:
         ------
         InputError
             For an unknown path, with the nearest one, a value of another dimension, lists of unequal lengths, or a
-            factor on what is no number of the deck.
+            factor on an input that has no number in the deck.
         """
         known = {**known, AIRSPEED: _SPEED}
         for path in paths_of(self.inputs):
@@ -114,7 +114,7 @@ class Plan:
 
 
 def paths_of(inputs: Mapping[Any, Any]) -> list[str]:
-    """Return every deck path of inputs, those that vary together one by one."""
+    """Return every deck path of inputs, also each path of inputs that vary together."""
     return [path for name in inputs for path in ([name] if isinstance(name, str) else name)]
 
 
