@@ -154,7 +154,7 @@ def test_coordinates_that_are_accepted_have_modes_of_different_names(names):
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
-@pytest.mark.parametrize("command", [name for name in SUCCEED if name != "figures"])
+@pytest.mark.parametrize("command", SUCCEED)
 def test_every_command_works_on_a_terminal_of_few_characters(command, encoding, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for arguments in SUCCEED[command]:
