@@ -80,12 +80,12 @@ class Plan:
     lay_out : callable
         Designs from the values that were read, and from the numbers of the deck by path.
     read : callable
-        A value in SI from an input's path, what was given, and the number of the deck.
+        A value in SI from an input's label, what was given, and the number of the deck.
     """
 
     inputs: Mapping[Any, Any]
     lay_out: Callable[[dict[Any, Any], Mapping[str, Datum]], Designs]
-    read: Callable[[Any, Any, Datum], Any]
+    read: Callable[[str, Any, Datum], Any]
 
     def resolve(self, known: Mapping[str, Datum]) -> Designs:
         """Return the designs in SI.
@@ -109,7 +109,10 @@ class Plan:
         for path in paths_of(self.inputs):
             if path not in known:
                 raise InputError(path, None, unknown_name(path, known, "input"))
-        read = {name: self.read(name, given, _number(name, known)) for name, given in self.inputs.items()}
+        read = {
+            name: self.read(label_of(name), given, _number(name, known))
+            for name, given in self.inputs.items()
+        }
         return self.lay_out(read, known)
 
 

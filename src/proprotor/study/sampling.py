@@ -64,7 +64,7 @@ def grid(inputs: Mapping[str, Any]) -> Plan:
     -------
     Plan
     """
-    return Plan(dict(inputs), outer_product, _read_values)
+    return _plan_of_values(inputs, outer_product)
 
 
 def points(inputs: Mapping[str, Any]) -> Plan:
@@ -79,7 +79,7 @@ def points(inputs: Mapping[str, Any]) -> Plan:
     -------
     Plan
     """
-    return Plan(dict(inputs), side_by_side, _read_values)
+    return _plan_of_values(inputs, side_by_side)
 
 
 def latin_hypercube(inputs: Mapping[Any, Any], size: int, seed: int = 0) -> Plan:
@@ -178,14 +178,12 @@ def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
     )
 
 
-def _read_values(name: Any, given: Any, known: Datum) -> Array:
-    if not isinstance(name, str):
-        raise InputError(label_of(name), given, "must be one input: several vary together only in a sample")
-    return read_values(name, given, known)
-
-
-def _read_distribution(name: Any, given: Any, known: Datum) -> Any:
-    return read_distribution(label_of(name), given, known)
+def _plan_of_values(inputs: Mapping[str, Any], lay_out: Callable[..., Designs]) -> Plan:
+    for name, given in inputs.items():
+        if not isinstance(name, str):
+            rule = "must be one input: several vary together only in a sample"
+            raise InputError(label_of(name), given, rule)
+    return Plan(dict(inputs), lay_out, read_values)
 
 
 # Samples ------------------------------------------------------------------------------------------
@@ -213,7 +211,7 @@ def _sampled(
         }
         return drawn(read, known, shares, sample | extra)
 
-    return Plan(dict(inputs), lay_out, _read_distribution)
+    return Plan(dict(inputs), lay_out, read_distribution)
 
 
 def _draw(engine: str, inputs: int, size: int, seed: int) -> Array:
