@@ -15,7 +15,15 @@ import sympy as sp
 
 from derive import airloads, function, multiblade
 from derive import kinematics as kin
-from derive.coordinates import LOAD, MOTION, SEGMENT_LOADS, SEGMENT_MOTIONS, names
+from derive.coordinates import (
+    LOAD,
+    MOTION,
+    REACTIONLESS_PAIR,
+    SEGMENT_LOADS,
+    SEGMENT_MOTIONS,
+    Coordinate,
+    names,
+)
 from derive.function import (
     DimensionOf,
     Function,
@@ -25,7 +33,8 @@ from derive.function import (
     plus,
     row_dimension,
 )
-from derive.symbols import Dimension
+from derive.rotor import Assembly, Call, Recipe, made
+from derive.symbols import NUMBER, Dimension
 
 Dropped = frozenset[str]
 Derivation = Callable[..., Any]
@@ -131,14 +140,16 @@ def matrix(
     return Line(name, drops, derive)
 
 
-def column(name: str, derivation: Derivation, origin: str, rows: Iterable[str], **more: Any) -> Line:
+def column(
+    name: str, derivation: Derivation, origin: str, rows: Iterable[str], equation: Mapping[str, str]
+) -> Line:
     """Virtual work in trim by row, one column."""
 
     def entry(row: str, _: str) -> sp.Expr:
         return derivation(row)
 
     entry.__doc__ = derivation.__doc__
-    return matrix(name, entry, origin, rows, ("trim",), lambda row, _: row_dimension(row), **more)
+    return matrix(name, entry, origin, rows, ("trim",), lambda row, _: row_dimension(row), equation)
 
 
 def blade_matrix(name: str, derivation: Derivation, order: int, drops: bool = False) -> Line:
@@ -164,10 +175,12 @@ def rotor_matrix(name: str, derivation: Derivation, origin: str, order: int, **m
     return matrix(name, derivation, origin, dimension=force_per(order), **parts | more)
 
 
-def loads_matrix(
-    name: str, derivation: Derivation, origin: str, columns: Iterable[str], dimension: DimensionOf
-) -> Line:
-    """Generalised loads of a segment."""
+def loads_matrix(name: str, derivation: Derivation, origin: str, columns: Iterable[str]) -> Line:
+    """Generalised loads of a segment: steady, or per unit of its motions."""
+
+    def dimension(load: str, column: str) -> Dimension:
+        return plus(LOAD[load].dimension, minus=MOTION[column].dimension if column in MOTION else NUMBER)
+
     return matrix(name, derivation, origin, names(SEGMENT_LOADS), columns, dimension)
 
 
@@ -183,12 +196,26 @@ def virtual_motion(rows: Iterable[str], drops: bool = False) -> Line:
     )
 
 
+def trim_velocity(drops: bool = False) -> Line:
+    """What the air does along a segment in trim."""
+    motions = names(motion for motion in SEGMENT_MOTIONS if motion.argument != "theta")
+    return matrix(
+        "trim_velocity",
+        airloads.trim_velocity,
+        "u_T and u_P of Eqs. 14-15 at trim",
+        motions,
+        ("trim",),
+        lambda motion, _: MOTION[motion].dimension,
+        drops=drops,
+    )
+
+
 def motion_matrix(
     name: str,
     derivation: Derivation,
+    origin: str,
     columns: Iterable[str],
     order: int = 0,
-    origin: str = "perturbation velocities and pitch, Eqs. 14-16",
     drops: bool = False,
 ) -> Line:
     """U of a segment for the motions in the columns, or for their rates (`order` 1)."""
@@ -199,7 +226,69 @@ def motion_matrix(
     return matrix(name, derivation, origin, names(SEGMENT_MOTIONS), columns, dimension, drops=drops)
 
 
+def work_matrix(
+    name: str,
+    derivation: Derivation,
+    origin: str,
+    rows: Iterable[str],
+    columns: Iterable[str],
+    equation: Mapping[str, str] | str = "",
+    drops: bool = False,
+) -> Line:
+    """Change of the virtual work of some rows with some coordinates."""
+    return matrix(name, derivation, origin, rows, columns, force_per(0), equation, drops)
+
+
 def product(name: str, summary: str) -> Line:
     """What the segments of a blade add to one of its matrices."""
     origin = "virtual work of Eqs. 12 and 32"
     return Line(name, False, lambda _: Function("", name, summary, origin, product=airloads.products()[name]))
+
+
+def reactionless_matrix(name: str, kind: str, order: int, motions: tuple[Coordinate, ...]) -> Line:
+    """A matrix of motions of the blades that do not reach the hub."""
+    told = "motion of neighbouring blades against each other, even N"
+    if motions == REACTIONLESS_PAIR:
+        told = "motions of a harmonic whose sum over the blades vanishes"
+    return matrix(
+        name,
+        functools.partial(multiblade.reactionless, kind),
+        "multiblade coordinates beyond Eq. 17, for more than three blades",
+        names(motions),
+        names(motions),
+        force_per(order),
+        "blade angles beyond Eq. 17",
+        summary=f"{kind.capitalize()} matrix of the {told}.",
+        blade_matrices=("mass", "damping", "stiffness")[: 3 - order],
+    )
+
+
+def assembly(name: str, recipe: Recipe, origin: str, find: Callable[[str], Call]) -> Line:
+    """A function that calls others of the catalogue, which `find` has by module and name."""
+
+    def derive(_: Dropped) -> Function:
+        return Assembly(
+            "",
+            name,
+            recipe.summary,
+            origin,
+            blade_matrices=recipe.blade_matrices,
+            lines=made(recipe.lines, find),
+            results=recipe.results,
+            segments=recipe.segments,
+        )
+
+    return Line(name, False, derive)
+
+
+def transform_matrix(name: str, derivation: Derivation, origin: str) -> Line:
+    """Coordinates of a blade by those of the rotor."""
+    return matrix(
+        name,
+        derivation,
+        origin,
+        kin.COORDINATES,
+        multiblade.FIXED_COORDINATES,
+        lambda row, column: plus(coordinate_dimension(row), minus=coordinate_dimension(column)),
+        row_prefix="BLADE_",
+    )
