@@ -88,7 +88,7 @@ M, MC, MCK, GUSTS = ("mass",), ("mass", "damping"), ("mass", "damping", "stiffne
 
 
 def _called(name: str) -> Call:
-    """A function of the list below by module and name, as another one calls it."""
+    """Look up a function of the list below by module and name, for another function to call."""
     module, function = name.split(".")
     return Call(_consistent(module, function), STEPS[module].line(function).drops)
 
@@ -201,12 +201,12 @@ def _consistent(module: str, name: str) -> Function:
 
 
 def consistent_functions(module: str) -> list[Function]:
-    """All functions of a module, with every first-order term."""
+    """Return all functions of a module, with every first-order term."""
     return [_consistent(module, line.name) for line in STEPS[module].lines]
 
 
 def reduced_functions(module: str, dropped: Dropped = PUBLISHED) -> list[Function]:
-    """The functions that dropped terms can change, without those terms, under the consistent signatures."""
+    """Return the functions that dropped terms can change, without these terms but with the consistent signatures."""
     return [
         dataclasses.replace(function, signature=tuple(_consistent(module, function.name).arguments))
         for function in STEPS[module].changing(dropped)

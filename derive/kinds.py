@@ -90,7 +90,7 @@ class Step:
 
 
 def _without(derivation: Derivation, drops: bool, dropped: Dropped) -> Derivation:
-    """The derivation without dropped terms, if it is one that they can change."""
+    """Return the derivation without dropped terms, if dropped terms can change it."""
     return functools.partial(derivation, dropped=dropped) if drops else derivation
 
 
@@ -105,7 +105,7 @@ def values(
     returned: Iterable[sp.Symbol] | None = None,
     drops: bool = False,
 ) -> Line:
-    """Named values: all of the derivation's steps, or those of some symbols in their order."""
+    """Make a function of named values: all steps of the derivation, or the steps of some symbols, in that order."""
 
     def derive(dropped: Dropped) -> Function:
         found = _without(derivation, drops, dropped)()
@@ -128,7 +128,7 @@ def matrix(
     drops: bool = False,
     **more: Any,
 ) -> Line:
-    """A matrix, an entry for each row and column; `equation`, by row, stands above entries in place of the origin."""
+    """Make a matrix, an entry for each row and column; `equation`, by row, replaces the origin above the entries."""
     rows, columns = tuple(rows), tuple(columns)
 
     def derive(dropped: Dropped) -> Function:
@@ -143,7 +143,7 @@ def matrix(
 def column(
     name: str, derivation: Derivation, origin: str, rows: Iterable[str], equation: Mapping[str, str]
 ) -> Line:
-    """Virtual work in trim by row, one column."""
+    """Make one column: the virtual work in trim by row."""
 
     def entry(row: str, _: str) -> sp.Expr:
         return derivation(row)
@@ -153,7 +153,7 @@ def column(
 
 
 def blade_matrix(name: str, derivation: Derivation, order: int, drops: bool = False) -> Line:
-    """A matrix of one blade in rotating axes; `order` counts the time derivatives of the column's coordinate."""
+    """Make a matrix of one blade in rotating axes; `order` counts the time derivatives of the column's coordinate."""
     rows = kin.COORDINATES
 
     def derive(dropped: Dropped) -> Function:
@@ -166,7 +166,7 @@ def blade_matrix(name: str, derivation: Derivation, order: int, drops: bool = Fa
 
 
 def rotor_matrix(name: str, derivation: Derivation, origin: str, order: int, **more: Any) -> Line:
-    """A matrix of the rotor in the fixed frame; `order` as of a blade's."""
+    """Make a matrix of the rotor in the fixed frame; `order` counts the time derivatives of the column's coordinate."""
     parts = {
         "rows": multiblade.FIXED_COORDINATES,
         "columns": multiblade.FIXED_COORDINATES,
@@ -176,7 +176,7 @@ def rotor_matrix(name: str, derivation: Derivation, origin: str, order: int, **m
 
 
 def loads_matrix(name: str, derivation: Derivation, origin: str, columns: Iterable[str]) -> Line:
-    """Generalised loads of a segment: steady, or per unit of its motions."""
+    """Make the generalised loads of a segment: steady loads, or loads per unit of the segment's motions."""
 
     def dimension(load: str, column: str) -> Dimension:
         return plus(LOAD[load].dimension, minus=MOTION[column].dimension if column in MOTION else NUMBER)
@@ -185,7 +185,7 @@ def loads_matrix(name: str, derivation: Derivation, origin: str, columns: Iterab
 
 
 def virtual_motion(rows: Iterable[str], drops: bool = False) -> Line:
-    """W of a segment, for the rows of a balance."""
+    """Make W of a segment, for the rows of a balance."""
     origin = "virtual displacements of the sections, Eqs. 2-11"
 
     def dimension(load: str, row: str) -> Dimension:
@@ -197,7 +197,7 @@ def virtual_motion(rows: Iterable[str], drops: bool = False) -> Line:
 
 
 def trim_velocity(drops: bool = False) -> Line:
-    """What the air does along a segment in trim."""
+    """Make the velocity of the air along a segment in trim."""
     motions = names(motion for motion in SEGMENT_MOTIONS if motion.argument != "theta")
     return matrix(
         "trim_velocity",
@@ -218,7 +218,7 @@ def motion_matrix(
     order: int = 0,
     drops: bool = False,
 ) -> Line:
-    """U of a segment for the motions in the columns, or for their rates (`order` 1)."""
+    """Make U of a segment for the motions in the columns, or for the rates of these motions (`order` 1)."""
 
     def dimension(motion: str, column: str) -> Dimension:
         return plus(MOTION[motion].dimension, per_time(order), minus=coordinate_dimension(column))
@@ -235,18 +235,18 @@ def work_matrix(
     equation: Mapping[str, str] | str = "",
     drops: bool = False,
 ) -> Line:
-    """Change of the virtual work of some rows with some coordinates."""
+    """Make the change of the rows' virtual work with the coordinates of the columns."""
     return matrix(name, derivation, origin, rows, columns, force_per(0), equation, drops)
 
 
 def product(name: str, summary: str) -> Line:
-    """What the segments of a blade add to one of its matrices."""
+    """Make the sum over the segments of a blade that gives one of the blade's matrices."""
     origin = "virtual work of Eqs. 12 and 32"
     return Line(name, False, lambda _: Function("", name, summary, origin, product=airloads.products()[name]))
 
 
 def reactionless_matrix(name: str, kind: str, order: int, motions: tuple[Coordinate, ...]) -> Line:
-    """A matrix of motions of the blades that do not reach the hub."""
+    """Make a matrix of motions of the blades that do not reach the hub."""
     told = "motion of neighbouring blades against each other, even N"
     if motions == REACTIONLESS_PAIR:
         told = "motions of a harmonic whose sum over the blades vanishes"
@@ -264,7 +264,7 @@ def reactionless_matrix(name: str, kind: str, order: int, motions: tuple[Coordin
 
 
 def assembly(name: str, recipe: Recipe, origin: str, find: Callable[[str], Call]) -> Line:
-    """A function that calls others of the catalogue, which `find` has by module and name."""
+    """Make a function that calls other functions of the catalogue; `find` looks them up by module and name."""
 
     def derive(_: Dropped) -> Function:
         return Assembly(
@@ -282,7 +282,7 @@ def assembly(name: str, recipe: Recipe, origin: str, find: Callable[[str], Call]
 
 
 def transform_matrix(name: str, derivation: Derivation, origin: str) -> Line:
-    """Coordinates of a blade by those of the rotor."""
+    """Make the coordinates of a blade from the coordinates of the rotor."""
     return matrix(
         name,
         derivation,

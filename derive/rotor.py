@@ -42,7 +42,7 @@ class Call:
 
     @property
     def results(self) -> tuple[str, ...]:
-        """Names of the values that the function returns; none for a matrix."""
+        """Return the names of the values that the function gives; none for a matrix."""
         if isinstance(self.function, Assembly):
             return tuple(self.function.results)
         return tuple(map(str, self.function.values))
@@ -80,7 +80,7 @@ class Assembly(Function):
 
     @property
     def chooses_equations(self) -> bool:
-        """Whether any function it calls is another one in another set of equations."""
+        """Say whether any called function is another one in another set of equations."""
         return any(
             call.drops or (isinstance(call.function, Assembly) and call.function.chooses_equations)
             for call in self.calls
@@ -88,7 +88,7 @@ class Assembly(Function):
 
     @property
     def needed(self) -> list[sp.Symbol]:
-        """Arguments of all calls that no earlier call gives, in the order of their declaration."""
+        """Return the arguments of all calls that no earlier call gives, in the order of declaration."""
         wanted = {symbol for call in self.calls for symbol in call.function.arguments}
         made = {name for call in self.calls for name in call.results}
         return [symbol for symbol in QUANTITIES if symbol in wanted and symbol.name not in made]
@@ -181,7 +181,7 @@ MATRICES = Recipe(
 
 
 def made(lines: Lines, find: Callable[[str], Call]) -> tuple[Line, ...]:
-    """Lines with the functions they call."""
+    """Return the lines with the functions that they call."""
     return tuple(
         Line(result, tuple(term if isinstance(term, Code) else find(term) for term in terms))
         for result, terms in lines.items()
