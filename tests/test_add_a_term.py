@@ -57,5 +57,5 @@ def test_the_changes_of_the_page(text, check, tmp_path):
 
 
 def test_a_number_that_no_rotor_has_is_told():
-    with pytest.raises(KeyError, match=r"pitch\.damping takes 'flap_damping', which nothing gives"):
+    with pytest.raises(KeyError, match=r"pitch\.damping takes 'n_blades', which nothing gives"):
         evaluate(pitch.damping, {"lag_damping": 1.0})
