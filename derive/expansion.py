@@ -19,7 +19,7 @@ Along = tuple[str, ...]  # the coordinates that a derivative is taken along; () 
 
 
 class Expansion:
-    """A vector to second order at trim."""
+    """A vector to second order at trim: its value, first and second derivatives by coordinate."""
 
     def __init__(self, ring: PolynomialRing, parts: Mapping[Along, Vector]):
         self.ring = ring
@@ -42,7 +42,7 @@ class Expansion:
         return cls(ring, parts)
 
     def along(self, *names: str) -> Vector:
-        """Derivative along coordinates, at most two; the value without any."""
+        """Return the derivative along one or two coordinates, or the value if no coordinate is named."""
         return self.parts.get(names, [self.ring.ring.zero] * 3)
 
     def __add__(self, other: Expansion) -> Expansion:
@@ -51,13 +51,13 @@ class Expansion:
         )
 
     def turned(self, turn: list[Expansion]) -> Expansion:
-        """Product of a matrix, given by rows, and the vector."""
+        """Return the product of a matrix, given by rows, and the vector."""
         keys = {key for factor in (*turn, self) for key in factor.parts}
         keys |= {a + b for a in keys for b in keys if len(a) + len(b) <= 2}
         return Expansion(self.ring, {key: [self._product(row, key) for row in turn] for key in keys})
 
     def _product(self, row: Expansion, key: Along) -> PolyElement:
-        """Derivative of the product of a row and the vector."""
+        """Return a derivative of the product of a row and the vector."""
         ways: list[tuple[Along, Along]] = [(key, ()), ((), key)] if key else [((), ())]
         if len(key) == 2:
             ways += [(key[:1], key[1:]), (key[1:], key[:1])]
@@ -81,18 +81,18 @@ class MovingPoint:
         self.position = self.about_hub + Expansion.of(ring, kin.HUB)
 
     def virtual_displacement(self, row: str, *along: str) -> Vector:
-        """Displacement per unit of a row's virtual motion, and its derivative.
+        """Return the displacement per unit of a row's virtual motion, or a derivative of that displacement.
 
-        A row is the generalised force of its coordinate, but for hub rotation: those rows are moment resultants about
-        the displaced hub point, so their virtual motion is a turn about fixed axes and not a change of exponential
-        coordinates.
+        A row is the generalised force of its coordinate, with one exception: the rows of hub rotation are moment
+        resultants about the displaced hub point. Their virtual motion is a turn about fixed axes, and no change of
+        exponential coordinates.
         """
         if row in kin.HUB_ROTATION:
             return cross(self.fixed_axis(row), self.about_hub.along(*along))
         return self.position.along(row, *along)
 
     def fixed_axis(self, row: str) -> Vector:
-        """Axis of a hub rotation."""
+        """Return the axis of a hub rotation."""
         return self.ring.vector((kin.I_AXIS, kin.J_AXIS, kin.K_AXIS)[kin.HUB_ROTATION.index(row)])
 
 

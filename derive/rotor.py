@@ -42,7 +42,7 @@ class Call:
 
     @property
     def results(self) -> tuple[str, ...]:
-        """Names of the values that the function returns; none for a matrix."""
+        """Return the names of the values that the function gives; none for a matrix."""
         if isinstance(self.function, Assembly):
             return tuple(self.function.results)
         return tuple(map(str, self.function.values))
@@ -80,7 +80,7 @@ class Assembly(Function):
 
     @property
     def chooses_equations(self) -> bool:
-        """Whether any function it calls is another one in another set of equations."""
+        """Say whether any called function is another one in another set of equations."""
         return any(
             call.drops or (isinstance(call.function, Assembly) and call.function.chooses_equations)
             for call in self.calls
@@ -88,7 +88,7 @@ class Assembly(Function):
 
     @property
     def needed(self) -> list[sp.Symbol]:
-        """Arguments of all calls that no earlier call gives, in the order of their declaration."""
+        """Return the arguments of all calls that no earlier call gives, in the order of declaration."""
         wanted = {symbol for call in self.calls for symbol in call.function.arguments}
         made = {name for call in self.calls for name in call.results}
         return [symbol for symbol in QUANTITIES if symbol in wanted and symbol.name not in made]
@@ -96,65 +96,92 @@ class Assembly(Function):
 
 _BLADE = "of one blade in rotating axes, (..., 12, 12)"
 _ROTOR = "of the rotor in the fixed frame, (..., 18, 18)"
+_GUSTS = "[N s/m, N s] loads of gusts along i, j, k, (..., 12, 3)"
 _MASS, _DAMPING, _STIFFNESS = "[kg, kg m, kg m^2]", "[N s/m, N s, N m s]", "[N/m, N, N m]"
 
 Lines = dict[str, tuple[str, ...]]  # a result and the functions, by module and name, whose sum it is
 
-AIRLOADS: Lines = {
-    "geometry": ("airloads.segment_geometry",),
-    "virtual_motion": ("airloads.virtual_motion",),
-    "rate_motion": ("airloads.rate_motion",),
-    "displacement_motion": ("airloads.displacement_motion",),
-    "geometric_stiffness": ("airloads.geometric_stiffness",),
-    "gust_motion": ("airloads.gust_motion",),
-    "load_derivatives": ("airloads.load_derivatives",),
-    "damping": ("airloads.damping",),
-    "stiffness": ("airloads.stiffness",),
-    "gusts": ("airloads.gust_loads",),
-}
-AIRLOAD_RESULTS = {
-    "damping": f"{_DAMPING} airload damping {_BLADE}",
-    "stiffness": f"{_STIFFNESS} airload stiffness {_BLADE}",
-    "gusts": "[N s/m, N s] loads of gusts along i, j, k, (..., 12, 3)",
-}
-BLADE: Lines = {
-    "integrals": ("inertia.trim_integrals",),
-    "air": ("rotor.blade_airloads",),
-    "mass": ("inertia.mass", "pitch.mass"),
-    "damping": ("inertia.gyroscopic", "pitch.damping", Code("air.damping")),
-    "stiffness": (
-        "inertia.centrifugal_stiffness",
-        "pitch.stiffness",
-        "flap_lag_springs.stiffness",
-        Code("air.stiffness"),
-    ),
-    "gusts": (Code("air.gusts"),),
-}
-BLADE_RESULTS = {
-    "mass": f"{_MASS} mass {_BLADE}",
-    "damping": f"{_DAMPING} damping and gyroscopic matrix {_BLADE}",
-    "stiffness": f"{_STIFFNESS} stiffness {_BLADE}",
-    "gusts": AIRLOAD_RESULTS["gusts"],
-}
-FIXED_FRAME: Lines = {
-    "M": ("multiblade.mass", "drive_train.mass"),
-    "C": ("multiblade.damping", "drive_train.damping"),
-    "K": ("multiblade.stiffness", "drive_train.stiffness", "multiblade.cyclic_restraint"),
-    "swashplate": ("multiblade.swashplate_loads",),
-    "gust": ("multiblade.gust_loads",),
-    "B": (Code("_beside(swashplate, gust)"),),
-}
-ROTOR_RESULTS = {
-    "M": f"{_MASS} mass {_ROTOR}",
-    "C": f"{_DAMPING} damping and gyroscopic matrix {_ROTOR}",
-    "K": f"{_STIFFNESS} stiffness {_ROTOR}",
-    "B": "[N/rad, N m/rad, N s/m, N s] loads per unit of swashplate and gusts, `coordinates.INPUTS`, (..., 18, 6)",
-}
-ROTOR: Lines = {"blade": ("rotor.blade_matrices",), "rotor": ("rotor.fixed_frame",)}
+
+@dataclass(frozen=True)
+class Recipe:
+    """What an assembly is made of, before the functions are found: see `Assembly`."""
+
+    summary: str
+    lines: Lines
+    results: dict[str, str] = field(default_factory=dict)
+    blade_matrices: tuple[str, ...] = ()
+    segments: bool = False
+
+
+BLADE_AIRLOADS = Recipe(
+    "Airload damping and stiffness of one blade, and loads of gusts on it, from the loads of its segments.",
+    {
+        "geometry": ("airloads.segment_geometry",),
+        "virtual_motion": ("airloads.virtual_motion",),
+        "rate_motion": ("airloads.rate_motion",),
+        "displacement_motion": ("airloads.displacement_motion",),
+        "geometric_stiffness": ("airloads.geometric_stiffness",),
+        "gust_motion": ("airloads.gust_motion",),
+        "load_derivatives": ("airloads.load_derivatives",),
+        "damping": ("airloads.damping",),
+        "stiffness": ("airloads.stiffness",),
+        "gusts": ("airloads.gust_loads",),
+    },
+    {
+        "damping": f"{_DAMPING} airload damping {_BLADE}",
+        "stiffness": f"{_STIFFNESS} airload stiffness {_BLADE}",
+        "gusts": _GUSTS,
+    },
+    segments=True,
+)
+BLADE_MATRICES = Recipe(
+    "Mass, damping and stiffness of one blade in rotating axes with its airloads, and loads of gusts on it.",
+    {
+        "integrals": ("inertia.trim_integrals",),
+        "air": ("rotor.blade_airloads",),
+        "mass": ("inertia.mass", "pitch.mass"),
+        "damping": ("inertia.gyroscopic", "pitch.damping", Code("air.damping")),
+        "stiffness": (
+            "inertia.centrifugal_stiffness",
+            "pitch.stiffness",
+            "flap_lag_springs.stiffness",
+            Code("air.stiffness"),
+        ),
+        "gusts": (Code("air.gusts"),),
+    },
+    {
+        "mass": f"{_MASS} mass {_BLADE}",
+        "damping": f"{_DAMPING} damping and gyroscopic matrix {_BLADE}",
+        "stiffness": f"{_STIFFNESS} stiffness {_BLADE}",
+        "gusts": _GUSTS,
+    },
+)
+FIXED_FRAME = Recipe(
+    "M, C, K and B of N blades in the fixed frame, with engine and shaft, from the matrices of one blade.",
+    {
+        "M": ("multiblade.mass", "drive_train.mass"),
+        "C": ("multiblade.damping", "drive_train.damping"),
+        "K": ("multiblade.stiffness", "drive_train.stiffness", "multiblade.cyclic_restraint"),
+        "swashplate": ("multiblade.swashplate_loads",),
+        "gust": ("multiblade.gust_loads",),
+        "B": (Code("_beside(swashplate, gust)"),),
+    },
+    {
+        "M": f"{_MASS} mass {_ROTOR}",
+        "C": f"{_DAMPING} damping and gyroscopic matrix {_ROTOR}",
+        "K": f"{_STIFFNESS} stiffness {_ROTOR}",
+        "B": "[N/rad, N m/rad, N s/m, N s] loads per unit of swashplate and gusts, `coordinates.INPUTS`, (..., 18, 6)",
+    },
+    blade_matrices=("mass", "damping", "stiffness", "gusts"),
+)
+MATRICES = Recipe(
+    "M, C, K and B of a whole rotor, from its quantities in trim and the radial moments of its section loads.",
+    {"blade": ("rotor.blade_matrices",), "rotor": ("rotor.fixed_frame",)},
+)
 
 
 def made(lines: Lines, find: Callable[[str], Call]) -> tuple[Line, ...]:
-    """Lines with the functions they call."""
+    """Return the lines with the functions that they call."""
     return tuple(
         Line(result, tuple(term if isinstance(term, Code) else find(term) for term in terms))
         for result, terms in lines.items()

@@ -4,12 +4,22 @@ Both sides take the same stations along the blade and trim to rounding: matrices
 """
 
 import ast
+import functools
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, FIXED_GUSTS, coordinates, rotor
+from proprotor_equations import (
+    BLADE_COORDINATES,
+    FIXED_COORDINATES,
+    FIXED_GUSTS,
+    airloads,
+    coordinates,
+    published,
+    rotor,
+)
 
 import proprotor as pp
 from tests.documentation import DOCS, Runner, blocks
@@ -59,6 +69,24 @@ def test_many_rotors_at_once(page, stations):
     together = page["call"](rotor.matrices, stacked)
     for place, pool in enumerate(pools):
         assert_alike([matrix[place] for matrix in together], page["call"](rotor.matrices, pool))
+
+
+def test_the_published_equations_come_by_their_modules(page, stations, monkeypatch):
+    """`equations=published`, with the published geometry of segments; the section loads have no pitch damping there."""
+
+    @functools.wraps(published.airloads.trim_velocity)
+    def trim_velocity(**given):  # the same on all segments of a flat blade
+        return np.broadcast_to(published.airloads.trim_velocity(**given), (3, 7, 1))
+
+    published_too = vars(airloads) | {"trim_velocity": trim_velocity}
+    published_too["segment_geometry"] = published.airloads.segment_geometry
+    monkeypatch.setitem(page["known"], "section_damping", 0.0)
+    blade = page["at"](page["trimmed"](150.0, *stations), 150.0)
+    monkeypatch.setitem(page, "airloads", SimpleNamespace(**published_too))
+    given = blade | page["segments"](blade, *stations) | {"equations": published}
+    case = pp.load_case("xv15")
+    model = pp.rotor_model(case.rotor, case.operation, 150.0, equations="published", section_damping=False)
+    assert_alike(page["call"](rotor.matrices, given), (model.M, model.C, model.K, model.B))
 
 
 def test_engine_and_shaft_are_added_where_they_are_given(page, stations):
