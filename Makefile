@@ -21,9 +21,10 @@ verify: .venv/verify-installed  ## Check the equations against derivation and an
 verify-versions: .venv/installed  ## Derive the equations under other hash seeds, another Python and another SymPy
 	$(BIN)/python -m tests.verify.determinism
 
-regenerate-equations: .venv/installed  ## Derive the equations again, write generated/ and the index of equations
+regenerate-equations: .venv/installed  ## Derive the equations again, write generated/, the index of equations and the list of symbols
 	$(BIN)/python -m derive
 	$(BIN)/python -m derive.pages.index
+	$(BIN)/python -m derive.pages.glossary
 
 lint: .venv/installed  ## Check the style of the source
 	$(BIN)/ruff check src derive tests benchmarks notebooks docs

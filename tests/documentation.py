@@ -43,6 +43,7 @@ NOT_RUN = {
     "proprotor report": "half a minute each; tests/report/test_report.py makes reports",
     "source ": "the shell that a reader works in",
     "derive/ ──▶": "a drawing",
+    "--- a/": "a change of the derivation, which tests/derive/test_add_a_term.py makes in a copy",
     "radius = {": "a line of a deck; tests/deck/test_deck.py reads such",
     "from distributed import Client": "needs a cluster at that address; tests/study/test_study_distributed.py has one",
 }

@@ -1,8 +1,8 @@
-"""A printed equation against its counterpart, term by term.
+"""Compare a printed equation with its counterpart in the derivation, term by term.
 
-Both sides are brought into the derivation's symbols and expanded; a term is a product of coordinates, harmonics and
-parameters with one number in front. What does not agree as it stands is tried again after the readings the equation
-states, and what is left is judged.
+Both sides are written in the symbols of the derivation and expanded. A term is a product of coordinates, harmonics and
+parameters with one number in front. Terms that differ are compared again after the readings that the equation states,
+and each term that still differs gets a verdict.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ AFTER_READING = "reproduced after a stated sign or subscript"
 ABSENT_FROM_PRINT = "absent from the print"
 ABSENT_FROM_DERIVATION = "absent from the derivation"
 CONTRADICTS = "contradicts"
-# From good to bad: an equation is as good as its worst term.
+# From good to bad: the verdict on an equation is that on its worst term.
 VERDICTS = (REPRODUCED, AFTER_READING, ABSENT_FROM_PRINT, ABSENT_FROM_DERIVATION, CONTRADICTS)
 
-# What may be read differently, stated once: of both sides, or of what only the print leaves open.
+# Symbols of the paper that can be read in more than one way, and what each reading puts in their place.
 READINGS: dict[str, dict[sp.Symbol, sp.Expr]] = {
     "one hinge offset": {
         s.flap_hinge_offset: n.e,
@@ -43,7 +43,7 @@ Terms = dict[sp.Expr, sp.Expr]  # product of symbols: number
 
 @dataclass(frozen=True)
 class TermVerdict:
-    """One term: the numbers in front of it in the print and in the derivation, and what follows."""
+    """One term: the number in front of it in the print, the number in the derivation, and the verdict."""
 
     part: str
     term: sp.Expr
@@ -54,34 +54,38 @@ class TermVerdict:
 
     @property
     def is_conflict(self) -> bool:
-        """Printed, and no reading or dropped term of the derivation explains it."""
+        """Whether the term is printed and neither a reading nor a dropped term explains the difference."""
         return self.verdict in (ABSENT_FROM_DERIVATION, CONTRADICTS) and not self.note
 
 
 @dataclass(frozen=True)
 class EquationVerdict:
-    """All terms of an equation."""
+    """The verdicts on all terms of an equation."""
 
     equation: PrintedEquation
     terms: tuple[TermVerdict, ...]
 
     @property
     def verdict(self) -> str:
+        """The worst verdict on any term."""
         return max((term.verdict for term in self.terms), key=VERDICTS.index)
 
     def count(self, verdict: str) -> int:
+        """Count the terms with a verdict."""
         return sum(term.verdict == verdict for term in self.terms)
 
     @property
     def conflicts(self) -> list[TermVerdict]:
+        """The terms that nothing explains."""
         return [term for term in self.terms if term.is_conflict]
 
     def of(self, verdict: str) -> list[TermVerdict]:
+        """Return the terms with a verdict."""
         return [term for term in self.terms if term.verdict == verdict]
 
 
 def terms_of(expression: sp.Expr) -> Terms:
-    """Canonical terms: expanded, squares of cosines by sines."""
+    """Return the terms of an expression in one form: expanded, with squares of cosines replaced by sines."""
     expanded = _without_squared_cosines(sp.expand(expression))
     return {term: number for term, number in expanded.as_coefficients_dict().items() if number != 0}
 
@@ -108,13 +112,13 @@ def _meaning_of(number: int | str, printed_term: sp.Expr) -> sp.Expr:
 
 
 def printed_terms(equation: PrintedEquation, part: str) -> Terms:
-    """A printed part in the derivation's symbols."""
+    """Return the terms of a printed part in the symbols of the derivation."""
     addends = sp.Add.make_args(sp.expand(equation.parts[part]))
     return terms_of(sp.Add(*(_meaning_of(equation.number, addend) for addend in addends)))
 
 
 def audit(equation: PrintedEquation) -> EquationVerdict:
-    """Every term of every part judged."""
+    """Judge every term of every part of an equation."""
     derived = derived_terms(equation.number)
     if set(derived) != set(equation.parts):
         raise ValueError(f"Eq. {equation.number}: parts {set(equation.parts)} against {set(derived)}")
@@ -141,7 +145,7 @@ def _judged(equation: PrintedEquation, part: str, printed: Terms, derived: Terms
 
 
 def _agreement(printed: Terms, derived: Terms) -> tuple[Terms, Terms, Terms]:
-    """Terms that agree, and what is left of each side."""
+    """Return the terms that agree, and the terms that are left of each side."""
     agreed = {term: number for term, number in printed.items() if derived.get(term) == number}
     left, right = ({t: v for t, v in terms.items() if t not in agreed} for terms in (printed, derived))
     return agreed, left, right
@@ -162,7 +166,7 @@ def _left_over(
     return TermVerdict(part, term, printed, derived, verdict, _belongs_to(equation, part, term, printed))
 
 
-# Dropped terms an equation can lose; the others do not appear in it or are beyond the paper's order everywhere.
+# Dropped terms that an equation can lose. Other terms are not in the equation, or are of an order that the paper drops.
 _ACCELERATIONS = ("hub_turn_of_raised_blade", "gimbal_coriolis", "yoke_roll", "radial_flap_acceleration")
 CANDIDATES: dict[int | str, tuple[str, ...]] = {
     3: _ACCELERATIONS,
@@ -176,7 +180,7 @@ CANDIDATES: dict[int | str, tuple[str, ...]] = {
 
 
 def _belongs_to(equation: PrintedEquation, part: str, term: sp.Expr, printed: sp.Expr) -> str:
-    """The named terms of the derivation without which it has what is printed here."""
+    """Return the names of the dropped terms without which the derivation has the printed term."""
     number, readings = equation.number, equation.readings
     names = CANDIDATES.get(number, ())
     without = {name: _read_terms(number, part, readings, frozenset({name})).get(term, 0) for name in names}
@@ -185,7 +189,7 @@ def _belongs_to(equation: PrintedEquation, part: str, term: sp.Expr, printed: sp
 
 @functools.cache
 def _read_terms(number: int | str, part: str, readings: tuple[str, ...], dropped: frozenset[str]) -> Terms:
-    """Derived terms after the equation's readings."""
+    """Return the derived terms after the readings of the equation."""
     terms = derived_terms(number, dropped)[part]
     for name in readings:
         terms = terms if name in _OF_PRINT_ALONE else _read(terms, name)

@@ -1,4 +1,4 @@
-"""What the derivation has where the paper prints an equation: one function per equation, nothing typed in as a result.
+"""What the derivation has for each printed equation: a function for each, and no result is typed in.
 
 A counterpart gives each part of its equation as an expression, from the derivation without the terms in `dropped`, to
 the paper's own order: first order in the cone, no trim lag in the blade's position. `meaning` says what a symbol that
@@ -38,7 +38,7 @@ COUNTERPARTS: dict[int | str, Callable[[frozenset[str]], Parts]] = {}
 
 
 def counterpart(*numbers: int | str) -> Callable[[Derivation], Derivation]:
-    """Register the function that derives these equations; with several, it takes the number first."""
+    """Register the function that derives some equations. For more than one, the function takes the number first."""
 
     def register(function: Derivation) -> Derivation:
         for number in numbers:
@@ -49,7 +49,7 @@ def counterpart(*numbers: int | str) -> Callable[[Derivation], Derivation]:
 
 
 def truncated(expression: sp.Expr, order: int, **orders: dict[sp.Symbol, int]) -> sp.Expr:
-    """Terms of at most `order` when the symbols of `orders["of"]` are small to the power given there."""
+    """Return the terms of at most `order`, when each symbol in `of` is small to the power given there."""
     scaled = sp.sympify(expression).subs(
         {symbol: _small**power * symbol for symbol, power in orders["of"].items()}
     )
@@ -68,7 +68,7 @@ def first_order_in_cone(expression: sp.Expr) -> sp.Expr:
 
 
 def time_derivative(expression: sp.Expr) -> sp.Expr:
-    """d/dt of an expression in the fixed frame's coordinates and the azimuth."""
+    """Differentiate an expression in the coordinates of the fixed frame and the azimuth by time."""
     total = s.rotor_speed * sp.diff(expression, multiblade.psi)
     return total + sum(
         sp.diff(expression, q[order]) * q[order + 1] for q in TIME.values() for order in range(2)
@@ -77,7 +77,7 @@ def time_derivative(expression: sp.Expr) -> sp.Expr:
 
 @functools.cache
 def motion(name: str, by_azimuth: bool = False) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """A coordinate of one blade and its first two derivatives; hub and gimbal in the fixed frame's coordinates."""
+    """Return a coordinate of one blade and two derivatives; hub and gimbal in the coordinates of the fixed frame."""
     symbols, speed = (AZIMUTH, 1) if by_azimuth else (TIME, s.rotor_speed)
     if name in ("flap", "lag", "pitch", "azimuth"):
         return symbols[name]
@@ -93,13 +93,13 @@ def motion(name: str, by_azimuth: bool = False) -> tuple[sp.Expr, sp.Expr, sp.Ex
 
 
 def gimbal_flap(by_azimuth: bool = False) -> dict[sp.Symbol, sp.Expr]:
-    """beta_G of the print and its derivatives in the coordinates of the fixed frame."""
+    """Return beta_G of the print and its derivatives in the coordinates of the fixed frame."""
     symbols = AZIMUTH if by_azimuth else TIME
     return dict(zip(symbols["gimbal_flap"], motion("gimbal_flap", by_azimuth), strict=True))
 
 
 def in_fixed_coordinates(expression: sp.Expr) -> sp.Expr:
-    """Perturbations of one blade by the motions of the fixed frame."""
+    """Replace the perturbations of one blade by the motions of the fixed frame."""
     return expression.subs({kin.q[name]: motion(name)[0] for name in kin.COORDINATES})
 
 
@@ -109,7 +109,7 @@ def gimbal_flap_angle(dropped: frozenset[str]) -> Parts:
 
 
 def _blade_in_hub_axes() -> sp.Matrix:
-    """Position relative to the hub, the deflection counted from the undeflected blade."""
+    """Return the position relative to the hub, with deflections counted from the undeflected blade."""
     line = kin.blade_line().subs({s.coning: 0, s.lag: 0})
     return (kin.GIMBAL_TILT * kin.rotation(kin.q["azimuth"] * kin.K_AXIS) * line).subs(ARMS)
 
@@ -126,12 +126,12 @@ def position(dropped: frozenset[str]) -> Parts:
 
 
 def _inertia(dropped: frozenset[str]) -> inertia.BladeInertia:
-    """The blade without some terms; the vectors themselves are those of the whole derivation."""
+    """Return the inertia of the blade without some terms. Its vectors are those of the whole derivation."""
     return inertia.BladeInertia(dropped | PAPER_ORDER)
 
 
 def _in_arms(component: Any) -> sp.Expr:
-    """A component of a ring vector in r, the hinge offsets and the trim angles, to first order in the cone."""
+    """Write a component of a ring vector in r, hinge offsets and trim angles, to first order in the cone."""
     expression = (
         component.as_expr().subs(_trim_arms()).subs(dict(temporaries(WHOLE_BLADE_ANGLES))).subs(s.lag, 0)
     )
@@ -146,7 +146,7 @@ def _trim_arms() -> dict[sp.Symbol, sp.Expr]:
 
 @functools.cache
 def _acceleration_terms(name: str, dropped: frozenset[str]) -> tuple[sp.Matrix, ...]:
-    """What a coordinate's displacement, rate and acceleration contribute to the acceleration in rotating axes."""
+    """Return what displacement, rate and acceleration of a coordinate add to the acceleration in rotating axes."""
     blade, omega = _inertia(dropped), s.rotor_speed
     kinds = (("centrifugal", 2, omega**2), ("gyroscopic", 1, 2 * omega), ("mass", 0, 1))
     return tuple(
@@ -178,14 +178,14 @@ def acceleration_relative_to_hub(dropped: frozenset[str]) -> Parts:
 
 
 def _hub_vector(names: tuple[str, ...]) -> sp.Matrix:
-    """Displacement or rotation of the hub in the fixed frame, from its components along the blade's axes."""
+    """Return displacement or rotation of the hub in the fixed frame from components along the axes of the blade."""
     axes = (multiblade.I_AZIMUTH, multiblade.J_AZIMUTH, kin.K_AXIS)
     vectors = (motion(name)[0] * axis for name, axis in zip(names, axes, strict=True))
     return sum(vectors, sp.zeros(3, 1)).applyfunc(sp.trigsimp)
 
 
 def _turning(order: int) -> sp.Matrix:
-    """Angular velocity (1) or acceleration (2) of the hub at no rotation, from its rotation matrix."""
+    """Return the angular velocity (order 1) or acceleration (2) of the unrotated hub from its rotation matrix."""
     turned = kin.rotation(_hub_vector(kin.HUB_ROTATION))
     for _ in range(order):
         turned = turned.applyfunc(time_derivative)
@@ -208,7 +208,7 @@ def hub_motion(number: int, dropped: frozenset[str]) -> Parts:
 
 @counterpart(7, 8, 9)
 def hub_motion_along_the_blade(number: int, dropped: frozenset[str]) -> Parts:
-    """The same by the transformation that `derive.multiblade` sums over the blades with."""
+    """Return the motion of the hub by the transformation with which `derive.multiblade` sums over the blades."""
     names, order = {7: (kin.HUB_TRANSLATION, 2), 8: (kin.HUB_ROTATION, 1), 9: (kin.HUB_ROTATION, 2)}[number]
     transformation = multiblade.blade_coordinates()
     fixed = sp.Matrix([TIME.get(name, _HELD)[order] for name in multiblade.FIXED_COORDINATES])
@@ -218,7 +218,7 @@ def hub_motion_along_the_blade(number: int, dropped: frozenset[str]) -> Parts:
 
 @counterpart(10)
 def acceleration_on_moving_hub(dropped: frozenset[str]) -> Parts:
-    """Second derivative of hub + R_h r, at the moment the hub is not turned."""
+    """Return the second derivative of hub + R_h r at the moment when the hub is not turned."""
     t, v = sp.Symbol("t"), VECTORS
     turn = v["omega_h"] * t + v["alpha_h"] * t**2 / 2
     moving = v["r_bh"] + v["v_bh"] * t + v["a_bh"] * t**2 / 2
@@ -228,7 +228,7 @@ def acceleration_on_moving_hub(dropped: frozenset[str]) -> Parts:
 
 @counterpart(11)
 def acceleration(dropped: frozenset[str]) -> Parts:
-    """Along the axes of the turned hub, as the paper has them."""
+    """Return the acceleration along the axes of the turned hub, as in the paper."""
     total = _acceleration((*kin.HUB_TRANSLATION, *kin.HUB_ROTATION, *_OF_BLADE), dropped)
     turn = sp.Matrix([motion(name)[0] for name in kin.HUB_ROTATION])
     return dict(zip("ijk", total - turn.cross(_steady_acceleration()), strict=True))
@@ -238,14 +238,14 @@ def acceleration(dropped: frozenset[str]) -> Parts:
 
 
 def airload_sign() -> int:
-    """Sign of the airloads' virtual work on the left of the equations of motion."""
+    """Return the sign of the virtual work of the airloads on the left of the equations of motion."""
     coefficient, _ = airloads.products()["damping"].as_coeff_mmul()
     return int(coefficient)
 
 
 @counterpart(12)
 def flap_moments(dropped: frozenset[str]) -> Parts:
-    """Virtual work per unit of flap; accelerations are perturbations but for the centrifugal a_j."""
+    """Return the virtual work per unit of flap. All accelerations are perturbations but the centrifugal a_j."""
     arm = sp.diff(_blade_in_hub_axes(), kin.q["flap"])
     work = n.m * arm.dot(sp.Matrix([n.a_i, n.a_j, n.a_k]))
     integrand = truncated(work, 1, of=_ANGLES | {n.a_i: 1, n.a_k: 1})
@@ -260,7 +260,7 @@ def _trim_integrals() -> dict[sp.Symbol, sp.Expr]:
 
 
 def _in_mass_data(expression: sp.Expr) -> sp.Expr:
-    """Trim integrals in the blade's mass data."""
+    """Replace the trim integrals by the mass data of the blade."""
     for _ in range(4):
         expression = expression.subs(_trim_integrals())
     return first_order_in_cone(expression)
@@ -284,7 +284,7 @@ def flap_equation(dropped: frozenset[str]) -> Parts:
 
 
 def frequency_squared(name: str) -> sp.Expr:
-    """Uncoupled rotating frequency of flap or lag per rotor speed, at zero cone."""
+    """Return the square of the uncoupled rotating frequency of flap or lag, per rotor speed, at zero cone."""
     blade, flat = _inertia(CONSISTENT), {s.precone: 0, s.coning: 0}
     mass, centrifugal = (_in_mass_data(of(name, name)).subs(flat) for of in (blade.mass, blade.centrifugal))
     spring = flap_lag_springs.STIFFNESS[name, name, 0]
@@ -306,7 +306,7 @@ def _segment_geometry() -> dict[sp.Symbol, sp.Expr]:
 
 
 def _on_outer_segment(expression: sp.Expr) -> sp.Expr:
-    """Outboard of both hinges, to first order in the cone."""
+    """Take an expression outboard of both hinges, to first order in the cone."""
     expression = sp.sympify(expression).subs(_segment_geometry()).subs(dict(temporaries(SEGMENT_ANGLES)))
     expression = expression.subs({kin.beyond_flap_hinge: 1, kin.beyond_lag_hinge: 1, s.lag: 0})
     return first_order_in_cone(expression)
@@ -363,7 +363,7 @@ _MOMENTS = sp.Matrix([n.M_beta, n.M_zeta])
 
 @functools.cache
 def _flexibilities() -> tuple[sp.Matrix, sp.Matrix]:
-    """Flexibility inboard and outboard of the pitch bearing, which alone turns with the pitch."""
+    """Return the flexibility inboard of the pitch bearing, and that outboard, which alone turns with the pitch."""
     total = flap_lag_springs.flexibility(s.structural_pitch)
     inner = total.subs({_sine: 0, _cosine: 0})
     return inner, (total - inner).applyfunc(sp.expand)
@@ -371,7 +371,7 @@ def _flexibilities() -> tuple[sp.Matrix, sp.Matrix]:
 
 @functools.cache
 def _series() -> dict[sp.Symbol, sp.Expr]:
-    """The derivation's springs and shares in the four springs of the paper, from equal flexibilities."""
+    """Return springs and shares of the derivation in the four springs of the paper, from equal flexibilities."""
     inner, outer = _flexibilities()
     found: dict[sp.Symbol, sp.Expr] = {}
     for place, (spring, share, hub, blade) in enumerate(
@@ -389,7 +389,7 @@ def _series() -> dict[sp.Symbol, sp.Expr]:
 
 @functools.cache
 def _flexibilities_of_springs() -> tuple[sp.Matrix, sp.Matrix]:
-    """Flexibility inboard and outboard in the paper's four springs."""
+    """Return the flexibility inboard and outboard in the four springs of the paper."""
     inner, outer = _flexibilities()
     hub = inner.applyfunc(lambda entry: sp.factor(entry.subs(_series())))
     blade = outer.applyfunc(lambda entry: sp.Add(*(sp.factor(term.subs(_series())) for term in entry.args)))
@@ -408,7 +408,7 @@ def outboard_shares(dropped: frozenset[str]) -> Parts:
 
 @counterpart(20)
 def elastic_moments(dropped: frozenset[str]) -> Parts:
-    """Gradient of the spring energy at trim pitch, the deflection counted from the unloaded springs."""
+    """Return the gradient of the spring energy at trim pitch, deflections counted from the unloaded springs."""
     energy = flap_lag_springs.spring_energy().subs({s.coning: 0, s.lag: 0})
     pitch_held = {kin.q[name]: 0 for name in kin.COORDINATES if name not in ("flap", "lag")}
     angles = {kin.q[name]: TIME[name][0] for name in ("flap", "lag")}
@@ -433,7 +433,7 @@ def series_determinant(dropped: frozenset[str]) -> Parts:
 
 @counterpart(23)
 def uniform_blade(dropped: frozenset[str]) -> Parts:
-    """The frequency with the integrals of a uniform blade of length R - e, whose spring is K_beta alone."""
+    """Return the frequency of a uniform blade of length R - e whose spring is K_beta alone."""
     length, mass, arm = sp.symbols("length mass arm", positive=True)
     moment, second = (sp.integrate(mass * arm**power, (arm, 0, length)) for power in (1, 2))
     centrifugal = frequency_squared("flap").subs(inertia.dependent_inertias()).subs(s.rotor_speed, sp.oo)
@@ -495,7 +495,7 @@ def shares_of_deflection(number: int, dropped: frozenset[str]) -> Parts:
 
 
 def _offset_from_feather_axis() -> tuple[sp.Matrix, sp.Matrix]:
-    """Direction of the feather axis, and the section's offset from it, to second order in the angles."""
+    """Return the direction of the feather axis and the offset of the section, to second order in the angles."""
     whole = {kin.q["flap"]: n.beta_in + n.beta_out, kin.q["lag"]: n.zeta_in + n.zeta_out}
     inboard = {kin.q["flap"]: n.beta_in, kin.q["lag"]: n.zeta_in}
     blade = _blade_in_hub_axes()
@@ -506,19 +506,19 @@ def _offset_from_feather_axis() -> tuple[sp.Matrix, sp.Matrix]:
 
 @functools.cache
 def _work_about_feather_axis() -> sp.Expr:
-    """Work of the section's forces per unit turn, to second order in the angles."""
+    """Return the work of the forces on a section per unit turn, to second order in the angles."""
     small = _ANGLES | {angle: 1 for angle in (n.beta_in, n.beta_out, n.zeta_in, n.zeta_out)}
     vectors = _offset_from_feather_axis()
     axis, offset = (vector.applyfunc(lambda part: truncated(part, 2, of=small)) for vector in vectors)
     force = sp.Matrix([n.F_x, n.F_r, n.F_z])
-    # F_r belongs to second order in the angles; the others are perturbations themselves.
+    # F_r is steady and stands at second order in the angles. All other forces are perturbations.
     work = truncated(axis.cross(offset).dot(force), 2, of=small | {n.F_x: 1, n.F_z: 1})
     return in_fixed_coordinates(work)
 
 
 @counterpart(32)
 def pitch_equation(dropped: frozenset[str]) -> Parts:
-    """Virtual work of a turn of the outboard blade about the feather axis; what resists stands with a plus."""
+    """Return the virtual work of a turn of the outboard blade about the feather axis; resistance is positive."""
     turn = sp.diff(kin.pitch_angles()[0], kin.q["pitch"])
     integrand = -_work_about_feather_axis() + airload_sign() * turn * n.dM_theta_aero
     control = sp.Integer(0)
@@ -536,7 +536,7 @@ def pitch_equation(dropped: frozenset[str]) -> Parts:
 
 @functools.cache
 def _pitch_moment() -> sp.Matrix:
-    """Matrix Q of -dU/dtheta = M^T Q M, M the elastic moments: half the change of the flexibility with pitch."""
+    """Return Q of -dU/dtheta = M^T Q M, M the elastic moments: half the change of the flexibility with pitch."""
     _, outer = _flexibilities_of_springs()
     return sp.diff(outer, s.structural_pitch) / 2
 
@@ -554,14 +554,14 @@ def pitch_moment_of_deflection(dropped: frozenset[str]) -> Parts:
 
 @counterpart(35)
 def pitch_deflection(dropped: frozenset[str]) -> Parts:
-    """The control system alone resists a moment that does work on the pitch."""
+    """Return the pitch under a moment that the control system alone resists."""
     stiffness = pitch.stiffness("pitch", "pitch", frozenset({"propeller_moment"}))
     return {"Δθ": n.dM_theta / stiffness}
 
 
 @counterpart(36, 37)
 def coupling(number: int, dropped: frozenset[str]) -> Parts:
-    """`pitch.couplings`, with the change of K_eff with pitch by that of the flexibility."""
+    """Return `pitch.couplings` with the change of K_eff with pitch written by the change of the flexibility."""
     change = -_STIFFNESS * (2 * _pitch_moment()) * _STIFFNESS
     places = {("flap", "flap"): (0, 0), ("flap", "lag"): (0, 1), ("lag", "lag"): (1, 1)}
     slopes = {flap_lag_springs.STIFFNESS[(*pair, 1)]: change[place] for pair, place in places.items()}
@@ -569,12 +569,12 @@ def coupling(number: int, dropped: frozenset[str]) -> Parts:
     return {name: sp.expand(sp.expand(pitch.couplings()[symbol]).subs(slopes))}
 
 
-# What symbols that only the print has stand for
+# Meanings of symbols that only the print has
 
 
 @functools.cache
 def meaning(number: int | str) -> dict[sp.Symbol, sp.Expr]:
-    """Replacements that bring a printed equation into the derivation's symbols."""
+    """Return the replacements that write a printed equation in the symbols of the derivation."""
     return _MEANINGS.get(number, dict)()
 
 

@@ -1,4 +1,4 @@
-"""Headings of the paper's equations and tables in notebooks and index, and the anchors they make."""
+"""Name the equations and tables of the paper as headings of pages, and the anchors of these headings."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import re
 
 
 def heading(number: int | str) -> str:
-    """`Eq. 13`, `Table 1`, `Nomenclature ν_β`."""
+    """Return the heading of an equation or table: `Eq. 13`, `Table 1`, `Nomenclature ν_β`."""
     if isinstance(number, int):
         return f"Eq. {number}"
     return number if number.startswith("Table") else f"Nomenclature {number}"
 
 
 def anchor(title: str) -> str:
-    """What a forge makes of a heading: `Eq. 13` is `eq-13`."""
+    """Return the anchor that a forge gives a heading: `eq-13` for `Eq. 13`."""
     return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")

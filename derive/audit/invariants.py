@@ -1,6 +1,6 @@
-"""What the printed equations must obey whoever derives them: none of these checks uses the derivation.
+"""Check the printed equations by what any correct derivation obeys: no check here uses the derivation.
 
-Each yields findings: the equation, the invariant, whether the print obeys it, and the evidence.
+Each check yields findings: the equation, the invariant, whether the print obeys it, and the evidence.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Sample = dict[sp.Symbol, float]
 
 @dataclass(frozen=True)
 class Finding:
-    """One invariant on one equation."""
+    """The result of one invariant on one equation."""
 
     number: int | str
     invariant: str
@@ -44,7 +44,7 @@ class Finding:
 
 
 def findings(equations: Equations | None = None) -> list[Finding]:
-    """All invariants on all equations as printed, or on other ones in their place."""
+    """Yield the findings of all invariants on the printed equations, or on others in their place."""
     equations = {**printed.EQUATIONS, **printed.NOMENCLATURE} if equations is None else equations
     checks = (dimensions, mirror_image, skewness, rigid_tilt, series, definiteness, energy)
     return [finding for check in checks for finding in check(equations)]
@@ -54,7 +54,7 @@ def findings(equations: Equations | None = None) -> list[Finding]:
 
 
 def dimension_of(expression: sp.Expr) -> Dimension:
-    """Dimension of a product, power or function; the terms of a sum must agree."""
+    """Return the dimension of a product, power or function. The terms of a sum must have the same dimension."""
     if expression.is_number:
         return (0, 0, 0)
     if expression.is_Symbol:
@@ -107,7 +107,7 @@ _ODD |= {n.F_x, n.a_i, n.dM_theta, n.dM_theta_aero, n.flexibility_out["bz"], psi
 _ODD |= {symbol for motions in (TIME, AZIMUTH) for name in _ODD_MOTIONS for symbol in motions[name]}
 # Derivatives with azimuth are odd where those with time are even.
 _ODD ^= {motion[1] for motion in AZIMUTH.values()}
-# Axes are any three in Eq. 10.
+# The axes of Eq. 10 may be any three.
 _NO_MIRROR = (10,)
 
 
@@ -117,7 +117,7 @@ def _parity(term: sp.Expr) -> int:
 
 
 def mirror_image(equations: Equations) -> Iterator[Finding]:
-    """All terms of a part keep their sign, or all change it."""
+    """Check that all terms of a part keep their sign in the mirror, or that all change it."""
     for number, equation in equations.items():
         if number in _NO_MIRROR:
             continue
@@ -133,7 +133,7 @@ def mirror_image(equations: Equations) -> Iterator[Finding]:
 
 
 def _inertia_of(acceleration: sp.Expr) -> sp.Expr:
-    """Integral of m (r - e) times a term that is a multiple of r - e."""
+    """Return the integral of m (r - e) times a term that is a multiple of r - e."""
     r = s.radial_station
     quotient, rest = sp.div(sp.Poly(sp.expand(acceleration), r), sp.Poly(r - n.e, r))
     if not rest.is_zero or quotient.degree() > 0:
@@ -142,7 +142,7 @@ def _inertia_of(acceleration: sp.Expr) -> sp.Expr:
 
 
 def skewness(equations: Equations) -> Iterator[Finding]:
-    """Inertia forces do no work on a motion and its exchange: flap by lag is minus lag by flap.
+    """Check that the Coriolis terms do no work: flap by the lag rate is minus lag by the flap rate.
 
     The lag row is that of the printed acceleration along i, the flap row is Eq. 13, and again Eq. 12 with the printed
     acceleration along j.
@@ -166,7 +166,7 @@ def skewness(equations: Equations) -> Iterator[Finding]:
 
 
 def _tilted_back(vector: list[sp.Expr]) -> list[sp.Expr]:
-    """The hub tilted by alpha_x and alpha_y with the gimbal tilted back; everything else at rest."""
+    """Tilt the hub by alpha_x and alpha_y and the gimbal back, with all else at rest."""
     alpha_x, alpha_y = TIME["alpha_x"], TIME["alpha_y"]
     back = dict(zip(TIME["gimbal_flap"], _gimbal_flap_against(alpha_x, alpha_y), strict=True))
     moving = {*back, *alpha_x, *alpha_y}
@@ -175,7 +175,7 @@ def _tilted_back(vector: list[sp.Expr]) -> list[sp.Expr]:
 
 
 def _gimbal_flap_against(alpha_x: Sequence[sp.Expr], alpha_y: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """beta_G of beta_GC = alpha_y and beta_GS = -alpha_x, with its derivatives in time."""
+    """Return beta_G and its time derivatives for beta_GC = alpha_y and beta_GS = -alpha_x."""
     gc, gs = alpha_y, [-a for a in alpha_x]
     omega, cosine, sine = s.rotor_speed, sp.cos(psi), sp.sin(psi)
     return [
@@ -189,10 +189,10 @@ def _gimbal_flap_against(alpha_x: Sequence[sp.Expr], alpha_y: Sequence[sp.Expr])
 
 
 def rigid_tilt_rest(equation: PrintedEquation, added: sp.Expr | None = None) -> list[sp.Expr]:
-    """What is left of an acceleration along the turned hub's axes when nothing moves; with a term added to a_i."""
+    """Return what is left of an acceleration along the turned hub's axes when no mass moves; `term` adds to a_i."""
     along = [equation.parts["i"] + (added or 0), equation.parts["j"], equation.parts["k"]]
     alpha_x, alpha_y = TIME["alpha_x"][0], TIME["alpha_y"][0]
-    # The centrifugal acceleration does not turn with the hub, its components do.
+    # The centrifugal acceleration does not turn with the hub. Its components along the axes of the hub do.
     seen = s.rotor_speed**2 * s.radial_station * (alpha_x * sp.sin(psi) - alpha_y * sp.cos(psi))
     along[1] += s.rotor_speed**2 * s.radial_station
     along[2] -= seen
@@ -200,7 +200,7 @@ def rigid_tilt_rest(equation: PrintedEquation, added: sp.Expr | None = None) -> 
 
 
 def coriolis_of_gimbal() -> sp.Expr:
-    """The gimbal's share in the Coriolis term that Eqs. 3 and 11 print for blade flapping."""
+    """Return the share of the gimbal in the Coriolis term that Eqs. 3 and 11 print for blade flapping."""
     return 2 * s.rotor_speed * s.radial_station * (s.precone + s.coning) * TIME["gimbal_flap"][1]
 
 
@@ -226,7 +226,7 @@ def _samples(count: int = 6) -> list[Sample]:
 
 
 def _springs(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
-    """Delta, K_eff and the shares of the deflection, all as printed, in the pitch alone."""
+    """Return Delta, K_eff and the shares of the deflection as printed, as functions of the pitch alone."""
     determinant = {series_determinant: equations[22].parts["Δ"]}
     names = {"K_ββ": ("flap", "flap", 0), "K_βζ": ("flap", "lag", 0), "K_ζζ": ("lag", "lag", 0)}
     found = {STIFFNESS[key]: equations[21].parts[name].subs(determinant) for name, key in names.items()}
@@ -255,7 +255,7 @@ def _worst(expression: sp.Expr, sample_set: Iterable[Sample]) -> float:
 
 
 def series(equations: Equations) -> Iterator[Finding]:
-    """Inboard and outboard shares add up to the deflection, and each is the flexibility times K_eff."""
+    """Check that the shares add up to the deflection, and that each is a flexibility times K_eff."""
     springs, samples = _springs(equations), _samples()
     one, zero = sp.Integer(1), sp.Integer(0)
     for number, wanted in ((30, "AWBXCYDZ"), (31, "AWBXCYDZ")):
@@ -280,7 +280,7 @@ def series(equations: Equations) -> Iterator[Finding]:
 
 
 def definiteness(equations: Equations) -> Iterator[Finding]:
-    """K_eff is positive definite with the determinant K_beta K_zeta / Delta of two springs in series."""
+    """Check that K_eff is positive definite, with the determinant K_beta K_zeta / Delta of springs in series."""
     springs = _springs(equations)
     flap, mixed, lag = (
         STIFFNESS[key] for key in (("flap", "flap", 0), ("flap", "lag", 0), ("lag", "lag", 0))
@@ -296,7 +296,7 @@ def definiteness(equations: Equations) -> Iterator[Finding]:
 
 
 def energy(equations: Equations) -> Iterator[Finding]:
-    """The pitch moment is the gradient of the spring energy, and what it deflects takes up its work."""
+    """Check that the pitch moment is the gradient of the spring energy and that the pitch takes up its work."""
     springs, samples = _springs(equations), _samples()
     flap, lag = TIME["flap"][0], TIME["lag"][0]
     k = {key: springs[STIFFNESS[(*key, 0)]] for key in (("flap", "flap"), ("flap", "lag"), ("lag", "lag"))}

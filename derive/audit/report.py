@@ -1,4 +1,4 @@
-"""The audit of AIAA-2002-1604: every printed equation and table against the derivation.
+"""Print and write the audit of AIAA-2002-1604: all printed equations and tables against the derivation.
 
 python -m derive.audit            print the table, write docs/audit.md; exit 1 if a verdict is not the recorded one
 python -m derive.audit --accept   record the verdicts in tests/golden/audit.csv
@@ -48,27 +48,31 @@ Row = tuple[str, ...]
 
 @functools.cache
 def equation_verdict(number: int | str) -> EquationVerdict:
+    """Judge an equation, once."""
     return audit((printed.EQUATIONS | printed.NOMENCLATURE)[number])
 
 
 @functools.cache
 def equation_verdicts() -> dict[int | str, EquationVerdict]:
+    """Return the verdicts on all equations by number."""
     return {number: equation_verdict(number) for number in (*printed.EQUATIONS, *printed.NOMENCLATURE)}
 
 
 @functools.cache
 def table_verdicts() -> dict[str, TableVerdict]:
+    """Return the verdicts on both tables by heading."""
     return {f"Table {table.number}": audit_table(table) for table in printed.TABLES}
 
 
 @functools.cache
 def findings() -> tuple[Finding, ...]:
+    """Return the findings of all invariants."""
     return tuple(invariants.findings())
 
 
 @functools.cache
 def broken_invariants() -> dict[int | str, list[Finding]]:
-    """Findings of the invariants the print does not obey, by equation."""
+    """Return, by equation, the findings of the invariants that the print does not obey."""
     broken: dict[int | str, list[Finding]] = {}
     for finding in findings():
         if not finding.holds:
@@ -77,7 +81,7 @@ def broken_invariants() -> dict[int | str, list[Finding]]:
 
 
 def invariants_of(number: int | str) -> list[str]:
-    """Names of the invariants that an equation or a table breaks."""
+    """Return the names of the invariants that an equation or a table breaks."""
     if number in table_verdicts():
         return sorted({relation.invariant for relation in table_verdicts()[number].conflicts})
     return [finding.invariant for finding in broken_invariants().get(number, [])]
@@ -87,12 +91,13 @@ def invariants_of(number: int | str) -> list[str]:
 
 
 def recorded() -> list[Row]:
+    """Return the rows of the record."""
     with RECORD.open(newline="", encoding="utf-8") as file:
         return [tuple(row) for row in csv.reader(file)][1:]
 
 
 def computed() -> list[Row]:
-    """One row per term of an equation and per relation of a table."""
+    """Return a row for each term of an equation and for each relation of a table."""
     rows: list[Row] = []
     for number, result in equation_verdicts().items():
         for t in sorted(result.terms, key=lambda t: (list(result.equation.parts).index(t.part), str(t.term))):
@@ -103,7 +108,7 @@ def computed() -> list[Row]:
 
 
 def record(rows: list[Row]) -> None:
-    """Write the record, whole or not at all."""
+    """Write the record tests/golden/audit.csv."""
     RECORD.parent.mkdir(parents=True, exist_ok=True)
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator="\n").writerows([HEADER, *rows])
@@ -111,7 +116,7 @@ def record(rows: list[Row]) -> None:
 
 
 def changes(was: list[Row], now: list[Row]) -> list[str]:
-    """What is new and what is gone, in the order of the equations."""
+    """Return the rows that are gone, then the new ones, in the order of the equations."""
     gone = [f"- {', '.join(row)}" for row in was if row not in set(now)]
     return gone + [f"+ {', '.join(row)}" for row in now if row not in set(was)]
 
@@ -120,7 +125,7 @@ def changes(was: list[Row], now: list[Row]) -> list[str]:
 
 
 def summary(boundaries: Callable[[int | str], str]) -> Iterator[tuple[str, ...]]:
-    """Equation, title, verdict, terms, invariants broken, consequence."""
+    """Yield equation, title, verdict, terms, broken invariants and consequence."""
     for number, result in equation_verdicts().items():
         counts = "; ".join(f"{result.count(v)} {LETTERS[v]}" for v in VERDICTS if result.count(v))
         broken = ", ".join(invariants_of(number))
@@ -138,14 +143,14 @@ def summary(boundaries: Callable[[int | str], str]) -> Iterator[tuple[str, ...]]
 
 
 def dropped_terms_of(result: EquationVerdict) -> list[str]:
-    """Named terms that explain what the print does not have."""
+    """Return the names of the dropped terms that explain what the print does not have."""
     names = {name for term in result.terms for name in term.note.split(", ") if name in DROPPED_TERMS}
     return [name for name in DROPPED_TERMS if name in names]
 
 
 @functools.cache
 def consequence_of_conflict(number: int | str) -> str:
-    """The XV-15's boundary with a conflict as printed; nothing where it has none."""
+    """Return the boundary of the XV-15 with a conflict as printed; empty for an equation without conflict."""
     if number not in consequences.OF_CONFLICT:
         return ""
     label, changed, base = consequences.OF_CONFLICT[number]()
@@ -154,7 +159,7 @@ def consequence_of_conflict(number: int | str) -> str:
 
 @functools.cache
 def _consequences() -> dict[int | str, str]:
-    """The XV-15's boundary with each conflict as printed, and without each absent term."""
+    """Return the boundary of the XV-15 with each conflict as printed, and without each absent term."""
     found = {number: consequence_of_conflict(number) for number in consequences.OF_CONFLICT}
     names = {name for result in equation_verdicts().values() for name in dropped_terms_of(result)}
     for name in track(sorted(names), description="boundaries without a term"):
@@ -163,6 +168,7 @@ def _consequences() -> dict[int | str, str]:
 
 
 def consequence(number: int | str) -> str:
+    """Return what the conflict and the absent terms of an equation do to the boundary of the XV-15."""
     parts = [_consequences()[number]] if number in _consequences() else []
     if number in equation_verdicts():
         terms = dropped_terms_of(equation_verdicts()[number])
@@ -171,7 +177,7 @@ def consequence(number: int | str) -> str:
 
 
 def markdown() -> str:
-    """The report."""
+    """Return the report as Markdown."""
     lines = [
         "# AIAA-2002-1604 against the derivation",
         "",
@@ -219,7 +225,7 @@ def _markdown_table(header: Sequence[str], rows: Iterable[Iterable[object]]) -> 
 
 
 def _derived_by(number: str) -> str:
-    """The function, with a link to where the index has it."""
+    """Return the name of the counterpart with a link to its place in the index of equations."""
     known = {str(key): key for key in COUNTERPARTS}
     name = "tables.audit_table"
     if number in known:
@@ -322,6 +328,7 @@ def _print_summary(boundaries: Callable[[int | str], str]) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
+    """Run the command; return 1 if a verdict is not the recorded one."""
     parser = argparse.ArgumentParser(
         prog="python -m derive.audit",
         description="Print every equation's verdict; exit 1 if one is not the recorded one.",
@@ -330,7 +337,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--quick", action="store_true", help="leave out the boundaries and docs/audit.md")
     options = parser.parse_args(arguments)
     for number in track([*printed.EQUATIONS, *printed.NOMENCLATURE], description="equations"):
-        equation_verdict(number)  # derives; what it finds is kept
+        equation_verdict(number)  # the derivation is slow and the verdict is cached
     _print_summary((lambda number: "") if options.quick else consequence)
     now = computed()
     if options.accept:

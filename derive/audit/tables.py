@@ -1,7 +1,8 @@
-"""Tables 1 and 2 of AIAA-2002-1604: can the printed integrals belong to one blade?
+"""Compare the numbers of Tables 1 and 2 of AIAA-2002-1604: can the printed integrals belong to one blade?
 
-A blade is any non-negative mass along the radius. Whether one has the printed integrals, to the last printed digit,
-is a linear programme for each pair of hinge offsets, on a grid of R/160 and from its best point on freely.
+A blade is any non-negative mass along the radius. A linear programme for each pair of hinge offsets says whether a
+blade has the printed integrals to the last printed digit. The offsets are on a grid of R/160, and then free from the
+best point of the grid.
 """
 
 from __future__ import annotations
@@ -32,13 +33,13 @@ Values = Mapping[str, PrintedNumber]
 
 @dataclass(frozen=True)
 class Relation:
-    """One relation between printed values."""
+    """The verdict on one relation between printed values."""
 
     name: str
     values: tuple[str, ...]
     verdict: str
     evidence: str
-    invariant: str = ""  # the one a contradiction breaks
+    invariant: str = ""  # which one a contradiction breaks
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def audit_table(table: PrintedTable) -> TableVerdict:
 
 
 def rounding(value: PrintedNumber) -> float:
-    """Half a unit of the last printed digit."""
+    """Return half a unit of the last printed digit."""
     return float(Decimal(1).scaleb(int(Decimal(value.text).as_tuple().exponent))) / 2
 
 
@@ -79,7 +80,7 @@ def _cauchy_schwarz(v: Values, mixed: str, own: str) -> Relation:
 
 @functools.cache
 def _arms(radius: float, flap_offset: float, lag_offset: float) -> dict[str, np.ndarray]:
-    """Integrands of unit masses at stations from the centre to the tip; the hinges are stations."""
+    """Return the integrands of unit masses at stations from the centre to the tip, with both hinges among them."""
     r = np.unique(np.concatenate([np.linspace(0, radius, _STATIONS), [flap_offset, lag_offset]]))
     flap, lag = np.maximum(r - flap_offset, 0), np.maximum(r - lag_offset, 0)
     return {
@@ -94,7 +95,7 @@ def _arms(radius: float, flap_offset: float, lag_offset: float) -> dict[str, np.
 
 
 def misfit(v: Values, names: tuple[str, ...], flap_offset: float, lag_offset: float) -> float:
-    """Least largest deviation of any blade's integrals from the printed ones, in half units of the last digit."""
+    """Return the least largest deviation of a blade from the printed integrals, in half units of the last digit."""
     arms = _arms(v["R"], flap_offset, lag_offset)
     rows = np.array([arms[name] / rounding(v[name]) for name in names])
     wanted = np.array([v[name] / rounding(v[name]) for name in names])
@@ -107,7 +108,7 @@ def misfit(v: Values, names: tuple[str, ...], flap_offset: float, lag_offset: fl
 
 
 def nearest_blade(v: Values, names: tuple[str, ...]) -> tuple[float, list[float], list[float]]:
-    """Least misfit over the hinge offsets, and the flap and lag offsets that reach it or have a blade at all."""
+    """Return the least misfit, and the flap and lag offsets that reach it or at which there is a blade."""
     grid = list(np.linspace(0, 0.25 * v["R"], _OFFSETS))
     of_flap, of_lag = (any(angle in name for name in names) for angle in "βζ")
     lag_offsets = [implied_offset(v, "ζ")] if "I_ζα" in names or not of_lag else grid[:: _OFFSETS // 8]
@@ -121,7 +122,7 @@ def nearest_blade(v: Values, names: tuple[str, ...]) -> tuple[float, list[float]
 
 
 def _refined(v: Values, names: tuple[str, ...], *start: float) -> tuple[float, float, float]:
-    """The misfit and offsets that a simplex search reaches from a point of the grid."""
+    """Return misfit and offsets that a simplex search reaches from a point of the grid."""
     moves = [any(angle in name for name in names) for angle in "βζ"]
     step = v["R"] / 160
 
@@ -146,12 +147,12 @@ def _refined(v: Values, names: tuple[str, ...], *start: float) -> tuple[float, f
 
 
 def implied_offset(v: Values, angle: str) -> float:
-    """e of I_α = I + e S."""
+    """Return the hinge offset e of I_α = I + e S."""
     return (v[f"I_{angle}α"] - v[f"I_{angle}"]) / v[f"S_{angle}"]
 
 
 def _one_blade(v: Values) -> list[Relation]:
-    """All integrals together; if no blade has them, which one has to go for the others to belong to a blade."""
+    """Judge all integrals together. If no blade has them, find the one without which a blade has the others."""
     relations = [_blade_with(v, "one blade has all integrals", INTEGRALS)]
     if relations[0].verdict == CONTRADICTS:
         relations += [_does_not_belong(v, left_out) for left_out in INTEGRALS]
@@ -162,7 +163,7 @@ def _one_blade(v: Values) -> list[Relation]:
 
 
 def _does_not_belong(v: Values, left_out: str) -> Relation:
-    """An integral contradicts the others when they have a blade without it."""
+    """Judge one integral: it contradicts the others if a blade has all the others."""
     others = _blade_with(v, "", tuple(name for name in INTEGRALS if name != left_out))
     verdict = CONTRADICTS if others.verdict == REPRODUCED else REPRODUCED
     name = f"the misfit is not due to {left_out}"
@@ -186,7 +187,7 @@ def _blade_with(v: Values, label: str, names: tuple[str, ...]) -> Relation:
 
 
 def _order_of_hinges(v: Values) -> Relation:
-    """The inertia outboard of a hinge falls as the hinge moves out, so the larger inertia has the smaller offset."""
+    """Check the order of the hinges: the inertia outboard of a hinge falls as the hinge moves out."""
     order = (implied_offset(v, "ζ") - implied_offset(v, "β")) * (v["I_β"] - v["I_ζ"]) >= 0
     offsets = f"e_β = {implied_offset(v, 'β'):.3f} ft, e_ζ = {implied_offset(v, 'ζ'):.3f} ft"
     verdict = REPRODUCED if order else CONTRADICTS
@@ -200,7 +201,7 @@ def _order_of_hinges(v: Values) -> Relation:
 
 
 def _lock_number(v: Values) -> Relation:
-    """gamma = rho c_l_alpha c R^4 / I_b with the chord of the solidity; the paper gives no density."""
+    """Check gamma = rho c_l_alpha c R^4 / I_b with the chord of the solidity. The paper gives no density."""
     chord = v["σ"] * math.pi * v["R"] / v["N"]
     density = v["γ"] * v["I_b"] / (v["c_lα"] * chord * v["R"] ** 4)
     names = ("γ", "I_b", "c_lα", "σ", "R", "N")
@@ -213,7 +214,7 @@ def _lock_number(v: Values) -> Relation:
 
 
 def _shares(v: Values) -> Relation:
-    """Shares of the flexibility, of springs that are there (Eqs. 18, 19)."""
+    """Check that the shares of the flexibility belong to real springs (Eqs. 18, 19)."""
     fine = all(0 <= v[name] <= 1 for name in ("R_β", "R_ζ")) and min(v["ω_β0"], v["ω_ζ0"]) > 0
     speed = v["rpm"] * math.pi / 30
     evidence = f"ω_β0/Ω = {v['ω_β0'] / speed:.3f}, ω_ζ0/Ω = {v['ω_ζ0'] / speed:.3f}"

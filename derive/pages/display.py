@@ -49,7 +49,7 @@ class Shown:
 
 
 class Picture:
-    """A figure that a notebook renders; the first line of the docstring of what draws it says what is to be seen."""
+    """A figure that a notebook renders. Its text is the first line of the docstring of the function that draws it."""
 
     def __init__(self, draw: Callable[[], Figure]):
         self.figure, self.alt = draw(), (draw.__doc__ or "").partition("\n")[0]
@@ -72,7 +72,7 @@ def in_index(number: int | str) -> str:
 
 # Mathematics
 
-# What the notation of print and derivation leaves long or open; the one new letter is said in the notebooks.
+# Shorter notation for some symbols. The notebooks explain the one new letter.
 STRUCTURAL_PITCH = r"\vartheta"
 _NAMES = {
     s.structural_pitch: STRUCTURAL_PITCH,
@@ -123,7 +123,7 @@ def _factor_key(factor: sp.Expr) -> tuple[Any, ...]:
 
 
 def _term_key(term: sp.Expr) -> tuple[Any, ...]:
-    """Terms without motion first, then in the order of the coordinates; a positive one before a negative one."""
+    """Sort terms without motion first, then by coordinate, positive before negative."""
     motions = sorted(_ORDER[symbol] for symbol in term.free_symbols if _KINDS.get(symbol) == _MOTION)
     factors = [_factor_key(factor) for factor in sorted(sp.Mul.make_args(term), key=_factor_key)]
     harmonic = any(key[0] == _HARMONIC for key in factors)
@@ -135,12 +135,12 @@ def _is_negative(term: sp.Expr) -> bool:
 
 
 def _index_first(name: str) -> str:
-    """Primes behind the index: Markdown takes an underscore after a mark for emphasis."""
+    """Put primes behind the index, because Markdown takes an underscore after a mark for emphasis."""
     return re.sub(r"^([^'_]+)('+)_(.*)$", r"\1_\3\2", name)
 
 
 class _Notation(LatexPrinter):  # type: ignore[misc]  # SymPy has no types
-    """Products and sums in the order of the eye, no brackets around a single argument."""
+    """Print products and sums in the usual order, without brackets around a single argument."""
 
     def __init__(self) -> None:
         names = {symbol: _index_first(name) for symbol, name in n.latex_names().items()} | _NAMES
@@ -178,7 +178,7 @@ _printer = _Notation()
 
 
 def latex(expression: sp.Expr) -> str:
-    """The expression in the notation of print and derivation."""
+    """Return the expression in the notation of print and derivation."""
     return str(_printer.doprint(sp.sympify(expression)))
 
 
@@ -187,7 +187,7 @@ def _mathematics(expression: sp.Expr) -> str:
 
 
 def _letters(text: str) -> int:
-    """About how wide a formula is: of a fraction, the wider half."""
+    """Estimate the width of a formula in letters; a fraction is as wide as its wider half."""
     text = re.sub(r"\\(left|right|dot|ddot|bar|mathrm|quad|text)(?![a-z])", "", text)
     halves = re.compile(r"\\frac\{((?:[^{}]|\{[^{}]*\})*)\}\{((?:[^{}]|\{[^{}]*\})*)\}")
     text = halves.sub(lambda found: max(found.groups(), key=len), text)
@@ -195,7 +195,7 @@ def _letters(text: str) -> int:
 
 
 def _turned(factor: sp.Expr) -> tuple[sp.Expr, int]:
-    """A sum with the sign that gives the radius, or else most of its terms, a plus, and the sign taken out."""
+    """Return a factor with the sign that makes the radius, or else most terms, positive; and that sign."""
     if factor.is_Pow and factor.base.is_Add and factor.exp.is_Integer:
         base, sign = _turned(factor.base)
         return base**factor.exp, sign ** (int(factor.exp) % 2)
@@ -218,7 +218,7 @@ def _factored(expression: sp.Expr) -> sp.Expr:
 
 
 def _by_motion(expression: sp.Expr) -> list[sp.Expr]:
-    """Addends of a sum gathered by motion and trim angle of the springs, each group factored."""
+    """Group the addends of a sum by motion and trim angle of the springs, and factor each group."""
     groups: dict[tuple[Any, ...], list[sp.Expr]] = {}
     for term in sp.Add.make_args(sp.expand(expression)):
         motions = [symbol for symbol in term.free_symbols if _KINDS.get(symbol) == _MOTION]
@@ -227,7 +227,7 @@ def _by_motion(expression: sp.Expr) -> list[sp.Expr]:
 
 
 def _fitting(group: list[sp.Expr]) -> list[sp.Expr]:
-    """Terms as one product where it fits a line, else gathered by harmonic, else each alone."""
+    """Write terms as one product if it fits a line, or else by harmonic, or else one by one."""
     whole = _factored(sp.Add(*group))
     if _letters(latex(whole)) <= 2 * _LINE:
         return [whole]
@@ -242,7 +242,7 @@ def _fitting(group: list[sp.Expr]) -> list[sp.Expr]:
 
 
 def _doubled(expression: sp.Expr) -> sp.Expr:
-    """Products of sine and cosine of the structural pitch by those of twice the angle."""
+    """Replace products of sine and cosine of the structural pitch by those of twice the angle."""
     angle = s.structural_pitch
     sine, cosine = sp.sin(angle), sp.cos(angle)
     double = sp.expand(sp.expand(expression).subs(sine * cosine, sp.sin(2 * angle) / 2))
@@ -250,7 +250,7 @@ def _doubled(expression: sp.Expr) -> sp.Expr:
 
 
 def _with_common_factor(expression: sp.Expr) -> tuple[sp.Expr, list[sp.Expr]]:
-    """A factor of the whole sum, and the addends of the rest gathered by motion and trim angle."""
+    """Return a factor of the whole sum, and the addends of the rest by motion and trim angle."""
     common, sums = sp.Integer(1), []
     for factor in sp.Mul.make_args(_factored(expression)):
         if factor.is_Add and factor.has(sp.sin, sp.cos):
@@ -269,7 +269,7 @@ def _with_common_factor(expression: sp.Expr) -> tuple[sp.Expr, list[sp.Expr]]:
 
 
 def _lines(addends: list[sp.Expr], width: int = _LINE) -> list[str]:
-    """A sum broken into lines that fit a column."""
+    """Break a sum into lines that fit a column."""
     lines: list[str] = []
     for addend in addends:
         text = latex(addend)
@@ -282,7 +282,7 @@ def _lines(addends: list[sp.Expr], width: int = _LINE) -> list[str]:
 
 
 def _column(terms: Mapping[sp.Expr, sp.Expr]) -> str:
-    """A sum in lines, in the shorter of two forms: by motion, or with a factor of the whole in front."""
+    """Write a sum in lines, by motion or with a factor of the whole in front, whichever is shorter."""
     total = sp.Add(*(number * term for term, number in terms.items()))
     if total == 0:
         return "–"
@@ -301,7 +301,7 @@ def _column(terms: Mapping[sp.Expr, sp.Expr]) -> str:
 
 
 def rows_of_table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A Markdown table."""
+    """Return a Markdown table."""
     header = list(header)
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
@@ -311,7 +311,7 @@ def rows_of_table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def equation(number: int | str) -> Shown:
-    """Print and derivation of an equation side by side, with the audit's verdict on every term."""
+    """Show print and derivation of an equation side by side, with the verdict on every term."""
     result = report.equation_verdict(number)
     blocks = [_summary(result)]
     if _is_rearranged(result.equation):
@@ -335,12 +335,12 @@ def _marked(verdict: str) -> str:
 
 
 def _is_rearranged(equation: printed.PrintedEquation) -> bool:
-    """Does the comparison show the print in other symbols, or expanded?"""
+    """Tell whether the comparison shows the print in other symbols, or expanded."""
     return bool(meaning(equation.number)) or any(sp.expand(e) != e for e in equation.parts.values())
 
 
 def _as_printed(equation: printed.PrintedEquation) -> str:
-    """The print as it stands; each part is a display of its own, or several where it is long."""
+    """Write the print as it stands, in one display for each part or in several for a long part."""
     displays = []
     for part, expression in equation.parts.items():
         first, *rest = _lines(sorted(sp.Add.make_args(expression), key=_term_key), 2 * _LINE)
@@ -352,7 +352,7 @@ _GREEK = {"α": "alpha", "β": "beta", "δ": "delta", "Δ": "Delta", "ζ": "zeta
 
 
 def _name_of_part(part: str) -> str:
-    """A part's name in notation and a sign of equality, or words and a colon."""
+    """Return the name of a part in notation with a sign of equality, or in words with a colon."""
     name = part.partition(" by ")[0]
     if " " in name or (name.isascii() and name.islower() and len(name) > 1):
         return rf"\text{{{name}:}}\quad"
@@ -365,7 +365,7 @@ def _name_of_part(part: str) -> str:
 
 
 def _side_by_side(result: EquationVerdict) -> str:
-    """One row per part for what agrees, and one for each reason why something does not; columns add up."""
+    """Write a row for the terms of a part that agree, and one for each reason of a difference."""
     rows = []
     for part in result.equation.parts:
         terms = [term for term in result.terms if term.part == part]
@@ -395,7 +395,7 @@ _CODE = re.compile(r"-?[\w.]+\*[^,;]*")
 
 
 def _in_notation(evidence: str) -> str:
-    """Evidence with its expressions as mathematics."""
+    """Write the expressions of an evidence as mathematics."""
     known = {symbol.name: symbol for symbol in n.latex_names()}
     return _CODE.sub(lambda found: _mathematics(sp.sympify(found.group(), locals=known)), evidence)
 
@@ -404,7 +404,7 @@ def _in_notation(evidence: str) -> str:
 
 
 def table(number: int) -> Shown:
-    """A printed table, and what its values say of each other."""
+    """Show a printed table, and the verdicts on relations between its values."""
     result = report.table_verdicts()[f"Table {number}"]
     of = result.table
     values = rows_of_table(of.values, [(value.text for value in of.values.values())])
@@ -424,14 +424,14 @@ def table(number: int) -> Shown:
 
 
 def dropped_terms(*names: str) -> Shown:
-    """What the paper leaves out, and its reason."""
+    """Show the terms that the paper leaves out, and why."""
     terms = ((f"`{name}`", DROPPED_TERMS[name]) for name in names or DROPPED_TERMS)
     rows = ((name, term.term, term.equation, term.reason) for name, term in terms)
     return Shown(rows_of_table(("term", "what it is", "where", "why it is not in the print"), rows))
 
 
 def invariants_checked() -> Shown:
-    """Every invariant, how many equations it was asked of, and which break it."""
+    """Show every invariant, the number of equations checked, and the equations that break it."""
     found: dict[str, list[invariants.Finding]] = {}
     for finding in report.findings():
         found.setdefault(finding.invariant, []).append(finding)
@@ -447,7 +447,7 @@ def invariants_checked() -> Shown:
 
 
 def rest_of_rigid_tilt() -> Shown:
-    """What Eq. 11 leaves of a hub tilted with the gimbal tilted back, as printed and with the Coriolis term alone."""
+    """Show what Eq. 11 leaves with hub tilted and gimbal tilted back, as printed and with the Coriolis term alone."""
     added = {
         "as printed": sp.Integer(0),
         "with the gimbal's Coriolis term alone": invariants.coriolis_of_gimbal(),
@@ -460,7 +460,7 @@ def rest_of_rigid_tilt() -> Shown:
 
 
 def steady_tilt() -> Shown:
-    """In-plane acceleration of the XV-15's tip under a steady tilt of one degree."""
+    """Show the in-plane acceleration of the tip of the XV-15 under a steady tilt of one degree."""
     rows = (
         (label, f"{value:.2f}".replace("-0.00", "0.00"))
         for label, value in consequences.steady_tilt().items()
@@ -469,14 +469,14 @@ def steady_tilt() -> Shown:
 
 
 def boundaries(of: Mapping[str, float]) -> Shown:
-    """Boundaries of the XV-15 by what was changed."""
+    """Show boundaries of the XV-15 by what was changed."""
     return Shown(
         rows_of_table(("equations", "XV-15 boundary"), ((k, consequences.in_knots(v)) for k, v in of.items()))
     )
 
 
 def errata() -> Shown:
-    """Every conflict: the print, the derivation, the invariant the print breaks, what it does to the XV-15."""
+    """Show every conflict: the print, the derivation, the broken invariant and the boundary of the XV-15."""
     rows = []
     for number in report.broken_invariants():
         unexplained = [

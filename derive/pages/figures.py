@@ -34,7 +34,7 @@ WING = ("beam", "chord", "torsion")
 
 
 def _figure(columns: int = 1, height: float = 3.2, zero: bool = True) -> tuple[Figure, list[Axes]]:
-    """A figure of its own, not pyplot's, with a line at zero."""
+    """Return a figure without pyplot, and its axes with a line at zero."""
     figure = Figure(figsize=(6.4 if columns == 1 else 9.0, height), dpi=100, layout="constrained")
     axes = list(figure.subplots(1, columns, squeeze=False)[0])
     for ax in axes:
@@ -116,13 +116,13 @@ def _structural_pitch(pitch: Array) -> Array:
 def _numbers(
     expression: sp.Expr, values: Mapping[sp.Symbol, float], over: sp.Symbol
 ) -> Callable[[Array], Array]:
-    """The expression as a function of one symbol."""
+    """Return the expression as a function of one symbol."""
     function: Callable[[Array], Array] = sp.lambdify(over, sp.sympify(expression).subs(values), "numpy")
     return function
 
 
 def _springs_in(expression: sp.Expr) -> sp.Expr:
-    """K_eff by the four constants of the springs and the pitch."""
+    """Replace K_eff by the four constants of the springs and the pitch."""
     numerators, determinant = flap_lag_springs.series_springs()
     stiffness = {
         flap_lag_springs.STIFFNESS[(*pair, 0)]: value / determinant for pair, value in numerators.items()
@@ -148,7 +148,7 @@ def _of_xv15() -> dict[sp.Symbol, float]:
 
 
 def _of_table(table: PrintedTable) -> dict[sp.Symbol, float]:
-    """The same as printed: springs by the frequencies at rest, hinges by I_α = I + e S."""
+    """Return the numbers of a printed table: springs from frequencies at rest, hinges from I_α = I + e S."""
     v = table.values
     return {
         s.flap_stiffness: v["I_β"] * v["ω_β0"] ** 2,
@@ -263,7 +263,7 @@ def _of_chord(ax: Axes) -> None:
 
 @functools.cache
 def _couplings() -> tuple[Array, ...]:
-    """Structural pitch in degrees, K_Pβ, K_Pζ and K_Pζ without the trim lag, at the trim of each airspeed."""
+    """Return structural pitch (deg), K_Pβ, K_Pζ, and K_Pζ without trim lag, at the trim of each airspeed."""
     model = consequences.hub_held().linearize(LOW_SPEEDS, pitch="coupling")
     _, without_lag = consequences.couplings(model, lag=0.0)
     return _structural_pitch(model.trim.pitch), *consequences.couplings(model), without_lag

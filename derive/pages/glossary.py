@@ -1,4 +1,4 @@
-"""The glossary of the derivation's symbols: docs/symbols.md.
+"""Write docs/symbols.md, the glossary of the symbols of the derivation.
 
 python -m derive.pages.glossary            write the page
 python -m derive.pages.glossary --check    write nothing; exit 1 if the page is stale
@@ -39,7 +39,7 @@ rad. Signs and axes are those of [the conventions](theory/conventions.md).
 
 
 def _symbols_in(value: Any) -> Iterator[sp.Symbol]:
-    """Symbols that a module's name stands for, alone or in a collection."""
+    """Yield the symbols in a value of a module: a symbol, or a collection with symbols."""
     if isinstance(value, sp.Symbol):
         yield value
     elif isinstance(value, dict):
@@ -51,7 +51,7 @@ def _symbols_in(value: Any) -> Iterator[sp.Symbol]:
 
 
 def by_module() -> dict[str, list[Quantity]]:
-    """Every declared quantity, under the module that declares it, in its order there.
+    """Return every declared quantity by the module that declares it, in the order of declaration.
 
     Raises
     ------
@@ -79,6 +79,7 @@ def _row(quantity: Quantity) -> str:
 
 
 def page() -> str:
+    """Return the glossary as Markdown."""
     sections = [HEAD]
     for name, quantities in by_module().items():
         rows = "\n".join(map(_row, quantities))
@@ -89,6 +90,7 @@ def page() -> str:
 
 
 def main() -> int:
+    """Run the command; return 1 if `--check` finds the page stale."""
     if "--check" in sys.argv[1:]:
         current = PAGE.read_text(encoding="utf-8") == page()
         print(

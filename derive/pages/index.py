@@ -34,7 +34,7 @@ AUDIT = DERIVE / "audit"
 GENERATED = ROOT / "generated" / "proprotor_equations"
 PAGE = ROOT / "docs" / "equations.md"
 COUNTERPARTS = "counterparts"
-# Steps of the derivation; what only declares symbols, holds polynomials or prints is none.
+# Modules that derive. Modules that declare symbols, hold polynomials or print are left out.
 STEPS = ("kinematics", *equations.STEPS)
 
 Number = int | str
@@ -42,7 +42,7 @@ Number = int | str
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """A line of a file, with a name for it."""
+    """A named line of a file."""
 
     name: str
     path: Path
@@ -56,7 +56,7 @@ class Place:
 
 
 def numbers() -> list[Number]:
-    """Everything the paper numbers, and the two frequencies of its nomenclature."""
+    """Return the numbers of all equations and tables, and the two frequencies of the nomenclature."""
     tables = [f"Table {table.number}" for table in printed.TABLES]
     return [*printed.EQUATIONS, *printed.NOMENCLATURE, *tables]
 
@@ -67,7 +67,7 @@ def _tree(path: Path) -> ast.Module:
 
 
 def _definitions(path: Path) -> dict[str, ast.stmt]:
-    """What a module defines, by name."""
+    """Return the statements that define the names of a module."""
     found: dict[str, ast.stmt] = {}
     for statement in _tree(path).body:
         if isinstance(statement, ast.FunctionDef | ast.ClassDef):
@@ -85,7 +85,7 @@ def _definitions(path: Path) -> dict[str, ast.stmt]:
 
 @functools.cache
 def prints() -> dict[Number, Place]:
-    """Where each equation and table is transcribed."""
+    """Return the place where each equation and table is transcribed."""
     found: dict[Number, Place] = {}
     for path in sorted((AUDIT / "printed").glob("*.py")):
         for call in ast.walk(_tree(path)):
@@ -108,7 +108,7 @@ def _place_in_print(path: Path, call: ast.Call) -> Place:
 
 @functools.cache
 def counterparts() -> dict[Number, Place]:
-    """The function that derives each equation: that of `derive.audit.counterparts`, or of the tables' audit."""
+    """Return the function that derives each equation, in `derive.audit.counterparts`, or judges each table."""
     path = AUDIT / f"{COUNTERPARTS}.py"
     found: dict[Number, Place] = {}
     for function in _tree(path).body:
@@ -124,7 +124,7 @@ def counterparts() -> dict[Number, Place]:
 
 
 def _aliases(path: Path) -> dict[str, str]:
-    """Modules of the derivation by the name they are imported under."""
+    """Return the modules of the derivation by the names under which a file imports them."""
     found: dict[str, str] = {}
     for statement in _tree(path).body:
         if isinstance(statement, ast.ImportFrom) and statement.module == "derive":
@@ -134,7 +134,7 @@ def _aliases(path: Path) -> dict[str, str]:
 
 @functools.cache
 def derivations(number: Number) -> tuple[Place, ...]:
-    """Steps of the derivation that a counterpart calls, nearest first; constants where it calls no function."""
+    """Return the functions of the derivation that a counterpart calls, nearest first; or else its constants."""
     start = counterparts()[number]
     names = _used(start.path, start.name.partition(".")[2])
     places = [(_place_of_step(*name), name) for name in names]
@@ -143,7 +143,7 @@ def derivations(number: Number) -> tuple[Place, ...]:
 
 
 def _used(path: Path, name: str) -> list[tuple[str, str]]:
-    """(module, name) of the derivation in the order they are met, through the module's own functions."""
+    """Return (module, name) of the derivation in the order of use, through the functions of the same file."""
     known, aliases = _definitions(path), _aliases(path)
     queue, seen = deque([name]), {name}
     found: dict[tuple[str, str], None] = {}
@@ -159,7 +159,7 @@ def _used(path: Path, name: str) -> list[tuple[str, str]]:
 
 
 def _in_order(node: ast.AST) -> Iterator[ast.AST]:
-    """Nodes as they stand in the text, without decorators."""
+    """Yield the nodes in the order of the text, without decorators."""
     for name, value in ast.iter_fields(node):
         if name == "decorator_list":
             continue
@@ -189,7 +189,7 @@ _SOURCE = re.compile(r"Source: (.*)")
 
 
 def equations_named(text: str) -> set[int]:
-    """Numbers of `Eq. 17` and `Eqs. 2, 3, 14-16 and 32`."""
+    """Return the numbers named in a text such as `Eq. 17` or `Eqs. 2, 3, 14-16 and 32`."""
     found: set[int] = set()
     for listed in _EQUATIONS.findall(text):
         for first, last in re.findall(r"(\d+)(?:-(\d+))?", listed):
@@ -199,7 +199,7 @@ def equations_named(text: str) -> set[int]:
 
 @functools.cache
 def generated_functions() -> dict[Place, str]:
-    """Every generated function with the source its docstring gives."""
+    """Return every generated function with the source that its docstring gives."""
     found = {}
     for path in sorted(GENERATED.rglob("*.py")):
         module = ".".join(path.relative_to(GENERATED).with_suffix("").parts)
@@ -212,7 +212,7 @@ def generated_functions() -> dict[Place, str]:
 
 
 def generated(number: Number) -> tuple[Place, ...]:
-    """Functions whose docstring names the equation, or the nomenclature where it has no number."""
+    """Return the functions whose docstring names the equation, or the nomenclature for one without a number."""
     if isinstance(number, int):
         return tuple(of for of, source in generated_functions().items() if number in equations_named(source))
     return tuple(of for of, source in generated_functions().items() if "nomenclature" in source)
@@ -220,7 +220,7 @@ def generated(number: Number) -> tuple[Place, ...]:
 
 @functools.cache
 def _emitted() -> dict[str, set[tuple[str, str]]]:
-    """What of the derivation each line of `derive.equations` is made from, by module.name."""
+    """Return (module, name) of the derivation that each line of `derive.equations` uses, by module.name."""
     path = DERIVE / "equations.py"
     aliases = _aliases(path)
     found: dict[str, set[tuple[str, str]]] = {}
@@ -242,7 +242,7 @@ def _emitted() -> dict[str, set[tuple[str, str]]]:
 
 @functools.cache
 def _reached(module: str, name: str) -> frozenset[tuple[str, str]]:
-    """A step of the derivation and the functions it uses, of its own module and of others."""
+    """Return a function of the derivation and all functions that it uses, in its own module and in others."""
     found, queue = {(module, name)}, deque([(module, name)])
     while queue:
         of, name = queue.popleft()
@@ -263,7 +263,7 @@ def _reached(module: str, name: str) -> frozenset[tuple[str, str]]:
 
 
 def generated_from(number: Number) -> tuple[Place, ...]:
-    """Functions made from the same step of the derivation, for an equation that no docstring names."""
+    """Return the functions generated from the same derivation, for an equation that no docstring names."""
     steps = {tuple(place.name.split(".", 1)) for place in derivations(number)}
     names = {name for name, used in _emitted().items() if any(steps & _reached(*step) for step in used)}
     return tuple(place for place in generated_functions() if place.name in names)
@@ -274,7 +274,7 @@ def generated_from(number: Number) -> tuple[Place, ...]:
 
 @functools.cache
 def cells() -> dict[str, tuple[str, str]]:
-    """Title of the notebook and link to the cell, by heading."""
+    """Return the title of the notebook and a link to the cell, by heading."""
     found = {}
     for source in sources():
         text = source.read_text(encoding="utf-8")
@@ -290,7 +290,7 @@ def cells() -> dict[str, tuple[str, str]]:
 
 @functools.cache
 def recorded_verdicts() -> dict[str, Counter[str]]:
-    """How many terms, or relations of a table, have each verdict in the record of the audit."""
+    """Count the terms, or relations of a table, with each verdict in the record of the audit."""
     found: dict[str, Counter[str]] = {}
     with RECORD.open(newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
@@ -299,7 +299,7 @@ def recorded_verdicts() -> dict[str, Counter[str]]:
 
 
 def page() -> str:
-    """The index as Markdown."""
+    """Return the index as Markdown."""
     lines = [
         "# Where each equation is",
         "",
@@ -346,6 +346,7 @@ def _entry(number: Number) -> Iterator[str]:
 
 
 def main() -> int:
+    """Run the command; return 1 if `--check` finds the page stale."""
     text = page()
     if "--check" in sys.argv[1:]:
         stale = not PAGE.exists() or PAGE.read_text(encoding="utf-8") != text

@@ -29,16 +29,17 @@ TIMEOUT = 300  # s for a cell
 
 
 def sources() -> list[Path]:
-    """The notebooks in their order."""
+    """Return the notebooks in their order."""
     return sorted(NOTEBOOKS.glob("*.py"))
 
 
 def page_of(source: Path) -> Path:
+    """Return the page of a notebook."""
     return PAGES / f"{source.stem}.md"
 
 
 def executed(source: Path) -> NotebookNode:
-    """The notebook with its outputs, from a kernel of this very interpreter whatever kernels are installed.
+    """Run a notebook in a kernel of this interpreter, whatever kernels are installed, and return it with outputs.
 
     Raises
     ------
@@ -51,7 +52,7 @@ def executed(source: Path) -> NotebookNode:
     from nbclient import NotebookClient
 
     class OwnKernel(AsyncKernelManager):
-        """ipykernel beside this interpreter, over sockets in the file system."""
+        """A kernel of this interpreter, reached over sockets in the file system."""
 
         def __init__(self, **options: Any) -> None:
             super().__init__(
@@ -63,12 +64,12 @@ def executed(source: Path) -> NotebookNode:
     client = NotebookClient(
         notebook, kernel_manager_class=OwnKernel, kernel_name="python3", timeout=TIMEOUT, resources=in_root
     )
-    asyncio.run(client.async_execute())  # whose loop is closed again, with its sockets
+    asyncio.run(client.async_execute())  # closes the loop and its sockets at the end
     return notebook
 
 
 def rendered(source: Path, notebook: NotebookNode) -> tuple[str, dict[str, bytes]]:
-    """The page as Markdown, and its pictures by file name."""
+    """Return the page as Markdown, and its pictures by file name."""
     pictures: dict[str, bytes] = {}
     blocks = [
         f"<!-- Written by python -m derive.pages.notebooks from notebooks/{source.name}; edit that. -->"
@@ -98,14 +99,14 @@ def _outputs(cell: NotebookNode, stem: str, pictures: dict[str, bytes]) -> Itera
 
 
 def _linked_from_page(text: str) -> str:
-    """Links as seen from docs/notebooks: to documents, to pages of other notebooks, to the rest of the repository."""
+    """Change links to what they are in docs/notebooks: to documents, other notebooks and the rest of the repository."""
     text = text.replace("](../docs/", "](../")
     text = re.sub(r"\]\((\d-[\w-]+)\.py", r"](\1.md", text)
     return re.sub(r"\]\(\.\./(derive|generated|tests)/", r"](../../\1/", text)
 
 
 def write(source: Path) -> None:
-    """Execute a notebook and write its page and pictures; pictures it no longer has are removed."""
+    """Run a notebook, write its page and pictures, and remove pictures that it no longer has."""
     text, pictures = rendered(source, executed(source))
     PAGES.mkdir(parents=True, exist_ok=True)
     for old in PAGES.glob(f"{source.stem}-[0-9]*.png"):
@@ -116,6 +117,7 @@ def write(source: Path) -> None:
 
 
 def main() -> int:
+    """Run the command; return 2 for a notebook that does not exist."""
     wanted = sys.argv[1:]
     unknown = set(wanted) - {source.stem for source in sources()}
     if unknown:

@@ -125,7 +125,7 @@ def test_the_package_names_what_the_records_declare():
         (FIXED_GUSTS, coordinates.FIXED_GUSTS),
     ):
         assert names == tuple(record.name for record in records)
-    assert FIXED_COORDINATES[:3] == ("x", "y", "z") and FIXED_COORDINATES[-1] == "gimbal_1s"
+    assert FIXED_COORDINATES[:3] == ("x", "y", "z") and FIXED_COORDINATES[17] == "gimbal_1s"
     assert [motion.unit for motion in coordinates.INPUTS] == ["rad"] * 3 + ["m/s"] * 3
 
 

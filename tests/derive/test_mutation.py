@@ -47,7 +47,7 @@ OPTIONS = (
 )
 
 
-# What the model does not call: tests/test_equations_alone.py compares the first with the model.
+# What the model does not call: tests/derive/test_equations_alone.py compares the first with the model.
 FOR_USE_ALONE = {("rotor", "matrices"), ("coordinates", "transform")}
 
 

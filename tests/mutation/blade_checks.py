@@ -70,7 +70,7 @@ def _springs() -> Iterator[Check]:
     matrices = [one_blade.spring_matrices(p) for p in points()]
     yield from _of_matrices((None, None, ("flap_lag_springs", "stiffness")), told, quantities, matrices)
     flap, lag, pitch = (BLADE_COORDINATES.index(name) for name in ("flap", "lag", "pitch"))
-    kept = np.zeros((12, 12))
+    kept = np.zeros((len(BLADE_COORDINATES),) * 2)
     kept[np.ix_((flap, lag, pitch), (flap, lag))] = 1.0  # springs that stay at the pitch of trim
     published = [tuple(matrix * kept for matrix in three) for three in matrices]
     names = (None, None, ("published.flap_lag_springs", "stiffness"))

@@ -39,7 +39,7 @@ def _kinematics(rotor, trim: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArra
     """
     # Rows i move at a rate, columns j by a complex step: the rate's imaginary part is the second derivative.
     unit = np.linalg.inv(seen_from_blade(ONE_BLADE, 0.0)[0]).T @ np.eye(len(DOFS))[_PLACES]
-    q = Motion(trim + 1j * STEP * unit[None, :, :], unit[:, None, :] * np.ones((1, 12, 1)))
+    q = Motion(trim + 1j * STEP * unit[None, :, :], unit[:, None, :] * np.ones((1, len(ONE_BLADE), 1)))
     motion = blades(rotor, rotor.station, q, clock(rotor, 0.0, running=False))
     into = _AXES.T
     rate = motion.position.rate[:, :, 0] @ into  # (row, column, station, 3)

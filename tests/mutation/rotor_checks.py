@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from proprotor_equations import FIXED_COORDINATES
+from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES
 
 from tests.mutation.comparison import Check, matrix_check
 from tests.mutation.one_blade import Matrices
 from tests.mutation.transform import ANGLES, gusts_over_blades, summed_over_blades
 
 _KINDS = ("mass", "damping", "stiffness")
+_SHAPE = (len(BLADE_COORDINATES),) * 2
 _ROTOR_SPEED, _SHAFT = 1.7, 0.4  # rad/s and rad, like any other
 _HARMONICS = ((5, 2), (7, 3), (8, 3))  # of so many blades
 
@@ -32,7 +33,7 @@ def checks() -> Iterator[Check]:
 def _random(n_blades: int) -> Matrices:
     """Matrices of a blade without zeros and without symmetry."""
     rng = np.random.default_rng(n_blades)
-    return tuple(rng.uniform(0.5, 1.5, (12, 12)) * rng.choice([-1, 1], (12, 12)) for _ in _KINDS)
+    return tuple(rng.uniform(0.5, 1.5, _SHAPE) * rng.choice([-1, 1], _SHAPE) for _ in _KINDS)
 
 
 def _sums(prefix: str, n_blades: int, names: tuple[str, ...], **more: Any) -> Iterator[Check]:
@@ -45,7 +46,7 @@ def _sums(prefix: str, n_blades: int, names: tuple[str, ...], **more: Any) -> It
 
 def _rotor(n_blades: int) -> Iterator[Check]:
     yield from _sums("", n_blades, FIXED_COORDINATES)
-    gusts = np.random.default_rng(n_blades).uniform(0.5, 1.5, (12, 3))
+    gusts = np.random.default_rng(n_blades).uniform(0.5, 1.5, (_SHAPE[0], 3))
     expected = gusts_over_blades(gusts, FIXED_COORDINATES, n_blades, _SHAFT)
     sees, given = ("multiblade", "gust_loads"), {"n_blades": n_blades}
     yield matrix_check(sees, "the sum over the blades", given, expected, n_blades, gusts)

@@ -20,7 +20,7 @@ HUB_FORCE, HUB_MOMENT = slice(0, 3), slice(3, 6)
 FLAP, LAG, PITCH = (DOFS.index(name) for name in ("flap_0", "lag_0", "pitch_0"))
 AZIMUTH, GIMBAL_C, GIMBAL_S = (DOFS.index(name) for name in ("azimuth", "gimbal_1c", "gimbal_1s"))
 UNIT = np.eye(len(DOFS))
-GENERALISED = slice(6, 18)  # the rows of virtual work; the six hub rows are resultants
+GENERALISED = slice(6, None)  # the rows of virtual work; the six hub rows are resultants
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,8 @@
-"""The equations and tables of AIAA-2002-1604 as they are printed, as data: nothing here is derived."""
+"""The equations and tables of AIAA-2002-1604 as they are printed: data, and nothing derived.
+
+`EQUATIONS` has the numbered equations, `NOMENCLATURE` the two frequencies that the nomenclature defines, and `TABLES`
+the two tables. Of the derivation the modules here use symbols alone.
+"""
 
 from derive.audit.printed import aerodynamics, flap, kinematics, pitch, springs
 from derive.audit.printed.notation import PrintedEquation

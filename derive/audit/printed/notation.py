@@ -92,17 +92,17 @@ flexibility_out = {pair: printed(f"K_out_inverse_{pair}", "rad/N m") for pair in
 
 @dataclass(frozen=True)
 class PrintedEquation:
-    """One numbered equation: the expression printed for each quantity it gives, and what is unsure in the reading."""
+    """One numbered equation: the printed expression for each quantity, and what is unsure in the reading."""
 
     number: int | str
     page: int
     title: str
     parts: dict[str, sp.Expr]
-    # Unit of each part's terms; the parts' own where they differ.
+    # Unit of the terms of all parts, or a unit for each part.
     unit: str | dict[str, str] = ""
-    # What the text at hand has lost, if the equation had to be restored.
+    # What the copy of the paper has lost, if the equation had to be restored.
     restored: str = ""
-    # Names in READINGS of what is to be tried where a term does not agree as it stands.
+    # Names of the READINGS to try where a term differs as it stands.
     readings: tuple[str, ...] = ()
     doubt: str = field(default="")
 
@@ -123,7 +123,7 @@ _ACCENTS = {
 
 
 def latex_names() -> dict[sp.Symbol, str]:
-    """Notation of every symbol of print and derivation."""
+    """Return the notation of every symbol of print and derivation."""
     names = {symbol: _latex(symbol.name) for symbol in DIMENSIONS}
     return names | {symbol: known.latex for symbol, known in QUANTITIES.items()}
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 class PrintedNumber(float):
-    """A number that keeps the digits it is printed with: 0.200 is not 0.2."""
+    """A number that keeps the digits of the print: 0.200 is not 0.2."""
 
     text: str
 

@@ -68,4 +68,9 @@ def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matri
     """
     optional = _optional(function)
     names = (name for name in keywords(function) if name in quantities or name not in optional)
-    return function(*matrices, **{name: quantities[name] for name in names})
+    try:
+        given = {name: quantities[name] for name in names}
+    except KeyError as missing:
+        message = f"{function.__module__}.{function.__name__} takes {missing}, which nothing gives; a field of Rotor does"
+        raise KeyError(message) from None
+    return function(*matrices, **given)
