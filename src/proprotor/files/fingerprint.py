@@ -195,7 +195,8 @@ class _Walk:
             self._named((entry.name, getattr(it, entry.name)) for entry in dataclasses.fields(it))
             return
         try:
-            reduced = _reduced(kind, it)
+            own = copyreg.dispatch_table.get(kind)
+            reduced: str | tuple[Any, ...] = own(it) if own else it.__reduce_ex__(pickle.HIGHEST_PROTOCOL)
         except Exception:  # a class that cannot be pickled may raise anything
             raise self.refusal(f"{kind.__module__}.{kind.__qualname__}") from None
         if isinstance(reduced, str):  # the name of a global
@@ -309,12 +310,6 @@ class _Walk:
         counts = (it.co_argcount, it.co_posonlyargcount, it.co_kwonlyargcount, it.co_flags)
         self._each("code", (counts, arguments, it.co_names, it.co_cellvars, it.co_freevars))
         self._each("instructions", (it.co_code, it.co_exceptiontable, it.co_consts))
-
-
-def _reduced(kind: type, it: Any) -> str | tuple[Any, ...]:
-    """Return the parts into which pickle takes an object."""
-    own = copyreg.dispatch_table.get(kind)
-    return own(it) if own else it.__reduce_ex__(pickle.HIGHEST_PROTOCOL)
 
 
 def _content(cell: Any) -> Any:

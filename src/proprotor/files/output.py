@@ -121,9 +121,8 @@ def _unfinished(place: Path, before: os.stat_result | None) -> Iterator[IO[bytes
 
     The random name does not contain the final one, which may be as long as the system allows.
     """
-    mode = (
-        _NEW if before is None else before.st_mode & _NEW
-    )  # never readable by more people than the final file
+    # Never readable by more people than the final file.
+    mode = _NEW if before is None else before.st_mode & _NEW
     name = place.with_name(f".proprotor-{secrets.token_hex(8)}.tmp")
     file = open(name, "xb", opener=lambda path, flags: os.open(path, flags, mode))  # noqa: SIM115, closed below
     try:

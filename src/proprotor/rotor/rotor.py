@@ -132,8 +132,8 @@ class Rotor:
     airfoil: SectionModel = field(repr=False)
 
     def __post_init__(self) -> None:
-        for name in (entry.name for entry in fields(self) if entry.name != "airfoil"):
-            self._check_number(name)
+        for entry in fields(self):
+            self._check_number(entry.name, getattr(self, entry.name))
         if np.any(np.asarray(self.n_blades) < 3) or np.any(np.asarray(self.n_blades) % 1 != 0):
             raise InputError("n_blades", self.n_blades, "must be a whole number of at least 3")
         self._check_signs()
@@ -141,19 +141,13 @@ class Rotor:
         self._check_reach()
         self._check_mass()
 
-    def _check_number(self, name: str) -> None:
-        """Refuse a field that is no finite number."""
-        value = getattr(self, name)
-        if name in ("chord", "twist") and (isinstance(value, tuple) or callable(value)):
-            return  # a distribution, checked once the radius it stretches with is known to be positive
-        if isinstance(value, tuple | str):
-            raise InputError(name, value, "must be a number")
-        try:
-            finite = np.all(np.isfinite(np.asarray(value, dtype=complex)))
-        except (TypeError, ValueError):
-            raise InputError(name, value, "must be a number") from None
-        if not finite:
-            raise InputError(name, value, "must be finite")
+    def _check_number(self, name: str, value: Any) -> None:
+        """Refuse a field that is no finite number; distributions wait until the radius is known to be positive."""
+        distributed = name in ("chord", "twist") and (isinstance(value, tuple) or callable(value))
+        if isinstance(value, tuple) and not distributed:
+            raise InputError(name, value, "must be a number in SI units")
+        if name != "airfoil" and not distributed:
+            check_finite(name, value)
 
     def _check_signs(self) -> None:
         """Refuse numbers of the wrong sign, and fractions and angles out of range."""

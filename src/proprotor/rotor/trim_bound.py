@@ -20,9 +20,8 @@ from proprotor.rotor.trim_balance import Balance, Slopes, State, solve
 from proprotor.typing import Array
 
 CONTRACTION = 0.5  # largest spectral radius of N
-_REACH = (
-    2.0  # change of slopes within reach of the path, in multiples of the change between the ends of a step
-)
+# Change of slopes within reach of the path, in multiples of the change between the ends of a step.
+_REACH = 2.0
 _WINDOWS = (1, 4, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
 _POWER_STEPS, _FLOOR = 8, 1e-9
 

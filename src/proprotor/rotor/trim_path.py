@@ -22,9 +22,8 @@ from proprotor.typing import Array
 
 _FIRST_STEP, _SHORTEST_STEP = 0.25, 1e-6  # of λ
 _CAUTION = 0.8  # share of the largest allowed radius for which a step is made
-_TURNING = (
-    10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
-)
+# rad per unit of λ: where the steps end and angles change faster than this, the path turns back.
+_TURNING = 10.0
 _STEPS = 400
 _CORRECTIONS = 8
 _ARRIVED = 1e-7  # rad, the last correction

@@ -13,9 +13,8 @@ from proprotor.rotor.trim_start import FARTHEST
 from proprotor.typing import Array
 
 LOST = "the trim at the end of the path from the undeflected blade was lost: Newton did not stay near it"
-_INDUCED_SHARE = (
-    0.05  # of the airspeed: above this share the neglected induced velocity turns the inflow by degrees
-)
+# Of the airspeed: above this share the neglected induced velocity turns the inflow by degrees.
+_INDUCED_SHARE = 0.05
 _LARGEST_ANGLE = np.radians(20)  # of a blade that rigid hinges stand for
 _QUADRATURE = 1e-10  # relative error of the loads and their slopes
 _ANGLES = ("coning", "lag", "elastic_pitch")

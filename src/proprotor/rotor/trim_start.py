@@ -13,9 +13,8 @@ from proprotor.rotor.trim import UNKNOWNS
 from proprotor.rotor.trim_balance import Balance, State
 from proprotor.typing import Array
 
-FARTHEST = np.radians(
-    60
-)  # of the collective from the direction of the air: a blade turned farther is another branch
+# Largest angle of the collective from the direction of the air: a blade turned farther is on another branch.
+FARTHEST = np.radians(60)
 _SEARCH = np.radians(1)  # between the angles among which the rigid blade's root is looked for
 _REFINEMENTS = 60
 _SHARP = 1e-12  # rad, of the rigid blade's root

@@ -180,9 +180,7 @@ def _lowest_of_many(mass: Any, stiffness: Any, count: int) -> StructuralModes:
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import ArpackError, eigsh
 
-    start = np.random.default_rng(0).standard_normal(
-        mass.shape[0]
-    )  # fixed, so that each call finds the same modes
+    start = np.random.default_rng(0).standard_normal(mass.shape[0])  # fixed: each call finds the same modes
     try:
         square, shapes = eigsh(csc_array(stiffness), k=count, M=csc_array(mass), sigma=0.0, v0=start)
     except (ArpackError, RuntimeError):  # a factor that is exactly singular
