@@ -330,7 +330,7 @@ def _parse_unit(text: object, unit: str) -> pint.Unit:
         except pint.UndefinedUnitError as error:
             name = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
             raise InputError("", text, f"has an {unknown_name(name, _unit_names(), 'unit')}") from None
-        except Exception:  # whatever a third-party parser raises, the text is at fault
+        except Exception:  # a third-party parser may raise anything: the text is wrong
             pass
     raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')
 

@@ -45,7 +45,7 @@ _WRAPPERS = (property, staticmethod, classmethod, functools.cached_property, _CA
 _OF_GLOBALS = ("LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS")  # instructions
 _LONGEST = 8  # names of a path in a message
 _MADE_AS_IT_RUNS = 1 << 9  # flag of a class that Python code has made
-# Builtins that read what is no part of a function.
+# Builtins that read something outside the function.
 _UNSEEN = ("eval", "exec", "open", "input", "globals", "__import__")
 _MADE_BY_PYTHON = (  # entries of a class that Python adds by itself
     *("__module__", "__qualname__", "__doc__", "__dict__", "__weakref__", "__firstlineno__", "__slotnames__"),

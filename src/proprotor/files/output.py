@@ -102,7 +102,7 @@ def check_place(path: str | os.PathLike[str], ending: str, field: str = "path") 
 
 
 def _place(path: str | os.PathLike[str]) -> tuple[Path, os.stat_result | None]:
-    """Return the real path of a file, links followed, and the state of the file there now, None without a file."""
+    """Return the real path of a file, with links followed, and the state of the present file; None without a file."""
     place = Path(os.path.realpath(path))
     try:
         before = place.stat()

@@ -91,7 +91,7 @@ class CoefficientSurface:
 
     @property
     def _alpha_slopes(self) -> Array:
-        """Slopes at the nodes along the angle of attack, those of a closed table across its ends."""
+        """Slopes at the nodes along the angle of attack; the slopes of a closed table go across its ends."""
         if not self.wraps:
             return _slopes(self.alpha, self.values)
         turn = 2 * np.pi

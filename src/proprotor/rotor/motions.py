@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from proprotor_equations import FIXED_COORDINATES
+from proprotor_equations import FIXED_COORDINATES, multiblade
 
 from proprotor.errors import InputError, unprintable
 
-HUB = FIXED_COORDINATES[:6]
+HUB = FIXED_COORDINATES[: multiblade.FLAP_0]
 ROTOR_SPEED = "azimuth"  # the model has the rate of this coordinate: nothing holds the rotor's azimuth
 _COLLECTIVE = {"flap": "coning"}
 _AZIMUTH = "rotor speed"

@@ -56,8 +56,8 @@ class Options:
     pitch : "dynamic", "coupling" or "rigid"
         Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
     structure : "coupled", "diagonal" or "tabulated"
-        Springs that turn with the pitch (Eqs. 20-22); these springs without the flap-lag stiffness; or the stiffness
-        that gives the frequencies of `frequencies`, whatever the rotor's springs are.
+        Springs that turn with the pitch (Eqs. 20-22); these springs without the flap-lag stiffness; or, in place of
+        the rotor's springs, the stiffness that gives the frequencies of `frequencies`.
     frequencies : BladeFrequencies
         For structure="tabulated".
     pitch_flap_coupling, pitch_lag_coupling : float or array that broadcasts with the airspeeds, optional

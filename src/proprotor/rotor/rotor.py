@@ -374,7 +374,7 @@ class Rotor:
 
 
 def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) -> Array:
-    """Return the stations with those near centre and tip moved there; refuse stations that leave mass out."""
+    """Return stations, the end ones moved to centre and tip if they are near; refuse stations that leave mass out."""
     try:
         tip = np.asarray(radius, dtype=complex if np.iscomplexobj(radius) else float)
     except (TypeError, ValueError):

@@ -50,12 +50,13 @@ def contraction(
     windows : int
         Parts of the step in λ in which the bound has to hold, each with a P of its own.
     between : Slopes, optional
-        Half-way, for section models whose slopes may change there in a way that the ends do not show.
+        Slopes half-way, for section models whose slopes may change between the ends in other ways.
     enough : float
         Radius above which slopes by angles are tried as well as slopes by moments.
     """
 
     def radius(rows: Array, *slopes: Slopes) -> Array:
+        """Return the largest radius among all windows."""
         n, half = len(rows), (to - share)[rows] / (2 * windows)
         middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
         again = np.tile(np.arange(n), windows)  # all windows at once
@@ -71,6 +72,7 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
     """Return whether slopes at all of the loads are so near the expected ones that one equilibrium has both."""
 
     def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
+        """Return the radius of the relative difference of the slopes."""
         return _radius(np.abs(solve(expected.full, found.full - expected.full)))
 
     near: Array = _by_moments_or_angles(sprung, radius, found, expected) <= CONTRACTION

@@ -63,7 +63,7 @@ def path_ended(path: Path) -> Array:
 
 
 def beyond_reach(balance: Balance, state: State, reason: Array) -> Array:
-    """Return the reasons with those of points whose trim is on another branch, or has an angle beyond 90 deg."""
+    """Return the reasons after points have failed whose trim is on another branch or has an angle beyond 90 deg."""
     reason = reason.copy()
     if balance.target.finds_collective:
         turned = np.abs(np.real(state["collective"]) - balance.air_direction(len(reason)))

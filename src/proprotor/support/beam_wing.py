@@ -1,6 +1,6 @@
-"""A cantilever wing as beam finite elements, with a rigid pylon at its tip and the hub ahead of it.
+"""A cantilever wing of beam finite elements, with a rigid pylon at the tip and the hub ahead of the pylon.
 
-The elements are those of pystran (Euler-Bernoulli bending in two planes, free torsion, extension; consistent mass with
+pystran makes the elements (Euler-Bernoulli bending in two planes, free torsion, extension; consistent mass with
 torsional inertia). The elastic axis is straight, from the mount at the origin to the pylon, and all axes are the
 rotor's: I up, J outboard, K forward along the shaft. The pylon is rigid; it may turn about J against a spring at
 the wing tip, the downstop.

@@ -50,7 +50,7 @@ def read_npz(
     Raises
     ------
     InputError
-        When the file is missing, damaged, too large or contains Python objects, or when the matrices are not those of a
+        When the file is missing, damaged, too large or contains Python objects, or when the matrices do not make a
         support.
     """
     with _readable("file", file) as path, zipfile.ZipFile(path) as archive:
@@ -90,7 +90,7 @@ def read_matrix_market(
     Raises
     ------
     InputError
-        When a file is missing, damaged or too large, or the matrices are not those of a support.
+        When a file is missing, damaged or too large, or the matrices do not make a support.
     """
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _matrix_market(name, path) for name, path in given.items() if path is not None}

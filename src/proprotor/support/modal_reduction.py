@@ -16,7 +16,7 @@ _MASSLESS = 1e-12  # of the largest 1/ω²: a motion without mass has no mode
 _RIGID = 1e-9  # of the largest ω²: a motion without strain
 _NONE = 1e-200  # N/m or N m/rad, whose inverse times a mass would overflow
 _DENSE = 1500  # coordinates up to which all modes are found at once
-_MOST_KEPT = 400  # coordinates of a support: a rotor's eigenvalues are found with all of them
+_MOST_KEPT = 400  # coordinates of a support, all of which enter the eigenvalue problem of the rotor
 
 
 class StructuralModes(NamedTuple):

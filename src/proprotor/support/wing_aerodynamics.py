@@ -90,7 +90,7 @@ class _LoadedModes(NormalModes):
 
 @dataclass(frozen=True, eq=False)
 class WingInAirstream(NormalModes):
-    """A support with the airloads of its wing; its own matrices are those in still air.
+    """A support with the airloads of its wing; its matrices hold in still air, and `at` gives the others.
 
     Parameters
     ----------
