@@ -381,6 +381,16 @@ def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) ->
         return r  # the rotor refuses this radius
     if not np.all(np.real(tip) > 0):
         return r
+    at_centre, at_tip = _check_ends(r, tip, beyond, hub_mass)
+    moved = np.array(np.broadcast_to(r, (*np.broadcast_shapes(r.shape[:-1], tip.shape), r.shape[-1])))
+    moved = moved.astype(np.result_type(moved, tip), copy=False)
+    moved[..., 0] = np.where(at_centre, 0.0, moved[..., 0])
+    moved[..., -1] = np.where(at_tip, tip, moved[..., -1])
+    return moved
+
+
+def _check_ends(r: Array, tip: Array, beyond: str, hub_mass: ArrayLike | None) -> tuple[Array, Array]:
+    """Return whether the first station is near the centre and the last near the tip; refuse what leaves mass out."""
     first, last = (np.real(r[..., end]) / np.real(tip) for end in (0, -1))
     reached = f"has stations from {_shown(first)} R to {_shown(last)} R"
     at_centre, at_tip = np.abs(first) <= _REACH, np.abs(last - 1) <= _REACH
@@ -396,11 +406,7 @@ def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) ->
             f'or say beyond = "{NOTHING}" where there is no mass beyond the stations'
         )
         raise InputError("mass_distribution", f"{r.shape[-1]} values", rule)
-    moved = np.array(np.broadcast_to(r, (*np.broadcast_shapes(r.shape[:-1], tip.shape), r.shape[-1])))
-    moved = moved.astype(np.result_type(moved, tip), copy=False)
-    moved[..., 0] = np.where(at_centre, 0.0, moved[..., 0])
-    moved[..., -1] = np.where(at_tip, tip, moved[..., -1])
-    return moved
+    return at_centre, at_tip
 
 
 def _shown(value: ArrayLike) -> str:
