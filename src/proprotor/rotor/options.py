@@ -10,10 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_finite, unknown_name
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EQUATION_SETS, EquationSet
@@ -126,8 +125,7 @@ class Options:
                 continue
             if self.pitch != "coupling":
                 raise InputError(name, value, 'goes with pitch="coupling"')
-            if not np.all(np.isfinite(np.asarray(value, dtype=float))):
-                raise InputError(name, value, "must be finite")
+            check_finite(name, value)
         if self.drive_train is not None and not isinstance(self.drive_train, DriveTrain):
             raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
         if self.drive_train is not None and self.rotor_speed == "constant":
