@@ -21,6 +21,7 @@ import pytest
 from click.testing import CliRunner
 
 import proprotor as pp
+from benchmarks.paper_figures.command import figures
 from derive import __main__ as derivation
 from derive import audit, emit
 from proprotor.commands.main import main
@@ -33,8 +34,8 @@ from tests.golden.modes import Mode, Record
 from tests.study.test_study_resume import run as study
 
 
-def run(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+def run(*arguments, command=main):
+    return CliRunner().invoke(command, [str(argument) for argument in arguments])
 
 
 @contextmanager
@@ -94,7 +95,7 @@ def test_a_figure_on_a_full_disk_leaves_what_was(tmp_path):
     """The picture does not fit, so there are no numbers of it either."""
     (tmp_path / "figure-12.csv").write_bytes(b"before")
     with full_disk():
-        done = run("figures", 12, "--samples", 0, "--out", tmp_path)
+        done = run(12, "--samples", 0, "--out", tmp_path, command=figures)
     assert done.exit_code == 1 and isinstance(done.exception, SystemExit), done.output
     assert sum("cannot be written" in line for line in done.stderr.splitlines()) == 1
     assert content(tmp_path) == {"figure-12.csv": b"before"}
