@@ -121,7 +121,7 @@ _OWN_AXES = {"stations": 1, "weights": 2, "counts": 1, "edges": 2}  # of each bl
 
 
 def flatten_points(array: Array, shape: tuple[int, ...], own_axes: int) -> Array:
-    """Return an array with all axes before its own axes broadcast to `shape` and flattened."""
+    """Return an array with the axes before its own axes, if any, broadcast to `shape` and flattened."""
     array = np.asarray(array)
     if array.ndim == own_axes:
         return array
