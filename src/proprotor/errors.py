@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 _WIDEST_VALUE = 60  # characters of a value worth repeating in a message
-# Unicode categories that are never shown: controls, formats such as those that reverse the direction of text, halves of
-# characters, characters without a known shape, ends of lines.
+# Unicode categories that are never shown: controls, formats (some reverse the direction of text), halves of characters,
+# characters without a known shape, ends of lines.
 _NEVER = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 _SIGNS = {
     "not negative": (np.less, "must not be negative"),
@@ -45,7 +45,9 @@ class InputError(ValueError):
 
     def __init__(self, field: str, value: object, rule: str, others: Iterable[InputError] = ()) -> None:
         self.field, self.value, self.rule, self.others = field, value, rule, tuple(others)
-        super().__init__(field, value, rule, self.others)  # all of them, so that the error can be pickled
+        super().__init__(
+            field, value, rule, self.others
+        )  # with all arguments, so that the error can be pickled
 
     def __str__(self) -> str:
         shown = "" if self.value is None else f" = {_on_one_line(self.value)}"
@@ -111,7 +113,7 @@ def check_finite(field: str, value: Any, sign: str = "") -> None:
 
 
 def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
-    """Return the rule that an unknown name breaks, with the nearest known name or, without a near one, all of them."""
+    """Return the rule that an unknown name breaks, with the nearest known name or, without a near name, all names."""
     by_lower_case = {k.lower(): k for k in known}
     nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1) or [
         k

@@ -123,4 +123,5 @@ def check_memory(field: str, value: object, size: float, what: str, remedy: str 
 
 
 def _gigabytes(size: float) -> str:
+    """Return a number of bytes as text in GB."""
     return f"{size / 1e9:,.1f} GB"

@@ -179,16 +179,15 @@ def as_si(
     InputError
         When the value has another dimension or is not numeric.
     """
-    if isinstance(value, str):
-        try:
+    written = str(getattr(value, "attrs", {}).get("units") or "")
+    try:
+        if isinstance(value, str):
             return np.asarray(to_si(value, unit))
-        except InputError as error:
-            raise error.within(field) from None
-    if written := getattr(value, "attrs", {}).get("units"):
-        try:
-            return np.asarray(value, dtype=float) * _factor_of_attribute(str(written), unit)
-        except InputError as error:
-            raise error.within(field) from None
+        if written:  # "1" stands for no unit
+            factor = factor_to_si(written, "" if written == "1" else written, unit)
+            return np.asarray(value, dtype=float) * factor
+    except InputError as error:
+        raise error.within(field) from None
     try:
         return np.asarray(value.to(unit).magnitude if hasattr(value, "to") else value, dtype=float)
     except (TypeError, ValueError):  # pint's DimensionalityError is a TypeError
@@ -233,18 +232,11 @@ def _rising(text: str, numbers: list[float], most: int, what: str, field: str = 
     start, stop, step = numbers
     if not step > 0 or stop < start:
         raise InputError(field, text, "must rise from start to stop, start:stop:step, by a positive step")
-    steps = (
-        (stop - start) / step * (1 + 1e-12)
-    )  # slightly more than the quotient, so that 0:1:0.1 includes its 1
+    steps = (stop - start) / step * (1 + 1e-12)  # slightly more, so that 0:1:0.1 includes its 1
     if not steps < most:
         raise InputError(field, text, f"must have at most {most} {what}")
     check_memory(field, text, 24 * steps, f"{steps:.4g} {what}", "take a larger step")
     return start + step * np.arange(int(steps) + 1, dtype=float)
-
-
-def _factor_of_attribute(written: str, unit: str) -> float:
-    """Return the SI units in one unit of a data array's attribute ``units``, where "1" stands for no unit."""
-    return factor_to_si(written, "" if written == "1" else written, unit)
 
 
 # Airspeeds ----------------------------------------------------------------------------------------
@@ -338,7 +330,7 @@ def _parse_unit(text: object, unit: str) -> pint.Unit:
         except pint.UndefinedUnitError as error:
             name = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
             raise InputError("", text, f"has an {unknown_name(name, _unit_names(), 'unit')}") from None
-        except Exception:  # whatever a third-party parser raises, the text is at fault
+        except Exception:  # a third-party parser may raise anything: the text is wrong
             pass
     raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')
 

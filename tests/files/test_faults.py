@@ -35,8 +35,8 @@ from tests.golden.modes import Mode, Record
 from tests.study.test_study_resume import run as study
 
 
-def run(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+def run(*arguments, command=main):
+    return CliRunner().invoke(command, [str(argument) for argument in arguments])
 
 
 @contextmanager

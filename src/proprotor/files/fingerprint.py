@@ -45,7 +45,7 @@ _WRAPPERS = (property, staticmethod, classmethod, functools.cached_property, _CA
 _OF_GLOBALS = ("LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS")  # instructions
 _LONGEST = 8  # names of a path in a message
 _MADE_AS_IT_RUNS = 1 << 9  # flag of a class that Python code has made
-# Builtins that read what is no part of a function.
+# Builtins that read something outside the function.
 _UNSEEN = ("eval", "exec", "open", "input", "globals", "__import__")
 _MADE_BY_PYTHON = (  # entries of a class that Python adds by itself
     *("__module__", "__qualname__", "__doc__", "__dict__", "__weakref__", "__firstlineno__", "__slotnames__"),
@@ -195,7 +195,8 @@ class _Walk:
             self._named((entry.name, getattr(it, entry.name)) for entry in dataclasses.fields(it))
             return
         try:
-            reduced = _reduced(kind, it)
+            own = copyreg.dispatch_table.get(kind)
+            reduced: str | tuple[Any, ...] = own(it) if own else it.__reduce_ex__(pickle.HIGHEST_PROTOCOL)
         except Exception:  # a class that cannot be pickled may raise anything
             raise self.refusal(f"{kind.__module__}.{kind.__qualname__}") from None
         if isinstance(reduced, str):  # the name of a global
@@ -309,12 +310,6 @@ class _Walk:
         counts = (it.co_argcount, it.co_posonlyargcount, it.co_kwonlyargcount, it.co_flags)
         self._each("code", (counts, arguments, it.co_names, it.co_cellvars, it.co_freevars))
         self._each("instructions", (it.co_code, it.co_exceptiontable, it.co_consts))
-
-
-def _reduced(kind: type, it: Any) -> str | tuple[Any, ...]:
-    """Return the parts into which pickle takes an object."""
-    own = copyreg.dispatch_table.get(kind)
-    return own(it) if own else it.__reduce_ex__(pickle.HIGHEST_PROTOCOL)
 
 
 def _content(cell: Any) -> Any:

@@ -102,7 +102,7 @@ def check_place(path: str | os.PathLike[str], ending: str, field: str = "path") 
 
 
 def _place(path: str | os.PathLike[str]) -> tuple[Path, os.stat_result | None]:
-    """Return the real path of a file, links followed, and the state of the file there now, None without a file."""
+    """Return the real path of a file, with links followed, and the state of the present file; None without a file."""
     place = Path(os.path.realpath(path))
     try:
         before = place.stat()
@@ -121,9 +121,8 @@ def _unfinished(place: Path, before: os.stat_result | None) -> Iterator[IO[bytes
 
     The random name does not contain the final one, which may be as long as the system allows.
     """
-    mode = (
-        _NEW if before is None else before.st_mode & _NEW
-    )  # never readable by more people than the final file
+    # Never readable by more people than the final file.
+    mode = _NEW if before is None else before.st_mode & _NEW
     name = place.with_name(f".proprotor-{secrets.token_hex(8)}.tmp")
     file = open(name, "xb", opener=lambda path, flags: os.open(path, flags, mode))  # noqa: SIM115, closed below
     try:

@@ -21,7 +21,7 @@ SHOWING = ("commands", "explore", "plots", "report")  # rooms that only show res
 
 
 def modules() -> Iterator[tuple[str, Path]]:
-    """Yield name and path of every module of the package and of the equations, except those that only show results."""
+    """Yield name and path of every module that a result depends on, in the package and in the generated equations."""
     for package in _PACKAGES:
         for path in sorted(package.rglob("*.py")):
             within = path.relative_to(package)

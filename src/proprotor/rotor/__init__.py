@@ -30,7 +30,7 @@ Loads and trim:
     trim_reasons         reasons and warnings
     trim_solver          Newton's method for all points
 
-All public names of the module `motions` belong to the face.
+All public names of the modules `generated`, `motions`, `options` and `section_loads` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -38,26 +38,13 @@ from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import Air, standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
-from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate
 from proprotor.rotor.operation import Operation
-from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice, parse_options
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
-from proprotor.rotor.section_loads import (
-    BladeSections,
-    closed_form_moments,
-    compressible,
-    has_closed_form,
-    load_moments,
-    segment_quantities,
-)
 from proprotor.rotor.trim import UNKNOWNS, Target, Trim, trim_target, with_trim
 from proprotor.rotor.trim_solver import Settled, solve_trim
 
 __all__ = [
-    "CHOICES",
-    "EQUATION_SETS",
     "HELD",
-    "LOCKABLE",
     "MASS_INTEGRALS",
     "NOTHING",
     "UNKNOWNS",
@@ -65,11 +52,8 @@ __all__ = [
     "Airfoil",
     "AirfoilTable",
     "BladeFrequencies",
-    "BladeSections",
     "DriveTrain",
-    "EquationSet",
     "Operation",
-    "Options",
     "Rotor",
     "SectionCoefficients",
     "SectionModel",
@@ -77,15 +61,10 @@ __all__ = [
     "Target",
     "Trim",
     "Warns",
-    "closed_form_moments",
-    "compressible",
-    "default_choice",
-    "evaluate",
-    "has_closed_form",
-    "load_moments",
+    "generated",
     "motions",
-    "parse_options",
-    "segment_quantities",
+    "options",
+    "section_loads",
     "solve_trim",
     "standard_air",
     "trim_target",

@@ -15,13 +15,10 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError, check_number
 from proprotor.typing import Array
 
-_LOWEST, _HIGHEST = (
-    -610.0,
-    32_000.0,
-)  # m: the lower limit of the library, the height up to which the standards agree
-_MOST_OFFSET = (
-    100.0  # K: more than the air of any day has, so that a temperature given as an offset is refused
-)
+# m: the lower limit of the library, and the height up to which the standards agree.
+_LOWEST, _HIGHEST = -610.0, 32_000.0
+# K: more than the air of any day has, so that a temperature that is given as an offset is refused.
+_MOST_OFFSET = 100.0
 
 
 class Air(NamedTuple):

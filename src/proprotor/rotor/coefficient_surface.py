@@ -67,17 +67,11 @@ class CoefficientSurface:
 
     def beyond_alpha(self, alpha: Array) -> Array:
         """Return whether angles of attack lie outside the table, (...)."""
-        if self.wraps:
-            return np.zeros(np.shape(alpha), dtype=bool)
-        beyond: Array = (np.real(alpha) < self.alpha[0]) | (np.real(alpha) > self.alpha[-1])
-        return beyond
+        return _outside(self.alpha, alpha) & (not self.wraps)
 
     def beyond_mach(self, mach: Array) -> Array:
         """Return whether Mach numbers lie outside the table, (...)."""
-        if len(self.mach) == 1:
-            return np.zeros(np.shape(mach), dtype=bool)
-        beyond: Array = (np.real(mach) < self.mach[0]) | (np.real(mach) > self.mach[-1])
-        return beyond
+        return _outside(self.mach, mach) & (len(self.mach) > 1)
 
     def turned(self, alpha: Array) -> Array:
         """Return an angle of attack moved to within half a turn if the table closes on itself."""
@@ -97,7 +91,7 @@ class CoefficientSurface:
 
     @property
     def _alpha_slopes(self) -> Array:
-        """Slopes at the nodes along the angle of attack, those of a closed table across its ends."""
+        """Slopes at the nodes along the angle of attack; the slopes of a closed table go across its ends."""
         if not self.wraps:
             return _slopes(self.alpha, self.values)
         turn = 2 * np.pi
@@ -131,6 +125,12 @@ def broken_rules(alpha: Array, mach: Array, values: Array, least: float) -> Iter
 def _first_row(holds: Array, rule: str) -> Iterator[tuple[int, str]]:
     """Yield the first row in which a rule does not hold."""
     return ((int(row) + 1, rule) for row in np.flatnonzero(~holds)[:1])
+
+
+def _outside(nodes: Array, x: Array) -> Array:
+    """Return whether each x lies below the first node or above the last."""
+    outside: Array = (np.real(x) < nodes[0]) | (np.real(x) > nodes[-1])
+    return outside
 
 
 def _place(nodes: Array, x: Array) -> tuple[Array, Array]:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from proprotor.errors import InputError, check_finite, unknown_name
 
 _TRIM_TARGETS = ("collective", "thrust_coefficient", "power_coefficient")
@@ -58,8 +56,7 @@ class Operation:
         (name, value), *_ = self.trim.items()
         if name not in _TRIM_TARGETS:
             raise InputError("trim", name, unknown_name(name, _TRIM_TARGETS, "trim"))
-        if not np.all(np.isfinite(np.real(value))):
-            raise InputError(f"trim.{name}", value, "must be finite")
+        check_finite(f"trim.{name}", value)
 
     @property
     def windmilling(self) -> bool:

@@ -10,10 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_finite, unknown_name
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EQUATION_SETS, EquationSet
@@ -56,8 +55,8 @@ class Options:
     pitch : "dynamic", "coupling" or "rigid"
         Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
     structure : "coupled", "diagonal" or "tabulated"
-        Springs that turn with the pitch (Eqs. 20-22); these springs without the flap-lag stiffness; or the stiffness
-        that gives the frequencies of `frequencies`, whatever the rotor's springs are.
+        Springs that turn with the pitch (Eqs. 20-22); these springs without the flap-lag stiffness; or, in place of
+        the rotor's springs, the stiffness that gives the frequencies of `frequencies`.
     frequencies : BladeFrequencies
         For structure="tabulated".
     pitch_flap_coupling, pitch_lag_coupling : float or array that broadcasts with the airspeeds, optional
@@ -126,8 +125,7 @@ class Options:
                 continue
             if self.pitch != "coupling":
                 raise InputError(name, value, 'goes with pitch="coupling"')
-            if not np.all(np.isfinite(np.asarray(np.real(value), dtype=float))):
-                raise InputError(name, value, "must be finite")
+            check_finite(name, value)
         if self.drive_train is not None and not isinstance(self.drive_train, DriveTrain):
             raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
         if self.drive_train is not None and self.rotor_speed == "constant":

@@ -121,7 +121,7 @@ _OWN_AXES = {"stations": 1, "weights": 2, "counts": 1, "edges": 2}  # of each bl
 
 
 def flatten_points(array: Array, shape: tuple[int, ...], own_axes: int) -> Array:
-    """Return an array with its leading axes, those before its own axes, broadcast to `shape` and flattened."""
+    """Return an array with the axes before its own axes, if any, broadcast to `shape` and flattened."""
     array = np.asarray(array)
     if array.ndim == own_axes:
         return array
@@ -187,7 +187,7 @@ def coarse_panels(
 
 
 def _within(edges: Array, root: Array, tip: Array) -> Array:
-    """Return edges with those beyond root or tip moved onto root or tip."""
+    """Return edges, with edges beyond root or tip moved onto root or tip."""
     edges = np.where(np.real(edges) <= np.real(root), root, edges)
     return np.where(np.real(edges) >= np.real(tip), tip, edges)
 

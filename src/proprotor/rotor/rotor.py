@@ -132,8 +132,8 @@ class Rotor:
     airfoil: SectionModel = field(repr=False)
 
     def __post_init__(self) -> None:
-        for name in (entry.name for entry in fields(self) if entry.name != "airfoil"):
-            self._check_number(name)
+        for entry in fields(self):
+            self._check_number(entry.name, getattr(self, entry.name))
         if np.any(np.asarray(self.n_blades) < 3) or np.any(np.asarray(self.n_blades) % 1 != 0):
             raise InputError("n_blades", self.n_blades, "must be a whole number of at least 3")
         self._check_signs()
@@ -141,19 +141,13 @@ class Rotor:
         self._check_reach()
         self._check_mass()
 
-    def _check_number(self, name: str) -> None:
-        """Refuse a field that is no finite number."""
-        value = getattr(self, name)
-        if name in ("chord", "twist") and (isinstance(value, tuple) or callable(value)):
-            return  # a distribution, checked once the radius it stretches with is known to be positive
-        if isinstance(value, tuple | str):
-            raise InputError(name, value, "must be a number")
-        try:
-            finite = np.all(np.isfinite(np.asarray(value, dtype=complex)))
-        except (TypeError, ValueError):
-            raise InputError(name, value, "must be a number") from None
-        if not finite:
-            raise InputError(name, value, "must be finite")
+    def _check_number(self, name: str, value: Any) -> None:
+        """Refuse a field that is no finite number; distributions wait until the radius is known to be positive."""
+        distributed = name in ("chord", "twist") and (isinstance(value, tuple) or callable(value))
+        if isinstance(value, tuple) and not distributed:
+            raise InputError(name, value, "must be a number in SI units")
+        if name != "airfoil" and not distributed:
+            check_finite(name, value)
 
     def _check_signs(self) -> None:
         """Refuse numbers of the wrong sign, and fractions and angles out of range."""
@@ -380,13 +374,23 @@ class Rotor:
 
 
 def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) -> Array:
-    """Return the stations with those near centre and tip moved there; refuse stations that leave mass out."""
+    """Return stations, the end ones moved to centre and tip if they are near; refuse stations that leave mass out."""
     try:
         tip = np.asarray(radius, dtype=complex if np.iscomplexobj(radius) else float)
     except (TypeError, ValueError):
         return r  # the rotor refuses this radius
     if not np.all(np.real(tip) > 0):
         return r
+    at_centre, at_tip = _check_ends(r, tip, beyond, hub_mass)
+    moved = np.array(np.broadcast_to(r, (*np.broadcast_shapes(r.shape[:-1], tip.shape), r.shape[-1])))
+    moved = moved.astype(np.result_type(moved, tip), copy=False)
+    moved[..., 0] = np.where(at_centre, 0.0, moved[..., 0])
+    moved[..., -1] = np.where(at_tip, tip, moved[..., -1])
+    return moved
+
+
+def _check_ends(r: Array, tip: Array, beyond: str, hub_mass: ArrayLike | None) -> tuple[Array, Array]:
+    """Return whether the first station is near the centre and the last near the tip; refuse what leaves mass out."""
     first, last = (np.real(r[..., end]) / np.real(tip) for end in (0, -1))
     reached = f"has stations from {_shown(first)} R to {_shown(last)} R"
     at_centre, at_tip = np.abs(first) <= _REACH, np.abs(last - 1) <= _REACH
@@ -402,11 +406,7 @@ def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) ->
             f'or say beyond = "{NOTHING}" where there is no mass beyond the stations'
         )
         raise InputError("mass_distribution", f"{r.shape[-1]} values", rule)
-    moved = np.array(np.broadcast_to(r, (*np.broadcast_shapes(r.shape[:-1], tip.shape), r.shape[-1])))
-    moved = moved.astype(np.result_type(moved, tip), copy=False)
-    moved[..., 0] = np.where(at_centre, 0.0, moved[..., 0])
-    moved[..., -1] = np.where(at_tip, tip, moved[..., -1])
-    return moved
+    return at_centre, at_tip
 
 
 def _shown(value: ArrayLike) -> str:

@@ -21,7 +21,7 @@ from proprotor.typing import Array
 _Quantities = Mapping[str, Any]
 # Numbers in an array of section loads, points times stations: a core's cache holds a dozen such arrays.
 _BLOCK = 12000
-_OUTBOARD = 0.5  # of the radius: outboard of it angle of attack and Mach number matter to the loads
+_OUTBOARD = 0.5  # of the radius: from here to the tip angle of attack and Mach number matter to the loads
 LOAD_MOMENTS = tuple(
     f"{load}_{power}"
     for load in (*section.Forces._fields, *section.PitchingMoment._fields)
@@ -38,7 +38,7 @@ _STILL = 1e-150
 
 @dataclass(frozen=True, eq=False)
 class BladeSections:
-    """Stations of the blade with what the airloads need there, one set for all points or a set for each point.
+    """Stations of the blade with chord, twist and airfoil, one set for all points or a set for each point.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class BladeSections:
 def segment_quantities(
     sections: BladeSections, quantities: _Quantities, equations: ModuleType = airloads
 ) -> dict[str, Any]:
-    """Return the quantities of each segment at trim: those of the whole blade, and the geometry of the segment.
+    """Return the quantities of each segment at trim: all quantities of the blade, and the geometry of the segment.
 
     `equations` is the generated airload module, here and below.
     """
@@ -213,7 +213,7 @@ def _needed(equations: ModuleType) -> tuple[str, ...]:
 def _aerodynamics(
     sections: BladeSections, segments: _Quantities, compressibility: bool, equations: ModuleType
 ) -> tuple[dict[str, Any], SectionCoefficients, bool]:
-    """Return the air at the stations, the airfoil's coefficients there, and whether the sections' rotation is damped.
+    """Return air and coefficients at the stations, and whether the rotation of the sections is damped.
 
     Lift follows the angle of attack at 3/4 chord, drag and moment follow the angle at the quarter chord.
     """

@@ -16,12 +16,8 @@ from proprotor.rotor.options import Options
 from proprotor.rotor.rotor import Rotor
 from proprotor.typing import Array
 
-UNKNOWNS = (
-    "coning",
-    "lag",
-    "elastic_pitch",
-    "collective",
-)  # in the order of the columns of `equations.jacobian`
+# In the order of the columns of `equations.jacobian`.
+UNKNOWNS = ("coning", "lag", "elastic_pitch", "collective")
 TORQUE, THRUST = equations.AZIMUTH, equations.HUB_K  # rows of a blade's balance
 _FLAP_LAG = tuple(f"flap_lag_stiffness{derivative}" for derivative in ("", "_slope", "_curvature"))
 

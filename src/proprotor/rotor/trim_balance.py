@@ -1,4 +1,4 @@
-"""Balance of one blade at many points and its slopes, with all of the airloads or with a share λ of them.
+"""Balance of one blade at many points, and its slopes, with all of the airloads or with a share λ of the airloads.
 
 The share multiplies precone, and the airloads in the rows of flap, lag and pitch.
 """

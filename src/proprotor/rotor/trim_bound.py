@@ -20,9 +20,8 @@ from proprotor.rotor.trim_balance import Balance, Slopes, State, solve
 from proprotor.typing import Array
 
 CONTRACTION = 0.5  # largest spectral radius of N
-_REACH = (
-    2.0  # change of slopes within reach of the path, in multiples of the change between the ends of a step
-)
+# Change of slopes within reach of the path, in multiples of the change between the ends of a step.
+_REACH = 2.0
 _WINDOWS = (1, 4, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
 _POWER_STEPS, _FLOOR = 8, 1e-9
 
@@ -51,12 +50,13 @@ def contraction(
     windows : int
         Parts of the step in λ in which the bound has to hold, each with a P of its own.
     between : Slopes, optional
-        Half-way, for section models whose slopes may change there in a way that the ends do not show.
+        Slopes half-way, for section models whose slopes may change between the ends in other ways.
     enough : float
         Radius above which slopes by angles are tried as well as slopes by moments.
     """
 
     def radius(rows: Array, *slopes: Slopes) -> Array:
+        """Return the largest radius among all windows."""
         n, half = len(rows), (to - share)[rows] / (2 * windows)
         middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
         again = np.tile(np.arange(n), windows)  # all windows at once
@@ -72,6 +72,7 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
     """Return whether slopes at all of the loads are so near the expected ones that one equilibrium has both."""
 
     def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
+        """Return the radius of the relative difference of the slopes."""
         return _radius(np.abs(solve(expected.full, found.full - expected.full)))
 
     near: Array = _by_moments_or_angles(sprung, radius, found, expected) <= CONTRACTION

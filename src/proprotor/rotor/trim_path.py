@@ -22,9 +22,8 @@ from proprotor.typing import Array
 
 _FIRST_STEP, _SHORTEST_STEP = 0.25, 1e-6  # of λ
 _CAUTION = 0.8  # share of the largest allowed radius for which a step is made
-_TURNING = (
-    10.0  # rad per unit of λ: where the steps end and angles change faster than this, the path turns back
-)
+# rad per unit of λ: where the steps end and angles change faster than this, the path turns back.
+_TURNING = 10.0
 _STEPS = 400
 _CORRECTIONS = 8
 _ARRIVED = 1e-7  # rad, the last correction
@@ -38,8 +37,8 @@ class Path:
         followed, and the number of steps of all points.
     rigid (n,) : whether the rigid blade has a root to start from.
     share (n,) : λ reached, 1 at the trim.
-    turned (n,) : whether the path turns back there.
-    slopes : slopes there.
+    turned (n,) : whether the path turns back at this λ.
+    slopes : slopes at this λ.
     tangent (n, k), step (n,) : change of the free unknowns with λ, and the next step in λ.
     """
 
@@ -64,8 +63,8 @@ class Path:
         """Correct the undeflected blade at no loads, and return the points that have a path."""
         active = np.flatnonzero(self.rigid)
         share = self.share[active]
-        begun, *there = self._correct(self.state, self.rows[active], share)
-        self._accept(active[begun], share[begun], *(part[begun] for part in there))
+        begun, *found = self._correct(self.state, self.rows[active], share)
+        self._accept(active[begun], share[begun], *(part[begun] for part in found))
         return active[begun]
 
     def advance(self, active: Array) -> Array:
@@ -74,12 +73,12 @@ class Path:
         to = np.minimum(1.0, share + self.step[active])
         trial = {name: value.copy() for name, value in self.state.items()}
         self.balance.take_step(trial, here, (share - to)[:, None] * self.tangent[active])
-        good, *there = self._correct(trial, here, to)
-        ends = self.slopes.of(active), Slopes(*there[:2])
+        good, *found = self._correct(trial, here, to)
+        ends = self.slopes.of(active), Slopes(*found[:2])
         radius = contraction(self.balance.sprung, *ends, share, to, enough=0.0)
         good &= radius <= CONTRACTION
         copy_state(trial, here[good], onto=self.state)
-        self._accept(active[good], to[good], *(part[good] for part in there))
+        self._accept(active[good], to[good], *(part[good] for part in found))
         return self._with_next_step(active, good, radius)
 
     def _accept(self, gained: Array, share: Array, full: Array, airloads: Array, loads: Array) -> None:

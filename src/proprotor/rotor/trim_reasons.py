@@ -13,9 +13,8 @@ from proprotor.rotor.trim_start import FARTHEST
 from proprotor.typing import Array
 
 LOST = "the trim at the end of the path from the undeflected blade was lost: Newton did not stay near it"
-_INDUCED_SHARE = (
-    0.05  # of the airspeed: above this share the neglected induced velocity turns the inflow by degrees
-)
+# Of the airspeed: above this share the neglected induced velocity turns the inflow by degrees.
+_INDUCED_SHARE = 0.05
 _LARGEST_ANGLE = np.radians(20)  # of a blade that rigid hinges stand for
 _QUADRATURE = 1e-10  # relative error of the loads and their slopes
 _ANGLES = ("coning", "lag", "elastic_pitch")
@@ -64,7 +63,7 @@ def path_ended(path: Path) -> Array:
 
 
 def beyond_reach(balance: Balance, state: State, reason: Array) -> Array:
-    """Return the reasons with those of points whose trim is on another branch, or has an angle beyond 90 deg."""
+    """Return the reasons after points have failed whose trim is on another branch or has an angle beyond 90 deg."""
     reason = reason.copy()
     if balance.target.finds_collective:
         turned = np.abs(np.real(state["collective"]) - balance.air_direction(len(reason)))

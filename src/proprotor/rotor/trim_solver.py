@@ -9,7 +9,7 @@ The search has three stages, from cheap to exact:
 3. Full Newton on all stations: a point whose first step is too small to matter takes this step and is done. The loads
    of that step serve the equations of motion as well.
 
-Points whose path is lost on few stations are followed on all of them.
+Points whose path is lost on few stations are followed on all stations.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ class Settled:
 
     trim : of all points.
     rows : places (n,) of the converged points.
-    quantities : quantities of the whole blade there.
-    segments : quantities of each segment there, with the radial moments of the section loads.
+    quantities : quantities of the whole blade at these points.
+    segments : quantities of each segment at these points, with the radial moments of the section loads.
     """
 
     trim: Trim
@@ -178,7 +178,7 @@ class _Search:
     def come_close(self) -> None:
         """Take steps on the residual of all stations until, at their rate, the next would be lost in rounding.
 
-        The slopes are those of few stations, and each step improves them by Broyden's rank-one update.
+        The slopes come from few stations, and each step improves the slopes by Broyden's rank-one update.
         """
         rows = self.near
         slopes = self.ends.full[rows]
@@ -217,7 +217,7 @@ class _Search:
         self.reason[arrived[~done[arrived]]] = LOST
 
     def _newton_steps(self, rows: Array) -> Array:
-        """Run full Newton and return which points converged, of points with a path those near its end alone."""
+        """Run full Newton and return which points converged; points with a path must converge near its end."""
         active, done = rows, np.zeros(len(self.reason), dtype=bool)
         size_before = np.full(len(self.reason), np.inf)
         found = Slopes.unknown(len(self.reason), len(self.balance.free))
@@ -270,7 +270,7 @@ def _settle(
     iterations: Array,
     last: _Loads | None = None,
 ) -> Settled:
-    """Return the trim with the loads at its converged points: those of the last step if all of these points took it."""
+    """Return the trim and the loads of the last step, computed again if some of the points dropped out since then."""
     kept = beyond_reach(balance, state, reason)
     rows = np.flatnonzero(kept == "")
     if len(rows) and (last is None or (kept != reason).any()):

@@ -13,10 +13,9 @@ from proprotor.rotor.trim import UNKNOWNS
 from proprotor.rotor.trim_balance import Balance, State
 from proprotor.typing import Array
 
-FARTHEST = np.radians(
-    60
-)  # of the collective from the direction of the air: a blade turned farther is another branch
-_SEARCH = np.radians(1)  # between the angles among which the rigid blade's root is looked for
+# Largest angle of the collective from the direction of the air: a blade turned farther is on another branch.
+FARTHEST = np.radians(60)
+_SEARCH = np.radians(1)  # step of the search for the rigid blade's root
 _REFINEMENTS = 60
 _SHARP = 1e-12  # rad, of the rigid blade's root
 _NO_SPRING = 1e-90  # of the other spring, or N m/rad
@@ -31,7 +30,7 @@ def first_guess(balance: Balance, points: int) -> State:
 
 
 def held(balance: Balance, points: int) -> Array:
-    """Return at which points (points,) the unloaded blade is held, so that a path can begin there.
+    """Return at which points (points,) something holds the unloaded blade, so that it can begin a path.
 
     Without airloads nothing holds a lag hinge at the centre that has no spring.
     """

@@ -1,6 +1,6 @@
-"""A cantilever wing as beam finite elements, with a rigid pylon at its tip and the hub ahead of it.
+"""A cantilever wing of beam finite elements, with a rigid pylon at the tip and the hub ahead of the pylon.
 
-The elements are those of pystran (Euler-Bernoulli bending in two planes, free torsion, extension; consistent mass with
+pystran makes the elements (Euler-Bernoulli bending in two planes, free torsion, extension; consistent mass with
 torsional inertia). The elastic axis is straight, from the mount at the origin to the pylon, and all axes are the
 rotor's: I up, J outboard, K forward along the shaft. The pylon is rigid; it may turn about J against a spring at
 the wing tip, the downstop.
@@ -309,28 +309,33 @@ def wing_elements(wing: Wing) -> tuple[Array, dict[str, Array], Array]:
     frame = model.create(3)
     for node, position in enumerate(positions):
         model.add_joint(frame, node, position, dof=_PER_NODE * node + np.arange(_PER_NODE))
-    joints = frame["joints"]
     given = {name: _means(getattr(wing, name), stations) for name in _PROFILES}
     size = _PER_NODE * len(stations)
     mass = np.zeros((size, size))
     parts = {name: np.zeros((size, size)) for name in ("beam", "chord", "torsion", "axial")}
     for place in range(wing.elements):
-        ends = joints[place], joints[place + 1]
+        ends = frame["joints"][place], frame["joints"][place + 1]
         own = {name: values[place] for name, values in given.items()}
-        # In pystran x is along the beam, z up and y forward; here each section has one stiffness and unit modulus.
-        stiffness = {
-            "beam": {"E": 1.0, "Iy": own["beam_stiffness"]},
-            "chord": {"E": 1.0, "Iz": own["chord_stiffness"]},
-            "torsion": {"G": 1.0, "J": own["torsion_stiffness"]},
-            "axial": {"E": 1.0, "A": own["axial_stiffness"]},
-        }
-        for name, properties in stiffness.items():
+        for name, properties in _stiffness_sections(own).items():
             member = {"section": section.beam_3d_section(name, xz_vector=_UP, **properties)}
             beam.assemble_stiffness(parts[name], member, *ends)
         inertia = {"A": own["mass_per_length"], "Ix": own["torsional_inertia_per_length"]}
         whole = section.beam_3d_section("mass", rho=1.0, xz_vector=_UP, **inertia)
         beam.assemble_mass(mass, {"section": whole}, *ends)
     return mass, parts, positions
+
+
+def _stiffness_sections(own: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """Return the properties of pystran's sections for each part of the stiffness: one stiffness each, unit modulus.
+
+    In pystran x is along the beam, z up and y forward.
+    """
+    return {
+        "beam": {"E": 1.0, "Iy": own["beam_stiffness"]},
+        "chord": {"E": 1.0, "Iz": own["chord_stiffness"]},
+        "torsion": {"G": 1.0, "J": own["torsion_stiffness"]},
+        "axial": {"E": 1.0, "A": own["axial_stiffness"]},
+    }
 
 
 def _coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:

@@ -50,15 +50,13 @@ def read_npz(
     Raises
     ------
     InputError
-        When the file is missing, damaged, too large or contains Python objects, or when the matrices are not those of a
+        When the file is missing, damaged, too large or contains Python objects, or when the matrices do not make a
         support.
     """
-    path = _existing("file", file)
-    with _readable("file", path), zipfile.ZipFile(path) as archive:
-        unpacked = sum(entry.file_size for entry in archive.infolist())
-    if unpacked > _LARGEST:
-        raise InputError("file", str(path), f"must not hold more than {_LARGEST // 10**6} MB")
-    with _readable("file", path), np.load(path, allow_pickle=False) as archive:
+    with _readable("file", file) as path, zipfile.ZipFile(path) as archive:
+        if sum(entry.file_size for entry in archive.infolist()) > _LARGEST:
+            raise InputError("file", str(path), f"must not hold more than {_LARGEST // 10**6} MB")
+    with _readable("file", file) as path, np.load(path, allow_pickle=False) as archive:
         for name in archive.files:
             if name not in _KEYS:
                 raise InputError("file", str(path), unknown_name(name, _KEYS, "array"))
@@ -92,12 +90,11 @@ def read_matrix_market(
     Raises
     ------
     InputError
-        When a file is missing, damaged or too large, or the matrices are not those of a support.
+        When a file is missing, damaged or too large, or the matrices do not make a support.
     """
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _matrix_market(name, path) for name, path in given.items() if path is not None}
-    path = _existing("dofs", dofs)
-    names = read_text(path, "dofs", str(path), _LARGEST).split()
+    names = read_text(Path(dofs), "dofs", str(dofs), _LARGEST).split()
     return support_from_matrices(
         matrices["mass"], matrices["stiffness"], matrices.get("damping"), dofs=names, hub=hub, **options
     )
@@ -237,31 +234,22 @@ def _check_symmetry(name: str, matrix: Any) -> None:
 
 def _matrix_market(field: str, path: str | os.PathLike[str]) -> Any:
     """Return the matrix of a Matrix Market file."""
-    path = _existing(field, path)
-    with _readable(field, path):
-        return read_matrix(path)
+    with _readable(field, path) as found:
+        return read_matrix(found)
 
 
-def _existing(field: str, path: str | os.PathLike[str]) -> Path:
-    """Return the path of a file that exists and is not too large."""
-    path = Path(path)
+@contextmanager
+def _readable(field: str, file: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield the path of a file that is not too large, and turn any error of its reader into an `InputError`."""
+    path = Path(file)
     try:
         if not path.is_file():
             raise InputError(field, str(path), "no such file")
         if path.stat().st_size > _LARGEST:
             raise InputError(field, str(path), f"must not be larger than {_LARGEST // 10**6} MB")
-    except OSError as error:  # a name too long, a folder that this user may not enter
-        raise InputError(field, str(path), f"cannot be read ({error.strerror})") from None
-    return path
-
-
-@contextmanager
-def _readable(field: str, path: Path) -> Iterator[None]:
-    """Turn any error that a damaged file causes in its reader into an `InputError` of one line."""
-    try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an old file is read in spite of its warnings
-            yield
+            yield path
     except InputError:
         raise
     except OSError as error:

@@ -16,7 +16,7 @@ _MASSLESS = 1e-12  # of the largest 1/ω²: a motion without mass has no mode
 _RIGID = 1e-9  # of the largest ω²: a motion without strain
 _NONE = 1e-200  # N/m or N m/rad, whose inverse times a mass would overflow
 _DENSE = 1500  # coordinates up to which all modes are found at once
-_MOST_KEPT = 400  # coordinates of a support: a rotor's eigenvalues are found with all of them
+_MOST_KEPT = 400  # coordinates of a support, all of which enter the eigenvalue problem of the rotor
 
 
 class StructuralModes(NamedTuple):
@@ -143,31 +143,12 @@ def per_mode(damping_ratio: ArrayLike, count: int) -> Array:
 
 def _of_few(mass: Array, stiffness: Array, count: int | None) -> StructuralModes:
     """Return the lowest modes of dense matrices, from all their modes."""
-    from scipy.linalg import LinAlgError, eigh  # here, because scipy is slow to import
-
     if not mass.any():
         raise InputError("mass", None, "must not be zero")
     diagonal = np.diagonal(stiffness)
     scale = 1 / np.sqrt(np.where(diagonal > _NONE, diagonal, 1.0))
     mass, stiffness = (matrix * np.outer(scale, scale) for matrix in (mass, stiffness))
-    try:
-        # Solve M φ = (1/ω²) K φ: the lowest modes are then the most accurate, and massless motions give zeros.
-        compliance, shapes = eigh(mass, stiffness)
-        order = np.argsort(-compliance)
-        carrying = compliance[order] > _MASSLESS * np.abs(compliance).max()
-        if compliance.min() < -_MASSLESS * np.abs(compliance).max():
-            raise InputError("mass", None, "must not be negative in any direction")
-        order = order[carrying]
-        square, shapes = 1 / compliance[order], shapes[:, order] / np.sqrt(compliance[order])
-    except LinAlgError:  # free to move somewhere
-        try:
-            square, shapes = eigh(stiffness, mass)
-        except LinAlgError:
-            rule = "must hold the structure, or else the mass must be positive definite"
-            raise InputError("stiffness", None, rule) from None
-        if square[0] < -_RIGID * square[-1]:
-            raise InputError("stiffness", None, "must not be negative in any direction") from None
-        square = np.where(square < _RIGID * square[-1], 0.0, square)
+    square, shapes = _held_modes(mass, stiffness) or _free_modes(mass, stiffness)
     count = len(square) if count is None else count
     if not 1 <= count <= len(square):
         rule = f"must be from 1 to {len(square)}, the number of modes that carry mass"
@@ -175,14 +156,45 @@ def _of_few(mass: Array, stiffness: Array, count: int | None) -> StructuralModes
     return StructuralModes(np.sqrt(square[:count]), (scale[:, None] * shapes)[:, :count])
 
 
+def _held_modes(mass: Array, stiffness: Array) -> tuple[Array, Array] | None:
+    """Return ω² and shapes of the modes that carry mass, or None for a structure that is free to move.
+
+    M φ = (1/ω²) K φ is solved: the lowest modes are then the most accurate, and massless motions give zeros.
+    """
+    from scipy.linalg import LinAlgError, eigh  # here, because scipy is slow to import
+
+    try:
+        compliance, shapes = eigh(mass, stiffness)
+    except LinAlgError:
+        return None
+    least = _MASSLESS * np.abs(compliance).max()
+    if compliance.min() < -least:
+        raise InputError("mass", None, "must not be negative in any direction")
+    order = np.argsort(-compliance)
+    order = order[compliance[order] > least]
+    return 1 / compliance[order], shapes[:, order] / np.sqrt(compliance[order])
+
+
+def _free_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Return ω² and shapes of all modes of a structure that is free to move; rigid motions have ω² = 0."""
+    from scipy.linalg import LinAlgError, eigh
+
+    try:
+        square, shapes = eigh(stiffness, mass)
+    except LinAlgError:
+        rule = "must hold the structure, or else the mass must be positive definite"
+        raise InputError("stiffness", None, rule) from None
+    if square[0] < -_RIGID * square[-1]:
+        raise InputError("stiffness", None, "must not be negative in any direction")
+    return np.where(square < _RIGID * square[-1], 0.0, square), shapes
+
+
 def _lowest_of_many(mass: Any, stiffness: Any, count: int) -> StructuralModes:
     """Return the lowest modes of large matrices by shifted inverse iteration."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import ArpackError, eigsh
 
-    start = np.random.default_rng(0).standard_normal(
-        mass.shape[0]
-    )  # fixed, so that each call finds the same modes
+    start = np.random.default_rng(0).standard_normal(mass.shape[0])  # fixed: each call finds the same modes
     try:
         square, shapes = eigsh(csc_array(stiffness), k=count, M=csc_array(mass), sigma=0.0, v0=start)
     except (ArpackError, RuntimeError):  # a factor that is exactly singular

@@ -76,9 +76,7 @@ def nastran_modes(
     """
     results = _read(Path(file))
     vectors = _one_subcase(results.eigenvectors, subcase, file)
-    places = np.flatnonzero(np.asarray(vectors.node_gridtype)[:, 0] == grid)
-    if not len(places):
-        raise InputError("grid", grid, "has no eigenvectors in the file: the hub's grid point is missing")
+    motion = _motion_of(grid, vectors)
     table = _table(results.eigenvalues, vectors, file)
     available = len(vectors.modes)
     count = available if modes is None else modes
@@ -87,10 +85,8 @@ def nastran_modes(
     rows = [list(table.mode).index(mode) for mode in vectors.modes[:count]]
     frequency = np.asarray(table.radians, dtype=float)[rows]
     generalized_mass = np.asarray(table.generalized_mass, dtype=float)[rows]
-    motion = _turned(np.asarray(vectors.data[:count, places[0], :], dtype=float).T, hub)
-    if not (
-        np.isfinite(motion).all() and np.isfinite(generalized_mass).all() and (generalized_mass > 0).all()
-    ):
+    motion = _turned(motion[:, :count], hub)
+    if not (np.isfinite(motion).all() and np.isfinite(generalized_mass).all() and min(generalized_mass) > 0):
         raise InputError("file", str(file), "must hold finite eigenvectors and generalised masses above zero")
     # The coordinate of a mode is a number without unit: a translation counts lengths in the run's unit.
     motion[TRANSLATION] *= length_unit
@@ -166,6 +162,14 @@ def _one_subcase(eigenvectors: Mapping[Any, Any], subcase: int | None, path: Any
     if subcase not in numbers:
         raise InputError("subcase", subcase, f"is not in the file, which has {', '.join(map(str, numbers))}")
     return numbers[subcase]
+
+
+def _motion_of(grid: int, vectors: Any) -> Array:
+    """Return the motion (6, modes) of a grid point, rows T1 … R3."""
+    places = np.flatnonzero(np.asarray(vectors.node_gridtype)[:, 0] == grid)
+    if not len(places):
+        raise InputError("grid", grid, "has no eigenvectors in the file: the hub's grid point is missing")
+    return np.asarray(vectors.data[:, places[0], :], dtype=float).T
 
 
 def _table(tables: Mapping[Any, Any], vectors: Any, path: Any) -> Any:

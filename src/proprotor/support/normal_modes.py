@@ -79,9 +79,12 @@ class NormalModes:
             if not is_choice(getattr(self, field), choices):
                 raise InputError(field, getattr(self, field), f"must be {list_choices(choices)}")
         check_support_names("names", names)
-        n = len(names)
         object.__setattr__(self, "names", names)
-        object.__setattr__(self, "hub", _finite("hub", self.hub, (6, n)))
+        self._check_matrices(len(names))
+
+    def _check_matrices(self, n: int) -> None:
+        """Keep the matrices as arrays, or refuse matrices of a wrong shape, not symmetric or with a negative mass."""
+        object.__setattr__(self, "hub", _finite("hub", self.hub, (len(HUB_AXES), n)))
         for field in ("mass", "damping", "stiffness"):
             matrix = _finite(field, getattr(self, field), (n, n))
             turned = np.swapaxes(matrix, -1, -2)

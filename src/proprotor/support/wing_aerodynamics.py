@@ -90,7 +90,7 @@ class _LoadedModes(NormalModes):
 
 @dataclass(frozen=True, eq=False)
 class WingInAirstream(NormalModes):
-    """A support with the airloads of its wing; its own matrices are those in still air.
+    """A support with the airloads of its wing; its matrices hold in still air, and `at` gives the others.
 
     Parameters
     ----------
@@ -189,11 +189,9 @@ def cantilever_strips(support: NormalModes, span: float, mast_length: float) -> 
     span, mast_length : float or array (...)
         m.
     """
+    check_finite("span", span, "above zero")
+    check_finite("mast_length", mast_length)
     length, mast = np.asarray(span), np.asarray(mast_length)
-    if not (np.isfinite(length).all() and (length.real > 0).all()):
-        raise InputError("span", length, "must be above zero")
-    if not np.isfinite(mast).all():
-        raise InputError("mast_length", mast, "must be finite")
     points, weights = np.polynomial.legendre.leggauss(_STRIPS)
     eta = ((1 + points) / 2)[:, None]
     pitch = support.hub[..., _PITCH, :][..., None, :]
