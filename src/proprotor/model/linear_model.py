@@ -87,6 +87,12 @@ class LinearModel:
         return "\n".join(lines)
 
     @property
+    def matrices(self) -> dict[str, Array]:
+        """M, C, K and, for a model with inputs, B, by name; SI."""
+        given = {name: getattr(self, name) for name in ("M", "C", "K", "B")}
+        return {name: matrix for name, matrix in given.items() if matrix is not None}
+
+    @property
     def shaft_holds_azimuth(self) -> Array:
         """Points (...) at which a shaft with an end of constant speed makes the azimuth a displacement, in rad.
 
