@@ -192,15 +192,7 @@ class RotorSection(Section):
     @model_validator(mode="after")
     def _one_side_of_each_pair(self) -> RotorSection:
         for pair in ALTERNATIVES:
-            sides = [side for side in pair if self.model_fields_set.intersection(side)]
-            both = " or ".join(_listed(side) for side in pair)
-            if not sides:
-                raise InputError(pair[0][0], None, f"is missing; give {both}")
-            if len(sides) > 1:
-                raise InputError(sides[1][0], None, f"must not be given twice over; give {both}")
-            for name in sides[0]:
-                if name not in self.model_fields_set:
-                    raise InputError(name, None, "is missing")
+            _one_side(self, pair)
         if self.hub_mass is not None and self.mass_distribution is None:
             rule = "must be given with mass_distribution; blade_mass holds the hub's mass"
             raise InputError("hub_mass", self.hub_mass.written, rule)
@@ -265,17 +257,7 @@ class OperationSection(Section):
 
     @model_validator(mode="after")
     def _given_air_or_standard(self) -> OperationSection:
-        ((own, standard),) = AIR_ALTERNATIVES
-        given = [name for name in own if name in self.model_fields_set]
-        by_altitude = [name for name in standard if name in self.model_fields_set]
-        both = f"{_listed(own)} or {_listed(standard)}"
-        if given and by_altitude:
-            raise InputError(by_altitude[0], None, f"must not be given twice over; give {both}")
-        if not given and not by_altitude:
-            raise InputError(own[0], None, f"is missing; give {both}")
-        for name in own if given else standard[:1]:
-            if name not in self.model_fields_set:
-                raise InputError(name, None, "is missing")
+        _one_side(self, AIR_ALTERNATIVES[0], may_lack="temperature_offset")
         return self
 
 
@@ -329,6 +311,21 @@ def section_places() -> list[tuple[str, ...]]:
 def in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
     """Return a place without the kind of support, which pydantic inserts."""
     return (place[0], *place[2:]) if place[:1] == ("support",) and len(place) > 1 else place
+
+
+def _one_side(section: Section, choice: Sides, may_lack: str = "") -> None:
+    """Refuse a section that does not give exactly one side of a choice, with all fields but one that it may lack."""
+    given = section.model_fields_set
+    sides = [side for side in choice if given.intersection(side)]
+    both = " or ".join(_listed(side) for side in choice)
+    if not sides:
+        raise InputError(choice[0][0], None, f"is missing; give {both}")
+    if len(sides) > 1:
+        twice = next(name for name in sides[1] if name in given)
+        raise InputError(twice, None, f"must not be given twice over; give {both}")
+    for name in sides[0]:
+        if name not in given and name != may_lack:
+            raise InputError(name, None, "is missing")
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -120,12 +120,12 @@ def _section(section: str, tables: Mapping[str, Any], place: Path, variant: bool
     for field in own:
         name = field.path.rpartition(".")[2]
         if section == "case" and name == "name":
-            yield from _given(field, name, case_name(place), place, "")
+            yield from _entry(field, name, toml(case_name(place)), "")
         elif isinstance(given, Mapping) and name in given and not _is_list_of_tables(given[name]):
             keep = not variant or (section, name) == ("case", "title")
-            yield from _given(field, name, given[name], place, "" if keep else "# ")
+            yield from _entry(field, name, toml(_from(given[name], place)), "" if keep else "# ")
         elif not (variant or name == "warnings" or (isinstance(given, Mapping) and name in given)):
-            yield from _left_out(field, name)
+            yield from _entry(field, name, example(field), "# ")
 
 
 def _belongs_to(field: DeckField, section: str, kind: str) -> bool:
@@ -143,19 +143,13 @@ def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
     for field in deck_fields():
         prefix, _, name = field.path.rpartition(".")
         if prefix == "support.modes[NAME]" and name in mode:
-            yield from _given(field, name, mode[name], place, mark)
+            yield from _entry(field, name, toml(_from(mode[name], place)), mark)
 
 
-def _given(field: DeckField, name: str, value: Any, place: Path, mark: str) -> Iterator[str]:
-    """Yield the lines of a field with its value, behind a mark."""
+def _entry(field: DeckField, name: str, text: str, mark: str) -> Iterator[str]:
+    """Yield the lines of a field: its meaning, and its value as TOML behind a mark."""
     yield f"# {_comment(field)}"
-    yield "\n".join(f"{mark}{line}" for line in f"{name} = {toml(_from(value, place))}".split("\n"))
-
-
-def _left_out(field: DeckField, name: str) -> Iterator[str]:
-    """Yield the lines of a field that the deck leaves out."""
-    yield f"# {_comment(field)}"
-    yield f"# {name} = {example(field)}"
+    yield "\n".join(f"{mark}{line}" for line in f"{name} = {text}".split("\n"))
 
 
 def _comment(field: DeckField) -> str:

@@ -50,7 +50,7 @@ class LinearModel:
         and, for a rotor with a gimbal, on the gimbal's, whatever the options. A support whose masses include the rotor
         needs this matrix. See `proprotor.model.mass_at_rest`.
     shapes : array (..., m, k), optional
-        Shapes of the first k coordinates, those of a support whose shapes differ from design to design: see
+        Shapes of the first k coordinates, for a support whose shapes differ from design to design: see
         `proprotor.support.normal_modes.NormalModes`.
     origin : Origin, optional
         The options in force and the case, if the model is one of a case: see `proprotor.model.stamp`.
