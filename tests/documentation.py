@@ -27,10 +27,10 @@ from pathlib import Path
 from typing import Any
 
 from click.testing import CliRunner
-from proprotor.deck.validation import validate
 
 from proprotor.commands.main import main
 from proprotor.deck.file import read_tables
+from proprotor.deck.validation import validate
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

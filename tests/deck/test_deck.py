@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from proprotor.deck.validation import validate
 
 from proprotor.datum import STATUSES, Datum
 from proprotor.deck.file import list_cases, read_tables
+from proprotor.deck.validation import validate
 from proprotor.errors import InputError
 from proprotor.units import as_si, speeds, to_si, unit_registry
 
