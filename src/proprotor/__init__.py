@@ -1,7 +1,7 @@
 """Whirl-flutter stability of gimballed tiltrotors, with equations derived from first principles.
 
-`import proprotor as pp` offers the names in ``__all__``. Data flow down this list of rooms, and a room imports the rooms
-above it only; docs/architecture.md says more, and the docstring of each room is its map.
+`import proprotor as pp` offers the names in ``__all__``. Data flow down this list of rooms, and a room imports only the
+rooms above it. docs/architecture.md describes the rooms, and the docstring of each room is its map.
 
     errors typing needs units datum files   the ground: messages, types, packages and memory, SI, numbers, files
     rotor       a rotor trimmed in its air: section loads, operation, options, the trim

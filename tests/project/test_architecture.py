@@ -1,4 +1,4 @@
-"""The list of rooms is the same in the contract, on the page of the architecture and in the docstring of the package."""
+"""The rooms are the same in the contract, on the page of the architecture and in the docstring of the package."""
 
 import re
 

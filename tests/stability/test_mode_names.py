@@ -469,7 +469,7 @@ def test_a_beam_wing_with_modes_of_other_kinds_says_so(wing):
     warning = varied.linearize(120.0).trim.warning
     assert (
         warning[0] == ""
-        and warning[1] == "the wing has other modes than in the case's own design: beam_3 is told as axial"
+        and warning[1] == "the wing has other modes than in the case's own design: beam_3 is named axial"
     )
     study = pp.study(wing, {AXIAL: np.array([1.0, 5.0]) * wing.given[AXIAL].si}, 120.0, workers=1)
     assert "beam_3" in str(study.warning.values[1])

@@ -13,6 +13,7 @@ asked for, with the source of every number, or the text of a deck and the descri
     fields             types of fields: form, unit, bound
     sections           the sections of a deck, their fields and the meaning of each
     support_sections   the section [support], one set of fields for each kind
+    tables             walk nested tables
     text               printable text, prose on one line
     validation         check tables against the sections, a line for each problem
     settings           set single fields before a deck is validated

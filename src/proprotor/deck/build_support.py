@@ -25,21 +25,13 @@ from proprotor.typing import Array
 
 if TYPE_CHECKING:
     from proprotor.datum import Datum
-    from proprotor.deck.support_sections import (
-        BeamWingSection,
-        MatricesSection,
-        NastranSection,
-        NormalModesSection,
-        PivotSection,
-        RigidSection,
-        SupportSection,
-    )
+    from proprotor.deck import support_sections
 
 _KINDS_OF_STRAIN = ("beam", "chord", "torsion")
 
 
 def build_support(
-    section: SupportSection, numbers: Mapping[str, Datum], names: tuple[str, ...] = ()
+    section: support_sections.SupportSection, numbers: Mapping[str, Datum], names: tuple[str, ...] = ()
 ) -> NormalModes:
     """Return the support of the section [support] of a deck.
 
@@ -62,7 +54,8 @@ def build_support(
     return _BUILDERS[section.kind](section, numbers)
 
 
-def _normal_modes(section: NormalModesSection, numbers: Mapping[str, Datum]) -> NormalModes:
+def _normal_modes(section: support_sections.NormalModesSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    """Return the support of normal modes."""
     names = [mode.name for mode in section.modes]
     own = _values(numbers, "support")
     modes = [_values(numbers, f"support.modes[{name}]") for name in names]
@@ -78,7 +71,8 @@ def _normal_modes(section: NormalModesSection, numbers: Mapping[str, Datum]) -> 
     return _with_assumed_airloads(support, section, numbers)
 
 
-def _pivot(section: PivotSection, numbers: Mapping[str, Datum]) -> NormalModes:
+def _pivot(section: support_sections.PivotSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    """Return the support of a shaft on a pivot."""
     given = _values(numbers, "support")
     pairs: dict[str, Any] = {
         name: _side_by_side(given.get(f"{axis}_{name}", 0.0) for axis in ("pitch", "yaw"))
@@ -88,21 +82,19 @@ def _pivot(section: PivotSection, numbers: Mapping[str, Datum]) -> NormalModes:
     return two_axis_pivot(given["distance"], **pairs, **held)
 
 
-def _rigid(section: RigidSection, numbers: Mapping[str, Datum]) -> NormalModes:
-    return rigid_support()
-
-
-def _matrices(section: MatricesSection, numbers: Mapping[str, Datum]) -> NormalModes:
+def _matrices(section: support_sections.MatricesSection, numbers: Mapping[str, Datum]) -> NormalModes:
     read = read_matrix_market if section.file is None else read_npz
     return _from_files(read, section, numbers)
 
 
-def _nastran(section: NastranSection, numbers: Mapping[str, Datum]) -> NormalModes:
+def _nastran(section: support_sections.NastranSection, numbers: Mapping[str, Datum]) -> NormalModes:
     return _from_files(nastran_modes, section, numbers)
 
 
 def _from_files(
-    read: Callable[..., NormalModes], section: MatricesSection | NastranSection, numbers: Mapping[str, Datum]
+    read: Callable[..., NormalModes],
+    section: support_sections.MatricesSection | support_sections.NastranSection,
+    numbers: Mapping[str, Datum],
 ) -> NormalModes:
     """Return the support that a function reads from the files of a section."""
     given = _values(numbers, "support")
@@ -110,7 +102,10 @@ def _from_files(
     return _with_assumed_airloads(read(**given, hub=section.hub), section, numbers)
 
 
-def _beam_wing(section: BeamWingSection, numbers: Mapping[str, Datum], names: tuple[str, ...]) -> NormalModes:
+def _beam_wing(
+    section: support_sections.BeamWingSection, numbers: Mapping[str, Datum], names: tuple[str, ...]
+) -> NormalModes:
+    """Return the support of a beam wing, for many designs with the coordinates in the order of the names."""
     given = _values(numbers, "support")
     _must_be_real(given)
     made = _each_design(given, lambda one: _one_beam_wing(one, section.downstop))
@@ -122,6 +117,7 @@ def _beam_wing(section: BeamWingSection, numbers: Mapping[str, Datum], names: tu
 
 
 def _one_beam_wing(given: dict[str, Any], downstop: bool) -> tuple[NormalModes, Strips]:
+    """Return the support and the aerodynamic strips of one beam wing."""
     spring = given.get("downstop_stiffness_on" if downstop else "downstop_stiffness_off")
     wing, pylon = (
         {entry.name: given[entry.name] for entry in fields(kind) if entry.name in given}
@@ -149,7 +145,7 @@ _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
     "matrices": _matrices,
     "nastran": _nastran,
     "pivot": _pivot,
-    "rigid": _rigid,
+    "rigid": lambda section, numbers: rigid_support(),
 }
 
 
@@ -212,7 +208,7 @@ def _named_otherwise(own: Sequence[str], names: Sequence[str]) -> str:
     """Return a warning for a design whose modes have other names than the modes of the case's own design, or ""."""
     others = [name for name in own if name not in names]
     missing = [name for name in names if name not in own]
-    renamed = [f"{name} is told as {place}" for name, place in zip(others, missing, strict=True)]
+    renamed = [f"{name} is named {place}" for name, place in zip(others, missing, strict=True)]
     return f"the wing has other modes than in the case's own design: {', '.join(renamed)}" if renamed else ""
 
 

@@ -39,6 +39,11 @@ _ALONG = {
     "curve": "one value, or { value = [...] }",
     "along the wing": "one value, or { y_over_span = [...], value = [...], unit = ... }",
 }
+_FORMS = {
+    "count": "a whole number",
+    "file": "the name of a file",
+    "rising list": "{ value = [...], unit = ... }",
+}
 _PLAIN = {bool: "true or false", str: "text"}
 
 
@@ -164,15 +169,11 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
     """Return the possible values of a field in words; "" for a section."""
     if reading is None:
         return _takes_plain(field.annotation)
-    if reading.form == "count":
-        return "a whole number"
-    if reading.form == "file":
-        return "the name of a file"
+    if reading.form in _FORMS:
+        return _FORMS[reading.form]
     if reading.form == "choice":
         return list_choices(reading.choices)
     by_angle = getattr(reading, "of_angle", None)
-    if reading.form == "rising list":
-        return "{ value = [...], unit = ... }"
     values = meaning(reading.unit)
     if by_angle is not None:
         values = f"of a length {values}; of an angle {meaning(by_angle)}"
@@ -260,19 +261,17 @@ def _default(field: FieldInfo, reading: Reading | None, constructed: Any) -> str
 
 def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:
     """Yield label and text of each property of a field."""
-    yield "means", field.meaning
-    if field.kind:
-        yield "of", f'[support] of kind "{field.kind}"'
-    yield "takes", field.takes
-    if field.unit:
-        yield "SI unit", field.unit
-    if field.range:
-        yield "range", field.range
-    if field.default:
-        yield "default", field.default
-    if field.instead_of:
-        yield "instead of", ", ".join(field.instead_of)
-    yield "needed", "yes" if field.required and not field.instead_of else _needed(field)
+    texts = {
+        "means": field.meaning,
+        "of": f'[support] of kind "{field.kind}"' if field.kind else "",
+        "takes": field.takes,
+        "SI unit": field.unit,
+        "range": field.range,
+        "default": field.default,
+        "instead of": ", ".join(field.instead_of),
+        "needed": "yes" if field.required and not field.instead_of else _needed(field),
+    }
+    yield from ((label, text) for label, text in texts.items() if text)
 
 
 def _needed(field: DeckField) -> str:

@@ -14,40 +14,10 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from pydantic_core import CoreSchema, core_schema
 
 from proprotor.datum import Datum
-from proprotor.deck.reading import (
-    ANY,
-    BELOW_CRITICAL,
-    FRACTION,
-    NOT_NEGATIVE,
-    POSITIVE,
-    Bound,
-    read_choice,
-    read_count,
-    read_file,
-    read_frequency,
-    read_quantity,
-)
-from proprotor.deck.reading_lists import (
-    read_column,
-    read_curve,
-    read_distribution,
-    read_list,
-    read_profile,
-    read_spanwise,
-)
+from proprotor.deck import reading, reading_lists
+from proprotor.deck.reading import ANY, BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.rotor.rotor import HELD, NOTHING
 from proprotor.support.normal_modes import INCLUDES_ROTOR, SHAFT
-
-_READERS: dict[str, Callable[..., Datum]] = {
-    "number": read_quantity,
-    "frequency": lambda raw, unit, bound: read_frequency(raw, bound),
-    "along the blade": read_profile,
-    "distribution": read_distribution,
-    "along the wing": read_spanwise,
-    "curve": read_curve,
-    "rising list": read_list,
-    "file": lambda raw, unit, bound: read_file(raw),
-}
 
 
 @dataclass(frozen=True)
@@ -85,13 +55,7 @@ class Reading:
         InputError
             For a malformed value; the caller adds the name of the field.
         """
-        if self.form == "count":
-            return read_count(raw, self.least)
-        if self.form == "choice":
-            return read_choice(raw, self.choices)
-        if self.beyond:
-            return _READERS[self.form](raw, self.unit, self.bound, self.beyond)
-        return _READERS[self.form](raw, self.unit, self.bound)
+        return _READERS[self.form](raw, self)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(
@@ -104,6 +68,24 @@ class Reading:
         None where the unit follows from an earlier field that is itself malformed, and reported.
         """
         return self.read(raw)
+
+
+_READERS: dict[str, Callable[[Any, Reading], Datum]] = {
+    "number": lambda raw, field: reading.read_quantity(raw, field.unit, field.bound),
+    "count": lambda raw, field: reading.read_count(raw, field.least),
+    "choice": lambda raw, field: reading.read_choice(raw, field.choices),
+    "frequency": lambda raw, field: reading.read_frequency(raw, field.bound),
+    "along the blade": lambda raw, field: reading_lists.read_profile(
+        raw, field.unit, field.bound, field.beyond
+    ),
+    "distribution": lambda raw, field: reading_lists.read_distribution(
+        raw, field.unit, field.bound, field.beyond
+    ),
+    "along the wing": lambda raw, field: reading_lists.read_spanwise(raw, field.unit, field.bound),
+    "curve": lambda raw, field: reading_lists.read_curve(raw, field.unit, field.bound),
+    "rising list": lambda raw, field: reading_lists.read_list(raw, field.unit, field.bound),
+    "file": lambda raw, field: reading.read_file(raw),
+}
 
 
 @dataclass(frozen=True)
@@ -121,10 +103,11 @@ class _ByCoordinate(Reading):
     of_angle: str = ""
 
     def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
+        """Return the number in the unit that follows from the earlier field."""
         if "coordinate" not in before:
             return None
         length = before["coordinate"] == "length"
-        return read_quantity(raw, self.unit if length else self.of_angle, self.bound)
+        return reading.read_quantity(raw, self.unit if length else self.of_angle, self.bound)
 
 
 @dataclass(frozen=True)
@@ -142,21 +125,23 @@ class _ByAbscissa(Reading):
     of_speed: str = ""
 
     def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
+        """Return the number in the unit that follows from the earlier field."""
         if "against" not in before:
             return None
         unit = self.unit if before["against"] == "collective" else self.of_speed
-        return read_list(raw, unit, self.bound, rising=True)
+        return reading_lists.read_list(raw, unit, self.bound, rising=True)
 
 
 class _AlongTheBlade(Reading):
     """Values at blade stations, perhaps in a file with stations in units of length: the radius is an earlier field."""
 
     def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
+        """Return the values of a table, or of the file that the table names."""
         if not isinstance(raw, dict) or not {"file", "column"}.intersection(raw):
             return self.read(raw)
         if before.get("radius") is None:
             return None
-        return read_column(raw, self.unit, self.bound, before["radius"].si, self.beyond)
+        return reading_lists.read_column(raw, self.unit, self.bound, before["radius"].si, self.beyond)
 
 
 Number = Annotated[Datum | None, Reading("number")]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from proprotor.deck.reading import read_quantity
+from proprotor.deck.tables import Place, each_value
 from proprotor.deck.written import PerRevolution
 from proprotor.errors import InputError
 
@@ -19,12 +20,12 @@ def per_revolution_of(speed: Mapping[str, Any], tables: dict[str, Any]) -> dict[
     if rotor_speed is None:
         return tables
 
-    def with_speed(entry: Any) -> Any:
+    def with_speed(entry: Any, place: Place) -> Any:
         if isinstance(entry, str) and entry.endswith("/rev") and not isinstance(entry, PerRevolution):
             return PerRevolution.of(entry, rotor_speed)
         return entry
 
-    whole: dict[str, Any] = _every(tables, with_speed)
+    whole: dict[str, Any] = each_value(tables, with_speed)
     return whole
 
 
@@ -32,21 +33,12 @@ def as_one_file(tables: dict[str, Any]) -> dict[str, Any]:
     """Return tables as one file can hold them: frequencies per revolution of another rotor speed in rad/s."""
     rotor_speed = _rotor_speed(tables)
 
-    def in_this_file(entry: Any) -> Any:
+    def in_this_file(entry: Any, place: Place) -> Any:
         other = isinstance(entry, PerRevolution) and entry.rotor_speed != rotor_speed
         return entry.per_second if other else entry
 
-    whole: dict[str, Any] = _every(tables, in_this_file)
+    whole: dict[str, Any] = each_value(tables, in_this_file)
     return whole
-
-
-def _every(entry: Any, changed: Callable[[Any], Any]) -> Any:
-    """Return nested tables and lists with each value changed."""
-    if isinstance(entry, dict):
-        return {name: _every(value, changed) for name, value in entry.items()}
-    if isinstance(entry, list):
-        return [_every(value, changed) for value in entry]
-    return changed(entry)
 
 
 def _rotor_speed(tables: Mapping[str, Any]) -> float | None:

@@ -147,34 +147,25 @@ def _with_beyond(table: _Schema, reading: Reading) -> _Schema:
 
 def _table(properties: _Schema) -> _Schema:
     """Return the schema of a table with some required properties and a provenance."""
+    return _object(properties, _PROVENANCE)
+
+
+def _object(required: _Schema, optional: _Schema) -> _Schema:
+    """Return the schema of a table with required and optional properties, and no others."""
     return {
         "type": "object",
-        "properties": {**properties, **_PROVENANCE},
-        "required": list(properties),
+        "properties": {**required, **optional},
+        "required": list(required),
         "additionalProperties": False,
     }
 
 
-_COLUMN = _table({name: {"type": "string", "minLength": 1} for name in ("file", "column")})
+def _target(name: str) -> _Schema:
+    """Return the schema of a trim with one target."""
+    value: _Schema = {"type": ["string", "number"]}
+    return _object({name: {"anyOf": [value, _table({"value": value})]}}, {})
 
-_TRIM_SCHEMA: _Schema = {
-    "anyOf": [
-        {"const": "windmill"},
-        *(
-            {
-                "type": "object",
-                "properties": {
-                    target: {
-                        "anyOf": [
-                            {"type": ["string", "number"]},
-                            _table({"value": {"type": ["string", "number"]}}),
-                        ]
-                    }
-                },
-                "required": [target],
-                "additionalProperties": False,
-            }
-            for target in ("collective", "thrust_coefficient", "power_coefficient")
-        ),
-    ]
-}
+
+_COLUMN = _table({name: {"type": "string", "minLength": 1} for name in ("file", "column")})
+_TARGETS = ("collective", "thrust_coefficient", "power_coefficient")
+_TRIM_SCHEMA: _Schema = {"anyOf": [{"const": "windmill"}, *map(_target, _TARGETS)]}

@@ -52,48 +52,14 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, PlainValidator, model_validator
 
+from proprotor.deck import fields
 from proprotor.deck.alternatives import (
     AIR_ALTERNATIVES,
     AIRFOIL_ALTERNATIVES,
     ALTERNATIVES,
     TRIM_ALTERNATIVES,
 )
-from proprotor.deck.fields import (
-    Abscissa,
-    Angle,
-    Chord,
-    Count,
-    CurvePerRev,
-    Damping,
-    Density,
-    File,
-    FirstMoment,
-    Fraction,
-    Frequency,
-    Inertia,
-    InertiaOrNone,
-    Length,
-    Mass,
-    MassDistribution,
-    MassOrNone,
-    Name,
-    NotNegative,
-    Number,
-    Offset,
-    Positive,
-    PositiveLength,
-    RotorSpeed,
-    Section,
-    Sides,
-    Slope,
-    Speed,
-    Stiffness,
-    TemperatureDifference,
-    Text,
-    Twist,
-    needed,
-    optional,
-)
+from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.deck.reading import read_quantity
 from proprotor.deck.support_sections import SUPPORT_TABLES, SupportSection
 from proprotor.errors import InputError, unknown_name
@@ -102,11 +68,11 @@ from proprotor.errors import InputError, unknown_name
 class CaseSection(Section):
     """The case in words."""
 
-    name: Name = needed("Short name; a deck that alters another deck has its own.")
-    title: Text = needed("Title of tables and plots.")
+    name: fields.Name = needed("Short name; a deck that alters another deck has its own.")
+    title: fields.Text = needed("Title of tables and plots.")
     description: str = optional("Description of the model.", "")
     calibration: str = optional("Which inputs were matched to which result; repeated with every result.", "")
-    warnings: list[Text] = Field(
+    warnings: list[fields.Text] = Field(
         default_factory=list, description="Remarks that a reader of results needs, one text each."
     )
 
@@ -117,11 +83,11 @@ class AirfoilSection(Section):
     alternatives: ClassVar[tuple[Sides, ...]] = AIRFOIL_ALTERNATIVES
     needed_unless_replaced: ClassVar[tuple[str, ...]] = ("lift_slope", "table")
 
-    lift_slope: Slope = optional("Slope of the lift coefficient with the angle of attack.")
-    zero_lift_angle: Angle = optional("Angle of attack without lift.")
-    drag: NotNegative = optional("Drag coefficient.")
-    moment: Number = optional("Moment coefficient about the reference line, nose up.")
-    table: File = optional("A C81 file; its name starts from the deck's folder.")
+    lift_slope: fields.Slope = optional("Slope of the lift coefficient with the angle of attack.")
+    zero_lift_angle: fields.Angle = optional("Angle of attack without lift.")
+    drag: fields.NotNegative = optional("Drag coefficient.")
+    moment: fields.Number = optional("Moment coefficient about the reference line, nose up.")
+    table: fields.File = optional("A C81 file; its name starts from the deck's folder.")
 
     @model_validator(mode="after")
     def _numbers_or_a_table(self) -> AirfoilSection:
@@ -136,13 +102,11 @@ class AirfoilSection(Section):
 class FrequenciesSection(Section):
     """Rotating blade frequencies from a table, in place of springs; `--structure coupled` ignores the table."""
 
-    against: Literal["collective", "airspeed"] = optional(
-        "The quantity on which the frequencies depend.", "collective"
-    )
-    at: Abscissa = optional("Rising collectives or airspeeds at which the lists have their values.")
-    flap: CurvePerRev = needed("Flap frequency per revolution, without lag and at zero cone.")
-    lag: CurvePerRev = needed("Lag frequency per revolution, without flap and at zero cone.")
-    cyclic_flap: CurvePerRev = optional("Cyclic flap frequency per revolution, if it differs from flap.")
+    against: Literal["collective", "airspeed"] = optional("Abscissa of the frequencies.", "collective")
+    at: fields.Abscissa = optional("Rising collectives or airspeeds at which the lists have their values.")
+    flap: fields.CurvePerRev = needed("Flap frequency per revolution, without lag and at zero cone.")
+    lag: fields.CurvePerRev = needed("Lag frequency per revolution, without flap and at zero cone.")
+    cyclic_flap: fields.CurvePerRev = optional("Cyclic flap frequency, if it differs from flap.")
 
     @model_validator(mode="after")
     def _one_value_for_each_place(self) -> FrequenciesSection:
@@ -166,77 +130,69 @@ class RotorSection(Section):
         name for choice in ALTERNATIVES for side in choice for name in side
     )
 
-    n_blades: Count = needed("Number of blades.")
-    radius: PositiveLength = needed("Radius, from the centre of rotation to the tip.")
-    root_cutout: Length = needed("Distance from the centre of rotation to the begin of the airloads.")
-    flap_hinge_offset: Length = needed(
+    n_blades: fields.Count = needed("Number of blades.")
+    radius: fields.PositiveLength = needed("Radius, from the centre of rotation to the tip.")
+    root_cutout: fields.Length = needed("Distance from the centre of rotation to the start of the airloads.")
+    flap_hinge_offset: fields.Length = needed(
         "Distance from the centre of rotation to the flap hinge; at 0 lock flap or gimbal."
     )
-    lag_hinge_offset: Length = needed(
+    lag_hinge_offset: fields.Length = needed(
         "Distance from the centre of rotation to the lag hinge, not inboard of the flap hinge."
     )
-    precone: Angle = needed("Cone built into the hub, towards thrust.")
-    blade_mass: Mass = optional("Integral of m over the whole blade.")
-    blade_first_moment: FirstMoment = optional("Integral of m r over the whole blade.")
-    blade_inertia: Inertia = optional("I_b, integral of m r² over the whole blade.")
-    flap_first_moment: FirstMoment = optional("Integral of m (r - e) outboard of the flap hinge.")
-    flap_inertia: Inertia = optional("Integral of m (r - e)² outboard of the flap hinge.")
-    lag_first_moment: FirstMoment = optional("Integral of m (r - e) outboard of the lag hinge.")
-    lag_inertia: Inertia = optional("Integral of m (r - e)² outboard of the lag hinge.")
-    mass_distribution: MassDistribution = optional(
+    precone: fields.Angle = needed("Cone built into the hub, towards thrust.")
+    blade_mass: fields.Mass = optional("Integral of m over the whole blade.")
+    blade_first_moment: fields.FirstMoment = optional("Integral of m r over the whole blade.")
+    blade_inertia: fields.Inertia = optional("I_b, integral of m r² over the whole blade.")
+    flap_first_moment: fields.FirstMoment = optional("Integral of m (r - e) outboard of the flap hinge.")
+    flap_inertia: fields.Inertia = optional("Integral of m (r - e)² outboard of the flap hinge.")
+    lag_first_moment: fields.FirstMoment = optional("Integral of m (r - e) outboard of the lag hinge.")
+    lag_inertia: fields.Inertia = optional("Integral of m (r - e)² outboard of the lag hinge.")
+    mass_distribution: fields.MassDistribution = optional(
         "Mass per length from the centre (or with hub_mass from anywhere) to the tip, which gives all seven integrals; "
         'beyond = "nothing" for a blade without mass beyond the stations.'
     )
-    hub_mass: MassOrNone = optional(
+    hub_mass: fields.MassOrNone = optional(
         "Mass of the whole hub at the centre of rotation, for a mass_distribution that begins further out; not to be "
         "included in the masses of the support again."
     )
-    flap_stiffness: Stiffness = optional("Stiffness of the flap spring, hub and blade in series.")
-    flap_frequency: Frequency = optional("Flap frequency without rotation, K = I ω².")
-    lag_stiffness: Stiffness = optional("Stiffness of the lag spring, hub and blade in series.")
-    lag_frequency: Frequency = optional("Lag frequency without rotation, K = I ω².")
-    flap_outboard_fraction: Fraction = needed("Share of the flap flexibility outboard of the pitch bearing.")
-    lag_outboard_fraction: Fraction = needed("Share of the lag flexibility outboard of the pitch bearing.")
-    structural_pitch_offset: Angle = optional(
+    flap_stiffness: fields.Stiffness = optional("Stiffness of the flap spring, hub and blade in series.")
+    flap_frequency: fields.Frequency = optional("Flap frequency without rotation, K = I ω².")
+    lag_stiffness: fields.Stiffness = optional("Stiffness of the lag spring, hub and blade in series.")
+    lag_frequency: fields.Frequency = optional("Lag frequency without rotation, K = I ω².")
+    flap_outboard_fraction: fields.Fraction = needed(
+        "Share of the flap flexibility beyond the pitch bearing."
+    )
+    lag_outboard_fraction: fields.Fraction = needed("Share of the lag flexibility beyond the pitch bearing.")
+    structural_pitch_offset: fields.Angle = optional(
         "Angle from the collective reference to the blade's structural axes."
     )
-    gimbal_stiffness: Stiffness = needed("Stiffness of the hub spring.")
-    pitch_gimbal_coupling: Number = needed("K_PG = tan δ3, pitch per gimbal tilt.")
-    pitch_inertia: InertiaOrNone = needed("Inertia of one blade about its pitch axis.")
-    control_stiffness: Stiffness = needed(
-        "Stiffness of the control system of one blade, about its pitch axis."
+    gimbal_stiffness: fields.Stiffness = needed("Stiffness of the hub spring.")
+    pitch_gimbal_coupling: fields.Number = needed("K_PG = tan δ3, pitch per gimbal tilt.")
+    pitch_inertia: fields.InertiaOrNone = needed("Inertia of one blade about its pitch axis.")
+    control_stiffness: fields.Stiffness = needed(
+        "Control system stiffness of one blade, about its pitch axis."
     )
-    flap_damping: Damping = optional("Viscous damping of the flap hinge.")
-    lag_damping: Damping = optional("Viscous damping of the lag hinge.")
-    pitch_damping: Damping = optional("Viscous damping of the blade's pitch.")
-    gimbal_damping: Damping = optional("Viscous damping of the gimbal, in non-rotating axes.")
+    flap_damping: fields.Damping = optional("Viscous damping of the flap hinge.")
+    lag_damping: fields.Damping = optional("Viscous damping of the lag hinge.")
+    pitch_damping: fields.Damping = optional("Viscous damping of the blade's pitch.")
+    gimbal_damping: fields.Damping = optional("Viscous damping of the gimbal, in non-rotating axes.")
     propeller_moment: bool = optional("Whether the propeller moment acts on the blade's pitch.", True)
-    chord: Chord = optional(
+    chord: fields.Chord = optional(
         "Chord of the blade, one value or along r from root cutout to tip; "
         'beyond = "held" if the end values hold beyond the stations.'
     )
-    lock_number: Positive = optional("Lock number γ, chord = γ I_b / (ρ c_lα R⁴) at the deck's density.")
-    twist: Twist = needed(
+    lock_number: fields.Positive = optional("Lock number γ; chord = γ I_b / (ρ c_lα R⁴), ρ of the deck.")
+    twist: fields.Twist = needed(
         "Twist, one value for a linear change from centre to tip, or along r from root cutout to tip; "
         'beyond = "held" if the end values hold beyond the stations. Pitch is zero at 0.75 R.'
     )
     airfoil: AirfoilSection = needed("Sections of the blade.")
-    frequencies: FrequenciesSection | None = optional(
-        "Frequencies of the blades; from the springs if left out."
-    )
+    frequencies: FrequenciesSection | None = optional("Blade frequencies; from the springs if left out.")
 
     @model_validator(mode="after")
     def _one_side_of_each_pair(self) -> RotorSection:
         for pair in ALTERNATIVES:
-            sides = [side for side in pair if self.model_fields_set.intersection(side)]
-            both = " or ".join(_listed(side) for side in pair)
-            if not sides:
-                raise InputError(pair[0][0], None, f"is missing; give {both}")
-            if len(sides) > 1:
-                raise InputError(sides[1][0], None, f"must not be given twice over; give {both}")
-            for name in sides[0]:
-                if name not in self.model_fields_set:
-                    raise InputError(name, None, "is missing")
+            _one_side(self, pair)
         if self.hub_mass is not None and self.mass_distribution is None:
             rule = "must be given with mass_distribution; blade_mass holds the hub's mass"
             raise InputError("hub_mass", self.hub_mass.written, rule)
@@ -253,11 +209,9 @@ class TrimSection(Section):
         "power_coefficient",
     )
 
-    collective: Angle = optional("Collective pitch at 0.75 R.")
-    thrust_coefficient: Number = optional("Thrust coefficient C_T = T/(ρπR²(ΩR)²).")
-    power_coefficient: Number = optional(
-        "Power coefficient C_P = P/(ρπR²(ΩR)³), positive for power into the rotor."
-    )
+    collective: fields.Angle = optional("Collective pitch at 0.75 R.")
+    thrust_coefficient: fields.Number = optional("C_T = T/(ρπR²(ΩR)²).")
+    power_coefficient: fields.Number = optional("C_P = P/(ρπR²(ΩR)³), positive for power into the rotor.")
 
 
 _TRIM_RULE = (
@@ -288,11 +242,11 @@ class OperationSection(Section):
     alternatives: ClassVar[tuple[Sides, ...]] = AIR_ALTERNATIVES
     needed_unless_replaced: ClassVar[tuple[str, ...]] = ("density", "speed_of_sound", "altitude")
 
-    rotor_speed: RotorSpeed = needed("Rotor speed Ω.")
-    density: Density = optional("Air density; 0 for a vacuum.")
-    speed_of_sound: Speed = optional("Speed of sound in the air.")
-    altitude: Offset = optional("Pressure altitude in the standard atmosphere (ISA), -610 m to 32 km.")
-    temperature_offset: TemperatureDifference = optional(
+    rotor_speed: fields.RotorSpeed = needed("Rotor speed Ω.")
+    density: fields.Density = optional("Air density; 0 for a vacuum.")
+    speed_of_sound: fields.Speed = optional("Speed of sound in the air.")
+    altitude: fields.Offset = optional("Pressure altitude in the standard atmosphere (ISA), -610 m to 32 km.")
+    temperature_offset: fields.TemperatureDifference = optional(
         "Air temperature above the standard temperature at the altitude; none by default."
     )
     trim: Annotated[Any, PlainValidator(_read_trim)] = optional(
@@ -303,26 +257,16 @@ class OperationSection(Section):
 
     @model_validator(mode="after")
     def _given_air_or_standard(self) -> OperationSection:
-        ((own, standard),) = AIR_ALTERNATIVES
-        given = [name for name in own if name in self.model_fields_set]
-        by_altitude = [name for name in standard if name in self.model_fields_set]
-        both = f"{_listed(own)} or {_listed(standard)}"
-        if given and by_altitude:
-            raise InputError(by_altitude[0], None, f"must not be given twice over; give {both}")
-        if not given and not by_altitude:
-            raise InputError(own[0], None, f"is missing; give {both}")
-        for name in own if given else standard[:1]:
-            if name not in self.model_fields_set:
-                raise InputError(name, None, "is missing")
+        _one_side(self, AIR_ALTERNATIVES[0], may_lack="temperature_offset")
         return self
 
 
 class DriveTrainSection(Section):
     """Engine and shaft on the rotor's azimuth, referred to the rotor's speed."""
 
-    drive_inertia: InertiaOrNone = optional("Inertia that turns with the rotor, without the blades.")
-    drive_damping: Damping = optional("Torque per change of rotor speed.")
-    shaft_stiffness: Stiffness = optional(
+    drive_inertia: fields.InertiaOrNone = optional("Inertia that turns with the rotor, without the blades.")
+    drive_damping: fields.Damping = optional("Torque per change of rotor speed.")
+    shaft_stiffness: fields.Stiffness = optional(
         "Torque per azimuth of a shaft with an end of constant speed; 0 for a rotor whose speed is free."
     )
 
@@ -367,6 +311,21 @@ def section_places() -> list[tuple[str, ...]]:
 def in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
     """Return a place without the kind of support, which pydantic inserts."""
     return (place[0], *place[2:]) if place[:1] == ("support",) and len(place) > 1 else place
+
+
+def _one_side(section: Section, choice: Sides, may_lack: str = "") -> None:
+    """Refuse a section that does not give exactly one side of a choice, with all fields but one that it may lack."""
+    given = section.model_fields_set
+    sides = [side for side in choice if given.intersection(side)]
+    both = " or ".join(_listed(side) for side in choice)
+    if not sides:
+        raise InputError(choice[0][0], None, f"is missing; give {both}")
+    if len(sides) > 1:
+        twice = next(name for name in sides[1] if name in given)
+        raise InputError(twice, None, f"must not be given twice over; give {both}")
+    for name in sides[0]:
+        if name not in given and name != may_lack:
+            raise InputError(name, None, "is missing")
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -187,6 +187,7 @@ def _distribution(
     holds: Callable[[float], bool],
     rule: str,
 ) -> _Distribution:
+    """Return the stations and values of all lines; refuse a station or value that breaks a rule."""
     r_over_R: list[float] = []
     found: list[float] = []
     for number, cells in rows:

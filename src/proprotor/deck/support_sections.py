@@ -35,40 +35,9 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from proprotor.deck import fields
 from proprotor.deck.alternatives import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
-from proprotor.deck.fields import (
-    Angle,
-    AxialStiffness,
-    BendingStiffness,
-    Damping,
-    DampingRatio,
-    File,
-    Frequency,
-    GeneralizedMass,
-    HubDisplacement,
-    HubRotation,
-    IncludesRotor,
-    Inertia,
-    InertiaOrNone,
-    InertiaPerLength,
-    Mass,
-    MassOrNone,
-    MassPerLength,
-    Name,
-    NotNegative,
-    Number,
-    Offset,
-    PositiveLength,
-    PositiveStiffness,
-    Section,
-    Shaft,
-    Sides,
-    Size,
-    Slope,
-    Stiffness,
-    needed,
-    optional,
-)
+from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.errors import InputError
 from proprotor.support.normal_modes import HUB_AXES
 
@@ -83,39 +52,35 @@ _SHAFT = "Whether a gimballed or rigid rotor could turn about its shaft in these
 class WingAerodynamicsSection(Section):
     """Quasi-steady airloads of the wing."""
 
-    lift_slope: Slope = needed("Lift slope of a section across the elastic axis.")
-    chord: PositiveLength = needed("Streamwise chord of the wing.")
-    elastic_axis: Number = needed("Elastic axis, in chords behind the leading edge.")
-    aerodynamic_centre: Number = optional("Aerodynamic centre, in chords behind the leading edge.")
-    downwash_point: Number = optional("Point of the downwash, in chords behind the leading edge.")
+    lift_slope: fields.Slope = needed("Lift slope of a section across the elastic axis.")
+    chord: fields.PositiveLength = needed("Streamwise chord of the wing.")
+    elastic_axis: fields.Number = needed("Elastic axis, in chords behind the leading edge.")
+    aerodynamic_centre: fields.Number = optional("Aerodynamic centre, in chords behind the leading edge.")
+    downwash_point: fields.Number = optional("Point of the downwash, in chords behind the leading edge.")
 
 
 class AssumedShapeSection(WingAerodynamicsSection):
     """Quasi-steady airloads of a wing that is assumed to bend as a cantilever with a load at its tip."""
 
-    span: PositiveLength = needed("Span, from the mount to the pylon.")
-    mast_length: Offset = needed("Length from the elastic axis at the tip forward to the hub.")
-    sweep: Angle = optional("Sweep of the elastic axis, back positive.")
+    span: fields.PositiveLength = needed("Span, from the mount to the pylon.")
+    mast_length: fields.Offset = needed("Length from the elastic axis at the tip forward to the hub.")
+    sweep: fields.Angle = optional("Sweep of the elastic axis, back positive.")
 
 
 class ModeSection(Section):
     """A normal mode: its generalised mass, and the hub's motion per unit of its coordinate, 0 if left out."""
 
-    name: Name = needed("Name of the mode in all results.")
-    coordinate: Literal["length", "angle"] = needed(
-        "Kind of the coordinate: one unit of the mode is a length or an angle."
-    )
-    generalized_mass: GeneralizedMass = needed(
-        "Generalised mass: a mass for a length, a moment of inertia for an angle."
-    )
-    frequency: Frequency = needed("Undamped frequency, without airloads.")
-    damping_ratio: DampingRatio = needed("Structural damping ratio, relative to critical.")
-    x: HubDisplacement = optional("Hub motion up per unit of the coordinate.")
-    y: HubDisplacement = optional("Hub motion outboard per unit of the coordinate.")
-    z: HubDisplacement = optional("Hub motion forward along the shaft per unit of the coordinate.")
-    alpha_x: HubRotation = optional("Hub rotation about x per unit of the coordinate.")
-    alpha_y: HubRotation = optional("Hub rotation about y, nose up, per unit of the coordinate.")
-    alpha_z: HubRotation = optional("Hub rotation about the shaft per unit of the coordinate.")
+    name: fields.Name = needed("Name of the mode in all results.")
+    coordinate: Literal["length", "angle"] = needed("Whether the mode's coordinate is a length or an angle.")
+    generalized_mass: fields.GeneralizedMass = needed("Mass for a length, moment of inertia for an angle.")
+    frequency: fields.Frequency = needed("Undamped frequency, without airloads.")
+    damping_ratio: fields.DampingRatio = needed("Structural damping ratio, relative to critical.")
+    x: fields.HubDisplacement = optional("Hub motion up per unit of the coordinate.")
+    y: fields.HubDisplacement = optional("Hub motion outboard per unit of the coordinate.")
+    z: fields.HubDisplacement = optional("Hub motion forward along the shaft per unit of the coordinate.")
+    alpha_x: fields.HubRotation = optional("Hub rotation about x per unit of the coordinate.")
+    alpha_y: fields.HubRotation = optional("Hub rotation about y, nose up, per unit of the coordinate.")
+    alpha_z: fields.HubRotation = optional("Hub rotation about the shaft per unit of the coordinate.")
 
     @model_validator(mode="after")
     def _moves_the_hub(self) -> ModeSection:
@@ -128,8 +93,8 @@ class NormalModesSection(Section):
     """A support of normal modes, given by number."""
 
     kind: Literal["normal-modes"] = needed("Normal modes, a `[[support.modes]]` each.")
-    includes_rotor: IncludesRotor = needed(_HELD)
-    shaft: Shaft = optional(_SHAFT)
+    includes_rotor: fields.IncludesRotor = needed(_HELD)
+    shaft: fields.Shaft = optional(_SHAFT)
     modes: Annotated[list[ModeSection], Field(min_length=1)] = needed("One table for each mode.")
     wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
 
@@ -149,57 +114,45 @@ class BeamWingSection(Section):
     needed_unless_replaced: ClassVar[tuple[str, ...]] = ("damping_ratio", "loss_factor")
 
     kind: Literal["beam-wing"] = needed("A wing of beam elements.")
-    span: PositiveLength = needed("Span, from the mount outboard to the pylon.")
-    beam_stiffness: BendingStiffness = needed("Stiffness EI of bending up and down.")
-    chord_stiffness: BendingStiffness = needed("Stiffness EI of bending fore and aft.")
-    torsion_stiffness: BendingStiffness = needed("Torsion stiffness GJ.")
-    axial_stiffness: AxialStiffness = needed("Axial stiffness EA.")
-    mass_per_length: MassPerLength = needed("Mass per length, with the centre of mass on the elastic axis.")
-    torsional_inertia_per_length: InertiaPerLength = needed(
-        "Moment of inertia per length about the elastic axis."
+    span: fields.PositiveLength = needed("Span, from the mount outboard to the pylon.")
+    beam_stiffness: fields.BendingStiffness = needed("Stiffness EI of bending up and down.")
+    chord_stiffness: fields.BendingStiffness = needed("Stiffness EI of bending fore and aft.")
+    torsion_stiffness: fields.BendingStiffness = needed("Torsion stiffness GJ.")
+    axial_stiffness: fields.AxialStiffness = needed("Axial stiffness EA.")
+    mass_per_length: fields.MassPerLength = needed("Mass per length, its centre on the elastic axis.")
+    torsional_inertia_per_length: fields.InertiaPerLength = needed(
+        "Inertia per length about the elastic axis."
     )
-    sweep: Angle = optional("Sweep of the elastic axis, back positive.")
-    dihedral: Angle = optional("Dihedral of the elastic axis, up positive.")
-    elements: Size = optional("Number of elements of equal length.")
-    nacelle_mass: MassOrNone = needed("Mass of the nacelle without the rotor.")
-    nacelle_pitch_inertia: InertiaOrNone = needed(
-        "Nose-up moment of inertia about the nacelle's centre of mass."
+    sweep: fields.Angle = optional("Sweep of the elastic axis, back positive.")
+    dihedral: fields.Angle = optional("Dihedral of the elastic axis, up positive.")
+    elements: fields.Size = optional("Number of elements of equal length.")
+    nacelle_mass: fields.MassOrNone = needed("Mass of the nacelle without the rotor.")
+    nacelle_pitch_inertia: fields.InertiaOrNone = needed(
+        "Nose-up inertia about the nacelle's centre of mass."
     )
-    nacelle_yaw_inertia: InertiaOrNone = needed(
-        "Moment of inertia about the upward axis at the nacelle's centre of mass."
-    )
-    nacelle_roll_inertia: InertiaOrNone = needed(
-        "Moment of inertia about the shaft axis at the nacelle's centre of mass."
-    )
-    nacelle_forward: Offset = optional(
-        "Offset of the nacelle's centre of mass forward of the elastic axis at the tip."
-    )
-    nacelle_up: Offset = optional("Offset of the nacelle's centre of mass above the elastic axis at the tip.")
-    nacelle_outboard: Offset = optional("Offset of the nacelle's centre of mass outboard of the tip.")
-    mast_length: Offset = needed("Length from the elastic axis at the tip forward to the hub.")
-    mast_height: Offset = optional("Offset of the hub above the elastic axis at the tip.")
-    mast_outboard: Offset = optional("Offset of the hub outboard of the tip.")
-    hub_mass: MassOrNone = optional("Mass of the rotor's hub, without the blades.")
-    rotor_mass: MassOrNone = needed("Mass of the rotor model at the hub, which the modes include.")
+    nacelle_yaw_inertia: fields.InertiaOrNone = needed("Inertia about the upward axis at the centre of mass.")
+    nacelle_roll_inertia: fields.InertiaOrNone = needed("Inertia about the shaft axis at the centre of mass.")
+    nacelle_forward: fields.Offset = optional("Centre of mass forward of the elastic axis at the tip.")
+    nacelle_up: fields.Offset = optional("Centre of mass above the elastic axis at the tip.")
+    nacelle_outboard: fields.Offset = optional("Centre of mass outboard of the tip.")
+    mast_length: fields.Offset = needed("Length from the elastic axis at the tip forward to the hub.")
+    mast_height: fields.Offset = optional("Offset of the hub above the elastic axis at the tip.")
+    mast_outboard: fields.Offset = optional("Offset of the hub outboard of the tip.")
+    hub_mass: fields.MassOrNone = optional("Mass of the rotor's hub, without the blades.")
+    rotor_mass: fields.MassOrNone = needed("Mass of the rotor model at the hub, which the modes include.")
     downstop: bool = optional("Whether the pylon is on its downstop.", True)
-    downstop_stiffness_on: PositiveStiffness = optional(
+    downstop_stiffness_on: fields.PositiveStiffness = optional(
         "Pitch stiffness from pylon to wing, on the downstop; rigid if left out."
     )
-    downstop_stiffness_off: PositiveStiffness = optional(
+    downstop_stiffness_off: fields.PositiveStiffness = optional(
         "Pitch stiffness from pylon to wing, off the downstop; rigid if left out."
     )
-    modes: Size = optional("Number of lowest modes to keep; all coordinates if left out.")
-    damping_ratio: DampingRatio = optional("Damping ratio of every mode, relative to critical.")
-    loss_factor: NotNegative = optional(
-        "Structural loss factor g of every mode, used as a damping ratio g/2."
-    )
-    beam_damping_ratio: DampingRatio = optional("Damping ratio of beam modes, instead of that of every mode.")
-    chord_damping_ratio: DampingRatio = optional(
-        "Damping ratio of chord modes, instead of that of every mode."
-    )
-    torsion_damping_ratio: DampingRatio = optional(
-        "Damping ratio of torsion modes, instead of that of every mode."
-    )
+    modes: fields.Size = optional("Number of lowest modes to keep; all coordinates if left out.")
+    damping_ratio: fields.DampingRatio = optional("Damping ratio of every mode, relative to critical.")
+    loss_factor: fields.NotNegative = optional("Structural g of every mode, used as a damping ratio g/2.")
+    beam_damping_ratio: fields.DampingRatio = optional("Damping ratio of beam modes, if it differs.")
+    chord_damping_ratio: fields.DampingRatio = optional("Damping ratio of chord modes, if it differs.")
+    torsion_damping_ratio: fields.DampingRatio = optional("Damping ratio of torsion modes, if it differs.")
     wing_aerodynamics: WingAerodynamicsSection | None = optional("Airloads of the wing; none if left out.")
 
     @model_validator(mode="after")
@@ -215,26 +168,26 @@ class MatricesSection(Section):
     needed_unless_replaced: ClassVar[tuple[str, ...]] = ("file", "mass", "stiffness", "dofs")
 
     kind: Literal["matrices"] = needed("Matrices from files.")
-    file: File = optional("An .npz file with mass, stiffness, dofs and perhaps damping.")
-    mass: File = optional("Matrix Market file of the mass.")
-    stiffness: File = optional("Matrix Market file of the stiffness.")
-    damping: File = optional("Matrix Market file of the damping.")
-    dofs: File = optional("Text file with the name of a coordinate on each line.")
+    file: fields.File = optional("An .npz file with mass, stiffness, dofs and perhaps damping.")
+    mass: fields.File = optional("Matrix Market file of the mass.")
+    stiffness: fields.File = optional("Matrix Market file of the stiffness.")
+    damping: fields.File = optional("Matrix Market file of the damping.")
+    dofs: fields.File = optional("Text file with the name of a coordinate on each line.")
     hub: dict[str, str] | None = optional(
         'Coordinate of the hub for each of x, y, z, alpha_x, alpha_y, alpha_z, with "-" in front if it has the '
         "opposite direction; hub_x and so on if left out."
     )
-    includes_rotor: IncludesRotor = needed(_HELD)
-    shaft: Shaft = optional(_SHAFT)
-    rotor_mass: MassOrNone = optional(
+    includes_rotor: fields.IncludesRotor = needed(_HELD)
+    shaft: fields.Shaft = optional(_SHAFT)
+    rotor_mass: fields.MassOrNone = optional(
         "Mass of the rotor model at the hub, which the modes include; not for a mass matrix that includes the rotor."
     )
-    modes: Size = optional("Number of lowest modes to keep; all coordinates if left out.")
-    damping_ratio: DampingRatio = optional(
+    modes: fields.Size = optional("Number of lowest modes to keep; all coordinates if left out.")
+    damping_ratio: fields.DampingRatio = optional(
         "Damping ratio of every mode, relative to critical, without a damping matrix; 0 if left out."
     )
-    length_unit: PositiveLength = optional("Unit of length of the files; 1 m if left out.")
-    mass_unit: Mass = optional("Unit of mass of the files; 1 kg if left out.")
+    length_unit: fields.PositiveLength = optional("Unit of length of the files; 1 m if left out.")
+    mass_unit: fields.Mass = optional("Unit of mass of the files; 1 kg if left out.")
     wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
 
     @model_validator(mode="after")
@@ -253,21 +206,19 @@ class NastranSection(Section):
     """Real modes and generalised masses of a Nastran run at a grid point."""
 
     kind: Literal["nastran"] = needed("An .op2 file.")
-    file: File = needed("The .op2 file.")
-    grid: Size = needed("The grid point at the hub.")
-    subcase: Size = optional("Subcase, needed for a file with several.")
+    file: fields.File = needed("The .op2 file.")
+    grid: fields.Size = needed("The grid point at the hub.")
+    subcase: fields.Size = optional("Subcase, needed for a file with several.")
     hub: dict[str, str] | None = optional(
         'One of T1 to R3 for each of x, y, z, alpha_x, alpha_y, alpha_z, with "-" in front if it has the opposite '
         "direction; aircraft axes if left out."
     )
-    includes_rotor: IncludesRotor = needed(_HELD)
-    shaft: Shaft = optional(_SHAFT)
-    modes: Size = optional("Number of lowest modes to keep; all if left out.")
-    damping_ratio: DampingRatio = optional(
-        "Damping ratio of every mode, relative to critical; 0 if left out."
-    )
-    length_unit: PositiveLength = optional("Unit of length of the run; 1 m if left out.")
-    mass_unit: Mass = optional("Unit of mass of the run; 1 kg if left out.")
+    includes_rotor: fields.IncludesRotor = needed(_HELD)
+    shaft: fields.Shaft = optional(_SHAFT)
+    modes: fields.Size = optional("Number of lowest modes to keep; all if left out.")
+    damping_ratio: fields.DampingRatio = optional("Damping ratio of every mode; 0 if left out.")
+    length_unit: fields.PositiveLength = optional("Unit of length of the run; 1 m if left out.")
+    mass_unit: fields.Mass = optional("Unit of mass of the run; 1 kg if left out.")
     wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
 
 
@@ -275,15 +226,15 @@ class PivotSection(Section):
     """A rigid shaft that pitches and yaws about a point behind the hub; damping is 0 if left out."""
 
     kind: Literal["pivot"] = needed("A shaft on a pivot.")
-    includes_rotor: IncludesRotor = needed(_HELD)
-    shaft: Shaft = optional(_SHAFT)
-    distance: Offset = needed("Distance from the pivot forward to the hub.")
-    pitch_inertia: Inertia = needed("Moment of inertia in pitch about the pivot.")
-    yaw_inertia: Inertia = needed("Moment of inertia in yaw about the pivot.")
-    pitch_stiffness: Stiffness = needed("Pitch stiffness of the pivot.")
-    yaw_stiffness: Stiffness = needed("Yaw stiffness of the pivot.")
-    pitch_damping: Damping = optional("Pitch damping of the pivot.")
-    yaw_damping: Damping = optional("Yaw damping of the pivot.")
+    includes_rotor: fields.IncludesRotor = needed(_HELD)
+    shaft: fields.Shaft = optional(_SHAFT)
+    distance: fields.Offset = needed("Distance from the pivot forward to the hub.")
+    pitch_inertia: fields.Inertia = needed("Moment of inertia in pitch about the pivot.")
+    yaw_inertia: fields.Inertia = needed("Moment of inertia in yaw about the pivot.")
+    pitch_stiffness: fields.Stiffness = needed("Pitch stiffness of the pivot.")
+    yaw_stiffness: fields.Stiffness = needed("Yaw stiffness of the pivot.")
+    pitch_damping: fields.Damping = optional("Pitch damping of the pivot.")
+    yaw_damping: fields.Damping = optional("Yaw damping of the pivot.")
 
 
 class RigidSection(Section):

@@ -36,6 +36,16 @@ _SECTIONS = (
     "support.wing_aerodynamics",
 )
 _EXAMPLE = re.compile(r'such as ("[^"]*"|\S+?)(?:,| or|$)')
+_EXAMPLES = {
+    "": '""',
+    "list": "[]",
+    "bool": "true",
+    "count": "4",
+    "file": '"name-of-file"',
+    "rising list": '{ value = [0, 20, 40], unit = "deg" }',
+    "curve": "{ value = [1.9, 1.8, 1.7] }",
+    "table": '{ x = "hub_x" }',
+}
 _COLUMNS = 13  # numbers of a list in one line
 
 
@@ -87,18 +97,6 @@ def example(field: DeckField) -> str:
     return _EXAMPLES.get(field.form) or _first_example("" if unit == "1" else unit)
 
 
-_EXAMPLES = {
-    "": '""',
-    "list": "[]",
-    "bool": "true",
-    "count": "4",
-    "file": '"name-of-file"',
-    "rising list": '{ value = [0, 20, 40], unit = "deg" }',
-    "curve": "{ value = [1.9, 1.8, 1.7] }",
-    "table": '{ x = "hub_x" }',
-}
-
-
 def _first_example(unit: str) -> str:
     """Return the first example of a value in a unit that messages give."""
     found = _EXAMPLE.search(meaning(unit))
@@ -111,25 +109,21 @@ def _section(section: str, tables: Mapping[str, Any], place: Path, variant: bool
     for name in section.split("."):
         given = given.get(name) if isinstance(given, Mapping) else None
     kind = tables["support"]["kind"] if section.startswith("support") else ""
-    own = [field for field in deck_fields() if _belongs_to(field, section, kind)]
+    own = [f for f in deck_fields() if f.path.rpartition(".")[0] == section and f.kind == kind]
     if not own:
         return
-    absent = given is None
-    mark = "# " if absent or (variant and section == "support.wing_aerodynamics") else ""
+    entries = given if isinstance(given, Mapping) else {}
+    mark = "# " if given is None or (variant and section == "support.wing_aerodynamics") else ""
     yield f"{mark}[{section}]"
     for field in own:
-        name = field.path.rpartition(".")[2]
+        name = _name(field)
         if section == "case" and name == "name":
-            yield from _given(field, name, case_name(place), place, "")
-        elif isinstance(given, Mapping) and name in given and not _is_list_of_tables(given[name]):
+            yield from _entry(field, toml(case_name(place)), "")
+        elif name in entries and not _is_list_of_tables(entries[name]):
             keep = not variant or (section, name) == ("case", "title")
-            yield from _given(field, name, given[name], place, "" if keep else "# ")
-        elif not (variant or name == "warnings" or (isinstance(given, Mapping) and name in given)):
-            yield from _left_out(field, name)
-
-
-def _belongs_to(field: DeckField, section: str, kind: str) -> bool:
-    return field.path.rpartition(".")[0] == section and field.kind == kind
+            yield from _entry(field, toml(_from(entries[name], place)), "" if keep else "# ")
+        elif not (variant or name == "warnings" or name in entries):
+            yield from _entry(field, example(field), "# ")
 
 
 def _is_list_of_tables(value: Any) -> bool:
@@ -141,21 +135,18 @@ def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
     mark = "# " if variant else ""
     yield f"{mark}[[support.modes]]"
     for field in deck_fields():
-        prefix, _, name = field.path.rpartition(".")
-        if prefix == "support.modes[NAME]" and name in mode:
-            yield from _given(field, name, mode[name], place, mark)
+        if field.path.startswith("support.modes[NAME].") and _name(field) in mode:
+            yield from _entry(field, toml(_from(mode[_name(field)], place)), mark)
 
 
-def _given(field: DeckField, name: str, value: Any, place: Path, mark: str) -> Iterator[str]:
-    """Yield the lines of a field with its value, behind a mark."""
+def _entry(field: DeckField, text: str, mark: str) -> Iterator[str]:
+    """Yield the lines of a field: its meaning, and its value as TOML behind a mark."""
     yield f"# {_comment(field)}"
-    yield "\n".join(f"{mark}{line}" for line in f"{name} = {toml(_from(value, place))}".split("\n"))
+    yield "\n".join(f"{mark}{line}" for line in f"{_name(field)} = {text}".split("\n"))
 
 
-def _left_out(field: DeckField, name: str) -> Iterator[str]:
-    """Yield the lines of a field that the deck leaves out."""
-    yield f"# {_comment(field)}"
-    yield f"# {name} = {example(field)}"
+def _name(field: DeckField) -> str:
+    return field.path.rpartition(".")[2]
 
 
 def _comment(field: DeckField) -> str:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
+from proprotor.deck.tables import Place, each_value
 from proprotor.errors import InputError, unprintable
 
-_Place = tuple[str | int, ...]
 
-
-def plain_text(tables: dict[str, Any], name_of: Callable[[_Place, Any], str]) -> dict[str, Any]:
+def plain_text(tables: dict[str, Any], name_of: Callable[[Place, Any], str]) -> dict[str, Any]:
     """Return the tables of a deck with spaces in place of the line ends and tabs of its prose.
 
     Parameters
@@ -25,45 +24,30 @@ def plain_text(tables: dict[str, Any], name_of: Callable[[_Place, Any], str]) ->
         For text with control characters, which would move the cursor of a terminal, or with characters that reverse
         the direction of text: one line for each field.
     """
-    plain: dict[str, Any] = _on_one_line(tables, ())
-    problems = [
-        InputError(name_of(_of_number(place), tables), text, f"must be printable text, without {code}")
-        for place, text in _texts(plain, ())
-        if (code := unprintable(text))
-    ]
+    problems = []
+
+    def on_one_line(entry: Any, place: Place) -> Any:
+        if not isinstance(entry, str):
+            return entry
+        text = " ".join(entry.split()) if _is_prose(place) else entry
+        if code := unprintable(text):
+            rule = f"must be printable text, without {code}"
+            problems.append(InputError(name_of(_of_number(place), tables), text, rule))
+        return text
+
+    plain: dict[str, Any] = each_value(tables, on_one_line)
     if problems:
         first, *others = problems
         raise InputError(first.field, first.value, first.rule, others)
     return plain
 
 
-def _of_number(place: _Place) -> _Place:
+def _of_number(place: Place) -> Place:
     """Return the place of a number that is written as a table, from the place of the text in the table."""
     return place[:-1] if place[-1:] == ("value",) else place
 
 
-def _on_one_line(entry: Any, place: _Place) -> Any:
-    """Return an entry with its prose on one line."""
-    if isinstance(entry, dict):
-        return {name: _on_one_line(inner, (*place, name)) for name, inner in entry.items()}
-    if isinstance(entry, list):
-        return [_on_one_line(inner, (*place, number)) for number, inner in enumerate(entry)]
-    return " ".join(entry.split()) if isinstance(entry, str) and _is_prose(place) else entry
-
-
-def _is_prose(place: _Place) -> bool:
+def _is_prose(place: Place) -> bool:
     return place[-1] == "source" or (
         place[0] == "case" and place[1:2] in (("description",), ("calibration",), ("warnings",))
     )
-
-
-def _texts(entry: Any, place: _Place) -> Iterator[tuple[_Place, str]]:
-    """Yield every text of a deck with its place; names of fields are checked by the sections."""
-    if isinstance(entry, dict):
-        for name, inner in entry.items():
-            yield from _texts(inner, (*place, name))
-    elif isinstance(entry, list):
-        for number, inner in enumerate(entry):
-            yield from _texts(inner, (*place, number))
-    elif isinstance(entry, str):
-        yield place, entry

@@ -27,56 +27,35 @@ The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `
 deferred import goes down: `LinearModel.modes` calls `stability`.
 """
 
-from proprotor.model import doubts, first_order, options_in_force, stamp, state_space
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
 from proprotor.model.mount import mount
-from proprotor.model.options_of_result import check_options, options_of
-from proprotor.model.provenance import doubtful_inputs, reservations
-from proprotor.model.quantities import COUPLINGS, batch_shape, couplings, model_quantities, rotor_quantities
-from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
 from proprotor.model.rotor_model import in_closed_form, rotor_model
-from proprotor.model.rotor_share import rotor_share, settled, spring_warnings, without_rotors
-from proprotor.model.several_rotors import MountedRotor, mount_rotors
-from proprotor.model.structural_damping import NeutralDamping, neutral_damping
 
 __all__ = [
-    "COUPLINGS",
     "INPUTS",
     "SWASHPLATE",
     "Configuration",
     "LinearModel",
-    "MountedRotor",
-    "NeutralDamping",
-    "WhirlDerivatives",
-    "batch_shape",
-    "check_options",
-    "couplings",
     "deck_fingerprint",
-    "doubtful_inputs",
     "doubts",
     "first_order",
     "in_closed_form",
     "mass_at_rest",
-    "model_quantities",
     "mount",
-    "mount_rotors",
-    "neutral_damping",
     "options_in_force",
-    "options_of",
-    "reservations",
+    "options_of_result",
+    "provenance",
+    "quantities",
     "rigid_propeller",
     "rotor_model",
-    "rotor_quantities",
     "rotor_share",
-    "settled",
-    "spring_warnings",
+    "several_rotors",
     "stamp",
     "state_space",
-    "whirl_derivatives",
+    "structural_damping",
     "with_reasons",
-    "without_rotors",
 ]

@@ -21,9 +21,22 @@ _NO_SHAFT = "no shaft holds the azimuth: its rate has one root, where a shaft gi
 
 
 def state_matrix(model: LinearModel) -> Array:
-    """Return A, (..., 2n - 1, 2n - 1) without a shaft and (..., 2n, 2n) with one; NaN at points without modes.
+    """Return the state matrix A.
 
-    In a batch with a shaft at some points only, the row and column of the azimuth are NaN at the other points.
+    Parameters
+    ----------
+    model : LinearModel
+
+    Returns
+    -------
+    array (..., 2n - 1, 2n - 1), with a shaft (..., 2n, 2n)
+        SI units, NaN at points without modes. In a batch with a shaft at some points only, the row and column of the
+        azimuth are NaN at the other points.
+
+    Raises
+    ------
+    InputError
+        For a rotor alone in which some motion has no mass at every point.
     """
     model = without_massless(model)
     matrix = first_order(model)

@@ -50,7 +50,7 @@ class LinearModel:
         and, for a rotor with a gimbal, on the gimbal's, whatever the options. A support whose masses include the rotor
         needs this matrix. See `proprotor.model.mass_at_rest`.
     shapes : array (..., m, k), optional
-        Shapes of the first k coordinates, those of a support whose shapes differ from design to design: see
+        Shapes of the first k coordinates, for a support whose shapes differ from design to design: see
         `proprotor.support.normal_modes.NormalModes`.
     origin : Origin, optional
         The options in force and the case, if the model is one of a case: see `proprotor.model.stamp`.
@@ -85,6 +85,12 @@ class LinearModel:
         doubts = reasons_for_doubt(np.ravel(self.trim.warning).tolist())
         lines += [f"  {len(at)} of {converged.size} doubtful: {text}" for text, at in doubts.items()]
         return "\n".join(lines)
+
+    @property
+    def matrices(self) -> dict[str, Array]:
+        """M, C, K and, for a model with inputs, B, by name; SI."""
+        given = {name: getattr(self, name) for name in ("M", "C", "K", "B")}
+        return {name: matrix for name, matrix in given.items() if matrix is not None}
 
     @property
     def shaft_holds_azimuth(self) -> Array:

@@ -1,4 +1,4 @@
-"""The mass matrix of a rotor at rest, by which a support is told from the rotor that was on it."""
+"""The mass matrix of a rotor at rest, from which the rotor's share in the masses of a support follows."""
 
 from __future__ import annotations
 

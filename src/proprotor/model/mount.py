@@ -94,9 +94,7 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
     reason = np.where(refused, field + everywhere, model.trim.reason)
     trim = replace(model.trim, reason=reason, converged=model.trim.converged & ~refused)
     matrices: dict[str, Any] = {
-        name: np.where(refused[..., None, None], np.nan, getattr(model, name))
-        for name in ("M", "C", "K", "B")
-        if getattr(model, name) is not None
+        name: np.where(refused[..., None, None], np.nan, matrix) for name, matrix in model.matrices.items()
     }
     return replace(model, **matrices, trim=trim)
 
@@ -144,11 +142,6 @@ def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
     """Return the model at every point of a batch that has more axes, those of the supports."""
     if model.M.shape[:-2] == shape:
         return model
-    matrices = {name: getattr(model, name) for name in ("M", "C", "K", "B")}
-    matrices = {
-        name: None if matrix is None else np.broadcast_to(matrix, (*shape, *matrix.shape[-2:]))
-        for name, matrix in matrices.items()
-    }
-    return replace(
-        model, **matrices, trim=model.trim.broadcast(shape), airspeed=np.broadcast_to(model.airspeed, shape)
-    )
+    matrices: dict[str, Any] = {name: _at_points(matrix, shape, 2) for name, matrix in model.matrices.items()}
+    airspeed = np.broadcast_to(model.airspeed, shape)
+    return replace(model, **matrices, trim=model.trim.broadcast(shape), airspeed=airspeed)

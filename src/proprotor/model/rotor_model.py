@@ -60,7 +60,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     Raises
     ------
     InputError
-        For an unknown option, a rotor that the options do not allow, or more points than there is memory for.
+        For an unknown option, a rotor that the options do not allow, or too many points for the memory.
     """
     choice = parse_options(options)
     _check_pitch(rotor, choice)

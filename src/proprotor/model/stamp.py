@@ -72,6 +72,7 @@ def unusual_options(found: Mapping[Any, Any]) -> list[str]:
 
 
 def _stamp(origin: Origin) -> dict[str, str]:
+    """Return the stamp of an origin."""
     case = origin.case
     own = {"options": json.dumps(in_force(origin.options)), "made_by": f"proprotor {_version()}"}
     if case is None:

@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     import control
 
 _Rows = tuple[Array, Array, Array]  # displacements, rates and accelerations per unit of each state
-_Block = tuple[tuple[str, ...], Array, Array]  # names of outputs, their rows of C and of D
+_Block = tuple[
+    tuple[str, ...], Array, Array | None
+]  # names of outputs, their rows of C and of D, None for zeros
 
 LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 
@@ -144,20 +146,22 @@ def _outputs(
     displacement, rate, acceleration = motion
     loads, loads_by_input = _hub_loads(model, motion, acceleration_by_input)
     shape = acceleration.shape[:-2]
-    none = np.zeros((len(HUB), len(INPUTS)))
     blocks: list[_Block] = [
-        (HUB, hub @ displacement, none),
-        (tuple(f"{name} rate" for name in HUB), hub @ rate, none),
+        (HUB, hub @ displacement, None),
+        (tuple(f"{name} rate" for name in HUB), hub @ rate, None),
         (tuple(f"{name} acceleration" for name in HUB), hub @ acceleration, hub @ acceleration_by_input),
         (LOADS, loads, loads_by_input),
         *_own_motion(model, own, displacement, rate),
     ]
     names = tuple(name for part, _, _ in blocks for name in part)
-    rows, feedthrough = (
-        np.concatenate([np.broadcast_to(part, (*shape, *part.shape[-2:])) for part in parts], axis=-2)
-        for parts in ([block[1] for block in blocks], [block[2] for block in blocks])
-    )
-    return names, rows, feedthrough
+    rows = [part for _, part, _ in blocks]
+    feedthrough = [np.zeros((len(part), len(INPUTS))) if d is None else d for part, _, d in blocks]
+    return names, _stacked(rows, shape), _stacked(feedthrough, shape)
+
+
+def _stacked(parts: list[Array], shape: tuple[int, ...]) -> Array:
+    """Return matrices with the same columns one below the other, at each point of a batch."""
+    return np.concatenate([np.broadcast_to(p, (*shape, *p.shape[-2:])) for p in parts], axis=-2)
 
 
 def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: Array) -> list[_Block]:
@@ -166,12 +170,8 @@ def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: A
     moved = [place for place in own if place in held]
     turning = [p for p in own if p not in held or (mixed and model.dofs[p] == ROTOR_SPEED)]
     return [
-        (tuple(model.dofs[p] for p in moved), displacement[moved], np.zeros((len(moved), len(INPUTS)))),
-        (
-            tuple(f"{model.dofs[p]} rate" for p in turning),
-            rate[turning],
-            np.zeros((len(turning), len(INPUTS))),
-        ),
+        (tuple(model.dofs[p] for p in moved), displacement[moved], None),
+        (tuple(f"{model.dofs[p]} rate" for p in turning), rate[turning], None),
     ]
 
 
