@@ -135,8 +135,9 @@ class Reference:
         """
         onset = bool(sign[step + 1] > 0)
         known = np.flatnonzero(sign != 0)
-        start, end = known[known <= step].max(initial=step), known[known > step].min(initial=step + 1)
-        start, end = (step, step + 1) if len(known) == 0 else (int(start), int(end))
+        before, after = known[known <= step], known[known > step]
+        start = int(before[-1]) if len(before) else step
+        end = int(after[0]) if len(after) else step + 1
         ends = growth(values[[start, end]], self.level)
         if np.abs(ends).min() < DOUBTFUL and sign[start] * sign[end] < 0:
             return self._exact_place(knots[[start, end]], values[[start, end]]), onset
