@@ -10,7 +10,7 @@ from proprotor.deck.file import list_cases
 from proprotor.deck.vary import vary as _vary
 from proprotor.model.configuration import Configuration
 from proprotor.stability.attribution import attribution as _attribution
-from proprotor.stability.flutter import boundaries as _boundaries
+from proprotor.stability.boundaries import boundaries as _boundaries
 from proprotor.stability.flutter import flutter_point as _flutter_point
 from proprotor.stability.map import stability_map as _stability_map
 from proprotor.stability.sensitivity import sensitivity as _sensitivity

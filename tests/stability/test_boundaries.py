@@ -7,9 +7,9 @@ from scipy.optimize import brentq
 import proprotor as pp
 from proprotor import sampling
 from proprotor.model.first_order import state_matrix
+from proprotor.stability.boundaries import boundaries, find_crossings
 from proprotor.stability.crossings import Brackets, Search
-from proprotor.stability.flutter import boundaries, find_crossings
-from proprotor.stability.following import Line
+from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.study.batch import STABLE, UNSTABLE
 from proprotor.study.study import study
 from tests.known_systems import along, roots
@@ -32,7 +32,9 @@ def case():
 
 
 def crossings(matrices, positions, **options):
-    return find_crossings(Line(np.asarray(positions, dtype=float), along(matrices), "p", "1"), **options)
+    return find_crossings(
+        ParameterLine(np.asarray(positions, dtype=float), along(matrices), "p", "1"), **options
+    )
 
 
 def told(found):

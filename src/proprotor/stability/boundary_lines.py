@@ -7,21 +7,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError
+from proprotor.model.first_order import some_points
 from proprotor.model.stamp import options_of
 from proprotor.rotor.motions import name_list
-from proprotor.stability.map import AIRSPEED
+from proprotor.stability.branches import names_of
 from proprotor.stability.matching import Spectrum, conjugate, link
 from proprotor.stability.modes import decomposition
-from proprotor.stability.sweep import names_at
+from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray
 
     from proprotor.model.configuration import Configuration
-    from proprotor.model.linear_model import LinearModel
 
 
 class BoundaryLine(NamedTuple):
@@ -76,18 +75,20 @@ def boundary_lines(
         For an unknown option, and another option, airspeed or case than the map's.
     """
     options = options_of(found.attrs, case, options)
-    airspeed = _airspeed_of(found, airspeed)
+    speed = _airspeed_of(found, airspeed)
+    own = {} if speed is None else {AIRSPEED: speed}
     names = [str(name) for name in found.axis.values]
     roots, warning = found.boundary_eigenvalue.values, found.boundary_warning.values
     lines = []
     for places in _parted(found.boundary.values):
         vertices, frequency = found.boundary.values[places], np.abs(roots[places].imag)
-        model = _model_at(case, names, vertices, airspeed, options)
+        model = models_at(case, own | dict(zip(names, vertices.T, strict=True)), options)
         spectrum = decomposition(model)
         state = _nearest_state(spectrum, roots[places])
         for part in _same_mode(spectrum, state, np.isfinite(roots[places])):
             middle = (part.start + part.stop) // 2
-            mode = name_list(model.dofs)[names_at(model, spectrum, middle)[state[middle]]]
+            moved = names_of(some_points(model, [middle]), spectrum.at([middle]))[state[middle]]
+            mode = name_list(model.dofs)[moved]
             drawn = slice(max(part.start - 1, 0), part.stop)
             x, y = vertices[drawn].T
             lines.append(BoundaryLine(mode, x, y, frequency[drawn], warning[places][drawn]))
@@ -112,15 +113,6 @@ def _parted(boundary: Array) -> Iterator[Array]:
         chosen = part[good[part]]
         if len(chosen):
             yield chosen
-
-
-def _model_at(
-    case: Configuration, names: list[str], points: Array, airspeed: float | None, options: dict[str, Any]
-) -> LinearModel:
-    """Models at points (k, 2) of the plane."""
-    given: dict[str, Any] = dict(zip(names, points.T, strict=True))
-    speed = given.pop(AIRSPEED, airspeed)
-    return vary_case(case, given).linearize(speed, **options)
 
 
 def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice]:

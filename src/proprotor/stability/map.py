@@ -15,12 +15,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.deck.vary import vary as vary_case
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
 from proprotor.needs import check_memory
 from proprotor.stability.crossings import Brackets, Search
+from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.stability.root_error import growth, growth_error, roots
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     from proprotor.model.configuration import Configuration
 
-AIRSPEED = "airspeed"
 _AT_ONCE = 4096  # points of one batch
 _BYTES_PER_POINT = 100.0  # of the grid: where it is, what was found there, and the line between
 
@@ -99,8 +99,6 @@ def stability_map(
         For axes that are not two, values that do not rise, an unknown input, an airspeed that is missing, or a grid
         that does not fit into memory.
     """
-    from proprotor.deck.vary import design_inputs
-
     names, values = _axes(case, axes)
     plane = _plane(case, names, airspeed, options)
     x, y = values
@@ -139,7 +137,6 @@ def stability_map(
 def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[Array, Array]]:
     if len(axes) != 2:
         raise InputError("axes", ", ".join(axes), "must be two inputs")
-    from proprotor.deck.vary import design_inputs
     from proprotor.units import values_in_si
 
     known = design_inputs(case)
@@ -164,12 +161,8 @@ def _plane(case: Configuration, names: tuple[str, str], airspeed: Any, options: 
     if AIRSPEED in names and airspeed is not None:
         raise InputError("airspeed", airspeed, "is one of the axes already")
 
-    def linearize(x: Array, y: Array) -> LinearModel:
-        given = dict(zip(names, (x, y), strict=True))
-        speed = given.pop(AIRSPEED, airspeed)
-        return vary_case(case, given).linearize(speed, **options)
-
-    return linearize
+    own = {} if AIRSPEED in names else {AIRSPEED: airspeed}
+    return lambda x, y: models_at(case, own | dict(zip(names, (x, y), strict=True)), options)
 
 
 def _evaluated(plane: Plane, x: Array, y: Array, level: float) -> tuple[Array, Array, Array, Array]:

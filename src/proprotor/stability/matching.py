@@ -340,19 +340,6 @@ def conjugate(values: Array) -> Array:
     return np.arange(values.shape[-1]) + (values.imag > 0) - (values.imag < 0)
 
 
-def side_by_side(values: Array) -> Array:
-    """Places (points, states) that put conjugates side by side, as LAPACK has them, of eigenvalues in any order."""
-    order = np.empty(values.shape, dtype=int)
-    for point, here in enumerate(values):
-        high = np.flatnonzero(here.imag > 0)
-        low = np.flatnonzero(here.imag < 0)
-        real = np.flatnonzero(~((here.imag > 0) | (here.imag < 0)))
-        high = high[np.lexsort([here[high].imag, here[high].real])]
-        low = low[np.lexsort([-here[low].imag, here[low].real])]
-        order[point] = [*np.stack([high, low], axis=1).ravel(), *real]
-    return order
-
-
 def size_of(numbers: Array) -> Array:
     """|z|, without the care that np.abs takes of the largest and smallest of numbers."""
     size: Array = np.sqrt(numbers.real**2 + numbers.imag**2)

@@ -33,7 +33,7 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.stability.following import Line
+    from proprotor.stability.parameter_lines import ParameterLine
 
 
 class Eigensystem(NamedTuple):
@@ -206,7 +206,12 @@ def modes(model: LinearModel) -> xarray.Dataset:
 
 
 def mode_dataset(
-    model: LinearModel, values: Array, error: Array, shapes: Array, shares: Array, line: Line | None = None
+    model: LinearModel,
+    values: Array,
+    error: Array,
+    shapes: Array,
+    shares: Array,
+    line: ParameterLine | None = None,
 ) -> xarray.Dataset:
     """The dataset of `modes` from eigenvalues and their errors (..., mode), motions and participations (..., n, mode).
 

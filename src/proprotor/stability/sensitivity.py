@@ -18,6 +18,7 @@ from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
+from proprotor.stability.boundary import Boundary
 from proprotor.stability.crossings import growth_rate
 from proprotor.stability.eigenvalue_derivatives import (
     STEP,
@@ -26,7 +27,7 @@ from proprotor.stability.eigenvalue_derivatives import (
     eigenvalue_change,
     matrix_derivatives,
 )
-from proprotor.stability.flutter import Boundary, flutter_point
+from proprotor.stability.flutter import flutter_point
 from proprotor.stability.matching import Modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.named_modes import named_modes
