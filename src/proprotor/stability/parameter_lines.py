@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from proprotor.units import in_metres_per_second
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
-Inputs = Callable[[Array], dict[str, Array]]  # positions (k,) along a line to the inputs there, by name
+_Inputs = Callable[[Array], dict[str, Array]]  # positions (k,) along a line to the inputs there, by name
 
 AIRSPEED = "airspeed"
 ANCHORS = (0.7, 0.5, 0.35, 0.2)  # of the tip speed: where branches get labels, the first that has a trim
@@ -61,7 +62,7 @@ class ParameterLine:
     name: str = AIRSPEED
     units: str = "m/s"
     end: float | None = None
-    inputs: Inputs | None = None
+    inputs: _Inputs | None = None
     model: LinearModel | None = None
 
     def __post_init__(self) -> None:
@@ -114,7 +115,7 @@ def line_of_case(
 
 
 def _line(
-    case: Configuration, options: Mapping[str, Any], positions: Array, inputs: Inputs, *told: Any
+    case: Configuration, options: Mapping[str, Any], positions: Array, inputs: _Inputs, *told: Any
 ) -> ParameterLine:
     """Return a line of a case from its positions and the inputs there, then name, unit and end of the line."""
     line = ParameterLine(positions, lambda at: models_at(case, inputs(at), options), *told)
@@ -244,7 +245,7 @@ def _models_of(
         case, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}, options
     )
     ends = np.cumsum([0, *(len(line.positions) for line in lines)])
-    return [_points_of(model, slice(*pair)) for pair in zip(ends[:-1], ends[1:], strict=True)]
+    return [_points_of(model, slice(*pair)) for pair in pairwise(ends)]
 
 
 def _points_of(model: LinearModel, points: slice) -> LinearModel:
