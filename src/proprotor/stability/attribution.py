@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
 
-def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
+def _contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
     """λ_g of each part and mode (..., parts, modes), rad/s; the sum over parts that make up the model is zero."""
     return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
 
@@ -62,7 +62,7 @@ def attribution(
     """
     found = named_modes(case, airspeed, mode, options)
     parts = model_parts(case, found.model, **options)
-    changes = contributions(found.model, parts, found.modes)
+    changes = _contributions(found.model, parts, found.modes)
     data = _dataset(found.names, list(parts), found.modes.values, changes)
     data["warning"] = (), str(found.model.trim.warning), {"long_name": "what makes the numbers doubtful"}
     return data.assign_attrs(stamp.of_model(found.model) | {"airspeed": found.speed})

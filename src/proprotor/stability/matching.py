@@ -88,7 +88,7 @@ class Spectrum(NamedTuple):
     @property
     def all_modes(self) -> Modes:
         """Every state of every point."""
-        return Modes(self.values, self.right, left_vectors(self.values, self.right))
+        return Modes(self.values, self.right, _left_vectors(self.values, self.right))
 
     def modes(self, places: Array) -> Modes:
         """Some states of each point: places (..., modes)."""
@@ -100,7 +100,7 @@ class Spectrum(NamedTuple):
         )
 
 
-def left_vectors(values: Array, right: Array) -> Array:
+def _left_vectors(values: Array, right: Array) -> Array:
     """Rows (..., states, states) with rows @ right = 1, for a real matrix whose pairs stand side by side.
 
     The columns a + ib and a - ib span what a and b span: their inverse is had from that of the real matrix with the

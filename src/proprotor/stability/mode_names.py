@@ -92,18 +92,18 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
     # A state that a point does not have, though others do, stands as a root at zero while names are given.
     roots = np.where(exists, values, 0)
     if good.all():  # the usual case, without copies
-        shares = name_shares(model, left, right)
+        shares = _name_shares(model, left, right)
     else:
         shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
         if good.any():
             some = some_points(model, good)
-            shares[good] = name_shares(some, left[good], right[good])
+            shares[good] = _name_shares(some, left[good], right[good])
     held = held_coordinates(model, values.shape[-1])
-    place[good] = assign_names(model.dofs, held, shares[good], roots[good])
+    place[good] = _assign_names(model.dofs, held, shares[good], roots[good])
     return Moving(known, place, shares)
 
 
-def whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:
+def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:
     """Participation of what whirls against and with the rotor in each state, two arrays (..., states).
 
     Parameters
@@ -141,7 +141,7 @@ def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array
     against, with_rotor = np.zeros(values.shape), np.zeros(values.shape)
     for motion in motions(model.dofs):
         if len(motion.places) == 2:
-            shares = whirl_shares(motion, held, left, right)
+            shares = _whirl_shares(motion, held, left, right)
             against, with_rotor = against + shares[0], with_rotor + shares[1]
     of_hub = _hub_whirl(model, values, right)
     still = against + with_rotor < _STILL
@@ -172,7 +172,7 @@ def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, 
     return against, with_rotor
 
 
-def name_shares(model: LinearModel, left: Array, right: Array) -> Array:
+def _name_shares(model: LinearModel, left: Array, right: Array) -> Array:
     """Share of each name in each state (..., names, states); sums to 1 over the names.
 
     Parameters
@@ -188,7 +188,7 @@ def name_shares(model: LinearModel, left: Array, right: Array) -> Array:
             places = _states(motion.places[0], held)
             columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
             continue
-        whole = sum(whirl_shares(motion, held, left, right))
+        whole = sum(_whirl_shares(motion, held, left, right))
         progressive = _progressive_part(model, motion, held, left, right)
         columns += [whole * (1 - progressive), whole * progressive]
     sums = np.stack(columns, axis=-2)
@@ -235,7 +235,7 @@ def _uncoupled_roots(model: LinearModel, motion: Motion) -> tuple[Array, Array]:
     return np.where(ahead, both[0], both[1]), np.where(ahead, both[1], both[0])
 
 
-def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> Array:
+def _assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> Array:
     """The name of each state (points, states), by its place in `name_list`; both states of a pair have the same one.
 
     The assignment with the largest sum of shares. Where the best names of all states go together, that is it. Of
@@ -247,7 +247,7 @@ def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: 
     dofs : tuple of str
     held : list of int
     shares : array (points, names, states)
-        Of `name_shares`.
+        Of `_name_shares`.
     values : array (points, states)
         Eigenvalues, each pair side by side.
     """

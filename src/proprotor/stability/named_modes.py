@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
 
-class NamedModes(NamedTuple):
+class _NamedModes(NamedTuple):
     """Modes at an airspeed.
 
     names (modes,); modes, their eigenvalues and vectors; model, at speed in m/s; eigen_solves, what finding them took.
@@ -34,7 +34,7 @@ class NamedModes(NamedTuple):
 
 def named_modes(
     case: Configuration, airspeed: Any, mode: str | None, options: Mapping[str, Any]
-) -> NamedModes:
+) -> _NamedModes:
     """The modes of a case at one airspeed, or one of them by its name.
 
     Raises
@@ -58,4 +58,4 @@ def named_modes(
         raise InputError("mode", mode, unknown_name(mode, names, "mode"))
     chosen = np.array([names.index(name) for name in (names if mode is None else [mode])])
     wanted = spectrum.modes(columns[0, chosen])
-    return NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]), 1)
+    return _NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]), 1)

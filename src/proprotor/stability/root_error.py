@@ -34,7 +34,7 @@ _DOUBLE = _EPSILON**0.5  # of the largest root: what rounding parts two roots by
 _NEAR = 1e-6  # of the largest root: farther from a level no error reaches
 
 
-class Refined(NamedTuple):
+class _Refined(NamedTuple):
     """Roots (..., modes), and the bound on the error of each, rad/s."""
 
     values: Array
@@ -51,7 +51,7 @@ def growth_error(error: Array, level: float = 0.0) -> Array:
     return error * (1 + abs(level)) if level else error
 
 
-def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refined:
+def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> _Refined:
     """Roots refined by their vectors, with their errors; NaN at failed points.
 
     Parameters
@@ -80,12 +80,12 @@ def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refi
         error = rounding + size_of(correction) * np.where(better, _OF_CORRECTION + share, 1.0)
         most = _DOUBLE * _largest(values)
         error = np.where(np.isnan(values), np.nan, np.fmin(error, most))
-    return Refined(np.where(better, values + correction, values), error)
+    return _Refined(np.where(better, values + correction, values), error)
 
 
 def refined_near(
     model: LinearModel, spectrum: Spectrum, level: float = 0.0, left: Array | None = None
-) -> Refined:
+) -> _Refined:
     """The same of points (k,) that work, where a root is near a level; elsewhere roots as they are, with no error.
 
     Farther from the level than a millionth of the largest root no error reaches. `left` of `second_order_left`, where
@@ -96,7 +96,7 @@ def refined_near(
     if near.any():
         modes, rows = spectrum.at(near).all_modes, None if left is None else left[near]
         values[near], error[near] = refined(some_points(model, near), modes, rows)
-    return Refined(values, error)
+    return _Refined(values, error)
 
 
 def errors_of(model: LinearModel, spectrum: Spectrum) -> Array:
@@ -110,7 +110,7 @@ def errors_of(model: LinearModel, spectrum: Spectrum) -> Array:
     return error
 
 
-def roots(model: LinearModel, level: float = 0.0) -> Refined:
+def roots(model: LinearModel, level: float = 0.0) -> _Refined:
     """Eigenvalues (..., states) and their errors; refined, with vectors, at points where one is near the level.
 
     Farther away no error reaches, and it is told as zero. NaN at failed points.
@@ -121,7 +121,7 @@ def roots(model: LinearModel, level: float = 0.0) -> Refined:
     if near.any():
         part = some_points(model, near)
         values[near], error[near] = refined(part, decomposition(part, held_coordinates(model)).all_modes)
-    return Refined(values, error)
+    return _Refined(values, error)
 
 
 def error_near_zero(model: LinearModel, values: Array) -> Array:

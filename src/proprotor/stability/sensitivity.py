@@ -40,11 +40,11 @@ if TYPE_CHECKING:
     from proprotor.datum import Datum
     from proprotor.model.configuration import Configuration
 
-QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
-NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
+_QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
+_NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
 
 
-def input_rates(
+def _input_rates(
     linearize: Callable[[Mapping[str, Array]], LinearModel],
     values: Mapping[str, float],
     model: LinearModel,
@@ -124,8 +124,8 @@ def sensitivity(
     InputError
         For an unknown quantity, input, mode or option, or where nothing becomes unstable.
     """
-    if of not in QUANTITIES:
-        raise InputError("of", of, f"must be one of {', '.join(QUANTITIES)}")
+    if of not in _QUANTITIES:
+        raise InputError("of", of, f"must be one of {', '.join(_QUANTITIES)}")
     inputs = _chosen(case, wrt)
     if of == "flutter_speed":
         return _of_flutter_speed(case, inputs, airspeed, mode, level, options)
@@ -162,7 +162,7 @@ def _rates(
 
     values = {path: float(number.si) for path, number in inputs.items()}
     try:
-        return input_rates(linearize, values, model, modes), np.ones(len(values), dtype=bool)
+        return _input_rates(linearize, values, model, modes), np.ones(len(values), dtype=bool)
     except InputError:
         exact = np.array([_takes_complex(case, path, value) for path, value in values.items()])
         if exact.all():  # something else is wrong
@@ -170,7 +170,7 @@ def _rates(
     rates = np.empty((len(values), len(modes.values)), dtype=complex)
     if exact.any():
         analytic = {path: value for (path, value), takes in zip(values.items(), exact, strict=True) if takes}
-        rates[exact] = input_rates(linearize, analytic, model, modes)
+        rates[exact] = _input_rates(linearize, analytic, model, modes)
     for place in np.flatnonzero(~exact):
         path = list(values)[place]
         changes = differences(partial(of_one, path), np.array(values[path]))
@@ -231,7 +231,7 @@ def at_boundary(
     data = _dataset(inputs, ("input",), moves, "m/s", exact)
     data["frequency_derivative"] = ("input", frequency, {"units": "rad/s per SI unit of the input"})
     data["defect"] = ((), float(defect(modes)[0]))
-    data["nearly_defective"] = ((), bool(data.defect > NEARLY_DEFECTIVE))
+    data["nearly_defective"] = ((), bool(data.defect > _NEARLY_DEFECTIVE))
     data["warning"] = _doubt(boundary.warning)
     data.attrs = dict(boundary.stamp) | {
         "of": "flutter_speed",
@@ -264,7 +264,7 @@ def _of_modes(
     data = _dataset(inputs, ("input", "mode"), rates, units, exact).assign_coords(mode=names)
     data[of] = ("mode", value, {"units": units})
     data["defect"] = ("mode", defect(modes))
-    data["nearly_defective"] = ("mode", data.defect.values > NEARLY_DEFECTIVE)
+    data["nearly_defective"] = ("mode", data.defect.values > _NEARLY_DEFECTIVE)
     data["warning"] = _doubt(model.trim.warning)
     data.attrs = stamp.of_model(model) | {"of": of, "airspeed": speed, "eigen_solves": eigen_solves}
     return data
