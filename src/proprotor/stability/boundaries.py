@@ -224,7 +224,7 @@ def _label(found: Crossing, search: Search, branches: Branches, names: list[str]
 def _named(
     found: list[Crossing], labels: list[str], search: Search, line: ParameterLine
 ) -> tuple[tuple[Boundary, ...], tuple[str, ...], LeastDamping]:
-    """Name what moves: at each crossing, in modes beyond the level at the lowest position, and in the least damped mode."""
+    """Name what moves at crossings, in modes beyond the level at the lowest position, and in the least damped mode."""
     points = search.points
     least = _least_damped(points)
     rows = np.array([int(points.position.argmin()), 0 if least is None else least[0]])

@@ -1,4 +1,4 @@
-"""The lines of a stability map, parted where another mode takes over, each named after the mode that is neutral."""
+"""The lines of a stability map, divided where another mode takes over, each named after the mode that is neutral."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class BoundaryLine(NamedTuple):
     Parameters
     ----------
     mode : str
-        What moves in it at the middle of the line.
+        What moves in the mode at the middle of the line.
     x, y : array (vertices,)
-        In SI, as the axes of the map.
+        Vertices in SI, as the axes of the map.
     frequency : array (vertices,)
-        Of the mode, rad/s.
+        Frequency of the mode, rad/s.
     warning : array of str
         (vertices,): what makes a vertex doubtful; empty where nothing does.
     """
@@ -48,11 +48,11 @@ class BoundaryLine(NamedTuple):
 def boundary_lines(
     case: Configuration, found: xarray.Dataset, *, airspeed: Any = None, **options: Any
 ) -> list[BoundaryLine]:
-    """The lines of a stability map by mode.
+    """Return the lines of a stability map by mode.
 
-    The root that is neutral at a vertex is followed to the next by its vectors; its name is looked for at the middle of
-    each line.
-    Where one mode takes over from another, the step from the last vertex of the one belongs to the other.
+    The root that is neutral at a vertex is followed to the next by its vectors; its name is taken from the middle of
+    each line. Where one mode takes over from another, the step from the last vertex of the first mode belongs to the
+    second.
 
     Parameters
     ----------
@@ -60,10 +60,10 @@ def boundary_lines(
     found : xarray.Dataset
         Of `Case.stability_map`.
     airspeed : float in m/s, text such as "300 kt", or pint quantity, optional
-        That of the map, which need not be repeated.
+        The airspeed of the map, which need not be repeated.
     **options
-        Those of the map, see `proprotor.rotor.options.Options`. The map has its own, which need not be repeated but where
-        they hold functions.
+        The options of the map, see `proprotor.rotor.options.Options`, which need not be repeated unless they hold
+        functions.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def boundary_lines(
 
 
 def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
-    """The airspeed of a map in m/s; None where it is one of its axes."""
+    """Return the airspeed of a map in m/s; None where the airspeed is one of its axes."""
     from proprotor.units import in_metres_per_second
 
     own = found.attrs.get(AIRSPEED)
@@ -107,7 +107,7 @@ def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
 
 
 def _parted(boundary: Array) -> Iterator[Array]:
-    """Places (vertices,) of each line of a boundary in which NaN parts them."""
+    """Yield places (vertices,) of each line of a boundary in which NaN stands between lines."""
     good: Array = np.asarray(np.isfinite(boundary).all(axis=1))
     for part in np.split(np.arange(len(boundary)), np.flatnonzero(~good)):
         chosen = part[good[part]]
@@ -116,7 +116,7 @@ def _parted(boundary: Array) -> Iterator[Array]:
 
 
 def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice]:
-    """Stretches of vertices along which the root that is neutral at one is that which is neutral at the next."""
+    """Yield stretches of vertices along which the same root is neutral."""
     before, works = np.arange(len(state) - 1), spectrum.works & known
     good = before[works[:-1] & works[1:]]
     same = np.zeros(len(before), dtype=bool)
@@ -128,7 +128,7 @@ def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice
 
 
 def _nearest_state(spectrum: Spectrum, roots: Array) -> Array:
-    """Which state of each point has its root (k,)."""
+    """Return which state of each point is the root (k,) of the point."""
     apart = np.abs(spectrum.values - roots[:, None])
     state: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=1)
     return state

@@ -1,4 +1,4 @@
-"""Branches: the roots of a line of points followed from point to point, with more points put in where that is needed."""
+"""Branches: the roots of a line of points followed from point to point, with points put in between where needed."""
 
 from __future__ import annotations
 

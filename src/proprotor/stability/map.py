@@ -89,10 +89,11 @@ def stability_map(
     -------
     xarray.Dataset
         growth (y, x), the largest Re λ + ζ0 |λ| of all modes, 1/s, positive where a mode is beyond the level; frequency
-        of the mode that grows most, rad/s; reason of points that failed, warning of those that are doubtful. boundary (vertex, axis):
-        the boundary between, in lines parted by NaN; boundary_eigenvalue (vertex,), the root that crosses at a vertex,
-        rad/s; boundary_warning (vertex,), what makes a vertex doubtful. Attributes: level, airspeed in m/s where it is given,
-        eigen_solves, and the case and its options (`proprotor.model.stamp`).
+        of the mode that grows most, rad/s; reason of points that failed, warning of points that are doubtful. boundary
+        (vertex, axis): the boundary between stable and unstable points, NaN between its lines; boundary_eigenvalue
+        (vertex,), the root that crosses at a vertex, rad/s; boundary_warning (vertex,), what makes a vertex doubtful.
+        Attributes: level, airspeed in m/s where it is given, eigen_solves, and the case and its options
+        (`proprotor.model.stamp`).
 
     Raises
     ------

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 class _NamedModes(NamedTuple):
     """Modes at an airspeed.
 
-    names (modes,); modes, their eigenvalues and vectors; model, at speed in m/s; eigen_solves, what finding them took.
+    names (modes,); modes : eigenvalues and vectors; model : at the airspeed; speed : m/s; eigen_solves : of the
+    analysis.
     """
 
     names: list[str]
@@ -35,12 +36,12 @@ class _NamedModes(NamedTuple):
 def named_modes(
     case: Configuration, airspeed: Any, mode: str | None, options: Mapping[str, Any]
 ) -> _NamedModes:
-    """The modes of a case at one airspeed, or one of them by its name.
+    """Return the modes of a case at one airspeed, or one of these modes by its name.
 
     Raises
     ------
     InputError
-        For an airspeed that is not one, or that cannot be analysed, many designs, and an unknown mode.
+        For a value that is no single airspeed, an airspeed that cannot be analysed, many designs, and an unknown mode.
     """
     speed = in_metres_per_second(airspeed).reshape(-1)
     if len(speed) != 1:

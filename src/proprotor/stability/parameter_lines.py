@@ -115,10 +115,10 @@ def line_of_case(
 
 
 def _line(
-    case: Configuration, options: Mapping[str, Any], positions: Array, inputs: _Inputs, *told: Any
+    case: Configuration, options: Mapping[str, Any], positions: Array, inputs: _Inputs, *labels: Any
 ) -> ParameterLine:
     """Return a line of a case from its positions and the inputs there, then name, unit and end of the line."""
-    line = ParameterLine(positions, lambda at: models_at(case, inputs(at), options), *told)
+    line = ParameterLine(positions, lambda at: models_at(case, inputs(at), options), *labels)
     return replace(line, inputs=inputs)
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.deck.vary import design_inputs
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
@@ -50,18 +51,18 @@ def _input_rates(
     model: LinearModel,
     modes: Modes,
 ) -> Array:
-    """Derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
+    """Return derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
 
     Parameters
     ----------
     linearize : callable
         Models for arrays (inputs,) of the inputs by name, analytic in them.
     values : mapping of str to float
-        Where the derivatives are wanted.
+        Values of the inputs at which the derivatives are wanted.
     model : LinearModel
-        At these values; one point.
+        The model at these values; one point.
     modes : Modes
-        Of that point.
+        Modes of the model.
     """
     count = len(values)
     moved = {
@@ -72,7 +73,7 @@ def _input_rates(
 
 
 def damping_rate(values: Array, changes: Array) -> Array:
-    """Change of the damping ratio -Re λ/|λ| with a change of λ; NaN for a root at zero."""
+    """Return the change of the damping ratio -Re λ/|λ| with a change of λ; NaN for a root at zero."""
     size = np.abs(values)
     with np.errstate(all="ignore"):
         turned = values.real * (values.conj() * changes).real / size**3
@@ -89,7 +90,7 @@ def sensitivity(
     level: float = 0.0,
     **options: Any,
 ) -> xarray.Dataset:
-    """Exact derivatives by inputs of a case's deck.
+    """Return exact derivatives by inputs of a case's deck.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def sensitivity(
     wrt : sequence of str, optional
         Paths of inputs, see `proprotor.deck.vary.design_inputs`; all by default.
     airspeed : float in m/s, text such as "300 kt", or pint quantity
-        Where damping or eigenvalues are; for the flutter speed optionally the airspeeds of the scan.
+        Airspeed of damping or eigenvalues; for the flutter speed optionally the airspeeds of the scan.
     mode : str, optional
         One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary at which this
         moves, onset or not, instead of the lowest onset of any.
@@ -114,10 +115,10 @@ def sensitivity(
         derivative (input,) or (input, mode), SI units per SI unit of the input; relative, the derivative times the
         input: the change per change of the input by its own size; value, unit and status of every input; exact, whether
         its matrices were derived by a complex step, or, those of finite elements, by extrapolated differences; defect
-        and nearly_defective of the modes (`proprotor.stability.eigenvalue_derivatives.defect`): there derivatives hold in a small
-        range only. For the flutter speed also frequency_derivative, of the frequency at the boundary as it moves.
-        warning is what makes the numbers doubtful. Attributes: of, its value where there is one, eigen_solves, and the
-        case and its options (`proprotor.model.stamp`).
+        and nearly_defective of the modes (`proprotor.stability.eigenvalue_derivatives.defect`): derivatives of a nearly
+        defective mode hold in a small range only. For the flutter speed also frequency_derivative, of the frequency at
+        the boundary as it moves. warning is what makes the numbers doubtful. Attributes: of, its value where there is
+        one, eigen_solves, and the case and its options (`proprotor.model.stamp`).
 
     Raises
     ------
@@ -135,8 +136,6 @@ def sensitivity(
 
 
 def _chosen(case: Configuration, wrt: Sequence[str] | None) -> dict[str, Datum]:
-    from proprotor.deck.vary import design_inputs
-
     known = design_inputs(case)
     for path in wrt or ():
         if path not in known:
@@ -152,7 +151,7 @@ def _rates(
     model: LinearModel,
     options: Any,
 ) -> tuple[Array, Array]:
-    """Derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) had them by a complex step."""
+    """Return derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) took a complex step."""
 
     def linearize(values: Mapping[str, Array]) -> LinearModel:
         return vary_case(case, values).linearize(airspeed, **options)
@@ -210,7 +209,7 @@ def at_boundary(
     options: Mapping[str, Any],
     eigen_solves: int = 0,
 ) -> xarray.Dataset:
-    """Derivatives of the airspeed of one boundary: see `sensitivity`. One more eigen-solve, for the vectors.
+    """Return derivatives of the airspeed of one boundary, see `sensitivity`, by one more eigen-solve for the vectors.
 
     The level and the options are the boundary's own; options may be repeated.
 

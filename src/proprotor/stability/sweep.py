@@ -120,8 +120,9 @@ def _joined(first: Array, second: Array) -> Array:
 def mode_columns(found: Moving, values: Array) -> tuple[Array, list[str]]:
     """Return which state each mode is at each point (points, modes), and the names of the modes.
 
-    The state is -1 where a point lacks the mode. Modes are in the order of the coordinates. A mode is the state of a pair that is above the real axis, or a real root. Two real
-    roots that have one name are two modes: the one that decays faster, or grows less, is the second root.
+    The state is -1 where a point lacks the mode. Modes are in the order of the coordinates. A mode is the state of a
+    pair that is above the real axis, or a real root. Two real roots that have one name are two modes: the one that
+    decays faster, or grows less, is the second root.
     """
     columns, modes = [], []
     counts = values.imag >= 0
