@@ -23,7 +23,7 @@ verify-versions: .venv/installed  ## Derive the equations under other hash seeds
 
 regenerate-equations: .venv/installed  ## Derive the equations again, write generated/ and the index of equations
 	$(BIN)/python -m derive
-	$(BIN)/python -m derive.index
+	$(BIN)/python -m derive.pages.index
 
 lint: .venv/installed  ## Check the style of the source
 	$(BIN)/ruff check src derive tests benchmarks notebooks docs
@@ -31,8 +31,8 @@ lint: .venv/installed  ## Check the style of the source
 	$(BIN)/python -m tests.rooms
 
 notebooks: .venv/installed  ## Run the audit's notebooks and render them into docs/notebooks/
-	$(BIN)/python -m derive.notebooks
-	$(BIN)/python -m derive.index
+	$(BIN)/python -m derive.pages.notebooks
+	$(BIN)/python -m derive.pages.index
 
 figures: .venv/installed  ## Make every analytical figure of the paper, with its numbers, in figures/
 	$(BIN)/python -m benchmarks.paper_figures --out figures
@@ -50,7 +50,7 @@ docs: .venv/docs-installed  ## Build the documentation site, docs/_build/html/in
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
 
 glossary: .venv/installed  ## Write docs/symbols.md, every symbol of the derivation
-	$(BIN)/python -m derive.glossary
+	$(BIN)/python -m derive.pages.glossary
 
 decks: .venv/installed  ## Write docs/decks.md, every field of a deck
 	$(BIN)/proprotor describe --markdown > docs/decks.md

@@ -8,10 +8,11 @@ to match.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+import xarray
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
@@ -22,10 +23,8 @@ from benchmarks.paper_figures import Analyses
 from benchmarks.paper_figures.analyses import XV15
 from benchmarks.paper_figures.blade_state import AS_THE_PAPER, blade_state, on_rigid_hub
 from benchmarks.paper_figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES, XV15_FLUTTER
-from benchmarks.paper_figures.uncertainty_band import boundary, least_damping
-from proprotor.model.linear_model import LinearModel, rotor_model
+from benchmarks.paper_figures.wing_modes import WingModes
 from proprotor.rotor.motions import HUB
-from proprotor.stability.modes import eigensystem, participation
 from proprotor.units import KNOT
 
 REPRODUCED, PARTLY, NOT = "reproduced", "partly", "not reproduced"
@@ -45,22 +44,28 @@ class Claim(NamedTuple):
 
 
 def all_claims(analyses: Analyses) -> list[Claim]:
-    """Every claim, in the order of the figures."""
+    """Return every claim, in the order of the figures."""
     return [claim for group in GROUPS for claim in group(analyses)]
 
 
 def mode_boundaries(analyses: Analyses, variant: str, deck: str = XV15) -> dict[str, float]:
-    """Boundary in kt of each mode of the wing; infinite where it is stable to the last airspeed."""
-    knots = analyses.knots(deck)
-    return {m: float(boundary(knots, analyses.damping(deck, m, variant)[None])[0]) for m in WING}
+    """Return the boundary in kt of each mode of the wing; infinite where it is stable to the last airspeed."""
+    wing = analyses.wing(deck, variant)
+    return {mode: wing.speed(mode) for mode in wing.names}
 
 
 def chord_change(analyses: Analyses, variant: str) -> float:
-    """By how much a variant moves the chord boundary of the XV-15, kt."""
+    """Return by how many kt a variant moves the chord boundary of the XV-15."""
     return mode_boundaries(analyses, variant)["chord"] - mode_boundaries(analyses, "couplings")["chord"]
 
 
-def told(speed: float, last: float = 500) -> str:
+def first_boundary(analyses: Analyses, variant: str, deck: str = XV15) -> float:
+    """Return the lowest boundary in kt of a mode that moves the wing; infinite beyond the last airspeed."""
+    return analyses.wing(deck, variant).first_speed
+
+
+def as_text(speed: float, last: float = 500) -> str:
+    """Return a boundary as text, with the last airspeed in kt where there is none."""
     return f"{speed:.0f} kt" if np.isfinite(speed) else f"none to {last:.0f} kt"
 
 
@@ -74,29 +79,29 @@ def _verdict(holds: bool, partly: bool = False) -> str:
 def xv15_boundary(analyses: Analyses) -> Iterator[Claim]:
     """Figs. 4 to 6."""
     low, high = min(XV15_FLUTTER.values()), max(XV15_FLUTTER.values())
-    couplings, dynamic = (analyses.boundary(XV15, variant) for variant in ("couplings", "pitch equations"))
+    couplings, dynamic = (first_boundary(analyses, v) for v in ("couplings", "pitch equations"))
     inside = low <= couplings <= high
     here = f"{couplings:.0f} kt with couplings, {dynamic:.0f} kt with pitch equations"
     reached = False
     if band := analyses.band(XV15, "pitch equations"):
-        speeds = band.boundaries() / KNOT
-        first, _, last = band.boundary_percentiles() / KNOT
-        reached = bool(np.mean(speeds <= high) >= 0.05)
-        here += f"; of the sample 5 to 95 % lie within {first:.0f} and {last:.0f} kt, {np.mean(speeds <= high):.0%}"
-        here += f" at or below {high:.0f} kt"
+        first, _, last = band.speed_percentiles
+        share = band.share_below(high)
+        reached = share >= 0.05
+        here += f"; of the sample 5 to 95 % lie within {first:.0f} and {last:.0f} kt, {share:.0%}"
+        here += f" below {high:.0f} kt"
     yield Claim(
         "Figs. 4-6",
         f"The stability boundary is that of elastic-blade analyses ({low:.0f} to {high:.0f} kt)",
         here,
         _verdict(inside, reached),
     )
-    beam = analyses.damping(XV15, "beam", "couplings")
+    beam = analyses.wing(XV15, "couplings").damping("beam")
     peak = float(analyses.knots(XV15)[np.nanargmax(beam)])
     yield Claim(
         "Fig. 4",
         "Damping of vertical bending rises with speed to a peak, then falls to the boundary",
         f"from {beam[0]:.1f} % at 50 kt to {np.nanmax(beam):.1f} % at {peak:.0f} kt, zero at "
-        + told(mode_boundaries(analyses, "couplings")["beam"]),
+        + as_text(mode_boundaries(analyses, "couplings")["beam"]),
         _verdict(50 < peak < couplings),
     )
 
@@ -116,10 +121,10 @@ def models_without_wing(analyses: Analyses) -> Iterator[Claim]:
     for deck, (place, statement) in statements.items():
         last = analyses.knots(deck)[-1]
         shown = mode_boundaries(analyses, "couplings", deck)["beam"]
-        here = f"wing not at hand. Vertical bending: {told(shown, last)}; first mode of the wing: "
-        here += told(analyses.boundary(deck, "couplings"), last)
+        here = f"wing not at hand. Vertical bending: {as_text(shown, last)}; first mode of the wing: "
+        here += as_text(first_boundary(analyses, "couplings", deck), last)
         if band := analyses.band(deck):
-            here += f"; {np.mean(np.isfinite(band.boundaries())):.0%} of the sample unstable by {last:.0f} kt"
+            here += f"; {band.share_below(last):.0%} of the sample unstable by {last:.0f} kt"
         yield Claim(place, statement, here, UNTESTED)
 
 
@@ -168,25 +173,24 @@ def lag_frequency(analyses: Analyses) -> Iterator[Claim]:
 
 
 def _cyclic_lag(analyses: Analyses, dropped: tuple[str, ...]) -> NDArray:
-    """Low cyclic lag frequency (100 kt, 400 kt) per rev on a rigid hub in a vacuum."""
-    model = _on_rigid_hub(analyses, np.array([100.0, 400.0]) * KNOT, dropped)
-    values, shares = _modes(model)
-    lag = shares[:, [model.dofs.index(name) for name in ("lag_1c", "lag_1s")]].sum(axis=1)
-    low = values.imag < 1.5 * analyses.case(XV15).operation.rotor_speed
-    best = np.where(low & (values.imag > 0), lag, -1).argmax(axis=1)
-    found = np.take_along_axis(values, best[:, None], 1)[:, 0].imag
-    return found / analyses.case(XV15).operation.rotor_speed
+    """Return the low cyclic lag frequency (100 kt, 400 kt) per revolution on a rigid hub in a vacuum."""
+    rotor_speed = analyses.case(XV15).operation.rotor_speed
+    modes = _modes_on_rigid_hub(analyses, [100.0, 400.0], dropped)
+    low = (modes.eigenvalue.imag > 0) & (modes.eigenvalue.imag < 1.5 * rotor_speed)
+    lag = modes.participation.sel(dof=["lag_1c", "lag_1s"]).sum("dof")
+    best = lag.where(low, -1).argmax("mode")
+    return modes.eigenvalue.imag.isel(mode=best).values / rotor_speed
 
 
-def _on_rigid_hub(analyses: Analyses, speeds: NDArray, dropped: tuple[str, ...] = ()) -> LinearModel:
-    case = analyses.case(XV15)
-    model = rotor_model(case.rotor, case.operation, speeds, airloads="none", pitch="coupling", **AS_THE_PAPER)
-    return model.submodel(tuple(name for name in model.dofs if name not in (*HUB, *dropped)))
-
-
-def _modes(model: LinearModel) -> tuple[NDArray, NDArray]:
-    system = eigensystem(model)
-    return system.values, participation(model, system)
+def _modes_on_rigid_hub(
+    analyses: Analyses, knots: Sequence[float], dropped: Sequence[str] = ()
+) -> xarray.Dataset:
+    """Return the modes of the XV-15's rotor on a rigid hub in a vacuum, some coordinates dropped."""
+    case, speeds = analyses.case(XV15), np.array(knots) * KNOT
+    model = pp.rotor_model(
+        case.rotor, case.operation, speeds, airloads="none", pitch="coupling", **AS_THE_PAPER
+    )
+    return model.submodel(tuple(name for name in model.dofs if name not in (*HUB, *dropped))).modes()
 
 
 def flap_lag_stiffness(analyses: Analyses) -> Iterator[Claim]:
@@ -200,12 +204,16 @@ def flap_lag_stiffness(analyses: Analyses) -> Iterator[Claim]:
         "Figs. 15-17",
         "Dropping the flap-lag stiffness moves boundaries by as much as 40 kt",
         ", ".join(f"{mode} {change:+.0f}" for mode, change in moved.items())
-        + f" kt with the couplings as they were; chord boundary {told(follow)} if they are made without it as well",
+        + f" kt with the couplings as they were; chord boundary {as_text(follow)} if they are made without it as well",
         _verdict(30 <= largest <= 50, 5 <= largest <= 80),
     )
     knots = analyses.knots(XV15)
+
+    def damping(variant: str, mode: str) -> NDArray:
+        return analyses.wing(XV15, variant).damping(mode)
+
     peaks = [
-        float(knots[np.nanargmax(np.where(knots < 400, analyses.damping(XV15, "beam", variant), -np.inf))])
+        float(knots[np.nanargmax(np.where(knots < 400, damping(variant, "beam"), -np.inf))])
         for variant in ("couplings", "no flap-lag stiffness")
     ]
     yield Claim(
@@ -222,11 +230,8 @@ def flap_lag_stiffness(analyses: Analyses) -> Iterator[Claim]:
         _verdict(all(abs(c - p) <= 25 for c, p in zip(crossings, peaks, strict=True))),
     )
     below = knots <= 350
-    change = {
-        mode: float(np.nanmax(np.abs(
-            analyses.damping(XV15, mode, "no flap-lag stiffness") - analyses.damping(XV15, mode, "couplings")
-        )[below])) for mode in WING
-    }  # fmt: skip
+    apart = {mode: damping("no flap-lag stiffness", mode) - damping("couplings", mode) for mode in WING}
+    change = {mode: float(np.nanmax(np.abs(moved_by)[below])) for mode, moved_by in apart.items()}
     yield Claim(
         "Figs. 15-17",
         "Vertical bending changes in character, chord and torsion less",
@@ -246,7 +251,7 @@ def flap_lag_stiffness(analyses: Analyses) -> Iterator[Claim]:
 
 
 def _lag_meets_beam(analyses: Analyses, structure: str) -> float:
-    """Speed, kt, at which the low cyclic lag mode on a rigid hub has the frequency of the beam mode."""
+    """Return the speed in kt at which the low cyclic lag mode on a rigid hub has the frequency of the beam mode."""
     lag = on_rigid_hub(analyses.case(XV15), analyses.airspeeds(XV15), pitch="coupling", structure=structure)[
         "low cyclic lag"
     ]
@@ -278,12 +283,11 @@ def flap_modes(analyses: Analyses) -> Iterator[Claim]:
         f"ν = {nu:.4f} by the hub spring, whose ν² is {nu**2:.4f}; {low:.3f} to {high:.3f} as a mode in a vacuum",
         _verdict(abs(nu - 1.0355) < 0.002, abs(nu**2 - 1.0355) < 0.002),
     )
-    model = _on_rigid_hub(analyses, np.array([300.0]) * KNOT)
-    values, shares = _modes(model)
-    place = np.where(values[0].imag > 0, values[0].imag, np.inf).argmin()
+    modes = _modes_on_rigid_hub(analyses, [300.0]).isel(airspeed=0)
+    oscillates = modes.eigenvalue.imag > 0
+    lowest = modes.participation.isel(mode=modes.eigenvalue.imag.where(oscillates, np.inf).argmin("mode"))
     gimbal, flap = (
-        float(shares[0][[model.dofs.index(name) for name in names], place].sum())
-        for names in (("gimbal_1c", "gimbal_1s"), CYCLIC_FLAP)
+        float(lowest.sel(dof=list(names)).sum()) for names in (("gimbal_1c", "gimbal_1s"), CYCLIC_FLAP)
     )
     yield Claim(
         "text on Fig. 18",
@@ -298,7 +302,7 @@ def flap_modes(analyses: Analyses) -> Iterator[Claim]:
 
 def couplings(analyses: Analyses) -> Iterator[Claim]:
     """Fig. 21 and what the text says of Eqs. 36 and 37."""
-    speed = analyses.boundary(XV15, "couplings")
+    speed = first_boundary(analyses, "couplings")
     case = analyses.case(XV15)
     at_boundary, at_300 = (blade_state(case, np.array([s]) * KNOT) for s in (speed, 300.0))
     lag, flap = (float(getattr(at_boundary, f"pitch_{name}_coupling")[0]) for name in ("lag", "flap"))
@@ -322,6 +326,7 @@ def couplings(analyses: Analyses) -> Iterator[Claim]:
 
 
 def _couplings_of(case: pp.Case, speed: float = 300.0) -> NDArray:
+    """Return K_Pβ and K_Pζ at an airspeed in kt."""
     state = blade_state(case, np.array([speed]) * KNOT)
     return np.array([state.pitch_flap_coupling[0], state.pitch_lag_coupling[0]])
 
@@ -339,7 +344,7 @@ def _design_trends(analyses: Analyses) -> Iterator[Claim]:
             analyses, {"rotor.control_stiffness": 2 * case.rotor.control_stiffness}
         ),
     }
-    start = analyses.boundary(XV15, "couplings")
+    start = first_boundary(analyses, "couplings")
     yield Claim(
         "text on Fig. 21",
         "The couplings vanish when all flexibility lies inboard of the pitch bearing",
@@ -366,7 +371,8 @@ def _design_trends(analyses: Analyses) -> Iterator[Claim]:
     yield Claim(
         "conclusions",
         "More flexibility inboard, less precone and stiffer controls reduce the destabilising couplings",
-        f"boundary {start:.0f} kt; " + ", ".join(f"{name} {told(speed)}" for name, speed in speeds.items()),
+        f"boundary {start:.0f} kt; "
+        + ", ".join(f"{name} {as_text(speed)}" for name, speed in speeds.items()),
         _verdict(all(speed > start for speed in speeds.values())),
     )
 
@@ -375,11 +381,11 @@ def _coning(case: pp.Case) -> float:
     return float(blade_state(case, np.array([300.0]) * KNOT).coning[0])
 
 
-def _lowest(analyses: Analyses, values: dict[str, Any]) -> float:
-    """Lowest boundary of the wing of another design, kt."""
-    case = analyses.case(XV15).vary(values)
-    model = case.linearize(analyses.airspeeds(XV15)[None], pitch="coupling", **AS_THE_PAPER)
-    return float(boundary(analyses.knots(XV15), least_damping(model))[0])
+def _lowest(analyses: Analyses, values: Mapping[str, Any] | None = None, **options: Any) -> float:
+    """Return the lowest boundary of the wing of another design, or with other options, kt."""
+    case = analyses.case(XV15).vary(values) if values else analyses.case(XV15)
+    all_options = analyses.options(XV15, "couplings") | options
+    return WingModes(case, analyses.airspeeds(XV15), all_options).first_speed
 
 
 def pitch_modelling(analyses: Analyses) -> Iterator[Claim]:
@@ -387,7 +393,7 @@ def pitch_modelling(analyses: Analyses) -> Iterator[Claim]:
     base = mode_boundaries(analyses, "couplings")
     neither = mode_boundaries(analyses, "no couplings")
     change = neither["chord"] - base["chord"]
-    others = ", ".join(f"{mode} {told(neither[mode])}" for mode in ("beam", "torsion"))
+    others = ", ".join(f"{mode} {as_text(neither[mode])}" for mode in ("beam", "torsion"))
     yield Claim(
         "Figs. 22-24",
         "Without both couplings the boundary is more than 100 kt higher",
@@ -413,14 +419,8 @@ def pitch_modelling(analyses: Analyses) -> Iterator[Claim]:
 
 def airloads(analyses: Analyses) -> Iterator[Claim]:
     """What the text says of the aerodynamic model."""
-
-    def lowest(**options: Any) -> float:
-        case, speeds = analyses.case(XV15), analyses.airspeeds(XV15)
-        model = case.linearize(speeds[None], pitch="coupling", **AS_THE_PAPER, **options)
-        return float(boundary(analyses.knots(XV15), least_damping(model))[0])
-
-    full, slope = lowest(), lowest(airloads="lift-slope")
-    neither = lowest(airloads="lift-slope", compressibility=False)
+    full, slope = _lowest(analyses), _lowest(analyses, airloads="lift-slope")
+    neither = _lowest(analyses, airloads="lift-slope", compressibility=False)
     yield Claim(
         "text on airloads",
         "Between full airloads with compressibility and lift-slope terms without it, compressibility makes most of the "

@@ -1,6 +1,6 @@
 """Pitch-flap and pitch-lag coupling of the XV-15 against airspeed, and what holds the blade's pitch besides K_θ.
 
-    python benchmarks/couplings.py
+    python -m benchmarks.couplings
 
 Eqs. 36 and 37 of AIAA-2002-1604 divide by the control stiffness alone. The springs of a bent blade change their moment
 as the blade pitches, and the propeller moment turns it flat: both act in parallel to the control spring, and the
@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from proprotor_equations import flap_lag_springs, pitch
 from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.paper_figures.blade_state import couplings, effective_springs
 from proprotor.units import KNOT
 
 SPEEDS = np.arange(100, 401, 50) * KNOT
@@ -40,20 +40,11 @@ class PitchCouplings(NamedTuple):
 
 
 def pitch_couplings(case: pp.Case, speeds: NDArray) -> PitchCouplings:
-    """Couplings at the trim of each airspeed."""
+    """Return the couplings of a case at the trim of each airspeed (points,) in m/s."""
     rotor = case.rotor
     state = pp.rotor_model(rotor, case.operation, speeds, airloads="none", section_damping=False).trim
-    springs = flap_lag_springs.effective_stiffness(
-        flap_stiffness=rotor.flap_stiffness,
-        lag_stiffness=rotor.lag_stiffness,
-        flap_outboard_fraction=rotor.flap_outboard_fraction,
-        lag_outboard_fraction=rotor.lag_outboard_fraction,
-        structural_pitch=state.pitch + rotor.structural_pitch_offset,
-    )
-    slopes = {name: value for name, value in springs._asdict().items() if name.endswith("_slope")}
-    flap, lag = pitch.couplings(
-        control_stiffness=rotor.control_stiffness, coning=state.coning, lag=state.lag, **slopes
-    )
+    springs = effective_springs(rotor, state.pitch + rotor.structural_pitch_offset)
+    flap, lag = couplings(rotor, springs, state.coning, state.lag)
     curvature = (
         springs.flap_flap_stiffness_curvature * state.coning**2
         + 2 * springs.flap_lag_stiffness_curvature * state.coning * state.lag

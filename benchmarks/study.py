@@ -16,6 +16,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -25,19 +26,20 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from proprotor import case as case_module
 from proprotor import sampling
-from proprotor.model import linear_model as model
+from proprotor.model import configuration
 from proprotor.model.first_order import state_matrix
 from proprotor.rotor import section_loads as blade_airloads
 from proprotor.rotor import trim_balance
 from proprotor.stability import modes
 from proprotor.study import workers as study_workers
-from proprotor.study.batch import DEFAULT_QUANTITIES
-from proprotor.study.study import BATCH, study
+from proprotor.study.study import study
+from proprotor.study.variables import DEFAULT_QUANTITIES
 
+rotor_model = import_module("proprotor.model.rotor_model")  # the package has the function by this name
 POINTS = 10_000
 TURNS = 3
+BATCH = 2000  # points: as many as a study analyses at once
 SPEEDS = np.linspace(160, 380, 20) * 1852 / 3600  # m/s
 INPUTS = {
     "rotor.precone": ("1.5 deg", "3.5 deg"),
@@ -54,10 +56,10 @@ PARTS = {
     "numbers of the deck to rotor and support": [(pp.Case, "vary")],
     "stations along the blade": [(blade_airloads.BladeSections, "of")],
     "trim: section loads": [(trim_balance, "load_moments")],
-    "trim: the rest": [(model, "solve_trim")],
-    "blade matrices and airloads": [(model, "_blade_matrices")],
-    "blades to rotor": [(model, "_fixed_frame")],
-    "rotor on its support": [(case_module, "mount")],
+    "trim: the rest": [(rotor_model, "solve_trim")],
+    "blade matrices and airloads": [(rotor_model, "_blade_matrices")],
+    "blades to rotor": [(rotor_model, "_fixed_frame")],
+    "rotor on its support": [(configuration, "mount")],
     "state matrix": [(modes, "have_modes"), (modes, "first_order")],
     "eigenvalues (LAPACK)": [(np.linalg, "eigvals")],
 }

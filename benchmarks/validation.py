@@ -11,19 +11,16 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from rich.progress import track
 
-from benchmarks.claims import VERDICTS, WING, Claim, all_claims, mode_boundaries, told
+from benchmarks.claims import VERDICTS, WING, Claim, all_claims, as_text, first_boundary, mode_boundaries
 from benchmarks.paper_figures import NUMBERS, Analyses, csv_of, make_figure
 from benchmarks.paper_figures.analyses import XV15
 from benchmarks.paper_figures.drawing import draw_intervals, save
-from benchmarks.paper_figures.input_ranges import V22, WRATS
+from benchmarks.paper_figures.input_ranges import V22, WRATS, InputRange
 from benchmarks.paper_figures.input_ranges import XV15 as XV15_RANGES
 from benchmarks.paper_figures.published import XV15_FLUTTER, XV15_MARK
-from benchmarks.paper_figures.uncertainty_band import Band, InputRange
+from benchmarks.paper_figures.sample_band import Band
 from proprotor.files.output import write_whole
-from proprotor.units import KNOT
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE, FOLDER = ROOT / "docs" / "validation.md", ROOT / "docs" / "figures"
@@ -47,30 +44,12 @@ _GROUPS = {
 
 
 class Row(NamedTuple):
-    """The boundary of one blade and model: nominal, percentiles and shares of the sample; kt."""
+    """The boundary of one blade and model: nominal in kt, and of a sample."""
 
     blade: str
     pitch: str
     nominal: float
     band: Band
-
-    @property
-    def percentiles(self) -> list[float]:
-        """5, 50 and 95 %."""
-        return (self.band.boundary_percentiles() / KNOT).tolist()
-
-    def unstable_by(self, speed: float) -> NDArray:
-        """Return which designs of the sample have a boundary at or below a speed, bool (designs,)."""
-        return self.band.boundaries() / KNOT <= speed
-
-    def share_below(self, speed: float) -> float:
-        """Return the share of the sample with a boundary at or below a speed."""
-        return float(np.mean(self.unstable_by(speed)))
-
-    def least_damping(self, speed: float) -> float:
-        """Return the least damping of those designs up to that speed, % of critical."""
-        to_there = self.band.airspeed / KNOT <= speed
-        return 100 * float(np.nanmin(self.band.least_damping[self.unstable_by(speed)][:, to_there]))
 
     @property
     def label(self) -> str:
@@ -79,16 +58,16 @@ class Row(NamedTuple):
 
 
 def xv15_rows(analyses: Analyses) -> list[Row]:
-    """Both blades with both ways to have the pitch."""
+    """Return the boundaries of both blades with each way to model the pitch."""
     return [
-        Row(blade, pitch, analyses.boundary(deck, variant), analyses.band(deck, variant))
+        Row(blade, pitch, first_boundary(analyses, variant, deck), analyses.band(deck, variant))
         for deck, blade in _BLADES.items()
         for variant, pitch in _PITCH.items()
     ]
 
 
 def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
-    """The whole page."""
+    """Return the whole page."""
     parts = (
         [_HEAD],
         _summary(claims),
@@ -103,7 +82,7 @@ def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
 
 _HEAD = """# Validation against AIAA-2002-1604
 
-Written by `python -m benchmarks.validation`, numbers, verdicts and figures included; `proprotor figures` makes the
+Written by `python -m benchmarks.validation`, numbers, verdicts and figures included; `make figures` makes the
 figures alone. Damping is in percent of critical, frequency per revolution, speed in knots.
 
 What the inputs are decides what may be concluded. The rotor of the XV-15 is published; its wing is recalled or assumed,
@@ -137,17 +116,17 @@ def _boundary_section(rows: list[Row]) -> Iterator[str]:
         "5 %",
         "median",
         "95 %",
-        f"≤ {low:.0f} kt",
-        f"≤ {high:.0f} kt",
+        f"< {low:.0f} kt",
+        f"< {high:.0f} kt",
     )
     cells = [
         (
             row.blade,
             row.pitch,
-            told(row.nominal),
-            *(told(speed) for speed in row.percentiles),
-            f"{row.share_below(low):.0%}",
-            f"{row.share_below(high):.0%}",
+            as_text(row.nominal),
+            *map(as_text, row.band.speed_percentiles),
+            f"{row.band.share_below(low):.0%}",
+            f"{row.band.share_below(high):.0%}",
         )
         for row in rows
     ]
@@ -162,16 +141,17 @@ def _boundary_section(rows: list[Row]) -> Iterator[str]:
 def _boundary_words(rows: list[Row]) -> Iterator[str]:
     low, high = min(XV15_FLUTTER.values()), max(XV15_FLUTTER.values())
     nominal = [row.nominal for row in rows]
-    share = [row.share_below(high) for row in rows]
-    first = min(row.percentiles[0] for row in rows)
+    share = [row.band.share_below(high) for row in rows]
+    first = min(row.band.speed_percentiles[0] for row in rows)
     blades = len(_PITCH)
     moved = max(
         abs(one.nominal - other.nominal) for one, other in zip(rows[:blades], rows[blades:], strict=True)
     )
     inside = "reaches into" if first <= high else "ends above"
     yield f"- The nominal boundary is {min(nominal) - high:.0f} to {max(nominal) - low:.0f} kt above published ones."
-    yield f"- The 5 to 95 % band {inside} them; {min(share):.0%} to {max(share):.0%} of the samples become unstable at"
-    yield from _early_words([row for row in rows if row.share_below(high)], high)
+    shares = f"{min(share):.0%} to {max(share):.0%}"
+    yield f"- The 5 to 95 % band {inside} them; {shares} of the samples become unstable below"
+    yield from _early_words([row for row in rows if row.band.share_below(high)], high)
     yield "- So the doubtful inputs, as judged here, do not explain the difference unless they conspire. What the"
     yield "  model leaves out (more than one elastic bending mode, measured wing modes, sweep, airfoil tables) is"
     yield "  discussed in [xv15.md](xv15.md)."
@@ -182,12 +162,12 @@ def _boundary_words(rows: list[Row]) -> Iterator[str]:
 def _early_words(early: list[Row], high: float) -> Iterator[str]:
     """Say which models have designs that are unstable at published speeds, from where on, and how much."""
     if not early:
-        yield f"  {high:.0f} kt or below."
+        yield f"  {high:.0f} kt."
         return
-    speeds = np.concatenate([row.band.boundaries()[row.unstable_by(high)] for row in early]) / KNOT
+    speeds = np.concatenate([row.band.speeds_below(high) for row in early])
     models = " and ".join(dict.fromkeys(row.pitch for row in early))
-    worst = -min(row.least_damping(high) for row in early)
-    yield f"  {high:.0f} kt or below, all of them with {models}: pitch modes of soft controls, where they meet torsion,"
+    worst = -min(row.band.least_damping(high) for row in early)
+    yield f"  {high:.0f} kt, all of them with {models}: pitch modes of soft controls, where they meet torsion,"
     yield f"  unstable from {speeds.min():.0f} to {speeds.max():.0f} kt on by {worst:.1f} % of critical at most."
     yield "  The damping of turning sections keeps them stable."
 
@@ -231,8 +211,8 @@ def _models_section(analyses: Analyses) -> Iterator[str]:
     for deck in decks:
         last = analyses.knots(deck)[-1]
         modes = mode_boundaries(analyses, "couplings", deck)
-        percentiles = (analyses.band(deck).boundary_percentiles() / KNOT).tolist()
-        cells.append((f"`{deck}`", *(told(speed, last) for speed in (*modes.values(), *percentiles))))
+        percentiles = analyses.band(deck).speed_percentiles
+        cells.append((f"`{deck}`", *(as_text(speed, last) for speed in (*modes.values(), *percentiles))))
     yield from _table(("deck", *WING, "first mode, 5 %", "median", "95 %"), cells)
     yield ""
 
@@ -266,13 +246,13 @@ def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[s
 def main() -> None:
     FOLDER.mkdir(parents=True, exist_ok=True)
     analyses = Analyses()
-    for number in track(NUMBERS, description="figures"):
+    for number in NUMBERS:
         content = make_figure(number, analyses)
         stem = FOLDER / f"figure-{number:02}"
         write_whole(stem.with_suffix(".png"), lambda file, it=content: save(it, file, DPI))
         write_whole(stem.with_suffix(".csv"), lambda file, it=content: file.write(csv_of(it)))
     rows = xv15_rows(analyses)
-    intervals = [(row.label, row.nominal, *row.percentiles) for row in rows]
+    intervals = [(row.label, row.nominal, *row.band.speed_percentiles) for row in rows]
     write_whole(
         FOLDER / "xv15-boundary.png",
         lambda file: draw_intervals(

@@ -13,7 +13,7 @@ from rich.table import Table
 
 import proprotor as pp
 from benchmarks.paper_figures.blade_state import on_rigid_hub
-from benchmarks.xv15_boundary import KNOT
+from proprotor.units import KNOT
 
 SPEEDS = np.arange(50, 451, 50) * KNOT
 MODES = ("coning", "low cyclic lag", "low gimbal", "high gimbal")

@@ -17,8 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from benchmarks.xv15_boundary import WING, boundaries, lowest_of_wing, told
-from proprotor.errors import InputError
+from benchmarks.xv15_boundary import WING, as_text, boundaries, lowest_of_wing
 from proprotor.rotor.rotor import MASS_INTEGRALS
 from proprotor.support.normal_modes import HUB_AXES
 
@@ -178,8 +177,8 @@ def altered(case: pp.Case, *alterations: Alteration) -> pp.Case:
 def boundary(case: pp.Case, *alterations: Alteration) -> float:
     """Boundary of the wing modes in kt; NaN where no such rotor can be, infinity beyond the sweep."""
     try:
-        return float(np.nan_to_num(lowest_of_wing(boundaries(altered(case, *alterations))), nan=np.inf))
-    except InputError:
+        return lowest_of_wing(boundaries(altered(case, *alterations)))
+    except pp.InputError:
         return np.nan
 
 
@@ -213,8 +212,8 @@ def effects(case: pp.Case) -> list[Effect]:
 def combined(case: pp.Case, found: list[Effect]) -> tuple[float, float]:
     """Boundaries with all inputs at their lower end: of the wing, and of the rotor's own modes."""
     alterations = [alter for _, alter in (effect.worst for effect in found)]
-    of_rotor = boundaries(altered(case, *alterations))["rotor"]
-    return boundary(case, *alterations), float(np.nan_to_num(of_rotor, nan=np.inf))
+    found = boundaries(altered(case, *alterations))
+    return lowest_of_wing(found), found["rotor"]
 
 
 def groups(found: list[Effect]) -> dict[str, list[Effect]]:
@@ -235,7 +234,7 @@ def print_alone(console: Console, found: list[Effect]) -> None:
     table = Table("input", "status", "from", "to", "kt", "kt", title=title)
     for effect in found:
         name, status, (low, _), (high, _) = effect.input
-        speeds = ("not possible" if np.isnan(speed) else told(speed) for speed in effect.boundaries)
+        speeds = ("not possible" if np.isnan(speed) else as_text(speed) for speed in effect.boundaries)
         table.add_row(name, status, low, high, *speeds)
     console.print(table)
 
@@ -245,7 +244,7 @@ def print_together(console: Console, case: pp.Case, found: list[Effect]) -> None
     table = Table(*columns, title="inputs together: boundary, kt")
     for name, group in groups(found).items():
         independent = group[0].baseline - np.sqrt(sum(effect.lowering**2 for effect in group))
-        table.add_row(name, str(len(group)), told(independent), *map(told, combined(case, group)))
+        table.add_row(name, str(len(group)), as_text(independent), *map(as_text, combined(case, group)))
     console.print(table)
 
 
@@ -253,7 +252,7 @@ def print_one_after_another(console: Console, case: pp.Case, group: list[Effect]
     table = Table("and", "wing", "rotor", title="not published, one more in each row: boundary, kt")
     for count, effect in enumerate(group, start=1):
         end, _ = effect.worst
-        table.add_row(f"{effect.input.name} {end}", *map(told, combined(case, group[:count])))
+        table.add_row(f"{effect.input.name} {end}", *map(as_text, combined(case, group[:count])))
     console.print(table)
 
 

@@ -16,57 +16,54 @@ from rich.table import Table
 from scipy.optimize import brentq
 
 import proprotor as pp
-from benchmarks.paper_figures.blade_state import blade_state, on_rigid_hub
-from benchmarks.paper_figures.published import PAPER_FREQUENCIES
-from benchmarks.xv15_boundary import KNOT, SPEEDS, WING, boundaries, told
-from proprotor.rotor.blade_frequencies import BladeFrequencies
+from benchmarks.paper_figures.analyses import VARIANTS
+from benchmarks.paper_figures.blade_state import AS_THE_PAPER, blade_state, on_rigid_hub
+from benchmarks.xv15_boundary import SPEEDS, WING, as_text, boundaries
+from proprotor.units import KNOT
 
 TABLE_SPEEDS = np.arange(50, 451, 50) * KNOT
 
 
-def switches(case: pp.Case) -> dict[str, dict[str, Any]]:
-    """Options of each row of the table, to be added to those of the baseline."""
-    at_trim = blade_state(case, SPEEDS)
-    flap, lag = at_trim.pitch_flap_coupling, at_trim.pitch_lag_coupling
-    kept = {"pitch_flap_coupling": flap, "pitch_lag_coupling": lag}
-    vacuum = 1 + on_rigid_hub(case, SPEEDS, airloads="none", pitch="coupling")["low cyclic lag"]
-    tabulated = {"structure": "tabulated"} | kept
-    of_this_model = BladeFrequencies(flap=1.85, lag=vacuum, against="airspeed", at=SPEEDS)
-    return {
-        "baseline": {},
-        "K_Pβ = K_Pζ = 0": {"pitch_flap_coupling": 0.0, "pitch_lag_coupling": 0.0},
-        "K_Pβ = 0": {"pitch_flap_coupling": 0.0},
-        "K_Pζ = 0": {"pitch_lag_coupling": 0.0},
-        "K_βζ = 0, couplings as they were": {"structure": "diagonal"} | kept,
-        "K_βζ = 0, also in the couplings": {"structure": "diagonal"},
-        "lag 1.8 to 1.2, flap 1.85 given": tabulated | {"frequencies": PAPER_FREQUENCIES},
-        "lag of this model, flap 1.85 given": tabulated | {"frequencies": of_this_model},
-        "pitch equations": {"pitch": "dynamic"},
-        "pitch equations, sections with pitch damping": {"pitch": "dynamic", "section_damping": True},
-        "lift-slope airloads": {"airloads": "lift-slope"},
-        "no compressibility": {"compressibility": False},
-        "constant rotor speed": {"rotor_speed": "constant"},
-    }
+# Rows of the table that are variants of the paper's figures too.
+_OF_FIGURES = {
+    "baseline": "couplings",
+    "K_Pβ = K_Pζ = 0": "no couplings",
+    "K_Pβ = 0": "no pitch-flap coupling",
+    "K_Pζ = 0": "no pitch-lag coupling",
+    "K_βζ = 0, couplings as they were": "no flap-lag stiffness",
+    "K_βζ = 0, also in the couplings": "no flap-lag stiffness, couplings follow",
+    "lag 1.8 to 1.2, flap 1.85 given": "given frequencies",
+    "lag of this model, flap 1.85 given": "own frequencies given",
+    "pitch equations": "pitch equations",
+    "pitch equations, sections with pitch damping": "pitch equations, section damping",
+}
+_OTHERS: dict[str, dict[str, Any]] = {
+    "lift-slope airloads": {"airloads": "lift-slope"},
+    "no compressibility": {"compressibility": False},
+    "constant rotor speed": {"rotor_speed": "constant"},
+}
 
 
 def switch_table(case: pp.Case, equations: str) -> dict[str, dict[str, float]]:
-    """Boundaries of each row."""
-    baseline = {"pitch": "coupling", "equations": equations, "section_damping": False}
-    return {label: boundaries(case, **baseline | options) for label, options in switches(case).items()}
+    """Return the boundaries of each row of the table in kt, see `benchmarks.xv15_boundary.boundaries`."""
+    rows = {label: VARIANTS[variant](case, SPEEDS) for label, variant in _OF_FIGURES.items()} | _OTHERS
+    baseline = {"pitch": "coupling", "equations": equations} | AS_THE_PAPER
+    return {label: boundaries(case, **baseline | options) for label, options in rows.items()}
 
 
 def zero_of_pitch_lag_coupling(case: pp.Case, name: str) -> tuple[float, float]:
-    """Airspeed (kt) and structural pitch (deg) at which K_Pζ, or K_Pζ without trim lag, changes sign."""
+    """Return airspeed (kt) and structural pitch (deg) at which K_Pζ, or K_Pζ without trim lag, changes sign."""
     speed = brentq(lambda v: getattr(blade_state(case, v), name)[0], TABLE_SPEEDS[0], TABLE_SPEEDS[-1])
     return speed / KNOT, float(np.degrees(blade_state(case, speed).structural_pitch[0]))
 
 
 def print_switches(console: Console, title: str, rows: dict[str, dict[str, float]]) -> None:
+    """Print the boundaries of each row."""
     table = Table("", *WING, "change of chord", "first of the rotor", title=f"{title}: boundary, kt")
     for label, found in rows.items():
         change = found["chord"] - rows["baseline"]["chord"]
         change = f"{change:+.0f}" if np.isfinite(change) else ""
-        table.add_row(label, *(told(found[mode]) for mode in WING), change, told(found["rotor"]))
+        table.add_row(label, *(as_text(found[mode]) for mode in WING), change, as_text(found["rotor"]))
     console.print(table)
 
 
@@ -84,7 +81,7 @@ COLUMNS = {
 
 
 def print_blade(console: Console, case: pp.Case) -> None:
-    """Trim, couplings and lag frequencies against airspeed."""
+    """Print trim, couplings and lag frequencies against airspeed."""
     table = Table("kt", *COLUMNS, title="deg, and per rev; low cyclic lag in the fixed frame, on a rigid hub")
     state = blade_state(case, TABLE_SPEEDS)
     low_lag = (

@@ -23,6 +23,15 @@ from sympy.polys.rings import PolyElement
 
 from derive import kinematics as kin
 from derive import symbols as s
+from derive.coordinates import (
+    BLADE_GUSTS,
+    COORDINATE,
+    LOAD,
+    MOTION,
+    SECTION_AXES,
+    SEGMENT_LOADS,
+    SEGMENT_MOTIONS,
+)
 from derive.polynomials import (
     SEGMENT_ANGLES,
     SINE_AND_COSINE,
@@ -31,10 +40,6 @@ from derive.polynomials import (
     temporaries,
 )
 from derive.published import CONSISTENT
-
-SECTION_AXES = ("x", "n", "d")
-VELOCITIES = ("ut", "up", "ur")
-GUSTS = ("gust_i", "gust_j", "gust_k")
 
 # u_T, u_P, u_R are these multiples of the section's own velocity along i', n, d.
 SENSE = {"x": -1, "n": 1, "d": 1}
@@ -276,34 +281,28 @@ _STRAIGHT_BLADE = dict.fromkeys(anchor, 0) | {sine: 0 for sine, _ in SINE_AND_CO
 _STRAIGHT_BLADE |= {cosine: 1 for _, cosine in SINE_AND_COSINE}
 
 
-SEGMENT_LOADS = ("x_0", "n_0", "d_0", "x_1", "n_1", "d_1", "rotation")
-SEGMENT_MOTION = ("ut_0", "up_0", "ur_0", "ut_1", "up_1", "ur_1", "spin", "theta")
-
-
 def _is_dropped(dropped: frozenset[str], *coordinates: str) -> bool:
     return "yoke_roll" in dropped and "gimbal_roll" in coordinates
 
 
-def virtual_motion(row: str, load: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """W: displacement at r = 0 and per unit radius in section axes, and rotation, of each row."""
+def virtual_motion(load: str, row: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    """W: displacement at r = 0 and per unit radius along i', n, d, and rotation about d, of a segment for each row."""
     if _is_dropped(dropped, row):
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
-    if load == "rotation":
-        return _power(kinematics, kinematics.work_rotation(row), 0)
-    axis, power = load.split("_")
-    return _power(kinematics, kinematics.work_displacement(axis, row), int(power))
+    of = LOAD[load]
+    work = kinematics.work_displacement(of.axis, row) if of.axis else kinematics.work_rotation(row)
+    return _power(kinematics, work, of.power)
 
 
 def _motion(
     kinematics: SegmentKinematics, velocity: Callable[..., PolyElement], motion: str, *along: str
 ) -> sp.Expr:
-    name, power = motion.split("_")
-    return _power(kinematics, velocity(SECTION_AXES[VELOCITIES.index(name)], *along), int(power))
+    return _power(kinematics, velocity(MOTION[motion].axis, *along), MOTION[motion].power)
 
 
 def rate_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """U_rate: velocity of the air at r = 0 and per unit radius, and rotation about d, for each rate."""
+    """U for rates: velocity of the air along a segment for the rate of each coordinate."""
     if motion == "theta" or _is_dropped(dropped, name):
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
@@ -313,7 +312,7 @@ def rate_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) ->
 
 
 def displacement_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """U_displacement: the same for the displacement of each coordinate, and the change of pitch."""
+    """U for displacements: velocity of the air along a segment, and pitch, for each coordinate."""
     if _is_dropped(dropped, name):
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
@@ -325,18 +324,17 @@ def displacement_motion(motion: str, name: str, dropped: frozenset[str] = CONSIS
 
 
 def gust_motion(motion: str, gust: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """U_gust: velocity of the air along a segment for air that itself moves along a rotating axis."""
-    name, _, power = motion.partition("_")
-    if motion in ("theta", "spin") or power == "1":
+    """U for gusts: velocity of the air along a segment for air that moves along the rotating axes."""
+    axis = MOTION[motion].axis
+    if not axis or MOTION[motion].power:
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
-    axis = SECTION_AXES[VELOCITIES.index(name)]
-    component = kinematics.axes[axis][()][GUSTS.index(gust)]
+    component = kinematics.axes[axis][()][BLADE_GUSTS.index(COORDINATE[gust])]
     return _power(kinematics, -SENSE[axis] * component, 0)
 
 
-def trim_velocity(motion: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """Trim velocity of the air at r = 0 and per unit radius, and the section's rotation about d."""
+def trim_velocity(motion: str, _: str = "trim", dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    """Trim velocity of the air at r = 0 and per unit radius, along a segment, and the sections' rotation."""
     kinematics = segment_kinematics(dropped)
     if motion == "spin":
         return _power(kinematics, kinematics.spin(), 0)
@@ -344,7 +342,7 @@ def trim_velocity(motion: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
 
 
 def geometric_stiffness(row: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """G: change of the steady loads' virtual work when the blade moves under them, in moments of the loads."""
+    """G: change of the steady airloads' virtual work with each coordinate, of one segment."""
     if "steady_airloads_on_moving_blade" in dropped or _is_dropped(dropped, row, name):
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
@@ -361,29 +359,24 @@ def geometric_stiffness(row: str, name: str, dropped: frozenset[str] = CONSISTEN
 
 
 def load_derivative(load: str, motion: str) -> sp.Expr:
-    """L: moments of the section's derivatives; a load at power a meets a velocity at power b in the moment a + b."""
-    axis, load_power = ("", "0") if load == "rotation" else load.split("_")
-    name = f"f{axis}" if axis else "m"
-    argument, motion_power = (motion, "0") if motion in ("theta", "spin") else motion.split("_")
-    return MOMENTS[f"{name}_{argument}", int(load_power) + int(motion_power)]
+    """Moment of a section's derivative: a load at power a meets a velocity at power b in the moment a + b."""
+    of, by = LOAD[load], MOTION[motion]
+    return MOMENTS[f"{of.section_load}_{by.argument}", of.power + by.power]
 
 
-def steady_load(load: str) -> sp.Expr:
-    """The steady generalised loads of a segment."""
-    if load == "rotation":
-        return MOMENTS["m", 0]
-    axis, power = load.split("_")
-    return MOMENTS[f"f{axis}", int(power)]
+def steady_load(load: str, _: str = "trim") -> sp.Expr:
+    """Steady generalised loads of a segment."""
+    return MOMENTS[LOAD[load].section_load, LOAD[load].power]
 
 
 def products() -> dict[str, sp.MatrixExpr]:
     """What each segment adds to a blade's airload damping and stiffness, gust loads and steady virtual work."""
-    loads, motions, coordinates = len(SEGMENT_LOADS), len(SEGMENT_MOTION), len(kin.COORDINATES)
+    loads, motions, coordinates = len(SEGMENT_LOADS), len(SEGMENT_MOTIONS), len(kin.COORDINATES)
     virtual = sp.MatrixSymbol("virtual_motion", loads, coordinates)
     derivatives = sp.MatrixSymbol("load_derivatives", loads, motions)
     rate = sp.MatrixSymbol("rate_motion", motions, coordinates)
     displacement = sp.MatrixSymbol("displacement_motion", motions, coordinates)
-    gust = sp.MatrixSymbol("gust_motion", motions, len(GUSTS))
+    gust = sp.MatrixSymbol("gust_motion", motions, len(BLADE_GUSTS))
     geometric = sp.MatrixSymbol("geometric_stiffness", coordinates, coordinates)
     steady = sp.MatrixSymbol("steady_loads", loads, 1)
     # The virtual work of the airloads stands on the right of the equations of motion, so it leaves with a minus.
@@ -396,7 +389,7 @@ def products() -> dict[str, sp.MatrixExpr]:
 
 
 def segment_geometry(dropped: frozenset[str] = CONSISTENT) -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Sines and cosines, anchor and flap arm of a segment in hinge offsets and trim angles."""
+    """Trim geometry of a straight segment between hinges: sines and cosines, its line and its flap arm."""
     steps = temporaries(SEGMENT_ANGLES) + _line_and_arm()
     if "cone_in_airloads" in dropped:
         return [

@@ -28,5 +28,20 @@ def energies() -> dict[str, sp.Expr]:
     }
 
 
-def matrix(kind: str, row: str, column: str) -> sp.Expr:
+def mass(row: str, column: str) -> sp.Expr:
+    """Mass that engine and shaft add to the rotor in the fixed frame."""
+    return _second_derivative("mass", row, column)
+
+
+def damping(row: str, column: str) -> sp.Expr:
+    """Damping that engine and shaft add to the rotor in the fixed frame."""
+    return _second_derivative("damping", row, column)
+
+
+def stiffness(row: str, column: str) -> sp.Expr:
+    """Stiffness that engine and shaft add to the rotor in the fixed frame."""
+    return _second_derivative("stiffness", row, column)
+
+
+def _second_derivative(kind: str, row: str, column: str) -> sp.Expr:
     return sp.diff(energies()[kind], _q[row], _q[column])

@@ -7,14 +7,11 @@ from __future__ import annotations
 
 import difflib
 import hashlib
-import os
-import secrets
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import jinja2
@@ -23,8 +20,12 @@ from sympy.printing.numpy import NumPyPrinter
 
 from derive import kinematics as kin
 from derive import multiblade
-from derive.equations import REDUCED_MODULES, STEPS, Function, consistent_functions, reduced_functions
-from derive.published import DROPPED_TERMS, check_names
+from derive.coordinates import FIXED_GUSTS
+from derive.coordinates import names as names_of
+from derive.equations import REDUCED_MODULES, STEPS, consistent_functions, reduced_functions
+from derive.files import write_whole
+from derive.function import Function
+from derive.published import DROPPED_TERMS
 from derive.symbols import QUANTITIES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -32,18 +33,6 @@ TEMPLATES = ROOT / "templates"
 GENERATED = ROOT / "generated" / "proprotor_equations"
 
 Progress = Callable[[str], None]  # takes a line for each step
-
-MODULE_TITLES = {
-    "inertia": "Inertia of one blade in rotating axes",
-    "flap_lag_springs": "Flap-lag springs of one blade, which turn with its pitch",
-    "pitch": "Blade pitch, control system, dampers and gimbal restraint",
-    "section": "Loads of a blade section",
-    "airloads": "Airloads of one blade, segment by segment",
-    "lift_slope": "Lift-slope airloads of the published set in closed form",
-    "trim": "Trim balance of one blade",
-    "drive_train": "Engine and shaft on the rotor's azimuth",
-    "multiblade": "From one blade to N blades in the fixed frame",
-}
 
 
 class ArrayPrinter(NumPyPrinter):  # type: ignore[misc]  # SymPy has no types
@@ -164,33 +153,10 @@ def index_groups(functions: list[Function]) -> list[dict[str, str | int]]:
     return [{"name": name.upper(), "place": place} for name, place in constants.items()]
 
 
-# Steps whose text the generated files depend on; the audit only reads them.
-_SOURCES = (
-    "symbols",
-    "kinematics",
-    "polynomials",
-    "published",
-    "inertia",
-    "flap_lag_springs",
-    "pitch",
-    "section",
-    "airloads",
-    "lift_slope",
-    "trim",
-    "multiblade",
-    "drive_train",
-    "equations",
-    "emit",
-)
-
-
 def derivation_hash() -> str:
     """Digest of the derivation and the templates, so that a file says what made it."""
     digest = hashlib.sha256()
-    for path in [
-        *(ROOT / "derive" / f"{name}.py" for name in sorted(_SOURCES)),
-        *sorted(TEMPLATES.glob("*.jinja")),
-    ]:
+    for path in [*sorted((ROOT / "derive").glob("*.py")), *sorted(TEMPLATES.glob("*.jinja"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 
@@ -247,10 +213,10 @@ def _header() -> dict[str, str]:
 
 def render() -> Iterator[tuple[str, str]]:
     """File name and text of every generated module, one step of the derivation after another."""
-    for module in STEPS:
-        yield f"{module}.py", render_module(consistent_functions(module), MODULE_TITLES[module])
+    for module, step in STEPS.items():
+        yield f"{module}.py", render_module(consistent_functions(module), step.title)
     for module in REDUCED_MODULES:
-        title = f"{MODULE_TITLES[module]}, as published"
+        title = f"{STEPS[module].title}, as published"
         yield f"published/{module}.py", render_module(reduced_functions(module), title)
     package = (
         _environment()
@@ -259,7 +225,7 @@ def render() -> Iterator[tuple[str, str]]:
             modules=list(STEPS),
             blade_coordinates=kin.COORDINATES,
             fixed_coordinates=multiblade.FIXED_COORDINATES,
-            fixed_gusts=multiblade.FIXED_GUSTS,
+            fixed_gusts=names_of(FIXED_GUSTS),
             **_header(),
         )
     )
@@ -274,16 +240,6 @@ def render() -> Iterator[tuple[str, str]]:
         )
     )
     yield "published/__init__.py", formatted(published, "__init__.py")
-
-
-def reduced_modules(dropped: frozenset[str]) -> dict[str, ModuleType]:
-    """Modules without some terms, made in memory: what one dropped term does can be asked for without emitting it."""
-    check_names(dropped)
-    modules = {}
-    for module in REDUCED_MODULES:
-        modules[module] = ModuleType(f"reduced_{module}")
-        exec(render_module(reduced_functions(module, dropped), MODULE_TITLES[module]), vars(modules[module]))
-    return modules
 
 
 def derive_files(progress: Progress = print) -> dict[str, str]:
@@ -313,20 +269,9 @@ def update(folder: Path = GENERATED, progress: Progress = print) -> None:
     files = derive_files(progress)
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        _write_whole(folder / name, text)
+        write_whole(folder / name, text)
     for orphan in generated_paths(folder) - set(files):
         (folder / orphan).unlink()
-
-
-def _write_whole(path: Path, text: str) -> None:
-    """As `proprotor.files.output.write_whole`, which cannot be imported while the equations are not there."""
-    unfinished = path.with_name(f".proprotor-{secrets.token_hex(8)}.tmp")
-    try:
-        with unfinished.open("x", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def differences(folder: Path = GENERATED, progress: Progress = print) -> list[str]:

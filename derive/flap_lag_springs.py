@@ -14,6 +14,7 @@ import sympy as sp
 
 from derive import kinematics as kin
 from derive import symbols as s
+from derive.coordinates import COORDINATE
 from derive.inertia import BladeInertia, trim_integrals
 from derive.published import CONSISTENT
 
@@ -127,7 +128,10 @@ def _grouped(expression: sp.Expr) -> sp.Expr:
 
 
 def effective_stiffness() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """K_eff and its derivatives with pitch as assignments, from differentiating K Delta = numerator."""
+    """Hub and blade springs in series, and their derivatives with structural pitch.
+
+    K_eff and its derivatives follow from differentiating K Delta = numerator.
+    """
     numerators, determinant = series_springs()
     angle = s.structural_pitch
     determinants = (series_determinant, series_determinant_slope, series_determinant_curvature)
@@ -175,11 +179,14 @@ def _spring_moment(i: str, dropped: frozenset[str]) -> sp.Expr:
 
 
 def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """Second derivative of the spring energy at trim."""
+    """Stiffness of one blade's flap and lag springs, which turn with its pitch.
+
+    The second derivative of the spring energy at trim.
+    """
     if (
         "springs_follow_pitch" in dropped
         and not (i in FLAP_LAG and j in FLAP_LAG)
-        and (i != "pitch" or "gimbal" in j)
+        and (i != "pitch" or COORDINATE[j].angle == "gimbal")
     ):
         return sp.Integer(0)
     if "spring_curvature" in dropped and i == j == "pitch":
@@ -201,7 +208,10 @@ cyclic_flap_stiffness_excess = s.quantity(
 
 
 def stiffness_of_frequencies() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Diagonal stiffness that gives a blade its tabulated rotating frequencies, uncoupled and at zero cone."""
+    """Diagonal stiffness of given rotating frequencies, and what cyclic flapping has above collective.
+
+    The frequencies are those of the uncoupled blade at zero cone.
+    """
     blade = BladeInertia()
     flat = dict.fromkeys((s.precone, s.coning, s.lag), 0)
     integrals = {symbol: sp.sympify(value).subs(flat) for symbol, value in trim_integrals().items()}

@@ -123,7 +123,7 @@ def integrate_mass(integrand: sp.Expr, integrals: Integrals) -> sp.Expr:
 
 
 def trim_integrals(dropped: frozenset[str] = CONSISTENT) -> dict[sp.Symbol, sp.Expr]:
-    """Sines and cosines at trim, then the integrals over the arms of the deflected blade and of its position."""
+    """Sines and cosines of the trim angles, and the mass integrals over the arms of the deflected blade."""
     to_deflected = _redefine(DEFLECTED_INTEGRALS, MASS_INTEGRALS, {kin.flap_arm: kin.deflected_flap_arm()})
     integrals = to_deflected | _redefine(TRIM_INTEGRALS, DEFLECTED_INTEGRALS, kin.trim_arms())
     angles = dict(temporaries(WHOLE_BLADE_ANGLES))
@@ -171,7 +171,7 @@ def _redefine(
 
 
 def dependent_inertias() -> dict[sp.Symbol, sp.Expr]:
-    """The three integrals that follow from the others.
+    """Three mass integrals that follow from the others and the hinge offsets.
 
     Outboard of the flap hinge r = rho_beta + e_beta; outboard of the lag hinge rho_beta = rho_zeta + e_zeta - e_beta.
     """
@@ -275,6 +275,21 @@ class BladeInertia:
         return s.rotor_speed**2 * self._integral(
             _dot(self.motion.virtual[i], _spin(_spin(self.motion.position)))
         )
+
+
+def mass(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    """Mass matrix of one blade in rotating axes."""
+    return BladeInertia(dropped).mass(i, j)
+
+
+def gyroscopic(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    """Gyroscopic (Coriolis) matrix of one blade in rotating axes."""
+    return BladeInertia(dropped).gyroscopic(i, j)
+
+
+def centrifugal_stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    """Centrifugal stiffness of one blade in rotating axes."""
+    return BladeInertia(dropped).centrifugal(i, j)
 
 
 def _dot(a: list[PolyElement], b: list[PolyElement]) -> PolyElement:

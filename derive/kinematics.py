@@ -18,24 +18,11 @@ from collections.abc import Iterable
 import sympy as sp
 
 from derive import symbols as s
+from derive.coordinates import BLADE, names
 
-# The coordinates of one blade, resolved in rotating axes. Hub rotation and gimbal tilt are exponential coordinates.
-COORDINATES = (
-    "hub_i",
-    "hub_j",
-    "hub_k",
-    "turn_i",
-    "turn_j",
-    "turn_k",
-    "flap",
-    "lag",
-    "pitch",
-    "azimuth",
-    "gimbal_flap",
-    "gimbal_roll",
-)
-HUB_TRANSLATION = ("hub_i", "hub_j", "hub_k")
-HUB_ROTATION = ("turn_i", "turn_j", "turn_k")
+COORDINATES = names(BLADE)
+HUB_TRANSLATION = names(c for c in BLADE if c.angle == "hub")
+HUB_ROTATION = names(c for c in BLADE if c.angle == "turn")
 
 # Perturbations from trim; trim coning and lag are the values of flap and lag about which they are taken.
 q = {name: sp.Symbol(f"q_{name}", real=True) for name in COORDINATES}

@@ -83,6 +83,11 @@ def _between(of_root: sp.Expr) -> sp.Expr:
     return at_outer * speed_difference + sp.factor(at_outer - at_inner) * inner_speed
 
 
+def load_moments() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Radial moments of the section derivatives proportional to the lift slope, over one segment, in closed form."""
+    return [*ends(), *integrals(), *moments()]
+
+
 def moments() -> list[tuple[sp.Symbol, sp.Expr]]:
     """Radial moments of the section derivatives that the lift slope alone makes."""
     tip_speed = s.rotor_speed * radius

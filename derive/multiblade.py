@@ -6,7 +6,7 @@ along the blade's axes, blade angles are multiblade sums. The rows of N blades a
     M = sum T^T M_b T      C = sum T^T (2 Omega M_b T' + C_b T)      K = sum T^T (Omega² M_b T'' + Omega C_b T' + K_b T)
 
 with ' = d/dpsi. The sum over N blades of a trigonometric polynomial whose harmonics are below N is N times its mean;
-`derive.equations` calls for nothing else, and `azimuth_mean` refuses a harmonic above 2.
+no other sum is needed, and `azimuth_mean` refuses a harmonic above 2.
 """
 
 from __future__ import annotations
@@ -16,35 +16,44 @@ import functools
 import sympy as sp
 
 from derive import kinematics as kin
+from derive import pitch
 from derive import symbols as s
-
-FIXED_COORDINATES = (
-    "x",
-    "y",
-    "z",
-    "alpha_x",
-    "alpha_y",
-    "alpha_z",
-    "flap_0",
-    "flap_1c",
-    "flap_1s",
-    "lag_0",
-    "lag_1c",
-    "lag_1s",
-    "pitch_0",
-    "pitch_1c",
-    "pitch_1s",
-    "azimuth",
-    "gimbal_1c",
-    "gimbal_1s",
+from derive.coordinates import (
+    BLADE_ANGLES,
+    BLADE_GUSTS,
+    COORDINATE,
+    FIXED,
+    FIXED_GUSTS,
+    SWASHPLATE,
+    Coordinate,
+    names,
 )
+from derive.flap_lag_springs import cyclic_flap_stiffness_excess
+from derive.symbols import MissingError
 
-psi = sp.Symbol("psi", real=True)
+FIXED_COORDINATES = names(FIXED)
+
+psi = s.quantity("psi", r"\psi", "rad", "azimuth of the blade")
+harmonic = s.quantity("harmonic", "n", "", "harmonic of the azimuth, 2 to below half the number of blades")
+
+# Matrices of one blade, and the names of places in them.
 MASS, DAMPING, STIFFNESS = sp.IndexedBase("mass"), sp.IndexedBase("damping"), sp.IndexedBase("stiffness")
+GUSTS = sp.IndexedBase("gusts")
 BLADE_INDEX = {name: sp.Symbol(f"BLADE_{name.upper()}") for name in kin.COORDINATES}
+GUST_INDEX = {gust.name: sp.Symbol(f"BLADE_{gust.name.upper()}") for gust in BLADE_GUSTS}
 
 I_AZIMUTH = sp.Matrix([sp.sin(psi), -sp.cos(psi), 0])  # i and j in I, J, K
 J_AZIMUTH = sp.Matrix([sp.cos(psi), sp.sin(psi), 0])
+
+Column = dict[str, sp.Expr]  # what the blade's coordinates have of one coordinate of the fixed frame
+
+
+def wave(coordinate: Coordinate) -> sp.Expr:
+    """Return the share of a multiblade coordinate in its angle of the blade at psi.
+
+    A harmonic above 1 is counted in psi: the blade is then at azimuth psi / n.
+    """
+    return {"": sp.Integer(1), "c": sp.cos(psi), "s": sp.sin(psi)}[coordinate.part]
 
 
 @functools.cache
@@ -62,11 +71,20 @@ def blade_coordinates() -> sp.Matrix:
             f"{prefix}_k": vector[2],
         }
     blade |= {"gimbal_flap": tilt.dot(I_AZIMUTH), "gimbal_roll": tilt.dot(J_AZIMUTH)}
-    for angle in ("flap", "lag", "pitch"):
-        blade[angle] = (
-            fixed[f"{angle}_0"] + fixed[f"{angle}_1c"] * sp.cos(psi) + fixed[f"{angle}_1s"] * sp.sin(psi)
+    for angle in BLADE_ANGLES:
+        blade[angle] = sum(fixed[c.name] * wave(c) for c in FIXED if c.angle == angle)
+    missing = [name for name in kin.COORDINATES if name not in blade]
+    if missing:
+        raise MissingError(
+            f"no coordinate of the fixed frame moves {', '.join(missing)} of the blade: add it to `FIXED` of "
+            "derive/coordinates.py and to `blade_coordinates` of derive/multiblade.py"
         )
     return sp.Matrix([blade[name] for name in kin.COORDINATES]).jacobian(list(fixed.values()))
+
+
+def transform(row: str, column: str) -> sp.Expr:
+    """Entry of T."""
+    return _columns(0)[column].get(row, sp.Integer(0))
 
 
 def azimuth_mean(expression: sp.Expr) -> sp.Expr:
@@ -81,43 +99,43 @@ def azimuth_mean(expression: sp.Expr) -> sp.Expr:
 
 
 @functools.cache
-def _blade_matrix(base: sp.IndexedBase) -> dict[tuple[int, int], sp.Expr]:
-    indices = [BLADE_INDEX[name] for name in kin.COORDINATES]
-    return {(i, j): base[indices[i], indices[j]] for i in range(len(indices)) for j in range(len(indices))}
+def _columns(order: int) -> dict[str, Column]:
+    """Nonzero entries of each column of the given derivative of T."""
+    transformation = sp.diff(blade_coordinates(), psi, order) if order else blade_coordinates()
+    return {
+        fixed: {
+            blade: transformation[i, j]
+            for i, blade in enumerate(kin.COORDINATES)
+            if transformation[i, j] != 0
+        }
+        for j, fixed in enumerate(FIXED_COORDINATES)
+    }
 
 
-def _projected(base: sp.IndexedBase, row: int, column: int, order: int) -> sp.Expr:
+def _projected(base: sp.IndexedBase, row: str, column: str, order: int) -> sp.Expr:
     """Mean of T^T (blade matrix) d^order T / dpsi^order, one entry."""
-    matrix, rows, columns = _blade_matrix(base), _columns(0), _columns(order)
     products = (
-        matrix[i, j] * azimuth_mean(left * right)
-        for i, left in rows[row].items()
-        for j, right in columns[column].items()
+        base[BLADE_INDEX[i], BLADE_INDEX[j]] * azimuth_mean(left * right)
+        for i, left in _columns(0)[row].items()
+        for j, right in _columns(order)[column].items()
     )
     return sum(products, sp.Integer(0))
 
 
-@functools.cache
-def _columns(order: int) -> list[dict[int, sp.Expr]]:
-    """Nonzero entries of each column of the given derivative of T."""
-    transformation = sp.diff(blade_coordinates(), psi, order) if order else blade_coordinates()
-    return [
-        {i: transformation[i, j] for i in range(len(kin.COORDINATES)) if transformation[i, j] != 0}
-        for j in range(len(FIXED_COORDINATES))
-    ]
-
-
-def mass(row: int, column: int) -> sp.Expr:
+def mass(row: str, column: str) -> sp.Expr:
+    """Mass matrix of the rotor in the fixed frame."""
     return s.n_blades * _projected(MASS, row, column, 0)
 
 
-def damping(row: int, column: int) -> sp.Expr:
+def damping(row: str, column: str) -> sp.Expr:
+    """Damping and gyroscopic matrix of the rotor in the fixed frame."""
     return s.n_blades * (
         2 * s.rotor_speed * _projected(MASS, row, column, 1) + _projected(DAMPING, row, column, 0)
     )
 
 
-def stiffness(row: int, column: int) -> sp.Expr:
+def stiffness(row: str, column: str) -> sp.Expr:
+    """Stiffness matrix of the rotor in the fixed frame."""
     return s.n_blades * (
         s.rotor_speed**2 * _projected(MASS, row, column, 2)
         + s.rotor_speed * _projected(DAMPING, row, column, 1)
@@ -125,50 +143,51 @@ def stiffness(row: int, column: int) -> sp.Expr:
     )
 
 
-# Gusts: what reaches one blade, and what is given in the fixed frame.
-BLADE_GUSTS = ("gust_i", "gust_j", "gust_k")
-FIXED_GUSTS = ("gust_x", "gust_y", "gust_z")
-GUSTS = sp.IndexedBase("gusts")
-GUST_INDEX = {name: sp.Symbol(f"BLADE_{name.upper()}") for name in BLADE_GUSTS}
+# Inputs
 
 
 @functools.cache
 def blade_gusts() -> sp.Matrix:
     """One blade's gusts (3 rows) in those of the fixed frame (3 columns)."""
-    gust = sp.Matrix(sp.symbols("gust_x gust_y gust_z"))
+    gust = sp.Matrix([sp.Symbol(gust.name) for gust in FIXED_GUSTS])
     return sp.Matrix([gust.dot(I_AZIMUTH), gust.dot(J_AZIMUTH), gust[2]]).jacobian(list(gust))
 
 
-def gust_loads(row: int, column: int) -> sp.Expr:
-    """Loads of N blades on a row per unit of a gust."""
-    names = list(GUST_INDEX.values())
-    indices = [BLADE_INDEX[name] for name in kin.COORDINATES]
+def gust_loads(row: str, column: str) -> sp.Expr:
+    """Loads on the rotor's coordinates per unit of gusts, on the right of the equations of motion."""
+    place = names(FIXED_GUSTS).index(column)
     products = (
-        GUSTS[indices[i], names[j]] * azimuth_mean(left * blade_gusts()[j, column])
+        GUSTS[BLADE_INDEX[i], index] * azimuth_mean(left * blade_gusts()[j, place])
         for i, left in _columns(0)[row].items()
-        for j in range(len(BLADE_GUSTS))
+        for j, index in enumerate(GUST_INDEX.values())
     )
     return s.n_blades * sum(products, sp.Integer(0))
 
 
-# Motions of the blades in which nothing reaches the hub: harmonics 2 and above below N/2 come in pairs, and for even N
-# neighbouring blades may move against each other.
-REACTIONLESS_PAIR = ("flap_nc", "flap_ns", "lag_nc", "lag_ns", "pitch_nc", "pitch_ns")
-DIFFERENTIAL = ("flap_d", "lag_d", "pitch_d")
-harmonic = s.quantity("harmonic", "n", "", "harmonic of the azimuth, 2 to below half the number of blades")
+def swashplate_loads(row: str, column: str) -> sp.Expr:
+    """Loads of N blades on a row per unit of swashplate motion, held in the fixed frame.
+
+    Each blade's control system and pitch damper pull at its pitch towards the swashplate's; rates of the swashplate are
+    left out.
+    """
+    asked = wave(next(motion for motion in SWASHPLATE if motion.name == column))
+    products = (
+        pitch.swashplate_stiffness(i) * azimuth_mean(left * asked)
+        + s.rotor_speed * pitch.damping(i, "pitch") * azimuth_mean(left * sp.diff(asked, psi))
+        for i, left in _columns(0)[row].items()
+    )
+    return s.n_blades * sum(products, sp.Integer(0))
 
 
-def _angle_and_motion(name: str) -> tuple[str, sp.Expr]:
-    """Blade angle of a reactionless coordinate, and its share in a blade at azimuth psi / n."""
-    angle, kind = name.split("_")
-    return angle, {"nc": sp.cos(psi), "ns": sp.sin(psi), "d": sp.Integer(1)}[kind]
+# Motions of the blades in which nothing reaches the hub
 
 
 def _reactionless(base: sp.IndexedBase, row: str, column: str, order: int) -> sp.Expr:
     """Mean of the product of two motions with a blade matrix entry; d/dpsi brings the harmonic down."""
-    (row_angle, left), (column_angle, right) = _angle_and_motion(row), _angle_and_motion(column)
-    derivative = harmonic**order * sp.diff(right, psi, order) if order else right
-    return base[BLADE_INDEX[row_angle], BLADE_INDEX[column_angle]] * azimuth_mean(left * derivative)
+    left, right = COORDINATE[row], COORDINATE[column]
+    motion = wave(right)
+    derivative = harmonic**order * sp.diff(motion, psi, order) if order else motion
+    return base[BLADE_INDEX[left.angle], BLADE_INDEX[right.angle]] * azimuth_mean(wave(left) * derivative)
 
 
 def reactionless(kind: str, row: str, column: str) -> sp.Expr:
@@ -183,11 +202,10 @@ def reactionless(kind: str, row: str, column: str) -> sp.Expr:
     return s.n_blades * (inertia + _reactionless(STIFFNESS, row, column, 0))
 
 
-def cyclic_restraint(row: int, column: int, stiffness_excess: sp.Symbol) -> sp.Expr:
-    """Stiffness that only the cyclic flapping of the blades feels."""
-    cyclic = [FIXED_COORDINATES.index(name) for name in ("flap_1c", "flap_1s")]
+def cyclic_restraint(row: str, column: str) -> sp.Expr:
+    """Stiffness that only cyclic flapping feels, for cyclic and collective frequencies given apart."""
+    cyclic = [c.name for c in FIXED if c.angle == "flap" and c.harmonic]
     if row not in cyclic or column not in cyclic:
         return sp.Integer(0)
-    flap = kin.COORDINATES.index("flap")
-    shares = [_columns(0)[place][flap] for place in (row, column)]
-    return s.n_blades * stiffness_excess * azimuth_mean(shares[0] * shares[1])
+    left, right = (_columns(0)[name]["flap"] for name in (row, column))
+    return s.n_blades * cyclic_flap_stiffness_excess * azimuth_mean(left * right)

@@ -71,10 +71,12 @@ def at_rest(expression: sp.Expr) -> sp.Expr:
 
 
 def mass(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
+    """Pitch inertia of one blade, lumped."""
     return at_rest(sp.diff(kinetic_energy(dropped), RATES[i], RATES[j]))
 
 
 def damping(i: str, j: str) -> sp.Expr:
+    """Dampers of one blade and its share of the gimbal's."""
     return at_rest(sp.diff(dissipation(), RATES[i], RATES[j]))
 
 
@@ -84,9 +86,17 @@ def potential(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
 
 
 def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
-    """Second derivative of the potentials, and what the non-rotating damper feels of a tilt that rotates."""
+    """Control system, propeller moment, and one blade's share of the gimbal spring and damper.
+
+    The second derivative of the potentials, and what the non-rotating damper feels of a tilt that rotates.
+    """
     energy = at_rest(sp.diff(potential(dropped), kin.q[i], kin.q[j]))
     return sp.factor_terms(energy) + at_rest(sp.diff(dissipation(), RATES[i], kin.q[j]))
+
+
+def swashplate_stiffness(i: str) -> sp.Expr:
+    """Load on row i per unit of swashplate motion, from which the control system's flexibility is counted."""
+    return at_rest(sp.diff(control_energy(), kin.q[i], kin.q["pitch"]))
 
 
 def steady(i: str) -> sp.Expr:
@@ -95,9 +105,10 @@ def steady(i: str) -> sp.Expr:
 
 @functools.cache
 def couplings() -> dict[sp.Symbol, sp.Expr]:
-    """K_Pbeta = -d theta/d beta and K_Pzeta = -d theta/d zeta of K_theta theta + dU/d theta = 0 (Eqs. 35-37).
+    """Pitch-flap and pitch-lag coupling of the control system's flexibility.
 
-    U is the spring energy; the control system alone resists the moment.
+    K_Pbeta = -d theta/d beta and K_Pzeta = -d theta/d zeta of K_theta theta + dU/d theta = 0 (Eqs. 35-37). U is the
+    spring energy; the control system alone resists the moment.
     """
     return {
         symbol: flap_lag_springs.stiffness("pitch", name) / s.control_stiffness

@@ -22,8 +22,10 @@ import functools
 
 import sympy as sp
 
+from derive import airloads
 from derive import symbols as s
 from derive.airloads import ARGUMENTS, LOADS
+from derive.coordinates import LOAD, MOTION
 
 tangential_velocity = s.quantity("tangential_velocity", "u_T", "m/s", "velocity of the air along i'")
 axial_velocity = s.quantity("axial_velocity", "u_P", "m/s", "velocity of the section along n")
@@ -166,6 +168,15 @@ def _derivative(expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
     return _named(sp.diff(expression, variable)) + _named(by_turn) * COEFFICIENT["lift", "alpha"]
 
 
+def load_derivative(load: str, motion: str) -> sp.Expr:
+    """L: generalised loads of a segment per unit of its motions, from radial moments of the section's derivatives.
+
+    An entry is a radial moment, or zero where the section has no such derivative.
+    """
+    derivative = SECTION_LOADS[LOAD[load].section_load, f"_{MOTION[motion].argument}"]
+    return sp.Integer(0) if load_derivatives()[derivative] == 0 else airloads.load_derivative(load, motion)
+
+
 def force_coefficients() -> dict[sp.Symbol, sp.Expr]:
     """Lift and drag coefficient and their derivatives, turned by the inflow angle."""
     return {
@@ -187,11 +198,21 @@ def steps_of(wanted: tuple[str, ...]) -> list[tuple[sp.Symbol, sp.Expr]]:
     ]
 
 
-def steady_steps() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Steps to the forces alone."""
-    forces = {SECTION_LOADS[load, ""] for load in FORCES}
+def forces() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Forces of a section per unit span and derivatives with the air's velocity and the pitch."""
+    return steps_of(FORCES)
+
+
+def pitching_moment() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Pitching moment of a section per unit span and derivatives with the air's velocity and the pitch."""
+    return steps_of(("m",))
+
+
+def steady_forces() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Forces of a section per unit span, without derivatives."""
+    wanted = {SECTION_LOADS[load, ""] for load in FORCES}
     groups = {FORCE_COEFFICIENT[direction, ""] for direction in ("chordwise", "normal")}
-    kept = forces | groups | {pressure_chord, pressure_speed}
+    kept = wanted | groups | {pressure_chord, pressure_speed}
     return [(symbol, value) for symbol, value in steps_of(FORCES) if symbol in kept]
 
 
@@ -238,7 +259,10 @@ def _in_force_coefficients(expression: sp.Expr) -> sp.Expr:
 
 
 def air_at_section() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Speed and direction of the air, angle of attack and Mach number; u_T > 0 wherever the rotor turns forward."""
+    """Speed and direction of the air, angle of attack and Mach number of a section.
+
+    u_T > 0 wherever the rotor turns forward.
+    """
     return [
         (section_speed, speed()),
         *_INFLOW.items(),
@@ -254,7 +278,7 @@ prandtl_glauert_slope = s.quantity("prandtl_glauert_slope", "g'", "", "its deriv
 
 
 def prandtl_glauert() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """1/sqrt(1 - M²), and its derivative in terms of itself."""
+    """Prandtl-Glauert factor and its derivative with Mach number; Mach below 1."""
     factor = 1 / sp.sqrt(1 - mach**2)
     named = sp.Symbol("named", positive=True)
     slope = sp.diff(factor, mach).subs(1 - mach**2, named**-2).subs(named, prandtl_glauert_factor)

@@ -17,6 +17,10 @@ BASE_UNITS = ("kg", "m", "s")
 NUMBER: Dimension = (0, 0, 0)
 
 
+class MissingError(ValueError):
+    """What the derivation needs and nothing declares; the message names it and the file to declare it in."""
+
+
 def dimension_of_unit(unit: str) -> Dimension:
     """Dimension of a unit written from kg, m, s, rad and N, such as ``"N s/m^2"`` (everything after / divides)."""
     exponents = [0, 0, 0]

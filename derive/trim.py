@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive import flap_lag_springs, pitch
+from derive import airloads, flap_lag_springs, pitch
 from derive import symbols as s
 from derive.inertia import BladeInertia, trim_integrals
 
@@ -24,12 +24,12 @@ STEADY_ROWS = (*BALANCES, "hub_k")
 
 
 def residual(row: str) -> sp.Expr:
-    """Inertia, springs and control system at trim; airloads are subtracted from it."""
+    """Steady balance of one blade without airloads: flap, lag, pitch moment, torque and thrust."""
     return BladeInertia().steady(row) + flap_lag_springs.steady(row) + pitch.steady(row)
 
 
 def precone_load(row: str) -> sp.Expr:
-    """Virtual work of the steady inertia forces on the undeflected blade: what precone alone makes of them."""
+    """Steady centrifugal load of precone on the undeflected blade: flap, lag and pitch moment."""
     undeflected = dict.fromkeys((s.coning, s.lag), 0)
     integrals = {symbol: sp.sympify(value).subs(undeflected) for symbol, value in trim_integrals().items()}
     load = BladeInertia().steady(row)
@@ -44,9 +44,26 @@ def blade_coordinate(unknown: str) -> str:
 
 
 def jacobian(row: str, unknown: str) -> sp.Expr:
-    """Derivative of the residual with an unknown; the collective does not load the control system."""
+    """Derivative of the residual with coning, lag, elastic pitch and collective, without airloads.
+
+    The collective does not load the control system.
+    """
     name = blade_coordinate(unknown)
     control_system = pitch.stiffness(row, name)
     if unknown == "collective":
         control_system = control_system.subs(s.control_stiffness, 0)
     return BladeInertia().centrifugal(row, name) + flap_lag_springs.stiffness(row, name) + control_system
+
+
+# Couplings act on perturbations from trim alone.
+_NO_COUPLING = {s.pitch_flap_coupling: 0, s.pitch_lag_coupling: 0}
+
+
+def displacement_motion(motion: str, unknown: str) -> sp.Expr:
+    """U for the unknowns: velocity of the air along a segment, and pitch."""
+    return airloads.displacement_motion(motion, blade_coordinate(unknown)).subs(_NO_COUPLING)
+
+
+def geometric_stiffness(row: str, unknown: str) -> sp.Expr:
+    """G for the unknowns: change of the steady airloads' virtual work, of one segment."""
+    return airloads.geometric_stiffness(row, blade_coordinate(unknown)).subs(_NO_COUPLING)

@@ -22,8 +22,8 @@
 # verdict is computed when the page is made.
 
 # %%
-from derive import figures
-from derive.display import Picture, equation, rest_of_rigid_tilt, steady_tilt
+from derive.pages import figures
+from derive.pages.display import Picture, equation, rest_of_rigid_tilt, steady_tilt
 
 # %% [markdown]
 # ## The gimbal and the blade's position

@@ -20,8 +20,8 @@
 # its derivatives (`derive/inertia.py`), so the two are independent down to the vector itself.
 
 # %%
-from derive import figures
-from derive.display import Picture, equation
+from derive.pages import figures
+from derive.pages.display import Picture, equation
 
 # %% [markdown]
 # ## Moments about the flap hinge

@@ -19,8 +19,8 @@
 # (`derive/airloads.py`); the virtual work of lift and drag then needs no equation of its own.
 
 # %%
-from derive import figures
-from derive.display import Picture, dropped_terms, equation
+from derive.pages import figures
+from derive.pages.display import Picture, dropped_terms, equation
 
 # %% [markdown]
 # ## Perturbation velocities

@@ -21,8 +21,8 @@
 # structural axes.
 
 # %%
-from derive import figures
-from derive.display import Picture, equation
+from derive.pages import figures
+from derive.pages.display import Picture, equation
 
 # %% [markdown]
 # ## The pitch equation

@@ -17,8 +17,17 @@
 # XV-15.
 
 # %%
-from derive import consequences, figures
-from derive.display import Picture, boundaries, dropped_terms, equation, errata, invariants_checked, table
+from derive.audit import consequences
+from derive.pages import figures
+from derive.pages.display import (
+    Picture,
+    boundaries,
+    dropped_terms,
+    equation,
+    errata,
+    invariants_checked,
+    table,
+)
 
 # %% [markdown]
 # ## Coordinates

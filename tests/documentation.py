@@ -30,7 +30,7 @@ from click.testing import CliRunner
 
 from proprotor.commands.main import main
 from proprotor.deck.file import read_tables
-from proprotor.deck.sections import validate
+from proprotor.deck.validation import validate
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -38,8 +38,7 @@ DOCS = ROOT / "docs"
 # Commands and blocks that no test of a page runs: how they begin, and why.
 NOT_RUN = {
     "make": "a whole environment, or minutes; tests/project/test_readme.py holds the targets, CI runs most of them",
-    "python -m benchmarks": "minutes; writes the tables of pages",
-    "proprotor figures": "minutes; tests/paper_figures/test_figures.py makes figures",
+    "python -m benchmarks": "minutes; writes the tables and figures of pages",
     "proprotor explore": "a server, which its own tests start",
     "proprotor report": "half a minute each; tests/report/test_report.py makes reports",
     "source ": "the shell that a reader works in",

@@ -2,4 +2,5 @@
 
 from benchmarks.paper_figures.command import figures
 
-figures(prog_name="python -m benchmarks.paper_figures")
+if __name__ == "__main__":
+    figures(prog_name="python -m benchmarks.paper_figures")

@@ -1,161 +1,125 @@
-"""Analyses that figures share: each model and each sample is made once."""
+"""Analyses that figures share: each variant of the model, and each sample, is analysed once."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from typing import Any
 
 import numpy as np
 
+import proprotor as pp
 from benchmarks.paper_figures.blade_state import AS_THE_PAPER, BladeState, blade_state, on_rigid_hub
 from benchmarks.paper_figures.input_ranges import RANGES
-from benchmarks.paper_figures.mode_following import follow_support_modes
-from benchmarks.paper_figures.published import PAPER_FREQUENCIES
-from benchmarks.paper_figures.uncertainty_band import Band, boundary, damping_band, least_damping
-from proprotor.case import load_case
-from proprotor.model.doubts import MARK, doubts_along, footnotes
-from proprotor.rotor.blade_frequencies import BladeFrequencies
+from benchmarks.paper_figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES
+from benchmarks.paper_figures.sample_band import Band, damping_band
+from benchmarks.paper_figures.wing_modes import WingModes
 from proprotor.typing import Array
 from proprotor.units import KNOT
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
-    from proprotor.model.linear_model import LinearModel
 
 XV15 = "xv15"
 # kt; slower, the neglected induced velocity is more than a twentieth of the airspeed, or the paper shows nothing
 _AIRSPEEDS = {XV15: (50, 500), "xv15-mass-distribution": (50, 500), "v22-fifth-scale": (50, 250)}
 _WRATS = (60, 180)
 
+Variant = Callable[[pp.Case, Array], dict[str, Any]]  # options of a case along airspeeds (points,) in m/s
+
 
 class Analyses:
-    """Models, samples and trims of the bundled decks, kept once they are made.
+    """Modes, boundaries, samples and trims of the bundled decks, kept once they are made.
 
     Parameters
     ----------
     step : float
         Between airspeeds, kt.
     samples : int
-        Designs of an uncertainty band; none at all with 0.
+        Designs of an uncertainty band; with 0 there are no bands.
     seed : int
-        Of the sample.
-    advance : callable
-        Told the share of a sample that was analysed since it was told last.
+        Seed of the sample.
     """
 
-    def __init__(
-        self,
-        step: float = 5.0,
-        samples: int = 300,
-        seed: int = 0,
-        advance: Callable[[float], object] = lambda share: None,
-    ) -> None:
-        self.step, self.samples, self.seed, self.advance = step, samples, seed, advance
-        self.case: Callable[[str], Case] = lru_cache(load_case)
-        self.model: Callable[[str, str], LinearModel] = lru_cache(self._linearized)
-        self.band: Callable[..., Band | None] = lru_cache(self._sampled)
+    def __init__(self, step: float = 5.0, samples: int = 300, seed: int = 0) -> None:
+        self.step, self.samples, self.seed = step, samples, seed
+        self.case: Callable[[str], pp.Case] = cache(pp.load_case)
+        self.wing: Callable[[str, str], WingModes] = cache(self._wing)
+        self.band: Callable[..., Band | None] = cache(self._band)
 
     def airspeeds(self, deck: str) -> Array:
-        """Airspeeds (points,) of a deck, m/s."""
+        """Return the airspeeds (points,) of a deck, m/s."""
         first, last = _AIRSPEEDS.get(deck, _WRATS)
         return np.arange(first, last + self.step / 2, self.step) * KNOT
 
     def knots(self, deck: str) -> Array:
-        """The same in kt."""
+        """Return the airspeeds (points,) of a deck in kt."""
         return np.round(self.airspeeds(deck) / KNOT, 9)
 
-    def damping(self, deck: str, mode: str, variant: str) -> Array:
-        """Damping (points,) of a mode of the wing in percent of critical; NaN at failed points."""
-        values = self._followed(deck, variant)[:, self.case(deck).support.names.index(mode)]
-        return -100 * values.real / np.abs(values)
-
-    def doubts(self, deck: str) -> list[str]:
-        """Sentences on where the model is doubtful, and why."""
-        doubts = doubts_along(self.knots(deck), self.warnings(deck))
-        return [f"{MARK} {line}" for line in footnotes(doubts, "kt")]
-
-    def warnings(self, deck: str) -> Array:
-        """What makes the airspeeds (points,) of a deck doubtful."""
-        warnings: Array = self.model(deck, "couplings").trim.warning[0]
-        return warnings
-
-    def boundary(self, deck: str, variant: str) -> float:
-        """Lowest boundary of a mode that moves the wing, kt; infinite beyond the last airspeed."""
-        return float(boundary(self.knots(deck), least_damping(self.model(deck, variant)))[0])
-
     def blade_state(self, deck: str) -> BladeState:
-        """Trim and couplings over the airspeeds of a deck."""
+        """Return trim and couplings over the airspeeds of a deck."""
         return blade_state(self.case(deck), self.airspeeds(deck))
 
-    @cached_property
-    def rotor_on_rigid_hub(self) -> Callable[..., dict[str, Array]]:
-        """Frequencies per rev of the XV-15's rotor modes by options."""
-
-        def frequencies(**options: Any) -> dict[str, Array]:
-            return on_rigid_hub(self.case(XV15), self.airspeeds(XV15), pitch="coupling", **options)
-
-        return frequencies
-
-    def _linearized(self, deck: str, variant: str) -> LinearModel:
-        return self.case(deck).linearize(self.airspeeds(deck)[None], **self.options(deck, variant))
-
-    def _followed(self, deck: str, variant: str) -> Array:
-        followed: Array = follow_support_modes(self.model(deck, variant))[0]
-        return followed
-
-    def _sampled(self, deck: str, variant: str = "couplings") -> Band | None:
-        if not self.samples:
-            return None
-        return damping_band(
-            self.case(deck),
-            self.airspeeds(deck),
-            RANGES[deck],
-            count=self.samples,
-            seed=self.seed,
-            advance=self.advance,
-            **self.options(deck, variant),
-        )
+    def rotor_on_rigid_hub(self, **options: Any) -> dict[str, Array]:
+        """Return frequencies per revolution of the XV-15's rotor modes by name."""
+        return on_rigid_hub(self.case(XV15), self.airspeeds(XV15), pitch="coupling", **options)
 
     def options(self, deck: str, variant: str) -> dict[str, Any]:
-        """Options of the model of a variant, see `VARIANTS`."""
-        return {"pitch": "coupling"} | AS_THE_PAPER | VARIANTS[variant](self, deck)
+        """Return the options of a variant of the model, see `VARIANTS`."""
+        changed = VARIANTS[variant](self.case(deck), self.airspeeds(deck))
+        return {"pitch": "coupling"} | AS_THE_PAPER | changed
+
+    def _wing(self, deck: str, variant: str) -> WingModes:
+        return WingModes(self.case(deck), self.airspeeds(deck), self.options(deck, variant))
+
+    def _band(self, deck: str, variant: str = "couplings") -> Band | None:
+        if not self.samples:
+            return None
+        options = self.options(deck, variant)
+        return damping_band(
+            self.case(deck), self.airspeeds(deck), RANGES[deck], self.samples, self.seed, **options
+        )
 
 
-def _kept_couplings(analyses: Analyses, deck: str) -> dict[str, Array]:
-    state = analyses.blade_state(deck)
+def _kept_couplings(case: pp.Case, airspeeds: Array) -> dict[str, Any]:
+    """Return the couplings of the model with flap-lag stiffness, each as a function of airspeed."""
     return {
-        "pitch_flap_coupling": state.pitch_flap_coupling,
-        "pitch_lag_coupling": state.pitch_lag_coupling,
+        "pitch_flap_coupling": lambda airspeed: blade_state(case, airspeed).pitch_flap_coupling,
+        "pitch_lag_coupling": lambda airspeed: blade_state(case, airspeed).pitch_lag_coupling,
     }
 
 
-def own_frequencies(analyses: Analyses, deck: str) -> BladeFrequencies:
-    """Lag as this model has it in a vacuum, and coning at 1.85 per rev, given against airspeed."""
-    vacuum = on_rigid_hub(analyses.case(deck), analyses.airspeeds(deck), airloads="none", pitch="coupling")
+def own_frequencies(case: pp.Case, airspeeds: Array) -> pp.BladeFrequencies:
+    """Return lag as this model has it in a vacuum, and coning at 1.85 per revolution, tabulated against airspeed."""
+    vacuum = on_rigid_hub(case, airspeeds, airloads="none", pitch="coupling")
     lag = 1 + vacuum["low cyclic lag"]
-    return BladeFrequencies(
-        flap=PAPER_FREQUENCIES.flap, lag=lag, against="airspeed", at=analyses.airspeeds(deck)
+    return pp.BladeFrequencies(flap=CONING_FREQUENCY, lag=lag, against="airspeed", at=airspeeds)
+
+
+def _tabulated(frequencies: Callable[[pp.Case, Array], pp.BladeFrequencies]) -> Variant:
+    """Return the variant with given frequencies of flap and lag in place of the springs."""
+    return lambda case, airspeeds: (
+        {
+            "structure": "tabulated",
+            "frequencies": frequencies(case, airspeeds),
+        }
+        | _kept_couplings(case, airspeeds)
     )
 
 
+def _fixed(**options: Any) -> Variant:
+    """Return the variant with options that are the same at each airspeed."""
+    return lambda case, airspeeds: options
+
+
 # What each variant changes of the paper's model: couplings in place of the pitch equations, no section damping.
-VARIANTS: dict[str, Callable[[Analyses, str], dict[str, Any]]] = {
-    "couplings": lambda analyses, deck: {},
-    "published equations": lambda analyses, deck: {"equations": "published"},
-    "pitch equations": lambda analyses, deck: {"pitch": "dynamic"},
-    "pitch equations, section damping": lambda analyses, deck: {"pitch": "dynamic", "section_damping": True},
-    "no couplings": lambda analyses, deck: {"pitch_flap_coupling": 0.0, "pitch_lag_coupling": 0.0},
-    "no pitch-flap coupling": lambda analyses, deck: {"pitch_flap_coupling": 0.0},
-    "no flap-lag stiffness": lambda analyses, deck: (
-        {"structure": "diagonal"} | _kept_couplings(analyses, deck)
-    ),
-    "no flap-lag stiffness, couplings follow": lambda analyses, deck: {"structure": "diagonal"},
-    "given frequencies": lambda analyses, deck: (
-        {"structure": "tabulated", "frequencies": PAPER_FREQUENCIES} | _kept_couplings(analyses, deck)
-    ),
-    "own frequencies given": lambda analyses, deck: (
-        {"structure": "tabulated", "frequencies": own_frequencies(analyses, deck)}
-        | _kept_couplings(analyses, deck)
-    ),
+VARIANTS: dict[str, Variant] = {
+    "couplings": _fixed(),
+    "published equations": _fixed(equations="published"),
+    "pitch equations": _fixed(pitch="dynamic"),
+    "pitch equations, section damping": _fixed(pitch="dynamic", section_damping=True),
+    "no couplings": _fixed(pitch_flap_coupling=0.0, pitch_lag_coupling=0.0),
+    "no pitch-flap coupling": _fixed(pitch_flap_coupling=0.0),
+    "no pitch-lag coupling": _fixed(pitch_lag_coupling=0.0),
+    "no flap-lag stiffness": lambda case, speeds: {"structure": "diagonal"} | _kept_couplings(case, speeds),
+    "no flap-lag stiffness, couplings follow": _fixed(structure="diagonal"),
+    "given frequencies": _tabulated(lambda case, airspeeds: PAPER_FREQUENCIES),
+    "own frequencies given": _tabulated(own_frequencies),
 }

@@ -1,36 +1,29 @@
-"""What a blade is like at the trim of each airspeed: pitch, deflection, couplings, lag frequency."""
+"""A blade at the trim of each airspeed: pitch, deflection, couplings, and the rotor's modes on a rigid hub."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from proprotor_equations import pitch
+from proprotor_equations import flap_lag_springs, pitch
 
-from proprotor.model.linear_model import rotor_model, rotor_quantities
-from proprotor.rotor.generated import evaluate
+import proprotor as pp
 from proprotor.rotor.motions import HUB
-from proprotor.rotor.options import Options
-from proprotor.rotor.trim import UNKNOWNS, with_trim
 from proprotor.stability.branches import by_branch
 from proprotor.stability.sweep import sweep
 from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
 
 _PAIRS = {
     ("coning", ""): ("flap_0",),
     ("low cyclic lag", "high cyclic lag"): ("lag_1c", "lag_1s"),
     ("low gimbal", "high gimbal"): ("gimbal_1c", "gimbal_1s"),
 }
-AS_THE_PAPER: dict[str, Any] = {"section_damping": False}  # its sections turn without damping
-ROTOR_MODES = tuple(name for pair in _PAIRS for name in pair if name)
+AS_THE_PAPER: dict[str, Any] = {"section_damping": False}  # the paper's sections turn without damping
 
 
 class BladeState(NamedTuple):
-    """What the couplings follow from, arrays over airspeed: angles in rad, frequency per rev."""
+    """A blade at trim, arrays over airspeed: angles in rad, couplings dimensionless, frequency per revolution."""
 
     structural_pitch: Array
     coning: Array
@@ -41,45 +34,64 @@ class BladeState(NamedTuple):
     lag_frequency: Array
 
 
-def blade_state(case: Case, airspeed: ArrayLike) -> BladeState:
-    """Trim, the couplings of Eqs. 36 and 37, and the uncoupled lag frequency √(K_ζζ/I_ζ + Ω² e S/I)/Ω.
+def effective_springs(rotor: pp.Rotor, structural_pitch: Array) -> flap_lag_springs.EffectiveStiffness:
+    """Return the stiffness of flap and lag at a structural pitch (points,) in rad, and its slopes over the pitch."""
+    return flap_lag_springs.effective_stiffness(
+        flap_stiffness=rotor.flap_stiffness,
+        lag_stiffness=rotor.lag_stiffness,
+        flap_outboard_fraction=rotor.flap_outboard_fraction,
+        lag_outboard_fraction=rotor.lag_outboard_fraction,
+        structural_pitch=structural_pitch,
+    )
 
-    Sections turn without damping, as in the paper.
+
+def couplings(
+    rotor: pp.Rotor, springs: flap_lag_springs.EffectiveStiffness, coning: ArrayLike, lag: ArrayLike
+) -> pitch.Couplings:
+    """Return pitch-flap and pitch-lag coupling by Eqs. 36 and 37, of springs at trim angles in rad."""
+    slopes = {name: slope for name, slope in springs._asdict().items() if name.endswith("_slope")}
+    return pitch.couplings(control_stiffness=rotor.control_stiffness, coning=coning, lag=lag, **slopes)
+
+
+def blade_state(case: pp.Case, airspeed: ArrayLike) -> BladeState:
+    """Return trim, couplings, and the uncoupled lag frequency √(K_ζζ/I_ζ + Ω² e S/I)/Ω; sections turn without damping.
 
     Parameters
     ----------
     case : Case
     airspeed : array (points,)
         m/s.
+
+    Returns
+    -------
+    BladeState
     """
-    airspeed = np.atleast_1d(airspeed)
     rotor, operation = case.rotor, case.operation
-    options = Options(pitch="coupling", **AS_THE_PAPER)
-    trim = rotor_model(rotor, operation, airspeed, pitch="coupling", **AS_THE_PAPER).trim
-    quantities = rotor_quantities(rotor, operation, airspeed, airspeed.shape)
-    pool = with_trim(quantities, options, {name: getattr(trim, name) for name in UNKNOWNS})
+    trim = pp.rotor_model(rotor, operation, np.atleast_1d(airspeed), pitch="coupling", **AS_THE_PAPER).trim
+    structural_pitch = trim.pitch + rotor.structural_pitch_offset
+    springs = effective_springs(rotor, structural_pitch)
     centrifugal = rotor.lag_hinge_offset * rotor.lag_first_moment
-    squared = centrifugal + pool["lag_lag_stiffness"] / operation.rotor_speed**2
-    couplings = evaluate(pitch.couplings, pool)
+    coupled = couplings(rotor, springs, trim.coning, trim.lag)
+    squared = centrifugal + springs.lag_lag_stiffness / operation.rotor_speed**2
     return BladeState(
-        pool["structural_pitch"],
+        structural_pitch,
         trim.coning,
         trim.lag,
-        couplings.pitch_flap_coupling,
-        couplings.pitch_lag_coupling,
-        evaluate(pitch.couplings, pool | {"lag": 0.0}).pitch_lag_coupling,
+        coupled.pitch_flap_coupling,
+        coupled.pitch_lag_coupling,
+        couplings(rotor, springs, trim.coning, 0.0).pitch_lag_coupling,
         np.sqrt(squared / rotor.lag_inertia),
     )
 
 
-def on_rigid_hub(case: Case, airspeed: Array, **options: Any) -> dict[str, Array]:
-    """Frequencies per rev (points,), in the fixed frame, of `ROTOR_MODES`; NaN at failed points.
+def on_rigid_hub(case: pp.Case, airspeed: Array, **options: Any) -> dict[str, Array]:
+    """Return frequencies per revolution (points,) of the rotor's modes in the fixed frame; NaN at failed points.
 
-    Modes are roots here, followed over all airspeeds. Coning is that with most of the collective flap; of the two with
-    most of the cyclic lag, or of the gimbal, the one with the lower mean frequency is the low one. Locked coordinates
-    have no modes. Sections turn without damping, as in the paper, unless it is chosen.
+    Modes are roots here, followed over all airspeeds. Coning is the root with most of the collective flap. Of the two
+    roots with most of the cyclic lag, or of the gimbal, the low one has the lower mean frequency. Locked coordinates
+    have no modes. Sections turn without damping, as in the paper, unless the options say otherwise.
     """
-    model = rotor_model(case.rotor, case.operation, airspeed, **AS_THE_PAPER | options)
+    model = pp.rotor_model(case.rotor, case.operation, airspeed, **AS_THE_PAPER | options)
     modes = by_branch(sweep(model.submodel(tuple(name for name in model.dofs if name not in HUB))))
     per_rev = modes.frequency.values / case.operation.rotor_speed
     found = {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,12 +18,11 @@ from benchmarks.paper_figures.published import (
     PITCH_LAG_COUPLING,
     XV15_MARK,
 )
-from benchmarks.paper_figures.uncertainty_band import boundary
+from benchmarks.paper_figures.wing_modes import WingModes
 from proprotor.errors import InputError
-from proprotor.model.doubts import doubtful_near, marked
-from proprotor.model.provenance import reservations
-from proprotor.model.stamp import deck_fingerprint
+from proprotor.model.doubts import MARK, footnotes, marked
 from proprotor.typing import Array
+from proprotor.units import KNOT
 
 _DAMPING = "Modal damping"
 _UNDAMPED = "Sections turn without damping, as in the paper (section_damping=False)."
@@ -109,19 +108,13 @@ def check_number(number: int) -> None:
         raise InputError("figure", number, f"is no analytical figure of AIAA-2002-1604; they are {known}")
 
 
-def decks_with_bands(numbers: Iterable[int]) -> tuple[str, ...]:
-    """Decks of which figures show an uncertainty band, each once."""
-    wanted = [_DAMPING_FIGURES[number] for number in numbers if number in _DAMPING_FIGURES]
-    return tuple(dict.fromkeys(figure.deck for figure in wanted if figure.with_band))
-
-
 def _damping_figure(number: int, figure: _Damping, analyses: Analyses) -> Content:
     knots = analyses.knots(figure.deck)
     curves = []
     for variant, label in figure.curves.items():
-        damping = analyses.damping(figure.deck, figure.mode, variant)
-        told = _boundary_told(knots, damping, figure.x_limits[1], analyses.warnings(figure.deck))
-        curves.append(Curve(variant, knots, damping, f"{label}: {told}"))
+        wing = analyses.wing(figure.deck, variant)
+        legend = f"{label}: {_boundary_in_words(wing, figure.mode, figure.x_limits[1])}"
+        curves.append(Curve(variant, knots, wing.damping(figure.mode), legend))
     return Content(
         number=number,
         title=f"{figure.what}: {_TITLES[figure.mode]} mode",
@@ -137,7 +130,7 @@ def _damping_figure(number: int, figure: _Damping, analyses: Analyses) -> Conten
 
 
 def _top(figure: _Damping, model: Curve) -> float:
-    """The paper's upper end of the axis, or a higher one if the model's curve needs it."""
+    """Return the paper's upper end of the axis, or a higher end if the model's curve needs it."""
     shown = model.values[model.airspeed <= figure.x_limits[1]]
     return max(figure.highest, 2 * float(np.ceil(np.nanmax(shown) / 2)))
 
@@ -146,27 +139,28 @@ def _band(figure: _Damping, analyses: Analyses) -> BandCurves | None:
     band = analyses.band(figure.deck)
     if band is None:
         return None
-    low, median, high = 100 * band.percentiles(figure.mode)
+    low, median, high = band.percentiles(figure.mode)
     label = f"{analyses.samples} samples of the doubtful inputs: 5 to 95 % at each airspeed, and the median (thin line)"
     return BandCurves(analyses.knots(figure.deck), low, median, high, label)
 
 
-def _boundary_told(knots: Array, damping: Array, end: float, warnings: Array) -> str:
-    shown = knots <= end
-    speed = float(boundary(knots[shown], damping[None, shown])[0])
-    if np.isinf(speed):
-        return f"stable to {knots[shown][-1]:.0f} kt"
-    told = marked(f"{speed:.0f}", doubtful_near(knots, warnings, speed))
-    return f"unstable at {told} kt" if speed <= knots[0] else f"boundary {told} kt"
+def _boundary_in_words(wing: WingModes, mode: str, end: float) -> str:
+    """Return where a wing mode becomes unstable, up to the end of the axis in kt."""
+    speed = wing.speed(mode)
+    if mode in wing.crossings.unstable_at_start:
+        return f"unstable at {speed:.0f} kt"
+    if speed > end:
+        return f"stable to {min(end, wing.airspeeds[-1] / KNOT):.0f} kt"
+    return f"boundary {marked(f'{speed:.0f}', wing.onsets[mode].warning)} kt"
 
 
 def _reservations(analyses: Analyses, deck: str) -> dict[str, Any]:
-    case = analyses.case(deck)
+    case, wing = analyses.case(deck), analyses.wing(deck, "couplings")
     notes = [
         _UNDAMPED,
-        *reservations(case),
-        *analyses.doubts(deck),
-        f"Case {case.name} ({deck_fingerprint(case)}).",
+        wing.sweep.attrs["reservations"],
+        *(f"{MARK} {line}" for line in footnotes(wing.crossings.doubts, "kt", KNOT)),
+        f"Case {case.name} ({wing.sweep.attrs['deck']}).",
     ]
     if deck != XV15:  # the XV-15's warning is on its mass integrals, which do not move the boundary
         notes.insert(0, case.warnings[0])
@@ -174,13 +168,19 @@ def _reservations(analyses: Analyses, deck: str) -> dict[str, Any]:
     return {"notes": tuple(filter(None, notes)), "assumed": bool(statuses & {"assumed", "recalled"})}
 
 
+def _curves(knots: Array, *rows: tuple[str, Array, str]) -> tuple[Curve, ...]:
+    """Return the curves of names, values and labels over the same airspeeds in kt."""
+    return tuple(Curve(name, knots, values, label) for name, values, label in rows)
+
+
 def _lag_frequency(analyses: Analyses) -> Content:
     knots = analyses.knots(XV15)
     frequencies = analyses.rotor_on_rigid_hub
     lag = "low cyclic lag"
     given = frequencies(structure="tabulated", frequencies=PAPER_FREQUENCIES)[lag]
-    told = f"lag frequency given, a line from {LAG_FREQUENCIES[0]:g} to {LAG_FREQUENCIES[1]:g} per rev"
-    told += f" between {LAG_AIRSPEEDS[0]:.0f} and {LAG_AIRSPEEDS[1]:.0f} kt (speeds assumed)"
+    uncoupled = analyses.blade_state(XV15).lag_frequency
+    label = f"lag frequency given, a line from {LAG_FREQUENCIES[0]:g} to {LAG_FREQUENCIES[1]:g} per rev"
+    label += f" between {LAG_AIRSPEEDS[0]:.0f} and {LAG_AIRSPEEDS[1]:.0f} kt (speeds assumed)"
     return Content(
         number=14,
         title="XV-15: low-frequency cyclic lag mode on a rigid hub",
@@ -188,23 +188,12 @@ def _lag_frequency(analyses: Analyses) -> Content:
         unit="per rev",
         x_limits=_XV15_RANGE,
         y_limits=(0, 1),
-        curves=(
-            Curve(
-                "coupled flap and lag", knots, frequencies()[lag], "flap-lag springs that turn with the pitch"
-            ),
-            Curve("given frequencies", knots, given, told),
-            Curve(
-                "coupled, in a vacuum",
-                knots,
-                frequencies(airloads="none")[lag],
-                "springs that turn, in a vacuum",
-            ),
-            Curve(
-                "uncoupled lag less 1",
-                knots,
-                analyses.blade_state(XV15).lag_frequency - 1,
-                "uncoupled $ν_ζ − 1$ of these springs",
-            ),
+        curves=_curves(
+            knots,
+            ("coupled flap and lag", frequencies()[lag], "flap-lag springs that turn with the pitch"),
+            ("given frequencies", given, label),
+            ("coupled, in a vacuum", frequencies(airloads="none")[lag], "springs that turn, in a vacuum"),
+            ("uncoupled lag less 1", uncoupled - 1, "uncoupled $ν_ζ − 1$ of these springs"),
         ),
         **_reservations(analyses, XV15),
     )
@@ -215,6 +204,8 @@ def _flap_frequencies(analyses: Analyses) -> Content:
     frequencies = analyses.rotor_on_rigid_hub
     air, vacuum = frequencies(), frequencies(airloads="none")
     given = frequencies(structure="tabulated", frequencies=PAPER_FREQUENCIES)
+    cyclic = np.full(len(knots), CYCLIC_FLAP_FREQUENCY)
+    in_a_vacuum = "cyclic (gimbal), in a vacuum; airloads damp it by 75 to 95 % of critical"
     return Content(
         number=18,
         title="XV-15: collective and cyclic flap on a rigid hub",
@@ -222,27 +213,13 @@ def _flap_frequencies(analyses: Analyses) -> Content:
         unit="per rev",
         x_limits=_XV15_RANGE,
         y_limits=(0.5, 2.5),
-        curves=(
-            Curve("coning", knots, air["coning"], "coning, gimbal and flap springs as they are"),
-            Curve("coning, in a vacuum", knots, vacuum["coning"], "coning, in a vacuum"),
-            Curve(
-                "coning, given frequencies",
-                knots,
-                given["coning"],
-                f"coning, {CONING_FREQUENCY:g} per rev given",
-            ),
-            Curve(
-                "cyclic (gimbal), in a vacuum",
-                knots,
-                1 + vacuum["low gimbal"],
-                "cyclic (gimbal), in a vacuum; airloads damp it by 75 to 95 % of critical",
-            ),
-            Curve(
-                "cyclic, given",
-                knots,
-                np.full(len(knots), CYCLIC_FLAP_FREQUENCY),
-                f"cyclic, {CYCLIC_FLAP_FREQUENCY:g} per rev, the paper's input",
-            ),
+        curves=_curves(
+            knots,
+            ("coning", air["coning"], "coning, gimbal and flap springs as they are"),
+            ("coning, in a vacuum", vacuum["coning"], "coning, in a vacuum"),
+            ("coning, given frequencies", given["coning"], f"coning, {CONING_FREQUENCY:g} per rev given"),
+            ("cyclic (gimbal), in a vacuum", 1 + vacuum["low gimbal"], in_a_vacuum),
+            ("cyclic, given", cyclic, f"cyclic, {CYCLIC_FLAP_FREQUENCY:g} per rev, the paper's input"),
         ),
         **_reservations(analyses, XV15),
     )
@@ -250,8 +227,9 @@ def _flap_frequencies(analyses: Analyses) -> Content:
 
 def _couplings(analyses: Analyses) -> Content:
     knots, state = analyses.knots(XV15), analyses.blade_state(XV15)
-    speed = analyses.boundary(XV15, "couplings")
-    told = f"$−0.3$ at this model's boundary, {speed:.0f} kt, to which $K_θ$ is calibrated"
+    without_lag = "$K_{Pζ}$ without the trim lag $\\bar{ζ}_0$"
+    speed = analyses.wing(XV15, "couplings").first_speed
+    label = f"$−0.3$ at this model's boundary, {speed:.0f} kt, to which $K_θ$ is calibrated"
     return Content(
         number=21,
         title="XV-15: pitch-flap and pitch-lag coupling",
@@ -259,17 +237,13 @@ def _couplings(analyses: Analyses) -> Content:
         unit="1",
         x_limits=_XV15_RANGE,
         y_limits=(-0.8, 0.6),
-        curves=(
-            Curve("K_P_zeta", knots, state.pitch_lag_coupling, "$K_{Pζ}$"),
-            Curve("K_P_beta", knots, state.pitch_flap_coupling, "$K_{Pβ}$"),
-            Curve(
-                "K_P_zeta without trim lag",
-                knots,
-                state.pitch_lag_coupling_without_lag,
-                "$K_{Pζ}$ without the trim lag $\\bar{ζ}_0$",
-            ),
+        curves=_curves(
+            knots,
+            ("K_P_zeta", state.pitch_lag_coupling, "$K_{Pζ}$"),
+            ("K_P_beta", state.pitch_flap_coupling, "$K_{Pβ}$"),
+            ("K_P_zeta without trim lag", state.pitch_lag_coupling_without_lag, without_lag),
         ),
-        points=((speed, PITCH_LAG_COUPLING, told),),
+        points=((speed, PITCH_LAG_COUPLING, label),),
         marks=(XV15_MARK,),
         **_reservations(analyses, XV15),
     )

@@ -8,31 +8,79 @@ blade mass and first moment: `python -m benchmarks.xv15_inputs`).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
-from benchmarks.paper_figures.uncertainty_band import InputRange
+import proprotor as pp
 
 _WING = ("beam", "chord", "torsion")
+_FACTOR = "×"
+
+
+@dataclass(frozen=True, kw_only=True)
+class InputRange:
+    """The range of an input, and the reason for the range.
+
+    Attributes
+    ----------
+    name : str
+        For tables.
+    paths : tuple of str
+        Numbers of the deck that vary together.
+    low, high : float
+        In `unit`.
+    unit : str
+        Unit of `low` and `high`; ``"×"`` for factors on the deck's numbers.
+    reason : str
+        Why the input may be anywhere in the range.
+    logarithmic : bool
+        Whether all ratios between the ends are equally likely, and not all differences.
+    """
+
+    name: str
+    paths: tuple[str, ...]
+    low: float
+    high: float
+    unit: str
+    reason: str
+    logarithmic: bool = False
+
+    @property
+    def inputs(self) -> str | tuple[str, ...]:
+        """What varies, as `proprotor.sampling` names it."""
+        return self.paths[0] if len(self.paths) == 1 else self.paths
+
+    @property
+    def distribution(self) -> Any:
+        """The range, as `proprotor.sampling` takes it."""
+        if self.unit == _FACTOR and len(self.paths) == 1:
+            return pp.sampling.Relative(self.low, self.high, self.logarithmic)
+        ends = (
+            (self.low, self.high) if self.unit == _FACTOR else (self._text(self.low), self._text(self.high))
+        )
+        return (pp.sampling.LogRange if self.logarithmic else pp.sampling.Range)(*ends)
+
+    def _text(self, end: float) -> str:
+        return f"{end} {self.unit}".strip()
+
+    def __str__(self) -> str:
+        unit = "times" if self.unit == _FACTOR else self.unit
+        return f"{self.low:g} to {self.high:g} {unit}".strip()
 
 
 def _of_wing(
     quantity: str, low: float, high: float, reason: str, logarithmic: bool = False
 ) -> Iterator[InputRange]:
-    """A range for each mode, all independent."""
+    """Yield a range for each wing mode, all independent."""
     for mode in _WING:
-        yield InputRange(
-            name=f"{mode}: {quantity.replace('_', ' ')}",
-            paths=(f"support.modes[{mode}].{quantity}",),
-            low=low,
-            high=high,
-            unit="×",
-            reason=reason,
-            logarithmic=logarithmic,
-        )
+        path = f"support.modes[{mode}].{quantity}"
+        yield _one(f"{mode}: {quantity.replace('_', ' ')}", path, low, high, _FACTOR, reason, logarithmic)
 
 
 def _one(
     name: str, path: str, low: float, high: float, unit: str, reason: str, logarithmic: bool = False
 ) -> InputRange:
+    """Return the range of a single number of the deck."""
     return InputRange(
         name=name, paths=(path,), low=low, high=high, unit=unit, reason=reason, logarithmic=logarithmic
     )

@@ -108,6 +108,9 @@ def rotor_expressions() -> list[sp.Matrix]:
             for i, row in enumerate(indices)
             for j, column in enumerate(indices)
         }
-    n = len(multiblade.FIXED_COORDINATES)
+    names = multiblade.FIXED_COORDINATES
+    n = len(names)
     parts = (multiblade.mass, multiblade.damping, multiblade.stiffness)
-    return [sp.Matrix(n, n, lambda i, j, part=part: part(i, j).xreplace(entries)) for part in parts]
+    return [
+        sp.Matrix(n, n, lambda i, j, part=part: part(names[i], names[j]).xreplace(entries)) for part in parts
+    ]

@@ -33,7 +33,7 @@ def regeneration() -> Result:
 
     start = time.process_time()
     for module in WITHOUT_AIRLOADS:
-        emit.render_module(equations.consistent_functions(module), emit.MODULE_TITLES[module])
+        emit.render_module(equations.consistent_functions(module), equations.STEPS[module].title)
     formatting = spent(resource.RUSAGE_CHILDREN)
     some = time.process_time() - start + formatting
     subprocess.run([sys.executable, "-m", "derive", "--check"], stdout=subprocess.DEVNULL)

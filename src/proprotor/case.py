@@ -1,4 +1,4 @@
-"""A case: a configuration with its analyses as methods."""
+"""A case: a configuration with the analyses as its methods."""
 
 from __future__ import annotations
 
@@ -7,41 +7,41 @@ from collections.abc import Mapping
 
 from proprotor.deck.build import load
 from proprotor.deck.file import list_cases
-from proprotor.deck.vary import vary as _vary
+from proprotor.deck.vary import vary
 from proprotor.model.configuration import Configuration
-from proprotor.stability.attribution import attribution as _attribution
-from proprotor.stability.boundaries import boundaries as _boundaries
-from proprotor.stability.flutter import flutter_point as _flutter_point
-from proprotor.stability.map import stability_map as _stability_map
-from proprotor.stability.sensitivity import sensitivity as _sensitivity
-from proprotor.stability.sweep import sweep_case as _sweep_case
+from proprotor.stability.attribution import attribution
+from proprotor.stability.boundaries import boundaries
+from proprotor.stability.flutter import flutter_point
+from proprotor.stability.map import stability_map
+from proprotor.stability.sensitivity import sensitivity
+from proprotor.stability.sweep import sweep_case
 
 __all__ = ["Case", "list_cases", "load_case"]
 
 
 class Case(Configuration):
-    """A rotor, how it is operated and what carries it, with the analyses of all three as methods.
+    """A rotor, its operation and its support, with the analyses as methods.
 
-    A method is the function of the same name whose first argument is the case; its attributes are those of
-    `proprotor.model.configuration.Configuration`.
+    The attributes are those of `proprotor.model.configuration.Configuration`. Each analysis is a function of the engine
+    whose first argument is a case.
     """
 
-    vary = _vary
-    sweep = _sweep_case
-    boundaries = _boundaries
-    flutter_point = _flutter_point
-    sensitivity = _sensitivity
-    attribution = _attribution
-    stability_map = _stability_map
+    vary = vary
+    sweep = sweep_case
+    boundaries = boundaries
+    flutter_point = flutter_point
+    sensitivity = sensitivity
+    attribution = attribution
+    stability_map = stability_map
 
 
 def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] | None = None) -> Case:
-    """The case of a deck.
+    """Return the case of a deck.
 
     Parameters
     ----------
     name_or_path : str or path
-        A bundled deck (`list_cases`) or a TOML file; `proprotor describe` tells its fields.
+        Name of a bundled deck (`list_cases`) or path of a TOML file; `proprotor describe` lists the fields of a deck.
     settings : mapping of str to str, optional
         Fields to set first, as text: ``{"rotor.precone": "1.5 deg"}``. See `proprotor.deck.settings`.
 

@@ -1,4 +1,7 @@
-"""One number of a deck: what was written, its SI value, and where it comes from."""
+"""A number with its provenance: the text in the deck, the SI value, the unit, the status and the source.
+
+Every number of a deck becomes a `Datum`, which results and reports show. `deck_unit` says in which unit it was written.
+"""
 
 from __future__ import annotations
 
@@ -15,15 +18,15 @@ _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*")
 
 @dataclass(frozen=True)
 class Datum:
-    """A number, a distribution along the blade or a file of numbers, with its provenance.
+    """A number, a distribution along the blade or a file of numbers, with provenance.
 
     Attributes
     ----------
     written : str
         The value as the deck gives it.
     si : float, int, array, tuple of float or str
-        The value in `unit`; an array of those of many designs, a tuple for a distribution, a `FilePath` for a file, the
-        word for a choice.
+        The value in `unit`: a number, an array of the numbers of many designs, a tuple for a distribution, a `FilePath`
+        for a file, or the word of a choice.
     unit : str
         SI unit, ``""`` for a plain number.
     status : str
@@ -33,9 +36,9 @@ class Datum:
     r_over_R : tuple of float or None
         Stations of a distribution.
     rotor_speed : float or None
-        rad/s, of a frequency written per revolution: what one per revolution is.
+        One per revolution in rad/s, for a frequency that was written per revolution.
     beyond : str or None
-        What a distribution says of the blade beyond its stations: "held" or "nothing"; None where it says nothing.
+        The blade beyond the stations of a distribution: "held", "nothing", or None when the deck does not say.
     """
 
     written: str
@@ -49,7 +52,10 @@ class Datum:
 
 
 def deck_unit(number: Datum) -> tuple[str, float]:
-    """The unit a number is written in, and how many SI units it is; "/rev" is the rotor speed of its file."""
+    """Return the unit in which a number was written, and how many SI units one such unit is.
+
+    A unit "/rev" is as many rad/s as the rotor speed in the deck of that number.
+    """
     match = _NUMBER.match(number.written)
     unit = number.written[match.end() :].strip() if match else ""
     if unit == "/rev" and number.rotor_speed is not None:

@@ -1,4 +1,8 @@
-"""What a user is told when an input is wrong: the field, the value, and the rule it breaks."""
+"""Errors of inputs: the field, the value and the rule that the value breaks, and the words that messages are made of.
+
+`InputError` is the only error that an input raises. The checks of numbers, the lists of names and choices that messages
+have in common, and the way in which a text is shown on a terminal stand here too.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +14,17 @@ from typing import Any
 import numpy as np
 
 _WIDEST_VALUE = 60  # characters of a value worth repeating in a message
-# Controls, formats such as those that turn the direction of text round, halves of characters, characters without a
-# known shape, ends of lines.
+# Unicode categories that are never shown: controls, formats such as those that reverse the direction of text, halves of
+# characters, characters without a known shape, ends of lines.
 _NEVER = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
+_SIGNS = {
+    "not negative": (np.less, "must not be negative"),
+    "above zero": (np.less_equal, "must be above zero"),
+}
 
 
 class InputError(ValueError):
-    """An input that cannot be used, told in one line: ``field = value: rule``.
+    """An input that cannot be used, with a message of one line: ``field = value: rule``.
 
     Parameters
     ----------
@@ -41,16 +49,16 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         shown = "" if self.value is None else f" = {_on_one_line(self.value)}"
-        told = f"{_on_one_line(self.field)}{shown}: {printable(self.rule)}"
-        return "\n".join([told, *map(str, self.others)])
+        message = f"{_on_one_line(self.field)}{shown}: {printable(self.rule)}"
+        return "\n".join([message, *map(str, self.others)])
 
     def within(self, path: str) -> InputError:
-        """The same error, with the field named from further outside.
+        """Return the same error with the name of a section before the field.
 
         Parameters
         ----------
         path : str
-            Of the section, put before the field.
+            Name of the section.
 
         Returns
         -------
@@ -59,8 +67,11 @@ class InputError(ValueError):
         return InputError(".".join(filter(None, (path, self.field))), self.value, self.rule, self.others)
 
 
+# Checks of numbers --------------------------------------------------------------------------------
+
+
 def check_number(field: str, value: object) -> None:
-    """Refuse what is neither a number nor an array of numbers.
+    """Refuse a value that is neither a number nor an array of numbers.
 
     Raises
     ------
@@ -71,8 +82,36 @@ def check_number(field: str, value: object) -> None:
         raise InputError(field, value, "must be a number in SI units")
 
 
+def check_finite(field: str, value: Any, sign: str = "") -> None:
+    """Refuse a value that is no number, is not finite or, in its real part, has the wrong sign.
+
+    Parameters
+    ----------
+    field : str
+        Name of the input, for the message.
+    value : float or array
+    sign : "", "not negative" or "above zero"
+        What the real part must be.
+
+    Raises
+    ------
+    InputError
+        With the first rule that the value breaks.
+    """
+    check_number(field, value)
+    if not np.all(np.isfinite(value)):
+        raise InputError(field, value, "must be finite")
+    if sign:
+        broken, rule = _SIGNS[sign]
+        if np.any(broken(np.real(value), 0)):
+            raise InputError(field, value, rule)
+
+
+# Names and choices in messages --------------------------------------------------------------------
+
+
 def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
-    """The rule an unknown name breaks, with the nearest known name, or else all of them."""
+    """Return the rule that an unknown name breaks, with the nearest known name or, without a near one, all of them."""
     by_lower_case = {k.lower(): k for k in known}
     nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1) or [
         k
@@ -83,39 +122,42 @@ def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
     return f"unknown {what} {_on_one_line(name)!r}; {hint}"
 
 
-def _on_one_line(value: object) -> str:
-    if isinstance(value, bool):
-        value = str(value).lower()  # as TOML has it
-    if isinstance(value, dict):
-        value = "{ … }"
-    text = str(value) or '""'
-    text = printable(text)
-    return text if len(text) <= _WIDEST_VALUE else f"{text[: _WIDEST_VALUE - 1]}…"
+def is_choice(value: Any, choices: tuple[bool | str, ...]) -> bool:
+    """Return whether a value is one of the choices, which are words, true or false; 1 is not true."""
+    return isinstance(value, bool | str) and value in choices
+
+
+def list_choices(choices: tuple[bool | str, ...]) -> str:
+    """Return the choices as a message lists them: ``"held" or "free"``."""
+    return " or ".join(f'"{choice}"' if isinstance(choice, str) else as_toml(choice) for choice in choices)
+
+
+def as_toml(value: bool | str) -> str:
+    """Return a word, true or false as a deck writes the value, without quotation marks."""
+    return value if isinstance(value, str) else str(value).lower()
+
+
+# Texts on a terminal ------------------------------------------------------------------------------
 
 
 def unprintable(text: str) -> str:
-    """The first character of a text that may not be shown, such as ``U+001B``; empty where there is none."""
+    """Return the first character of a text that may not be shown, such as ``U+001B``; empty if all may be shown."""
     found = next((c for c in text if unicodedata.category(c) in _NEVER), "")
     return f"U+{ord(found):04X}" if found else ""
 
 
 def printable(text: str, keep: str = "") -> str:
-    """A text with a space for each character that may not be shown, except those to keep."""
+    """Return a text with a space in place of each character that may not be shown, except the characters to keep."""
     if text.isprintable():
         return text
     return "".join(c if c in keep or c.isprintable() else " " for c in text)
 
 
-def is_choice(value: Any, choices: tuple[bool | str, ...]) -> bool:
-    """Whether a value is one of some words, true or false; 1 is not true."""
-    return isinstance(value, bool | str) and value in choices
-
-
-def told_choices(choices: tuple[bool | str, ...]) -> str:
-    """The choices as a message lists them."""
-    return " or ".join(f'"{choice}"' if isinstance(choice, str) else as_toml(choice) for choice in choices)
-
-
-def as_toml(value: bool | str) -> str:
-    """A word, true or false as a deck has it, without quotation marks."""
-    return value if isinstance(value, str) else str(value).lower()
+def _on_one_line(value: object) -> str:
+    """Return a value as a message shows it: printable, on one line, and not too long."""
+    if isinstance(value, bool):
+        value = as_toml(value)
+    if isinstance(value, dict):
+        value = "{ … }"
+    text = printable(str(value) or '""')
+    return text if len(text) <= _WIDEST_VALUE else f"{text[: _WIDEST_VALUE - 1]}…"

@@ -1,6 +1,6 @@
-"""Names of array types in annotations; shapes and units stand in the docstrings.
+"""Types of arrays and numbers in annotations; docstrings give the shapes and units.
 
-The element type is left open: the same code takes real numbers and, for exact derivatives, complex ones.
+The element type is left open: the same code takes real numbers and, for derivatives by a complex step, complex numbers.
 """
 
 from __future__ import annotations
@@ -10,4 +10,4 @@ from typing import Any, TypeAlias
 from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[Any]
-Numbers: TypeAlias = float | Array  # one number, or an array of them that broadcasts with the others
+Numbers: TypeAlias = float | Array  # a number, or an array that broadcasts with the other arguments

@@ -1,8 +1,11 @@
-"""Physical units: text such as ``"12.5 ft"`` or ``"50:400:5kt"`` to SI numbers.
+"""Physical units: text such as ``"12.5 ft"``, quantities and labelled arrays become SI numbers.
 
 The registry holds the units listed below and no others. An angle is a dimension of its own here, which
 pint's usual registry does not do: a stiffness that has lost its "per degree", or 3.2 Hz taken
 for 3.2 rad/s, is then an error and not a factor of 57 or of 6.
+
+Single quantities come first, then lists and ranges of a quantity, then airspeeds, which every analysis takes as a
+number in m/s, a quantity or text such as ``"50:400:5kt"``.
 """
 
 from __future__ import annotations
@@ -88,7 +91,7 @@ _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER_AND_UNIT = re.compile(rf"\s*({_NUMBER}|[+-]?(?:nan|inf)\b)\s*(.*?)\s*", re.IGNORECASE)
 _RANGE_AND_UNIT = re.compile(rf"\s*({_NUMBER})(?:\s*:\s*({_NUMBER})\s*:\s*({_NUMBER}))?\s*(.*?)\s*")
 _LONGEST = 80  # characters in a quantity
-LARGEST = 1e30  # of any quantity in SI: what is made of several must be finite too
+LARGEST = 1e30  # of any quantity in SI: the product of several quantities must be finite too
 _MOST_VALUES = 100_000_000
 _ANY_RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([0-9.eE+-]*[0-9.])\s*(.*?)\s*")
 _MOST_SPEEDS = 100_000
@@ -102,7 +105,7 @@ _UNIT_TOKEN = re.compile(
 
 @cache
 def unit_registry() -> pint.UnitRegistry[Any]:
-    """The registry of the units a deck may use (a `pint.UnitRegistry`, made on first use)."""
+    """Return the registry of the units that a deck may use, a `pint.UnitRegistry` made on first use."""
     import pint  # here, because it is slow to import
 
     registry: pint.UnitRegistry[Any] = pint.UnitRegistry(None)
@@ -111,7 +114,7 @@ def unit_registry() -> pint.UnitRegistry[Any]:
 
 
 def to_si(text: str | float, unit: str) -> float:
-    """The SI value of a quantity written as text.
+    """Return the SI value of a quantity written as text.
 
     Parameters
     ----------
@@ -132,7 +135,7 @@ def to_si(text: str | float, unit: str) -> float:
 
 
 def factor_to_si(text: object, written_unit: str, unit: str) -> float:
-    """How many SI units one `written_unit` is; `text` is what the user wrote, for the message.
+    """Return how many SI units one `written_unit` is; `text` is what the user wrote, for the message.
 
     Raises
     ------
@@ -147,10 +150,20 @@ def factor_to_si(text: object, written_unit: str, unit: str) -> float:
         raise InputError("", text, _dimension_rule(written_unit, unit)) from None
 
 
+def has_own_unit(value: Any) -> bool:
+    """Return whether a value names its unit.
+
+    Such a value is text, a quantity, a data array with an attribute ``units``, or a list of these.
+    """
+    if isinstance(value, list | tuple):
+        return any(map(has_own_unit, value))
+    return isinstance(value, str) or hasattr(value, "to") or "units" in getattr(value, "attrs", {})
+
+
 def as_si(
     value: ArrayLike | str | pint.Quantity[Any], unit: str, field: str = "value"
 ) -> NDArray[np.float64]:
-    """An argument in SI: numbers and arrays are SI already; text, quantities and labelled arrays are converted.
+    """Return an argument in SI: numbers and arrays are SI already; text, quantities and labelled arrays are converted.
 
     Parameters
     ----------
@@ -183,7 +196,7 @@ def as_si(
 
 
 def values_in_si(given: Any, unit: str, field: str = "value") -> NDArray[np.float64]:
-    """Values in SI: what `as_si` takes, a list of it, or a range as text, ``"1:4:0.5 deg"``.
+    """Return values in SI from all that `as_si` takes, a list of such values, or a range such as ``"1:4:0.5 deg"``.
 
     Parameters
     ----------
@@ -207,128 +220,38 @@ def values_in_si(given: Any, unit: str, field: str = "value") -> NDArray[np.floa
 
 
 def _written_range(text: str, unit: str, field: str) -> NDArray[np.float64]:
-    """Start, stop and step, the stop included."""
+    """Return the values of a range in text, the stop included."""
     match = _ANY_RANGE.fullmatch(text)
     if match is None:
         raise InputError(field, text, 'must be a value such as "2 deg" or a range such as "1:4:0.5 deg"')
-    start, stop, step = (float(as_si(f"{match[place]} {match[4]}", unit, field)) for place in (1, 2, 3))
+    numbers = [float(as_si(f"{match[place]} {match[4]}", unit, field)) for place in (1, 2, 3)]
+    return _rising(text, numbers, _MOST_VALUES, "values", field)
+
+
+def _rising(text: str, numbers: list[float], most: int, what: str, field: str = "") -> NDArray[np.float64]:
+    """Return start, start + step, … up to the stop, which is included; refuse a range that does not rise."""
+    start, stop, step = numbers
     if not step > 0 or stop < start:
         raise InputError(field, text, "must rise from start to stop, start:stop:step, by a positive step")
-    steps = (stop - start) / step * (1 + 1e-12)  # a hair more, so that 0:1:0.1 has its 1
-    if steps > _MOST_VALUES:
-        raise InputError(field, text, f"must have at most {_MOST_VALUES} values")
-    check_memory(field, text, 24 * steps, f"{steps:.4g} values", "take a larger step")
+    steps = (
+        (stop - start) / step * (1 + 1e-12)
+    )  # slightly more than the quotient, so that 0:1:0.1 includes its 1
+    if not steps < most:
+        raise InputError(field, text, f"must have at most {most} {what}")
+    check_memory(field, text, 24 * steps, f"{steps:.4g} {what}", "take a larger step")
     return start + step * np.arange(int(steps) + 1, dtype=float)
 
 
 def _factor_of_attribute(written: str, unit: str) -> float:
-    """SI units in one of the attribute ``units`` of a data array, in which "1" is no unit."""
+    """Return the SI units in one unit of a data array's attribute ``units``, where "1" stands for no unit."""
     return factor_to_si(written, "" if written == "1" else written, unit)
 
 
-def speeds(text: str, field: str = "airspeed") -> NDArray[np.float64]:
-    """Speeds in m/s from ``"300 kt"`` or a range ``"50:400:5kt"``, start:stop:step, the stop included.
-
-    Returns
-    -------
-    numpy.ndarray
-        One dimension, increasing, m/s.
-
-    Raises
-    ------
-    InputError
-        When the text is no speed or range of speeds, with the reason.
-    """
-    match = _RANGE_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
-    if match is None or ":" in match[4]:
-        raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
-    try:
-        factor = factor_to_si(text, match[4], "m/s")
-        stop, step = (None if number is None else float(number) for number in match.group(2, 3))
-        written = _steps(text, float(match[1]), stop, step)
-    except InputError as error:
-        raise error.within(field) from None
-    return written * factor
-
-
-def _steps(text: str, start: float, stop: float | None, step: float | None) -> NDArray[np.float64]:
-    if _finite(text, start) < 0:
-        raise InputError("", text, "must not be negative")
-    if stop is None or step is None:
-        return np.array([start])
-    if _finite(text, step) <= 0 or stop < start:
-        raise InputError("", text, "must rise from start to stop, start:stop:step, by a positive step")
-    # a hair more than the quotient, so that 0:1:0.1 has its 1
-    n = (_finite(text, stop) - start) / step * (1 + 1e-12) + 1
-    if not n <= _MOST_SPEEDS:
-        raise InputError("", text, f"must have at most {_MOST_SPEEDS} speeds")
-    return start + step * np.arange(int(n), dtype=float)
-
-
-def _split(text: str | float) -> tuple[float, str]:
-    if isinstance(text, str):
-        match = _NUMBER_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
-        if match is None:
-            raise InputError("", text, 'must be a number and a unit, such as "12.5 ft"')
-        return float(match[1]), match[2]
-    try:
-        return float(text), ""
-    except OverflowError:  # an integer beyond the floating-point range
-        return math.inf, ""
-
-
-def _parse_unit(text: object, unit: str) -> pint.Unit:
-    import pint
-
-    product = f"1{unit}" if unit.startswith("/") else unit  # "5.7/rad"
-    product = re.sub(r"(?<=[A-Za-z0-9])[-·](?=[A-Za-z])", "*", product)  # in-lbf, as reports write it
-    if len(unit) <= _LONGEST and not _UNIT_TOKEN.sub("", product).strip():
-        try:
-            return unit_registry().parse_units(product)
-        except pint.UndefinedUnitError as error:
-            name = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
-            raise InputError("", text, f"has an {unknown_name(name, _unit_names(), 'unit')}") from None
-        except Exception:  # whatever a third-party parser raises, the text is at fault
-            pass
-    raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')
-
-
-def _unit_names() -> list[str]:
-    lines = [line.split(" = ") for line in _DEFINITIONS.splitlines() if " = " in line and "- = " not in line]
-    return [name for first, _, *aliases in lines for name in (first, *aliases) if name != "_"]
-
-
-def _dimension_rule(written_unit: str, unit: str) -> str:
-    if not written_unit:
-        return f"needs a unit; it is {meaning(unit)}"
-    # the commonest slip in US units
-    hint = " (lb is a mass, lbf a force)" if "N" in unit and re.search(r"\blb\b", written_unit) else ""
-    return f"must be {meaning(unit)}{hint}"
-
-
-def meaning(unit: str) -> str:
-    """What an SI unit measures, with an example, as the end of a sentence."""
-    name, example = _MEANINGS[unit]
-    return f"{name}, such as {example}"
-
-
-def _finite(text: object, number: float) -> float:
-    if not math.isfinite(number):
-        raise InputError("", text, "must be finite")
-    if abs(number) > LARGEST:
-        raise InputError("", text, f"must not be beyond {LARGEST:g} in SI units")
-    return number
-
-
-def has_own_unit(value: Any) -> bool:
-    """Whether a value says its unit: text, a quantity, a data array with an attribute ``units``, or a list of these."""
-    if isinstance(value, list | tuple):
-        return any(map(has_own_unit, value))
-    return isinstance(value, str) or hasattr(value, "to") or "units" in getattr(value, "attrs", {})
+# Airspeeds ----------------------------------------------------------------------------------------
 
 
 def in_metres_per_second(airspeed: Any) -> Array:
-    """Airspeed as an array in m/s.
+    """Return an airspeed as an array in m/s.
 
     Parameters
     ----------
@@ -345,7 +268,7 @@ def in_metres_per_second(airspeed: Any) -> Array:
     Raises
     ------
     InputError
-        When it is not a speed.
+        When the value is not a speed.
     """
     if isinstance(airspeed, str) or (isinstance(airspeed, list | tuple) and has_own_unit(airspeed)):
         if not isinstance(airspeed, str):
@@ -358,3 +281,93 @@ def in_metres_per_second(airspeed: Any) -> Array:
         return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)
     except (TypeError, ValueError):
         raise InputError("airspeed", airspeed, 'must be in m/s, or text such as "300 kt"') from None
+
+
+def speeds(text: str, field: str = "airspeed") -> NDArray[np.float64]:
+    """Return speeds in m/s from ``"300 kt"`` or from a range ``"50:400:5kt"``, start:stop:step, the stop included.
+
+    Returns
+    -------
+    numpy.ndarray
+        One dimension, increasing, m/s.
+
+    Raises
+    ------
+    InputError
+        When the text is no speed or range of speeds, with the reason.
+    """
+    match = _RANGE_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
+    if match is None or ":" in match[4]:
+        raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
+    try:
+        factor = factor_to_si(text, match[4], "m/s")
+        numbers = [_finite(text, float(number)) for number in match.group(1, 2, 3) if number]
+        if numbers[0] < 0:
+            raise InputError("", text, "must not be negative")
+        written = _rising(text, numbers, _MOST_SPEEDS, "speeds") if len(numbers) > 1 else np.array(numbers)
+    except InputError as error:
+        raise error.within(field) from None
+    return written * factor
+
+
+# Reading ------------------------------------------------------------------------------------------
+
+
+def _split(text: str | float) -> tuple[float, str]:
+    """Return the number and the unit of a quantity written as text."""
+    if isinstance(text, str):
+        match = _NUMBER_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
+        if match is None:
+            raise InputError("", text, 'must be a number and a unit, such as "12.5 ft"')
+        return float(match[1]), match[2]
+    try:
+        return float(text), ""
+    except OverflowError:  # an integer beyond the floating-point range
+        return math.inf, ""
+
+
+def _parse_unit(text: object, unit: str) -> pint.Unit:
+    """Return a unit of the registry, or refuse one that is unknown or not written as a product of names."""
+    import pint
+
+    product = f"1{unit}" if unit.startswith("/") else unit  # "5.7/rad"
+    product = re.sub(r"(?<=[A-Za-z0-9])[-·](?=[A-Za-z])", "*", product)  # in-lbf, as reports write it
+    if len(unit) <= _LONGEST and not _UNIT_TOKEN.sub("", product).strip():
+        try:
+            return unit_registry().parse_units(product)
+        except pint.UndefinedUnitError as error:
+            name = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
+            raise InputError("", text, f"has an {unknown_name(name, _unit_names(), 'unit')}") from None
+        except Exception:  # whatever a third-party parser raises, the text is at fault
+            pass
+    raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')
+
+
+def _unit_names() -> list[str]:
+    """Return the names of all units and their aliases, for messages."""
+    lines = [line.split(" = ") for line in _DEFINITIONS.splitlines() if " = " in line and "- = " not in line]
+    return [name for first, _, *aliases in lines for name in (first, *aliases) if name != "_"]
+
+
+def _dimension_rule(written_unit: str, unit: str) -> str:
+    """Return the rule that a quantity of another dimension breaks."""
+    if not written_unit:
+        return f"needs a unit; it is {meaning(unit)}"
+    # the most frequent mistake in US units
+    hint = " (lb is a mass, lbf a force)" if "N" in unit and re.search(r"\blb\b", written_unit) else ""
+    return f"must be {meaning(unit)}{hint}"
+
+
+def meaning(unit: str) -> str:
+    """Return what an SI unit measures, with an example, as the end of a sentence."""
+    name, example = _MEANINGS[unit]
+    return f"{name}, such as {example}"
+
+
+def _finite(text: object, number: float) -> float:
+    """Return the number, or refuse a number that is not finite or too large for SI products."""
+    if not math.isfinite(number):
+        raise InputError("", text, "must be finite")
+    if abs(number) > LARGEST:
+        raise InputError("", text, f"must not be beyond {LARGEST:g} in SI units")
+    return number

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from proprotor.datum import STATUSES, Datum
 from proprotor.deck.file import list_cases, read_tables
-from proprotor.deck.sections import validate
+from proprotor.deck.validation import validate
 from proprotor.errors import InputError
 from proprotor.units import as_si, speeds, to_si, unit_registry
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive import audit, consequences, invariants, printed
-from derive.comparison import READINGS, VERDICTS, EquationVerdict
-from derive.comparison import audit as judge
+from derive.audit import consequences, invariants, printed, report
+from derive.audit.comparison import READINGS, VERDICTS, EquationVerdict
+from derive.audit.comparison import audit as judge
 from derive.published import DROPPED_TERMS
 from proprotor.errors import InputError
 
@@ -38,10 +38,10 @@ def mutants(equation: printed.PrintedEquation):
 
 def test_every_equation_and_table_has_a_computed_verdict():
     assert sorted(printed.EQUATIONS) == list(range(1, 38))
-    verdicts = audit.equation_verdicts()
+    verdicts = report.equation_verdicts()
     assert all(result.terms and result.verdict in VERDICTS for result in verdicts.values())
     assert set(verdicts) == set(printed.EQUATIONS) | set(printed.NOMENCLATURE)
-    tables = audit.table_verdicts()
+    tables = report.table_verdicts()
     assert set(tables) == {"Table 1", "Table 2"}
     for result in tables.values():
         assert {value for relation in result.relations for value in relation.values} == set(
@@ -50,13 +50,13 @@ def test_every_equation_and_table_has_a_computed_verdict():
 
 
 def test_verdicts_are_the_recorded_ones():
-    found = audit.changes(audit.recorded(), audit.computed())
+    found = report.changes(report.recorded(), report.computed())
     assert not found, "`python -m derive.audit --accept` records these:\n" + "\n".join(found)
 
 
 @pytest.mark.parametrize("number", sorted(printed.EQUATIONS))
 def test_every_changed_term_changes_the_verdict(number):
-    equation, was = printed.EQUATIONS[number], audit.equation_verdicts()[number]
+    equation, was = printed.EQUATIONS[number], report.equation_verdicts()[number]
     sense_is_open = [
         symbol
         for name in equation.readings
@@ -72,7 +72,7 @@ def test_every_changed_term_changes_the_verdict(number):
 
 def test_a_sign_that_only_a_reading_explains_is_judged_by_that_reading():
     """The positive sense of the airload moment in Eq. 32 is not given: either sign agrees, by different readings."""
-    was = audit.equation_verdicts()[32]
+    was = report.equation_verdicts()[32]
     (flipped,) = (m for label, m in mutants(was.equation) if label.startswith("sign of dM_theta_aero"))
     (doubled,) = (m for label, m in mutants(was.equation) if label.startswith("factor of dM_theta_aero"))
     assert not judge(flipped).conflicts and outcome(judge(flipped)) != outcome(was)
@@ -80,13 +80,13 @@ def test_a_sign_that_only_a_reading_explains_is_judged_by_that_reading():
 
 
 def test_what_contradicts_the_derivation_breaks_an_invariant_and_nothing_else_does():
-    by_derivation = {number for number, result in audit.equation_verdicts().items() if result.conflicts}
-    assert by_derivation == set(audit.broken_invariants()) == {13, 35, "ν_β", "ν_ζ"}
+    by_derivation = {number for number, result in report.equation_verdicts().items() if result.conflicts}
+    assert by_derivation == set(report.broken_invariants()) == {13, 35, "ν_β", "ν_ζ"}
 
 
 def test_what_is_absent_is_a_named_dropped_term():
     for number in printed.EQUATIONS:
-        for term in audit.equation_verdicts()[number].terms:
+        for term in report.equation_verdicts()[number].terms:
             if term.printed == 0:
                 assert term.note and all(name in DROPPED_TERMS for name in term.note.split(", ")), (
                     number,
@@ -117,7 +117,7 @@ def test_the_gimbals_coriolis_term_alone_is_no_motion_of_a_rigid_yoke():
 
 
 def test_i_beta_alpha_of_table_1_is_the_integral_no_blade_has():
-    one, two = (audit.table_verdicts()[name] for name in ("Table 1", "Table 2"))
+    one, two = (report.table_verdicts()[name] for name in ("Table 1", "Table 2"))
     assert not two.conflicts
     alone = [r.values for r in one.conflicts if r.name.startswith("the misfit is not due to")]
     assert alone == [("I_βα",)]
@@ -137,20 +137,20 @@ def test_the_printed_i_beta_alpha_is_refused_by_the_rotor_and_moves_the_boundary
 
 def test_a_changed_verdict_is_reported_and_can_be_recorded(tmp_path, monkeypatch, capsys):
     record = tmp_path / "audit.csv"
-    monkeypatch.setattr(audit, "RECORD", record)
-    rows = audit.computed()
-    audit.record([(*rows[0][:-2], "contradicts", ""), *rows[1:]])
-    assert audit.main(["--quick"]) == 1
+    monkeypatch.setattr(report, "RECORD", record)
+    rows = report.computed()
+    report.record([(*rows[0][:-2], "contradicts", ""), *rows[1:]])
+    assert report.main(["--quick"]) == 1
     assert "- 1, β_G" in capsys.readouterr().out
-    assert audit.main(["--quick", "--accept"]) == 0
+    assert report.main(["--quick", "--accept"]) == 0
     with record.open(newline="", encoding="utf-8") as file:
         assert len(list(csv.reader(file))) == len(rows) + 1
 
 
 def test_the_report_has_the_verdicts():
-    report = audit.REPORT.read_text(encoding="utf-8")
-    for number, title, verdict, terms, *_ in audit.summary(lambda number: ""):
-        assert f"| {number} | {title} | {verdict} | {terms} |" in report
+    page = report.REPORT.read_text(encoding="utf-8")
+    for number, title, verdict, terms, *_ in report.summary(lambda number: ""):
+        assert f"| {number} | {title} | {verdict} | {terms} |" in page
 
 
 KNOTS = re.compile(r"(none below )?[0-9.]+ kt|none$", re.MULTILINE)
@@ -161,7 +161,7 @@ def any_boundary(monkeypatch):
     """Boundaries without their sweeps, which the last notebook compares with its page."""
     for name in ("base", "boundary", "without", "published_with"):
         monkeypatch.setattr(consequences, name, lambda *of, **options: 300.0)
-    kept = audit.consequence_of_conflict, audit._consequences
+    kept = report.consequence_of_conflict, report._consequences
     for cached in kept:
         cached.cache_clear()
     yield
@@ -171,11 +171,11 @@ def any_boundary(monkeypatch):
 
 def test_the_report_is_what_the_audit_writes(tmp_path, monkeypatch, capsys, any_boundary):
     """All of it but the boundaries, and the table on the terminal has them too."""
-    page = audit.REPORT.read_text(encoding="utf-8")
-    monkeypatch.setattr(audit, "ROOT", tmp_path)
-    monkeypatch.setattr(audit, "REPORT", tmp_path / "audit.md")
-    assert audit.main([]) == 0
-    written = audit.REPORT.read_text(encoding="utf-8")
+    page = report.REPORT.read_text(encoding="utf-8")
+    monkeypatch.setattr(report, "ROOT", tmp_path)
+    monkeypatch.setattr(report, "REPORT", tmp_path / "audit.md")
+    assert report.main([]) == 0
+    written = report.REPORT.read_text(encoding="utf-8")
     assert KNOTS.sub("kt", written) == KNOTS.sub("kt", page), "`make audit` writes the report anew"
     shown = capsys.readouterr().out
     assert "written: audit.md" in shown and "verdicts, all as recorded" in shown

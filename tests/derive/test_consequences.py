@@ -4,8 +4,9 @@ import inspect
 
 import numpy as np
 import pytest
+from proprotor_equations import BLADE_COORDINATES
 
-from derive import consequences, printed, table_audit
+from derive.audit import consequences, printed, tables
 from derive.equations import REDUCED_MODULES
 from derive.published import DROPPED_TERMS, PUBLISHED
 from proprotor.rotor.options import Options
@@ -38,15 +39,52 @@ def test_yoke_roll_reaches_every_module_that_has_the_gimbal():
 
 
 def test_with_all_terms_dropped_a_variant_is_the_published_set():
-    """The module made in memory and the one checked in are the same function."""
+    """The module derived again and the one checked in are the same function."""
     made = consequences.equations_without(PUBLISHED, "consistent", frozenset({"propeller_moment"})).pitch
-    checked_in = consequences.EQUATION_SETS["published"].pitch
+    checked_in = consequences.equation_set("published").pitch
     quantities = {
         name: 0.1 + 0.37 * place
         for place, name in enumerate(inspect.signature(checked_in.stiffness).parameters)
     }
     assert inspect.signature(made.stiffness) == inspect.signature(checked_in.stiffness)
     np.testing.assert_array_equal(made.stiffness(**quantities), checked_in.stiffness(**quantities))
+
+
+def test_a_term_that_nobody_drops_is_told():
+    with pytest.raises(ValueError, match="no such term: weight; known: "):
+        consequences.consistent_but("weight")
+
+
+def test_the_modules_of_a_set_are_those_that_its_name_stands_for():
+    for equations in ("consistent", "published"):
+        assert consequences.equation_set(equations) == Options(equations=equations).equation_set
+
+
+def test_eq_13_as_printed_turns_one_entry_of_the_gyroscopic_matrix_round():
+    changed, derived = (
+        of("published").inertia.gyroscopic
+        for of in (consequences.with_printed_coriolis_sign, consequences.equation_set)
+    )
+    quantities = {
+        name: 0.2 + 0.31 * place for place, name in enumerate(inspect.signature(derived).parameters)
+    }
+    sign = np.ones_like(derived(**quantities))
+    sign[BLADE_COORDINATES.index("flap"), BLADE_COORDINATES.index("lag")] = -1
+    assert np.count_nonzero(derived(**quantities) * (sign == -1)) == 1
+    np.testing.assert_array_equal(changed(**quantities), sign * derived(**quantities))
+
+
+def test_the_couplings_turned_round_are_those_of_the_model_with_the_other_sign():
+    """Given values in place of the closed form: the same values make the same model, the opposite ones the turned."""
+    case, options = consequences.xv15(), {"pitch": "coupling"}
+    model = case.linearize(150.0, **options)
+    flap, lag = consequences.couplings(model)
+    given = case.linearize(150.0, **options, pitch_flap_coupling=flap, pitch_lag_coupling=lag)
+    opposite = case.linearize(150.0, **options, pitch_flap_coupling=-flap, pitch_lag_coupling=-lag)
+    turned = consequences.couplings_turned().linearize(150.0, **options)
+    np.testing.assert_allclose(given.K, model.K, rtol=1e-12)
+    np.testing.assert_array_equal(turned.K, opposite.K)
+    assert not np.allclose(turned.K, model.K)
 
 
 def test_boundaries_are_told_by_mode():
@@ -87,21 +125,21 @@ def test_a_steady_tilt_shakes_the_blade_once_per_revolution_with_half_of_the_pai
 def test_a_printed_number_keeps_its_digits():
     """0.200 is known to a thousandth, 0.2 to a tenth."""
     model = printed.TABLES[1].values
-    assert table_audit.rounding(model["I_βα"]) == pytest.approx(0.0005)
-    assert table_audit.rounding(model["S_β"]) == pytest.approx(0.00005)
-    assert table_audit.rounding(model["R_β"]) == pytest.approx(0.005)
-    assert table_audit.rounding(printed.TABLES[0].values["I_b"]) == pytest.approx(0.5)
+    assert tables.rounding(model["I_βα"]) == pytest.approx(0.0005)
+    assert tables.rounding(model["S_β"]) == pytest.approx(0.00005)
+    assert tables.rounding(model["R_β"]) == pytest.approx(0.005)
+    assert tables.rounding(printed.TABLES[0].values["I_b"]) == pytest.approx(0.5)
 
 
 def test_the_search_for_a_blade_does_not_stop_at_the_grid():
     """Table 2: on the grid no blade is within the printed digits, beside it one is."""
     v = printed.TABLES[1].values
-    least, flap, lag = table_audit.nearest_blade(v, table_audit.INTEGRALS)
+    least, flap, lag = tables.nearest_blade(v, tables.INTEGRALS)
     assert least <= 1
-    assert table_audit.misfit(v, table_audit.INTEGRALS, flap[0], lag[0]) == pytest.approx(least)
+    assert tables.misfit(v, tables.INTEGRALS, flap[0], lag[0]) == pytest.approx(least)
     grid = np.linspace(0.19, 0.26, 8)
-    implied = table_audit.implied_offset(v, "ζ")
-    assert min(table_audit.misfit(v, table_audit.INTEGRALS, offset, implied) for offset in grid) > 1
+    implied = tables.implied_offset(v, "ζ")
+    assert min(tables.misfit(v, tables.INTEGRALS, offset, implied) for offset in grid) > 1
 
 
 @pytest.mark.parametrize("options", [{}, {"equations": "published"}, {"pitch": "coupling"}])

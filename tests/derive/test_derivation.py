@@ -25,7 +25,16 @@ from scipy.integrate import quad
 from derive import __main__ as command_line
 from derive import emit, equations, multiblade
 from derive import symbols as s
-from derive.equations import DimensionError, Entry, Function
+from derive.function import (
+    FORCE,
+    MOMENT,
+    DimensionError,
+    Entry,
+    Function,
+    coordinate_dimension,
+    dimension_of,
+    row_dimension,
+)
 from tests.rotors import between, mass_distributions, zero_or
 
 HASH_SEEDS = (0, 1)
@@ -91,13 +100,6 @@ def test_every_entry_is_dimensionally_homogeneous(functions):
     assert checked > 1000
 
 
-def dimension_of_motion(name):
-    """Of a coordinate or a gust."""
-    if "gust" in name:
-        return (0, 1, -1)
-    return equations.coordinate_dimension(name)
-
-
 PRIMES = map(sp.prime, itertools.count(1))
 
 
@@ -107,8 +109,8 @@ def stand_in(entry):
     row, column = (index.name.removeprefix("BLADE_").lower() for index in entry.indices)
     order = {"mass": 2, "damping": 1}.get(entry.base.label.name, 0)
     force = s.flap_stiffness / s.radial_station
-    work = force if equations.row_dimension(row) == equations.FORCE else s.flap_stiffness
-    _, length, time = dimension_of_motion(column)
+    work = force if row_dimension(row) == FORCE else s.flap_stiffness
+    _, length, time = coordinate_dimension(column)
     per_motion = s.radial_station**-length * s.rotor_speed**time
     return next(PRIMES) * work * per_motion / s.rotor_speed**order
 
@@ -120,7 +122,7 @@ def test_the_rotor_has_the_dimensions_of_its_blades(functions):
     for function in of_blades:
         for entry in function.entries.values():
             value = entry.value.replace(lambda e: isinstance(e, sp.Indexed), stand_in)
-            assert equations.dimension_of(value, function.name) == entry.dimension
+            assert dimension_of(value, function.name) == entry.dimension
 
 
 def test_products_over_segments_have_the_dimensions_of_a_blade(functions):
@@ -137,7 +139,7 @@ def test_products_over_segments_have_the_dimensions_of_a_blade(functions):
     for motion, order in (("rate_motion", 1), ("displacement_motion", 0), ("gust_motion", 0)):
         for row in {name for _, name in matrices["virtual_motion"]}:
             for column in {name for _, name in matrices[motion]}:
-                work, per_motion = equations.row_dimension(row), dimension_of_motion(column)
+                work, per_motion = row_dimension(row), coordinate_dimension(column)
                 expected = tuple(a + b - c for a, b, c in zip(work, (0, 0, order), per_motion, strict=True))
                 assert set(dimensions(row, column, motion)) <= {expected}
 
@@ -150,7 +152,7 @@ def _row(entries, name):
     return [(place, entry) for place, entry in entries.items() if place[0] == name]
 
 
-def a_function(value, dimension=equations.MOMENT, steps=()):
+def a_function(value, dimension=MOMENT, steps=()):
     """A function with one entry."""
     entries = {("flap", "flap"): Entry(value, "Eq. 0", dimension)}
     return Function("test", "entry", "", "", list(steps), rows=("flap",), columns=("flap",), entries=entries)
@@ -232,11 +234,6 @@ def test_one_name_is_one_index_in_a_module():
     assert emit.index_groups(functions[:1])
     with pytest.raises(ValueError, match="would be two indices"):
         emit.index_groups(functions)
-
-
-def test_a_term_that_nobody_drops_is_told():
-    with pytest.raises(ValueError, match="no such term: weight; known: "):
-        emit.reduced_modules(frozenset({"weight"}))
 
 
 def test_a_harmonic_that_the_sum_over_three_blades_does_not_take_is_refused():

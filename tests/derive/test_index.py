@@ -8,8 +8,9 @@ import sys
 import proprotor_equations
 import pytest
 
-from derive import index, printed
-from derive.counterparts import COUNTERPARTS
+from derive.audit import printed
+from derive.audit.counterparts import COUNTERPARTS
+from derive.pages import index
 
 LINK = re.compile(r"\[([^\]]+)\]\(([^)#]*)(?:#([^)]*))?\)")
 PAGE = index.PAGE.read_text(encoding="utf-8")
@@ -29,7 +30,7 @@ def links(kind, section):
 
 
 def test_the_page_is_current():
-    assert index.page() == PAGE, "`python -m derive.index` writes docs/equations.md anew"
+    assert index.page() == PAGE, "`python -m derive.pages.index` writes docs/equations.md anew"
 
 
 def test_every_equation_and_table_is_in_the_index_with_all_four_places():
@@ -53,7 +54,7 @@ def test_every_link_leads_to_the_line_that_defines_what_it_names():
             assert not place or place in headings(path), (target, place)
             continue
         line = path.read_text(encoding="utf-8").splitlines()[int(place.removeprefix("L")) - 1]
-        if target.startswith("../derive/printed/"):
+        if target.startswith("../derive/audit/printed/"):
             assert re.match(r"\s*Printed(Equation|Table)\($|\s*PrintedEquation\(\d", line), (
                 target,
                 place,
@@ -139,11 +140,11 @@ def test_a_stale_page_is_told(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(index, "page", lambda: PAGE)
     monkeypatch.setattr(sys, "argv", ["index", "--check"])
     assert index.main() == 1
-    assert "python -m derive.index" in capsys.readouterr().out
+    assert "python -m derive.pages.index" in capsys.readouterr().out
     monkeypatch.setattr(sys, "argv", ["index"])
     assert index.main() == 0 and stale.read_text(encoding="utf-8") == PAGE
 
 
 def test_the_check_runs_as_a_command():
-    command = [sys.executable, "-m", "derive.index", "--check"]
+    command = [sys.executable, "-m", "derive.pages.index", "--check"]
     assert subprocess.run(command, cwd=index.ROOT, capture_output=True, check=False).returncode == 0

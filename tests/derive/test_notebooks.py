@@ -8,8 +8,9 @@ import jupytext
 import pytest
 from PIL import Image
 
-from derive import notebooks, printed
-from derive.headings import heading
+from derive.audit import printed
+from derive.audit.headings import heading
+from derive.pages import notebooks
 
 SOURCES = notebooks.sources()
 NAMES = ["kinematics", "inertia", "springs", "airloads", "pitch-and-couplings", "assembly-and-errata"]
@@ -44,7 +45,7 @@ def test_a_notebook_runs_without_a_warning_and_shows_what_its_page_shows(source)
     )
     text, pictures = notebooks.rendered(source, executed)
     page = notebooks.page_of(source).read_text(encoding="utf-8")
-    told = f"`python -m derive.notebooks {source.stem}` writes the page anew"
+    told = f"`python -m derive.pages.notebooks {source.stem}` writes the page anew"
     assert NUMBER.split(page) == NUMBER.split(text), told
     shown, wanted = ([float(number) for number in NUMBER.findall(of)] for of in (page, text))
     assert shown == pytest.approx(wanted, **TOLERANCE), told
@@ -54,7 +55,7 @@ def test_a_notebook_runs_without_a_warning_and_shows_what_its_page_shows(source)
 
 
 SMALL = """# %% [markdown]
-# See [the audit](../docs/audit.md), [springs](3-springs.py) and [the code](../derive/audit.py).
+# See [the audit](../docs/audit.md), [springs](3-springs.py) and [the code](../derive/audit/report.py).
 
 # %%
 print("to a stream")
@@ -81,7 +82,7 @@ def test_pages_are_written_with_their_pictures_alone(tmp_path, monkeypatch, caps
     for old in ("7-small-2.png", "8-not-asked-for-1.png"):
         (pages / old).touch()
     monkeypatch.chdir(tmp_path)  # where the sockets of the kernel are, as of the shell that starts it
-    monkeypatch.setattr("sys.argv", ["derive.notebooks", "7-small"])
+    monkeypatch.setattr("sys.argv", ["derive.pages.notebooks", "7-small"])
     assert notebooks.main() == 0
     assert capsys.readouterr().out == "written: docs/notebooks/7-small.md\n"
     found = {path.name for path in pages.iterdir()}
@@ -89,13 +90,16 @@ def test_pages_are_written_with_their_pictures_alone(tmp_path, monkeypatch, caps
     with Image.open(pages / "7-small-1.png") as picture:
         assert picture.size == (100, 100)
     text = (pages / "7-small.md").read_text()
-    assert "[the audit](../audit.md), [springs](3-springs.md) and [the code](../../derive/audit.py)" in text
+    assert (
+        "[the audit](../audit.md), [springs](3-springs.md) and [the code](../../derive/audit/report.py)"
+        in text
+    )
     assert "```text\nto a stream\n```" in text and "```text\n'to the page'\n```" in text
     assert "![a square](7-small-1.png)\n\n*as it is*\n" in text
 
 
 def test_a_notebook_that_there_is_not_is_told(monkeypatch, capsys):
-    monkeypatch.setattr("sys.argv", ["derive.notebooks", "9-none"])
+    monkeypatch.setattr("sys.argv", ["derive.pages.notebooks", "9-none"])
     assert notebooks.main() == 2
     told = capsys.readouterr().out
     assert told.startswith("no such notebook: 9-none; known: 1-kinematics, ") and told.count("\n") == 1

@@ -21,8 +21,10 @@ import pytest
 from click.testing import CliRunner
 
 import proprotor as pp
+from benchmarks.paper_figures.command import figures
 from derive import __main__ as derivation
-from derive import audit, emit
+from derive import emit
+from derive.audit import report
 from proprotor.commands.main import main
 from proprotor.files.output import write_whole
 from proprotor.stability.mode_names import _assign_names
@@ -94,7 +96,7 @@ def test_a_figure_on_a_full_disk_leaves_what_was(tmp_path):
     """The picture does not fit, so there are no numbers of it either."""
     (tmp_path / "figure-12.csv").write_bytes(b"before")
     with full_disk():
-        done = run("figures", 12, "--samples", 0, "--out", tmp_path)
+        done = CliRunner().invoke(figures, ["12", "--samples", "0", "--out", str(tmp_path)])
     assert done.exit_code == 1 and isinstance(done.exception, SystemExit), done.output
     assert sum("cannot be written" in line for line in done.stderr.splitlines()) == 1
     assert content(tmp_path) == {"figure-12.csv": b"before"}
@@ -181,11 +183,11 @@ def test_accepted_modes_that_do_not_fit_leave_those_before(tmp_path):
 
 
 def test_verdicts_that_do_not_fit_leave_those_before(tmp_path, monkeypatch):
-    monkeypatch.setattr(audit, "RECORD", tmp_path / "audit.csv")
-    audit.record([("1",) * len(audit.HEADER)])
+    monkeypatch.setattr(report, "RECORD", tmp_path / "audit.csv")
+    report.record([("1",) * len(report.HEADER)])
     before = content(tmp_path)
     with full_disk(), pytest.raises(OSError):
-        audit.record([("1" * 100,) * len(audit.HEADER)] * 10)
+        report.record([("1" * 100,) * len(report.HEADER)] * 10)
     assert content(tmp_path) == before
 
 

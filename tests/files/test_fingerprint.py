@@ -402,7 +402,7 @@ def test_what_a_function_imports_as_it_runs_counts(tmp_path, monkeypatch):
         fingerprint(curve)
 
 
-# What cannot be told ------------------------------------------------------------------------------
+# What cannot be identified ------------------------------------------------------------------------
 
 
 def generator():
@@ -441,7 +441,7 @@ def test_what_cannot_be_told_is_refused_in_one_message(what):
         getattr(held, "close", lambda: None)()
     told = str(caught.value)
     assert told.startswith("checkpoint = ") and "\n" not in told
-    assert "stands among the inputs of the study (case → flap" in told and "cannot be told" in told
+    assert "stands among the inputs of the study (case → flap" in told and "cannot be identified" in told
 
 
 def test_nothing_is_computed_of_a_study_whose_inputs_cannot_be_told(tmp_path, monkeypatch):

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 
 import proprotor as pp
 from proprotor.commands.main import main
+from proprotor.commands.terminal import PlainConsole
 from proprotor.deck.stations import read_stations
 from proprotor.errors import printable, unprintable
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.motions import HUB, SECOND, motions, name_list, reactionless_coordinates
 from proprotor.support.matrix_files import read_matrix_market
 from proprotor.support.matrix_market import read_matrix
-from proprotor.tables.terminal import PlainConsole
 from tests.commands.test_command_contract import SUCCEED
 
 DECK = 'base = "xv15"\n[case]\nname = "mine"\ntitle = "Mine"\n'

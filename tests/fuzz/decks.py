@@ -18,7 +18,7 @@ import numpy as np
 
 import proprotor as pp
 from proprotor.commands.main import main
-from proprotor.tables.terminal import print_case
+from proprotor.commands.terminal import print_case
 from tests.fuzz import airfoils, supports
 from tests.fuzz.mutation import NUMBERS, TEXTS, UNITS, other_lines, other_number, several, spoiled_bytes
 

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from proprotor.options import CHOICES, LOCKABLE
 
 import proprotor as pp
 from benchmarks.paper_figures.published import PAPER_FREQUENCIES
+from proprotor.rotor.options import CHOICES, LOCKABLE
 from tests.golden.modes import Modes, Record, modes_at
 
 ADVANCE = (0.25, 0.5, 0.7)  # airspeed by tip speed: the same for models of any size

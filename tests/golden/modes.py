@@ -18,8 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray
-from proprotor.output_file import write_whole
 from scipy.optimize import linear_sum_assignment
+
+from proprotor.files.output import write_whole
 
 # Eigenvalues have condition numbers up to 260: matrices that differ by 1e-14 of each entry have eigenvalues that
 # differ by less than 1e-12 of their size. Rounding, also to the digits of the file, stays far below this:

@@ -21,7 +21,8 @@ from proprotor.commands.main import main
 from proprotor.exchange.matlab import matlab_names
 from proprotor.explore.analysis import live_modes
 from proprotor.explore.page import ExplorePage, messages, readout
-from proprotor.model import stamp
+from proprotor.model import options_in_force, options_of_result, stamp
+from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
 from proprotor.model.several_rotors import MountedRotor
 from proprotor.plots import mode_motion
@@ -29,6 +30,7 @@ from proprotor.plots.animation import title_of
 from proprotor.rotor.options import CHOICES, Options, parse_options
 from proprotor.stability import flutter
 from proprotor.stability.attribution import attribution
+from proprotor.stability.boundaries import boundaries, scan_speeds
 from proprotor.stability.boundary_lines import boundary_lines
 from proprotor.stability.map import stability_map
 from proprotor.stability.origins import model_parts
@@ -57,7 +59,7 @@ RESULTS = {
     "Case.sensitivity": lambda case, **o: case.sensitivity("damping", ["rotor.precone"], airspeed=AT, **o),
     "Case.attribution": lambda case, **o: case.attribution(AT, **o),
     "Case.stability_map": lambda case, **o: case.stability_map(MAP, **o),
-    "flutter.boundaries": lambda case, **o: flutter.boundaries(case, SPEEDS, **o),
+    "boundaries.boundaries": lambda case, **o: boundaries(case, SPEEDS, **o),
     "flutter.flutter_point": lambda case, **o: flutter.flutter_point(case, SPEEDS, **o),
     "sweep_case": lambda case, **o: sweep_case(case, [180.0], {"rotor.precone": [0.02, 0.03]}, **o),
     "sensitivity": lambda case, **o: sensitivity(
@@ -103,21 +105,19 @@ def stamp_of(result):
 
 def expected(case, **options):
     """Options in force by the definition of the options alone."""
-    return stamp.in_force(parse_options(case.model_options(options)))
+    return options_in_force.in_force(parse_options(case.model_options(options)))
 
 
 def public():
     named = {name: getattr(pp, name) for name in pp.__all__}
-    named |= {f"Case.{name}": entry for name, entry in vars(Case).items() if name[0] != "_"}
-    for module in (flutter, mode_motion, inspect.getmodule(boundary_lines)):
+    named |= {f"Case.{name}": entry for name, entry in inspect.getmembers(Case) if name[0] != "_"}
+    for module in (flutter, mode_motion, *map(inspect.getmodule, (boundaries, boundary_lines))):
         own = {
             name: entry
             for name, entry in vars(module).items()
             if getattr(entry, "__module__", "") == module.__name__
         }
-        named |= {
-            f"{module.__name__.removeprefix('proprotor.')}.{name}": entry for name, entry in own.items()
-        }
+        named |= {f"{module.__name__.rpartition('.')[2]}.{name}": entry for name, entry in own.items()}
     named |= {entry.__name__: entry for entry in (attribution, sensitivity, stability_map, sweep_case)}
     return {name: entry for name, entry in named.items() if inspect.isfunction(entry)}
 
@@ -137,19 +137,19 @@ def test_the_list_of_results_is_complete():
 @pytest.mark.parametrize("name", RESULTS)
 def test_every_result_says_its_case_and_all_options_in_force(name):
     own = stamp_of(found(name, CASE, **GIVEN))
-    assert stamp.options_told(own) == expected(CASE, **GIVEN)
-    assert set(stamp.options_told(own)) == {entry.name for entry in fields(Options)}
+    assert options_in_force.options_in_result(own) == expected(CASE, **GIVEN)
+    assert set(options_in_force.options_in_result(own)) == {entry.name for entry in fields(Options)}
     assert own["case"] == "xv15" and own["title"] == CASE.title
-    assert own["deck"] == stamp.deck_fingerprint(CASE) != stamp.deck_fingerprint(DOUBTFUL)
+    assert own["deck"] == deck_fingerprint(CASE) != deck_fingerprint(DOUBTFUL)
     assert "calibrated" in own["reservations"] and "Gram matrix" in own["case_warnings"]
-    told = stamp.told(own)
+    told = stamp.line(own)
     assert "case xv15" in told.lower() and "locked gimbal" in told and "pitch coupling" in told
     assert "airloads" not in told  # which is as always
 
 
 def test_a_rotor_alone_says_its_options():
     own = stamp.of_model(pp.rotor_model(CASE.rotor, CASE.operation, 100.0, locked=("gimbal",)))
-    assert stamp.options_told(own)["locked"] == ["gimbal"] and "case" not in own
+    assert options_in_force.options_in_result(own)["locked"] == ["gimbal"] and "case" not in own
     model = CASE.linearize(100.0).submodel(("beam",))
     assert (
         stamp.of_model(pp.LinearModel(model.M, model.C, model.K, model.dofs, model.trim, model.airspeed))
@@ -336,22 +336,22 @@ def test_options_come_back_from_what_is_written(given, repeat):
     own = json.loads(json.dumps(stamp.of_case(CASE, given)))
     if repeat:
         with pytest.raises(pp.InputError, match="must be given again: the result was computed with"):
-            stamp.options_of(own, CASE, {})
-    back = stamp.options_of(own, CASE, given if repeat else {})
+            options_of_result.options_of(own, CASE, {})
+    back = options_of_result.options_of(own, CASE, given if repeat else {})
     assert expected(CASE, **back) == expected(CASE, **given)
-    stamp.options_of(own, CASE, given)
+    options_of_result.options_of(own, CASE, given)
 
 
 @pytest.mark.parametrize("name", pp.list_cases())
 def test_what_a_deck_brings_is_in_force_and_its_numbers_are_its_fingerprint(name):
     case = pp.load_case(name)
     own = stamp.of_case(case, {})
-    back = stamp.options_of(own, case, {})
+    back = options_of_result.options_of(own, case, {})
     assert expected(case, **back) == expected(case) and back["structure"] == expected(case)["structure"]
     radius = case.given["rotor.radius"].si
-    assert stamp.deck_fingerprint(case.vary({"rotor.radius": radius})) == own["deck"]
-    assert stamp.deck_fingerprint(case.vary({"rotor.radius": radius * (1 + 1e-15)})) != own["deck"]
-    others = [stamp.deck_fingerprint(pp.load_case(other)) for other in pp.list_cases() if other != name]
+    assert deck_fingerprint(case.vary({"rotor.radius": radius})) == own["deck"]
+    assert deck_fingerprint(case.vary({"rotor.radius": radius * (1 + 1e-15)})) != own["deck"]
+    others = [deck_fingerprint(pp.load_case(other)) for other in pp.list_cases() if other != name]
     assert own["deck"] not in others
 
 
@@ -363,25 +363,25 @@ def test_frequencies_of_a_deck_are_options_in_force(tmp_path):
     )
     case = pp.load_case(deck)
     own = case.sweep("200 kt").attrs
-    told = stamp.options_told(own)
+    told = options_in_force.options_in_result(own)
     assert told["structure"] == "tabulated" and told["frequencies"]["flap"] == 1.9
     assert told["drive_train"]["drive_inertia"] == pytest.approx(100.0)
-    assert "structure tabulated" in stamp.told(own)
-    assert stamp.options_of(own, case, {})["frequencies"] is case.frequencies
+    assert "structure tabulated" in stamp.line(own)
+    assert options_of_result.options_of(own, case, {})["frequencies"] is case.frequencies
     with pytest.raises(pp.InputError, match=r"^structure = coupled: must be tabulated"):
-        stamp.options_of(own, case, {"structure": "coupled"})
+        options_of_result.options_of(own, case, {"structure": "coupled"})
     without = stamp.of_case(case, {"drive_train": None})
-    assert expected(case, **stamp.options_of(without, case, {}))["drive_train"] is None
+    assert expected(case, **options_of_result.options_of(without, case, {}))["drive_train"] is None
 
 
 def test_the_fingerprint_knows_what_is_no_number():
     settings = ({"operation.trim": "{ collective = '40 deg' }"}, {"support.includes_rotor": "false"})
-    plain = stamp.deck_fingerprint(CASE)
-    assert stamp.deck_fingerprint(pp.load_case("xv15", {"case.title": "another"})) == plain
-    assert stamp.deck_fingerprint(pp.load_case("xv15", {"rotor.radius": "150 inch"})) == plain
-    assert stamp.deck_fingerprint(pp.load_case("xv15", settings[0])) != plain
+    plain = deck_fingerprint(CASE)
+    assert deck_fingerprint(pp.load_case("xv15", {"case.title": "another"})) == plain
+    assert deck_fingerprint(pp.load_case("xv15", {"rotor.radius": "150 inch"})) == plain
+    assert deck_fingerprint(pp.load_case("xv15", settings[0])) != plain
     own = pp.Case("mine", CASE.rotor, CASE.operation, CASE.support)
-    assert stamp.deck_fingerprint(own) == stamp.deck_fingerprint(
+    assert deck_fingerprint(own) == deck_fingerprint(
         pp.Case("yours", CASE.rotor, CASE.operation, CASE.support)
     )
 
@@ -411,7 +411,7 @@ def test_boundaries_are_as_doubtful_as_the_airspeeds_they_lie_at():
     assert point.warning and len({bool(boundary.warning) for boundary in point.boundaries}) == 2
     for boundary in point.boundaries:
         assert boundary.warning == DOUBTFUL.linearize(boundary.position, **UNDAMPED).trim.warning
-    scan = DOUBTFUL.linearize(flutter.scan_speeds(DOUBTFUL), **UNDAMPED)
+    scan = DOUBTFUL.linearize(scan_speeds(DOUBTFUL), **UNDAMPED)
     for doubt in point.doubts:
         told = np.array([doubt.text in text for text in scan.trim.warning])
         assert (doubt.low, doubt.high) == tuple(scan.airspeed[told][[0, -1]])
@@ -470,7 +470,7 @@ def test_every_command_shows_doubts_and_options(command, tmp_path, monkeypatch):
     document = json.loads(result.stdout)
     case = pp.load_case("xv15", {"operation.speed_of_sound": "300 m/s"})
     assert document["options"] == expected(case, locked=("lag",), **UNDAMPED)
-    assert document["deck"] == stamp.deck_fingerprint(case) and document["case"] == "xv15"
+    assert document["deck"] == deck_fingerprint(case) and document["case"] == "xv15"
     assert MACH in result.stdout
     if "--csv" in arguments or (tmp_path / "a.csv").exists():
         head = [line for line in (tmp_path / "a.csv").read_text().splitlines() if line.startswith("# ")]
@@ -586,7 +586,12 @@ def test_cells_of_csv_are_text_or_numbers_and_never_formulas():
         "plain",
         "a\n# case: forged",
     )
-    head = {"options": json.dumps(stamp.in_force(Options())), "case": "x\ny", "deck": "0", "made_by": "p"}
+    head = {
+        "options": json.dumps(options_in_force.in_force(Options())),
+        "case": "x\ny",
+        "deck": "0",
+        "made_by": "p",
+    }
     written = csv_of(
         [{"text": text, "=number": np.nan} for text in texts], ["text", "=number"], head
     ).decode()
@@ -608,7 +613,7 @@ def test_cells_of_csv_are_text_or_numbers_and_never_formulas():
 def test_choices_have_other_values_to_be_told():
     assert set(CHOICES) < set(OTHERWISE)
     own = expected(CASE, section_damping=True, locked=("gimbal",))
-    assert all(stamp._plain(value) != own[name] for name, value in OTHERWISE.items())
+    assert all(options_in_force.plain(value) != own[name] for name, value in OTHERWISE.items())
 
 
 def test_several_rotors_say_their_options_where_they_are_the_same():
@@ -619,7 +624,7 @@ def test_several_rotors_say_their_options_where_they_are_the_same():
         }
         return pp.mount_rotors(rotors, CASE_SUPPORT)
 
-    assert stamp.options_told(stamp.of_model(mounted("lag", "lag")))["locked"] == ["lag"]
+    assert options_in_force.options_in_result(stamp.of_model(mounted("lag", "lag")))["locked"] == ["lag"]
     assert stamp.of_model(mounted("lag", "gimbal")) == {}
 
 

@@ -8,7 +8,7 @@ import pytest
 import proprotor as pp
 from proprotor.errors import InputError
 from proprotor.model.first_order import state_matrix
-from proprotor.model.linear_model import rotor_model
+from proprotor.model.rotor_model import rotor_model
 from proprotor.model.several_rotors import MountedRotor, mount_rotors
 from proprotor.rotor.motions import HUB
 

@@ -10,16 +10,13 @@ from click.testing import CliRunner
 
 import proprotor as pp
 from benchmarks import claims
-from benchmarks.paper_figures import NUMBERS, Analyses, csv_of, decks_with_bands, make_figure
+from benchmarks.paper_figures import NUMBERS, Analyses, command, csv_of, make_figure
 from benchmarks.paper_figures.analyses import XV15, own_frequencies
 from benchmarks.paper_figures.content import Mark
 from benchmarks.paper_figures.drawing import draw, draw_intervals
 from benchmarks.paper_figures.input_ranges import RANGES
-from benchmarks.paper_figures.mode_following import follow_support_modes, support_names
-from benchmarks.paper_figures.uncertainty_band import InputRange, boundary, damping_band, sample
-from proprotor.commands.main import main
-from proprotor.deck.vary import design_inputs
-from proprotor.errors import InputError
+from benchmarks.paper_figures.sample_band import damping_band, sample
+from benchmarks.paper_figures.wing_modes import WingModes
 
 KNOT = 1852 / 3600
 ALL = (4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 15, 16, 17, 18, 21, 22, 23, 24)
@@ -37,7 +34,7 @@ def coarse():
 
 
 def run(*arguments):
-    return CliRunner().invoke(main, ["figures", *map(str, arguments)])
+    return CliRunner().invoke(command.figures, [str(argument) for argument in arguments])
 
 
 def rows_of(text):
@@ -88,11 +85,34 @@ def test_a_figure_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
         file.write(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("benchmarks.paper_figures.drawing.save", fail)
+    monkeypatch.setattr(command, "save", fail)
     result = run(21, "--out", tmp_path, "--step", 20)
     assert result.exit_code == 1 and "No space left on device" in result.output
     assert [path.name for path in tmp_path.iterdir()] == ["figure-21.png"]
     assert (tmp_path / "figure-21.png").read_text() == "before"
+
+
+def test_an_interruption_is_one_message_and_leaves_no_half_written_file(tmp_path, monkeypatch):
+    def interrupted(number, analyses):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "make_figure", interrupted)
+    result = run(21, "--out", tmp_path)
+    assert result.exit_code == 130 and "no file was left half-written" in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_help_names_every_option_and_an_example():
+    result = run("--help")
+    assert result.exit_code == 0
+    for text in (
+        "--out",
+        "--samples",
+        "--step",
+        "--seed",
+        "python -m benchmarks.paper_figures --out figures/",
+    ):
+        assert text in result.output
 
 
 # Contents -----------------------------------------------------------------------------------------
@@ -100,9 +120,8 @@ def test_a_figure_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
 
 def test_every_analytical_figure_is_known():
     assert NUMBERS == ALL
-    with pytest.raises(InputError, match="they are 4, 5"):
+    with pytest.raises(pp.InputError, match="they are 4, 5"):
         make_figure(20, Analyses())
-    assert set(decks_with_bands(NUMBERS)) == set(RANGES) - {"xv15-mass-distribution"}
 
 
 @pytest.mark.parametrize("number", ALL)
@@ -151,7 +170,7 @@ def test_no_text_of_a_figure_overlaps_another_or_leaves_it(coarse):
         assert ax.title.get_window_extent(renderer).x1 <= figure.bbox.x1
 
 
-# What the figures must show (relative statements of the paper; sizes by tests/paper_figures/test_xv15.py's tables) -------------
+# What the figures must show: relative statements of the paper; sizes by test_xv15's tables --------
 
 
 def test_couplings_lower_every_boundary_of_the_xv15(analyses):
@@ -167,7 +186,7 @@ def test_couplings_lower_every_boundary_of_the_xv15(analyses):
 def test_couplings_are_nearer_to_pitch_equations_than_neither_is(analyses):
     for mode in ("beam", "chord", "torsion"):
         base, dynamic, neither = (
-            analyses.damping(XV15, mode, variant)[analyses.knots(XV15) <= 350]
+            analyses.wing(XV15, variant).damping(mode)[analyses.knots(XV15) <= 350]
             for variant in ("couplings", "pitch equations", "no couplings")
         )
         assert np.abs(base - dynamic).max() < np.abs(neither - dynamic).max(), mode
@@ -181,7 +200,7 @@ def test_flap_lag_stiffness_moves_boundaries_by_tens_of_knots(analyses):
         assert 5 < without[mode] - base[mode] < 40
     below = analyses.knots(XV15) < 400
     peaks = [
-        analyses.knots(XV15)[below][analyses.damping(XV15, "beam", variant)[below].argmax()]
+        analyses.knots(XV15)[below][analyses.wing(XV15, variant).damping("beam")[below].argmax()]
         for variant in ("couplings", "no flap-lag stiffness")
     ]
     assert peaks[1] > peaks[0] + 25
@@ -190,7 +209,7 @@ def test_flap_lag_stiffness_moves_boundaries_by_tens_of_knots(analyses):
 def test_given_frequencies_of_this_model_come_nearer_than_dropping_the_stiffness(analyses):
     change = {v: claims.chord_change(analyses, v) for v in ("own frequencies given", "no flap-lag stiffness")}
     assert 2 < abs(change["own frequencies given"]) < abs(change["no flap-lag stiffness"])
-    assert own_frequencies(analyses, XV15).lag[0] > 1.8
+    assert own_frequencies(analyses.case(XV15), analyses.airspeeds(XV15)).lag[0] > 1.8
 
 
 def test_the_low_lag_mode_falls_and_follows_what_is_given(analyses):
@@ -235,45 +254,74 @@ def test_no_verdict_of_the_claims_is_unknown_and_every_group_has_one(analyses):
 # Following modes, and bands -----------------------------------------------------------------------
 
 
-def test_followed_modes_stay_near_the_frequencies_of_the_wing_and_do_not_jump():
+COUPLING = {"pitch": "coupling"}
+
+
+def test_wing_modes_stay_near_the_frequencies_of_the_wing_and_do_not_jump():
     case = pp.load_case("xv15")
-    model = case.linearize(np.arange(60, 301, 5)[None] * KNOT, pitch="coupling")
-    assert support_names(model) == ("beam", "chord", "torsion")
-    for name, mode in zip(support_names(model), follow_support_modes(model)[0].T, strict=True):
-        wing = case.sources[f"support.modes[{name}].frequency"].si
-        assert np.abs(mode.imag / wing - 1).max() < 0.15, name
-        assert np.abs(np.diff(mode.imag)).max() < 0.05 * wing, name
+    wing = WingModes(case, np.arange(60, 301, 5) * KNOT, COUPLING)
+    assert wing.names == ("beam", "chord", "torsion")
+    for name in wing.names:
+        alone = case.sources[f"support.modes[{name}].frequency"].si
+        frequency = wing.sweep.frequency.sel(mode=name).values
+        assert np.abs(frequency / alone - 1).max() < 0.15, name
+        assert np.abs(np.diff(wing.damping(name))).max() < 1, name
 
 
 @pytest.mark.parametrize("deck", ["v22-fifth-scale", "wrats-888-off"])
-def test_followed_modes_agree_with_the_tracked_sweep(deck):
-    case, knots = pp.load_case(deck), np.arange(80, 181, 5)
-    modes = case.sweep(knots * KNOT, pitch="coupling")
-    values = follow_support_modes(case.linearize(knots[None] * KNOT, pitch="coupling"))[0]
-    for place, name in enumerate(case.support.names):
-        np.testing.assert_allclose(values[:, place], modes.eigenvalue.sel(mode=name).values, rtol=1e-8)
+def test_wing_modes_have_the_damping_of_the_sweep_of_the_case(deck):
+    case, airspeeds = pp.load_case(deck), np.arange(80, 181, 5) * KNOT
+    modes, wing = case.sweep(airspeeds, **COUPLING), WingModes(case, airspeeds, COUPLING)
+    for name in wing.names:
+        ratio = modes.damping_ratio.sel(mode=name).values
+        np.testing.assert_allclose(wing.damping(name), 100 * ratio, rtol=1e-8)
+
+
+def test_beyond_its_boundary_a_wing_mode_is_the_root_that_became_unstable():
+    """What moves torsion most beyond 420 kt is another root, well damped."""
+    airspeeds = np.arange(50, 501, 5) * KNOT
+    wing = WingModes(pp.load_case("xv15"), airspeeds, COUPLING | {"section_damping": False})
+    damping = wing.damping("torsion")
+    assert (damping[airspeeds / KNOT > wing.speed("torsion")] < 0).all()
+    assert 100 * wing.sweep.damping_ratio.sel(mode="torsion").values[damping < 0].max() > 5
 
 
 def test_a_failed_airspeed_is_passed_over():
-    case, knots = pp.load_case("xv15"), np.array([100, 200, 300, 400, 600])
-    values = follow_support_modes(case.linearize(knots[None] * KNOT, pitch="coupling"))[0]
-    assert np.isfinite(values[:4]).all() and np.isnan(values[4]).all()
-    with pytest.raises(InputError, match="designs by airspeeds"):
-        follow_support_modes(case.linearize(knots * KNOT))
+    wing = WingModes(pp.load_case("xv15"), np.array([100, 200, 300, 400, 600]) * KNOT, COUPLING)
+    for name in wing.names:
+        assert np.isfinite(wing.damping(name)[:4]).all() and np.isnan(wing.damping(name)[4])
 
 
-def test_boundary_is_where_damping_first_falls_through_zero():
-    speeds = np.array([0.0, 1.0, 2.0, 3.0])
-    lines = np.array(
-        [[2.0, 1.0, -1.0, 1.0], [1.0, 1.0, 1.0, 1.0], [-1.0, 1.0, 1.0, -1.0], [1.0, 0.5, 0.0, 0.0]]
-    )
-    np.testing.assert_allclose(boundary(speeds, lines), [1.5, np.inf, 0.0, 2.0])
+def test_a_wing_mode_becomes_unstable_where_its_damping_falls_through_zero(analyses):
+    """Between the points of the figure by interpolation, within a tenth of their distance."""
+    for variant in ("couplings", "no flap-lag stiffness", "given frequencies"):
+        wing, knots = analyses.wing(XV15, variant), analyses.knots(XV15)
+        for name in wing.names:
+            damping = wing.damping(name)
+            if np.isinf(wing.speed(name)):
+                assert (damping > 0).all()
+                continue
+            after = int(np.argmax(damping < 0))
+            crossed = np.interp(0, damping[[after, after - 1]], knots[[after, after - 1]])
+            assert wing.speed(name) == pytest.approx(crossed, abs=0.5)
+        assert wing.first_speed == min(wing.speed(name) for name in wing.names)
+
+
+def test_options_that_depend_on_airspeed_are_those_of_each_airspeed():
+    case, airspeeds = pp.load_case("xv15"), np.arange(200, 301, 25) * KNOT
+    coupling = np.linspace(-0.4, -0.2, len(airspeeds))
+    given = {"pitch_flap_coupling": lambda speed: np.interp(speed.real, airspeeds, coupling)}
+    wing = WingModes(case, airspeeds, COUPLING | given)
+    for place in (0, 3):
+        alone = case.sweep(airspeeds[[place]], pitch_flap_coupling=coupling[place], **COUPLING)
+        ratio = alone.damping_ratio.sel(mode="beam").item()
+        assert wing.damping("beam")[place] == pytest.approx(100 * ratio, rel=1e-9)
 
 
 @pytest.mark.parametrize("deck", RANGES)
 def test_ranges_name_numbers_of_the_deck_that_are_doubtful_and_contain_them(deck):
     case = pp.load_case(deck)
-    inputs = design_inputs(case)
+    inputs = pp.design_inputs(case)
     doubtful = {
         path for path, number in case.given.items() if number.status in ("assumed", "calibrated", "recalled")
     }
@@ -293,7 +341,7 @@ def test_ranges_name_numbers_of_the_deck_that_are_doubtful_and_contain_them(deck
 
 def test_a_sample_is_stratified_stays_within_its_ranges_and_ties_paths():
     case = pp.load_case("xv15")
-    values = sample(case, RANGES["xv15"], 20)
+    values = sample(RANGES["xv15"], 20).resolve(pp.design_inputs(case)).values
     stiffness = values["rotor.control_stiffness"] / (4.4482216152605 * 0.3048)
     strata = np.floor(20 * np.log(stiffness / 5000) / np.log(22400 / 5000) + 1e-9)
     assert sorted(strata) == list(range(20))
@@ -303,34 +351,35 @@ def test_a_sample_is_stratified_stays_within_its_ranges_and_ties_paths():
     slope = values["support.modes[beam].alpha_z"] / case.given["support.modes[beam].alpha_z"].si
     swing = values["support.modes[chord].y"] / case.given["support.modes[chord].y"].si
     np.testing.assert_allclose(swing, mast * slope, rtol=1e-12)
-    with pytest.raises(InputError, match="no number of the deck"):
-        sample(case, [InputRange(name="x", paths=("rotor.x",), low=0, high=1, unit="×", reason="")], 2)
 
 
 def test_a_band_holds_what_one_design_at_a_time_gives():
+    """Where the first onset is that of a mode of the rotor, the band has that of the wing."""
     case, airspeeds = pp.load_case("xv15"), np.arange(250, 451, 10) * KNOT
-    told = []
-    band = damping_band(
-        case, airspeeds, RANGES["xv15"], count=5, seed=3, advance=told.append, pitch="coupling"
-    )
-    assert sum(told) == pytest.approx(1)
+    options = {"pitch": "dynamic", "section_damping": False}
+    band = damping_band(case, airspeeds, RANGES["xv15"], 5, seed=3, **options)
+    plan = sample(RANGES["xv15"], 5, seed=3)
+    designs = plan.resolve(pp.design_inputs(case)).values
     for design in range(5):
-        one = case.vary({path: values[design] for path, values in band.values.items()})
-        followed = follow_support_modes(one.linearize(airspeeds[None], pitch="coupling"))[0]
-        np.testing.assert_allclose(
-            band.damping[design], -followed.real / np.abs(followed), rtol=1e-6, atol=1e-9
-        )
+        one = case.vary({path: values[design] for path, values in designs.items()})
+        wing = WingModes(one, airspeeds, options)
+        for name in wing.names:
+            np.testing.assert_allclose(band.damping(name)[design], wing.damping(name), rtol=1e-6, atol=1e-7)
+        speed = band.results.flutter_speed.values[design] / KNOT
+        assert np.nan_to_num(speed, nan=np.inf) == pytest.approx(wing.first_speed, abs=1e-4)
+    of_any_mode = pp.study(case, plan, airspeeds, "flutter", **options).flutter_coordinate.values
+    assert not set(of_any_mode.tolist()) <= {*wing.names, ""}
     low, median, high = band.percentiles("beam")
     assert (low <= median).all() and (median <= high).all()
-    first, middle, last = band.boundary_percentiles()
+    first, middle, last = band.speed_percentiles
     assert first <= middle <= last
-    assert (band.boundaries() <= np.min([band.boundaries(m) for m in band.modes], axis=0) + 1e-9).all()
+    assert band.share_below(first) <= 0.05 <= band.share_below(last)
 
 
 def test_the_sample_is_the_same_for_the_same_seed():
     case, airspeeds = pp.load_case("wrats-742-off"), np.array([80, 120]) * KNOT
     one, same, other = (
-        damping_band(case, airspeeds, RANGES[case.name], count=4, seed=seed, pitch="coupling").damping
+        damping_band(case, airspeeds, RANGES[case.name], 4, seed, **COUPLING).damping("beam")
         for seed in (1, 1, 2)
     )
     np.testing.assert_array_equal(one, same)

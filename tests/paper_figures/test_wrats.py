@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from derive.printed.tables import TABLES
-from derive.table_audit import implied_offset
+from derive.audit.printed.tables import TABLES
+from derive.audit.tables import implied_offset
 from proprotor.datum import STATUSES
 
 FT, SLUG = 0.3048, 0.45359237 * 9.80665 / 0.3048

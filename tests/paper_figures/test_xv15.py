@@ -8,7 +8,7 @@ import pytest
 import proprotor as pp
 from benchmarks import xv15_inputs as inputs
 from benchmarks import xv15_switches as study
-from benchmarks.xv15_boundary import KNOT
+from proprotor.units import KNOT
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def change(rows, label):
 def test_the_couplings_lower_the_boundary_by_more_than_100_knots(rows):
     assert change(rows, "K_Pβ = K_Pζ = 0") > 100
     for mode in ("beam", "torsion"):
-        assert np.isnan(rows["K_Pβ = K_Pζ = 0"][mode])
+        assert np.isinf(rows["K_Pβ = K_Pζ = 0"][mode])
 
 
 def test_pitch_flap_coupling_alone_matters_much_less_but_matters(rows):

@@ -37,7 +37,7 @@ def sampled():
     note = np.array(
         [""] * 197 + ["stable throughout", "unstable from the lowest airspeed on", ""], dtype=object
     )
-    from proprotor.study.batch import STABLE, UNSTABLE
+    from proprotor.study.variables import STABLE, UNSTABLE
 
     note[197], note[198] = STABLE, UNSTABLE
     return xarray.Dataset(

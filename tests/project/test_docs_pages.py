@@ -7,7 +7,7 @@ import proprotor_equations
 import pytest
 
 import proprotor
-from derive import glossary
+from derive.pages import glossary
 from derive.published import DROPPED_TERMS
 from derive.symbols import QUANTITIES
 from proprotor import plots
@@ -68,7 +68,7 @@ def test_no_page_is_left_out_of_the_site():
 
 def test_the_glossary_is_current_and_has_every_symbol():
     page = glossary.PAGE.read_text(encoding="utf-8")
-    assert page == glossary.page(), "`python -m derive.glossary` writes docs/symbols.md anew"
+    assert page == glossary.page(), "`python -m derive.pages.glossary` writes docs/symbols.md anew"
     assert page.count("\n| $") == len(QUANTITIES)
     for quantity in QUANTITIES.values():
         assert f"`{quantity.symbol.name}`" in page and quantity.meaning in page

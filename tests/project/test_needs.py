@@ -19,8 +19,6 @@ import xarray as xr
 from click.testing import CliRunner
 
 import proprotor as pp
-from benchmarks.paper_figures.input_ranges import RANGES
-from benchmarks.paper_figures.uncertainty_band import damping_band
 from proprotor import needs
 from proprotor.case import Case
 from proprotor.commands.main import main
@@ -125,7 +123,7 @@ def _packages(entries):
 EXTRAS = PROJECT["project"]["optional-dependencies"]
 MODULES = {package for extra in EXTRAS.values() for package in _packages(extra)} | {"distributed"}
 # A client of a cluster is made by whoever has `distributed`, and `openmdao` is told where it is imported.
-ELSEWHERE = {("study_workers.py", "distributed"), ("openmdao.py", "openmdao")}
+ELSEWHERE = {("workers.py", "distributed"), ("openmdao.py", "openmdao")}
 
 
 def test_every_package_of_an_extra_is_asked_for():
@@ -258,7 +256,6 @@ LARGE = {
     "n_blades": lambda: pp.load_case("xv15", {"rotor.n_blades": "1000000"}).linearize(
         100.0, reactionless=True
     ),
-    "designs of a band": lambda: damping_band(CASE, FAR[:200], RANGES["xv15"], count=10**9),
     "resamples": lambda: pp.sobol_indices(SALTELLI, "growth_rate", resamples=10**11),
 }
 MOTION = mode_motion(CASE, "200 kt", "chord")

@@ -7,7 +7,9 @@ classes of the modules listed below, and of all those classes the public methods
 import dataclasses
 import inspect
 import re
+import sys
 import typing
+from collections import ChainMap
 from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import Any
@@ -26,19 +28,25 @@ from proprotor.model import state_space
 from proprotor.plots import animation, mode_motion
 from proprotor.rotor.options import Options
 from proprotor.rotor.trim import Trim
-from proprotor.stability import boundary_lines, flutter, frequency_response
+from proprotor.stability import flutter
 from proprotor.stability.attribution import attribution
+from proprotor.stability.boundaries import boundaries
+from proprotor.stability.boundary import Boundary, Crossings, Failed
+from proprotor.stability.boundary_lines import boundary_lines
+from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.map import stability_map
 from proprotor.stability.modes import modes
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case
+from proprotor.study import first_boundary, follow_modes, mode_damping
 
 # All functions and classes of these are public, and of others those that are named.
 MODULES: tuple[ModuleType, ...] = (
     animation,
-    boundary_lines,
+    sys.modules[boundaries.__module__],
+    sys.modules[boundary_lines.__module__],
     flutter,
-    frequency_response,
+    sys.modules[frequency_response.__module__],
     matlab_file,
     mode_motion,
     openmdao,
@@ -47,6 +55,9 @@ MODULES: tuple[ModuleType, ...] = (
     state_space,
 )
 OTHERS = (attribution, vary, modes, Options, sensitivity, stability_map, sweep_case, Trim)
+OTHERS += (Boundary, Crossings, Failed)
+OTHERS += (first_boundary, follow_modes, mode_damping)
+OTHERS += tuple(entry for entry in map(vars(sampling).get, sampling.__all__) if inspect.isclass(entry))
 # What says that a number has no dimension, or which it has.
 DIMENSION = re.compile(
     r"(?i:\bdimensionless\b)|\bratio|\bfraction|\bshare\b|\bfactor|per revolution|\bSI\b|\bunit|\bcoefficient"
@@ -67,13 +78,18 @@ def public_objects() -> dict[str, Any]:
     for entry in (*own, *OTHERS):
         known = any(entry is other for other in named.values())
         if (inspect.isfunction(entry) or inspect.isclass(entry)) and not known and entry.__name__[0] != "_":
-            named[f"{entry.__module__.removeprefix('proprotor.')}.{entry.__name__}"] = entry
+            named[f"{entry.__module__.rpartition('.')[2]}.{entry.__name__}"] = entry
     return named
 
 
+def own_bases(cls: type) -> list[type]:
+    """A class and those of its bases that are the package's own."""
+    return [base for base in cls.__mro__ if base.__module__.partition(".")[0] == "proprotor"]
+
+
 def members(cls: type) -> Iterator[tuple[str, Any]]:
-    """Public methods and properties that a class defines itself."""
-    for name, entry in vars(cls).items():
+    """Public methods and properties that a class or a base of the package defines."""
+    for name, entry in ChainMap(*(vars(base) for base in own_bases(cls))).items():
         if name.startswith("_"):
             continue
         inner = entry.__func__ if isinstance(entry, classmethod | staticmethod) else entry
@@ -161,10 +177,10 @@ def test_a_function_says_what_it_takes_gives_and_raises(name):
 @pytest.mark.parametrize("name", CLASSES)
 def test_a_class_says_what_it_is_made_of(name):
     cls = CLASSES[name]
-    told = docstring(cls)
+    told, every = docstring(cls), [docstring(base) for base in own_bases(cls)]
     assert told["Summary"]
     own = own_parameters(cls)
-    given = documented([*told["Parameters"], *told["Attributes"]])
+    given = documented([part for one in every for part in (*one["Parameters"], *one["Attributes"])])
     if own and not getattr(cls, "_is_protocol", False):
         assert {entry for entry in given if entry in own or not hasattr(cls, entry)} == own
     for entry, (kind, text) in given.items():
@@ -273,14 +289,14 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "rotor_model": lambda case, **more: pp.rotor_model(case.rotor, case.operation, 150.0, **more),
     "study": lambda case, **more: pp.study(case, {"rotor.precone": [0.01]}, 150.0, **more),
     "attribution.attribution": lambda case, **more: attribution(case, 150.0, **more),
-    "boundary_lines.boundary_lines": lambda case, **more: boundary_lines.boundary_lines(
+    "boundary_lines.boundary_lines": lambda case, **more: boundary_lines(
         case, case.stability_map(AXES, airloads="none"), **more
     ),
-    "flutter.boundaries": lambda case, **more: flutter.boundaries(case, SPEEDS, **more),
+    "boundaries.boundaries": lambda case, **more: boundaries(case, SPEEDS, **more),
     "flutter.flutter_point": lambda case, **more: flutter.flutter_point(case, SPEEDS, **more),
     "mode_motion.mode_motion": lambda case, **more: mode_motion.mode_motion(case, 150.0, "beam", **more),
     "sensitivity.sensitivity": lambda case, **more: sensitivity(case, airspeed=SPEEDS, **more),
-    "stability_map.stability_map": lambda case, **more: stability_map(case, AXES, **more),
+    "map.stability_map": lambda case, **more: stability_map(case, AXES, **more),
     "sweep.sweep_case": lambda case, **more: sweep_case(case, SPEEDS, **more),
 }
 OTHER_KEYWORDS = {"Rotor.from_mass_distribution"}  # those of Rotor
@@ -313,8 +329,8 @@ def test_an_unknown_keyword_is_refused(name):
     if name in OTHER_KEYWORDS:
         with pytest.raises(TypeError, match="precne"):
             pp.Rotor.from_mass_distribution([0, 1], [1.0, 1.0], precne=0.1)
-    elif name in ("openmdao.WhirlFlutter", "sampling.Quantity"):
-        with pytest.raises((KeyError, TypeError)):  # options that OpenMDAO keeps; a protocol
+    elif name == "openmdao.WhirlFlutter":
+        with pytest.raises((KeyError, TypeError)):  # options that OpenMDAO keeps
             entry(no_such_keyword=1)
     else:
         with pytest.raises(TypeError):

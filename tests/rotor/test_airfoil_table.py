@@ -14,11 +14,14 @@ from hypothesis import strategies as st
 import proprotor as pp
 from proprotor.errors import InputError
 from proprotor.rotor.airfoil import Warns
-from proprotor.rotor.airfoil_table import BEYOND_ALPHA, BEYOND_MACH, BEYOND_STALL, AirfoilTable
+from proprotor.rotor.airfoil_table import AirfoilTable
 from tests.c81_files import made_up_tables
 from tests.oracles.comparison import assert_matrices_match
 
 NAMES = ("lift", "drag", "moment")
+BEYOND_STALL = "angle of attack beyond stall"
+BEYOND_ALPHA = "angle of attack outside the airfoil table"
+BEYOND_MACH = "Mach number outside the airfoil table"
 MADE_UP = {name: (np.deg2rad(alpha), mach, c) for name, (alpha, mach, c) in made_up_tables().items()}
 TABLE = AirfoilTable(**MADE_UP, name="made up")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.stability.attribution import attribution, _contributions
+from proprotor.stability.attribution import _contributions, attribution
 from proprotor.stability.modes import decomposition
 from proprotor.stability.origins import Part, model_parts
 from tests.known_systems import linear_model

@@ -10,8 +10,8 @@ from proprotor.model.first_order import state_matrix
 from proprotor.stability.boundaries import boundaries, find_crossings
 from proprotor.stability.crossings import Brackets, Search
 from proprotor.stability.parameter_lines import ParameterLine
-from proprotor.study.batch import STABLE, UNSTABLE
 from proprotor.study.study import study
+from proprotor.study.variables import STABLE, UNSTABLE
 from tests.known_systems import along, roots
 from tests.rotors import Flight, random_support
 from tests.stability.test_root_error import exact_roots
@@ -110,6 +110,21 @@ def test_a_pair_that_is_two_real_roots_for_a_while_diverges_meanwhile(points):
     found = crossings(matrices, np.linspace(0, 10, points))
     assert [b.position for b in found.boundaries] == pytest.approx([4.1, 4.3], rel=1e-9)
     assert [(b.kind, b.onset) for b in found.boundaries] == [("divergence", True), ("divergence", False)]
+
+
+@pytest.mark.parametrize("points", [2, 3, 4, 5, 7, 12])
+def test_a_real_root_that_crosses_and_comes_back_before_it_joins_another_is_seen(points):
+    """λ² + 2aλ + c(p - r)(p - s): real roots at one end of a step, a pair at the other, divergence from r to s."""
+    random = np.random.default_rng(3)
+    for _ in range(60):
+        first, second = np.sort(random.uniform(1, 9, 2))
+        damping, stiffness = random.uniform(0.3, 2.0), random.uniform(0.02, 2.0)
+
+        def matrices(x, a=damping, c=stiffness, r=first, s=second):
+            return np.eye(1), 2 * a * np.eye(1) + 0 * x, c * (x - r) * (x - s) * np.eye(1)
+
+        found = told(crossings(matrices, np.linspace(0, 10, points)))
+        assert found == [(pytest.approx(first), True), (pytest.approx(second), False)]
 
 
 @pytest.mark.parametrize("points", [2, 3, 4, 9])

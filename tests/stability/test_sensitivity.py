@@ -9,7 +9,7 @@ from proprotor.model.first_order import state_matrix
 from proprotor.stability.eigenvalue_derivatives import defect
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.modes import decomposition
-from proprotor.stability.sensitivity import _NEARLY_DEFECTIVE, damping_rate, _input_rates, sensitivity
+from proprotor.stability.sensitivity import _NEARLY_DEFECTIVE, _input_rates, damping_rate, sensitivity
 from tests.known_systems import linear_model
 
 KNOT = 1852 / 3600

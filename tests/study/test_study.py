@@ -21,8 +21,9 @@ from proprotor.errors import InputError
 from proprotor.exchange.netcdf import load_results, save_results
 from proprotor.model.first_order import state_matrix
 from proprotor.study import workers as study_workers
-from proprotor.study.batch import QUANTITIES, STABLE, UNSTABLE, Analysis, Batch, variables
+from proprotor.study.batch import Analysis, Batch
 from proprotor.study.study import study
+from proprotor.study.variables import QUANTITIES, STABLE, UNSTABLE, variables
 from proprotor.units import unit_registry
 
 DEG, KT = np.pi / 180, 1852 / 3600

@@ -17,7 +17,7 @@ import xarray as xr
 import proprotor as pp
 from proprotor import sampling
 from proprotor.errors import InputError
-from proprotor.study import source_code
+from proprotor.files import source_code
 from proprotor.study import workers as study_workers
 from proprotor.study.batch import Analysis
 from proprotor.study.checkpoint import Checkpoint
@@ -202,8 +202,8 @@ def test_all_that_computes_is_in_the_fingerprint():
 STUDIES = """
 import sys
 import proprotor as pp
-from proprotor.study import source_code
-from proprotor.study.batch import QUANTITIES
+from proprotor.files import source_code
+from proprotor.study.variables import QUANTITIES
 
 for name in pp.list_cases():
     found = pp.study(pp.load_case(name), {"operation.density": [1.0, 1.1]}, [60.0, 70.0], QUANTITIES, workers=1)

@@ -15,9 +15,9 @@ import proprotor as pp
 from proprotor import sampling
 from proprotor.errors import InputError
 from proprotor.exchange.netcdf import load_results, save_results
-from proprotor.study.batch import STABLE, UNSTABLE
 from proprotor.study.study import study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
+from proprotor.study.variables import STABLE, UNSTABLE
 
 A, B = 7.0, 0.1
 KNOWN = {f"x{place}": SimpleNamespace(si=1.0, unit="") for place in (1, 2, 3)}

@@ -12,8 +12,9 @@ from scipy.linalg import eigh
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.model.linear_model import mass_at_rest, rotor_model
+from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
+from proprotor.model.rotor_model import rotor_model
 from proprotor.model.rotor_share import rotor_share, spring_warnings, without_rotors
 from proprotor.model.several_rotors import MountedRotor, mount_rotors
 from proprotor.rotor.motions import HUB

@@ -40,7 +40,7 @@ def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
     if as_json:
         output.print_json(_document(case, settings))
         return
-    from proprotor.tables.terminal import print_case
+    from proprotor.commands.terminal import print_case
 
     print_case(case)
 

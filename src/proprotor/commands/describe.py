@@ -34,6 +34,7 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
       proprotor describe --schema > deck.schema.json
     """
     from proprotor.deck import describe as told
+    from proprotor.deck.fields_page import markdown as markdown_page
     from proprotor.deck.schema import deck_schema
 
     if sum((schema, markdown, as_json)) > 1:
@@ -44,7 +45,7 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
         output.print_json(deck_schema())
         return
     if markdown:
-        click.echo(told.markdown(), nl=False)
+        click.echo(markdown_page(), nl=False)
         return
     found = told.deck_fields() if field is None else told.find_fields(field)
     if as_json:

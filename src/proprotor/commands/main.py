@@ -7,6 +7,7 @@ import errno
 import io
 import os
 import sys
+from collections.abc import Iterator
 from typing import IO, Any
 
 import click
@@ -44,22 +45,21 @@ class _Interrupted(click.ClickException):
         click.echo(f"\n{self.format_message()}", err=True, file=file)
 
 
-class _InputErrorsTold(click.Group):
-    """A group of commands that tells errors in one message, without a traceback."""
-
-    def invoke(self, ctx: click.Context) -> Any:
-        try:
-            return super().invoke(ctx)
-        except InputError as error:
-            raise _UnusableInput(str(error)) from None
-        except KeyboardInterrupt:
-            raise _Interrupted from None
-        except OSError as error:
-            if error.errno == errno.EPIPE:  # a reader such as `head` has left: click ends quietly
-                raise
-            _let_go_of_standard_output()
-            where = error.filename or "standard output"
-            raise click.ClickException(f"{where}: {error.strerror or error}") from None
+@contextlib.contextmanager
+def errors_as_messages() -> Iterator[None]:
+    """Turn errors of what a user gave, of files and an interruption into one message each, without a traceback."""
+    try:
+        yield
+    except InputError as error:
+        raise _UnusableInput(str(error)) from None
+    except KeyboardInterrupt:
+        raise _Interrupted from None
+    except OSError as error:
+        if error.errno == errno.EPIPE:  # a reader such as `head` has left: click ends quietly
+            raise
+        _let_go_of_standard_output()
+        where = error.filename or "standard output"
+        raise click.ClickException(f"{where}: {error.strerror or error}") from None
 
 
 def _let_go_of_standard_output() -> None:
@@ -77,8 +77,12 @@ def _write_any_character() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-class _InOrder(_InputErrorsTold):
+class _InOrder(click.Group):
     """Commands listed as a newcomer meets them."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        with errors_as_messages():
+            return super().invoke(ctx)
 
     def main(self, *args: Any, **more: Any) -> Any:
         _write_any_character()

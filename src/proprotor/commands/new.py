@@ -40,8 +40,8 @@ def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None
     import os
 
     from proprotor.deck.file import list_cases, read_tables
-    from proprotor.deck.sections import validate
     from proprotor.deck.template import deck_text
+    from proprotor.deck.validation import validate
 
     place = Path(file)
     if place.suffix != ".toml":

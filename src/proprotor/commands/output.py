@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from proprotor.case import Case
-    from proprotor.tables.terminal import PlainConsole
+    from proprotor.commands.terminal import PlainConsole
 
 STANDARD_OUTPUT = "-"  # as the file of an option: print instead, as other programs have it
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
@@ -88,7 +88,7 @@ def told_options(case: Case, options: Mapping[str, Any]) -> dict[str, Any]:
 
 def console() -> PlainConsole:
     """Of the standard output; text is printed as it is."""
-    from proprotor.tables.terminal import PlainConsole  # here, because rich takes long to import
+    from proprotor.commands.terminal import PlainConsole  # here, because rich takes long to import
 
     return PlainConsole()
 
@@ -96,10 +96,10 @@ def console() -> PlainConsole:
 def print_head(case: Case, found: Mapping[Any, Any]) -> None:
     """Print what was analysed, with which options of those that are no defaults, and what it rests on."""
     from proprotor.model.provenance import reservations
-    from proprotor.tables.terminal import heading
+    from proprotor.tables.sweep_table import heading
 
     out = console()
-    for line in (heading(case), *stamp.told_if_unusual(found), *reservations(case), ""):
+    for line in (heading(case), *stamp.unusual_options(found), *reservations(case), ""):
         out.print(line)
 
 
@@ -234,7 +234,7 @@ def write_plot(path: str, case: Case, draw: Callable[[], Axes]) -> None:
         from matplotlib import pyplot
 
         from proprotor.plots import rests_on
-        from proprotor.tables.terminal import heading
+        from proprotor.tables.sweep_table import heading
 
         axes = draw()
         rests_on(axes, case, f"{heading(case)}.")

@@ -135,8 +135,8 @@ def _date() -> str:
 def _deck_hash(name: str, settings: dict[str, str], case: Case) -> str:
     """SHA-256 of a deck with its base, what was set, and the content of the files that it names."""
     from proprotor.deck.file import read_tables
-    from proprotor.deck.reading import FilePath
     from proprotor.deck.settings import with_settings
+    from proprotor.deck.written import FilePath
     from proprotor.files.fingerprint import fingerprint
 
     numbers = {

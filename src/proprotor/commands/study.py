@@ -86,8 +86,8 @@ def study(
         --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter --out study.nc --checkpoint batches
     """
     from proprotor.exchange.netcdf import check_path, save_results
-    from proprotor.study.batch import DEFAULT_QUANTITIES
     from proprotor.study.study import study as analyse
+    from proprotor.study.variables import DEFAULT_QUANTITIES
     from proprotor.tables.study_summary import study_summary
     from proprotor.units import speeds
 
@@ -174,7 +174,7 @@ def _print(results: xarray.Dataset) -> None:
         out.print(f"{found['points unstable']} points unstable; lowest damping {told} %")
     for text, count in found["doubts of points"].items():
         out.print(f"{MARK} Doubtful at {count} of {found['points']} points: {text}.", style="yellow")
-    for line in (*stamp.told_if_unusual(results.attrs), results.attrs["reservations"]):
+    for line in (*stamp.unusual_options(results.attrs), results.attrs["reservations"]):
         out.print(line)
 
 

@@ -21,7 +21,7 @@ from proprotor.commands.waiting import waiting
 
 if TYPE_CHECKING:
     from proprotor.case import Case
-    from proprotor.tables.tables import SweepTable
+    from proprotor.tables.sweep_table import SweepTable
 
 
 @click.command(epilog=EXIT_CODES)
@@ -73,7 +73,7 @@ def sweep(
     if as_json:
         output.print_json(output.about(loaded, options, settings_of(settings)) | _document(table))
     elif csv != output.STANDARD_OUTPUT:
-        from proprotor.tables.terminal import print_sweep
+        from proprotor.commands.terminal import print_sweep
 
         print_sweep(loaded, table, all_modes)
     if table.failed.all():
@@ -83,7 +83,7 @@ def sweep(
 def _analysed(
     name: str, settings: tuple[str, ...], speed: str, options: dict[str, Any]
 ) -> tuple[Case, SweepTable]:
-    from proprotor.tables.tables import SweepTable
+    from proprotor.tables.sweep_table import SweepTable
     from proprotor.units import speeds
 
     airspeeds = speeds(speed, "--speed")
@@ -93,7 +93,7 @@ def _analysed(
 
 def _document(table: SweepTable) -> dict[str, Any]:
     from proprotor.tables.sweep_summary import unstable_ranges
-    from proprotor.tables.tables import CONVENTION
+    from proprotor.tables.sweep_table import CONVENTION
 
     return {
         "convention": CONVENTION,
@@ -110,7 +110,7 @@ def _draw(case: Case, table: SweepTable, file: IO[bytes], suffix: str) -> None:
 
     from proprotor.model.provenance import reservations
     from proprotor.plots import plot_sweep
-    from proprotor.tables.terminal import heading
+    from proprotor.tables.sweep_table import heading
 
     footer = " ".join(reservations(case))
     figure = plot_sweep(

@@ -1,6 +1,7 @@
-"""Every field of a deck in words: what it means, what it takes, its range, its default and its alternatives.
+"""Describe every field of a deck in words: meaning, values, range, default and alternatives.
 
-All of it is read from the models of `proprotor.deck.sections`. `proprotor describe` prints it, docs/decks.md holds it.
+The descriptions follow from the models of `proprotor.deck.sections`. `proprotor describe` prints them, and
+docs/decks.md (`proprotor.deck.fields_page`) lists them.
 """
 
 from __future__ import annotations
@@ -9,16 +10,22 @@ import difflib
 from collections.abc import Callable, Iterator
 from dataclasses import MISSING, asdict, dataclass, fields
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+from typing import Any, Literal, get_args, get_origin
 
+from pydantic.fields import FieldInfo
+
+from proprotor.deck import sections as deck
+from proprotor.deck import support_sections
+from proprotor.deck.fields import Reading, Section
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
-from proprotor.errors import InputError, told_choices
+from proprotor.deck.sections import section_places, sections_at
+from proprotor.errors import InputError, list_choices
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.rotor import Rotor
+from proprotor.support.beam_wing import Pylon, Wing
+from proprotor.support.wing_aerodynamics import WingAerodynamics
 from proprotor.units import meaning
-
-if TYPE_CHECKING:
-    from pydantic.fields import FieldInfo
-
-    from proprotor.deck.fields import Reading, Section
 
 _RANGES: dict[Bound, str] = {
     POSITIVE: "above 0",
@@ -44,21 +51,22 @@ class DeckField:
     path : str
         ``rotor.precone``; ``support.modes[NAME].x`` for an entry of a list.
     kind : str
-        Kind of support that has it; "" for the other sections.
+        Kind of support that has the field; "" for other sections.
     meaning, takes : str
-        What it is, and what its value may be.
+        The meaning, and the possible values.
     unit : str
-        SI unit, "" for what has none.
+        SI unit, "" for a field without a unit.
     range : str
-        "" where any value will do.
+        "" if any value is allowed.
     required : bool
-        Whether it must be given, by itself or in place of its alternatives.
+        Whether a deck must give the field or one of its alternatives.
     default : str
-        What holds where it is left out, as a deck would have it; "" where nothing does, or the meaning says it.
+        The value of a field that is left out, as a deck would have it; "" without a default, or with one that the
+        meaning states.
     instead_of : tuple of str
-        Fields it takes the place of.
+        Fields that this field replaces.
     form : str
-        How a value is read: that of `proprotor.deck.fields.Reading`, or "bool", "list", "table" or "".
+        Form of a value: of `proprotor.deck.fields.Reading`, or "bool", "list", "table" or "".
     """
 
     path: str
@@ -75,22 +83,22 @@ class DeckField:
 
 @cache
 def deck_fields() -> tuple[DeckField, ...]:
-    """Every field of every section, in the order of a deck; of [support] kind by kind."""
+    """Return every field of every section, in the order of a deck; the fields of [support] kind by kind."""
     return tuple(_fields())
 
 
 def find_fields(path: str) -> tuple[DeckField, ...]:
-    """The fields at or below a path; of [support] those of every kind.
+    """Return the fields at or below a path; for [support] the fields of every kind.
 
     Raises
     ------
     InputError
-        For a path that no deck has, with the nearest one.
+        For a path that no deck has, with the nearest path.
     """
-    wanted = _plain(path.strip())
+    wanted = plain_path(path.strip())
     here: tuple[Callable[[DeckField], bool], ...] = (
-        lambda field: _plain(field.path) == wanted,
-        lambda field: _plain(field.path).startswith(f"{wanted}."),
+        lambda field: plain_path(field.path) == wanted,
+        lambda field: plain_path(field.path).startswith(f"{wanted}."),
         lambda field: field.kind == wanted,
         lambda field: field.path.rpartition(".")[2] == wanted,
     )
@@ -101,22 +109,21 @@ def find_fields(path: str) -> tuple[DeckField, ...]:
 
 
 def _hint(wanted: str) -> str:
-    """The nearest field, by its whole path or its last name."""
-    known = {_plain(field.path): _plain(field.path) for field in deck_fields()}
+    """Return a hint at the nearest field, by its whole path or its last name."""
+    known = {plain_path(field.path): plain_path(field.path) for field in deck_fields()}
     by_last_name = {path.rpartition(".")[2]: path for path in known}
     names = known if "." in wanted else by_last_name
     nearest = difflib.get_close_matches(wanted.lower(), names, n=1)
     return f"did you mean {names[nearest[0]]}?" if nearest else "`proprotor describe` lists them"
 
 
-def _plain(path: str) -> str:
-    """A path without the names of entries of lists."""
+def plain_path(path: str) -> str:
+    """Return a path without the names of entries of lists."""
     return "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
 
 
 def _fields() -> Iterator[DeckField]:
-    from proprotor.deck.sections import section_places, sections_at
-
+    """Yield every field of every section."""
     for place in section_places():
         if not place:
             continue
@@ -126,11 +133,12 @@ def _fields() -> Iterator[DeckField]:
 
 
 def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[DeckField]:
+    """Yield the fields of a section, with a prefix to their names."""
     defaults = _defaults(section)
     for name, field in section.model_fields.items():
         reading = _reading(field)
         takes = _takes(field, reading)
-        if not takes:  # a section of its own
+        if not takes:  # a section
             continue
         others = _instead_of(section, name)
         yield DeckField(
@@ -148,13 +156,12 @@ def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[Deck
 
 
 def _reading(field: FieldInfo) -> Reading | None:
-    from proprotor.deck.fields import Reading
-
+    """Return how a number is read; None for a field that is no number."""
     return next((part for part in field.metadata if isinstance(part, Reading)), None)
 
 
 def _takes(field: FieldInfo, reading: Reading | None) -> str:
-    """What a value may be; "" for a section of its own."""
+    """Return the possible values of a field in words; "" for a section."""
     if reading is None:
         return _takes_plain(field.annotation)
     if reading.form == "count":
@@ -162,37 +169,33 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
     if reading.form == "file":
         return "the name of a file"
     if reading.form == "choice":
-        return told_choices(reading.choices)
+        return list_choices(reading.choices)
     by_angle = getattr(reading, "of_angle", None)
     if reading.form == "rising list":
         return "{ value = [...], unit = ... }"
-    told = meaning(reading.unit)
+    values = meaning(reading.unit)
     if by_angle is not None:
-        told = f"of a length {told}; of an angle {meaning(by_angle)}"
+        values = f"of a length {values}; of an angle {meaning(by_angle)}"
     if reading.form == "frequency":
-        told += ', or "0.42/rev"'
-    return f"{told}; {_ALONG[reading.form]}" if reading.form in _ALONG else told
+        values += ', or "0.42/rev"'
+    return f"{values}; {_ALONG[reading.form]}" if reading.form in _ALONG else values
 
 
 def _takes_plain(annotation: Any) -> str:
+    """Return the possible values of a field that is no number; "" for a section."""
     if annotation in _PLAIN:
         return _PLAIN[annotation]
     if get_origin(annotation) is Literal:
         return " or ".join(f'"{choice}"' for choice in get_args(annotation))
-    if (
-        get_origin(annotation) is list
-        and get_args(annotation)[0] is not str
-        and not _is_text_list(annotation)
-    ):
-        return ""
     if get_origin(annotation) is list:
-        return "a list of texts"
+        return "a list of texts" if _is_text_list(annotation) else ""
     if any(get_origin(choice) is dict for choice in get_args(annotation)):
         return "a table of texts"
     return "" if annotation is not Any else '"windmill", or a table with one of the fields below'
 
 
 def _form(field: FieldInfo) -> str:
+    """Return the form of a field that is no number."""
     if field.annotation is bool:
         return "bool"
     if get_origin(field.annotation) is list:
@@ -207,6 +210,7 @@ def _is_text_list(annotation: Any) -> bool:
 
 
 def _unit(reading: Reading) -> str:
+    """Return the SI unit, or both units of a field with two."""
     if of_speed := getattr(reading, "of_speed", ""):
         return f"{reading.unit} or {of_speed}"
     by_angle = getattr(reading, "of_angle", None)
@@ -218,6 +222,7 @@ def _range(reading: Reading) -> str:
 
 
 def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
+    """Return the fields on the other sides of the choices that a field belongs to."""
     return tuple(
         other
         for choice in section.alternatives
@@ -229,25 +234,20 @@ def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
 
 @cache
 def _defaults(section: type[Section]) -> dict[str, Any]:
-    """What the class that a section describes takes where a field is left out."""
-    from proprotor.deck import sections as deck
-    from proprotor.deck import support_sections
-    from proprotor.rotor import airfoil, drive_train, rotor
-    from proprotor.support import wing_aerodynamics
-    from proprotor.support.beam_wing import Pylon, Wing
-
+    """Return the defaults of the class that a section describes, by field."""
     described: dict[type[Section], tuple[type, ...]] = {
-        deck.RotorSection: (rotor.Rotor,),
-        deck.AirfoilSection: (airfoil.Airfoil,),
-        deck.DriveTrainSection: (drive_train.DriveTrain,),
+        deck.RotorSection: (Rotor,),
+        deck.AirfoilSection: (Airfoil,),
+        deck.DriveTrainSection: (DriveTrain,),
         support_sections.BeamWingSection: (Wing, Pylon),
-        support_sections.WingAerodynamicsSection: (wing_aerodynamics.WingAerodynamics,),
-        support_sections.AssumedShapeSection: (wing_aerodynamics.WingAerodynamics,),
+        support_sections.WingAerodynamicsSection: (WingAerodynamics,),
+        support_sections.AssumedShapeSection: (WingAerodynamics,),
     }
     return {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
 
 
 def _default(field: FieldInfo, reading: Reading | None, constructed: Any) -> str:
+    """Return the default of a field as a deck would have it; "" without one."""
     if field.is_required():
         return ""
     if isinstance(constructed, int | float) and not isinstance(constructed, bool):
@@ -258,11 +258,8 @@ def _default(field: FieldInfo, reading: Reading | None, constructed: Any) -> str
     return f'"{value}"' if isinstance(value, str) and value else ""
 
 
-# In words -------------------------------------------------------------------------------------------------------
-
-
 def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:
-    """Label and text of what there is to say on a field."""
+    """Yield label and text of each property of a field."""
     yield "means", field.meaning
     if field.kind:
         yield "of", f'[support] of kind "{field.kind}"'
@@ -279,68 +276,10 @@ def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:
 
 
 def _needed(field: DeckField) -> str:
+    """Return whether a deck must give a field with alternatives, in words."""
     return f"yes, or {', '.join(field.instead_of)}" if field.required else "no"
 
 
 def field_records(found: tuple[DeckField, ...]) -> list[dict[str, Any]]:
-    """Fields as plain data, for JSON."""
+    """Return fields as plain data, for JSON."""
     return [asdict(field) for field in found]
-
-
-_HEAD = """# Fields of a deck
-
-Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py` and `support_sections.py`.
-
-A deck is a TOML file. A number with a dimension is text with its unit, `radius = "12.5 ft"`, US and SI units as one
-likes; a plain number has none. Either may be a table that says where it comes from:
-
-    radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
-
-with a status of published, derived, recalled, calibrated or assumed. `base = "xv15"` above all sections alters another
-deck: a field given replaces the base's and its alternatives.
-
-A frequency per revolution, `"0.42/rev"`, is one of the rotor speed that is written in the same file, or in its base
-where the file gives none. Another rotor speed, by `--set`, `vary`, a study, a map, a slider or a deck that alters this
-one, leaves it its hertz: a wing does not know how fast the rotor turns. A frequency that is set in /rev is one of the
-deck's own rotor speed too.
-
-    proprotor new my.toml --from xv15                       # a commented deck that runs as it is
-    proprotor describe rotor.precone                        # one field
-    proprotor describe --schema > deck.schema.json          # for editors
-    proprotor sweep my.toml --speed 50:400:5kt --set rotor.precone="1.5 deg"
-
-An editor that knows JSON schemas for TOML (Even Better TOML, taplo) completes and checks a deck whose first line is
-`#:schema ./deck.schema.json`.
-"""
-
-
-def markdown() -> str:
-    """docs/decks.md."""
-    return "\n".join([_HEAD, *_sections()]) + "\n"
-
-
-def _sections() -> Iterator[str]:
-    from proprotor.deck.sections import section_places, sections_at
-
-    for place in section_places():
-        for kind, section in sections_at(place).items() if place else ():
-            name = ".".join(place)
-            own = [
-                field
-                for field in deck_fields()
-                if field.kind == kind and _plain(field.path).rpartition(".")[0] == name
-            ]
-            brackets = f"[[{name}]]" if name == "support.modes" else f"[{name}]"
-            yield f"## {brackets}{f' of kind {kind}' if kind else ''}\n"
-            yield f"{' '.join((section.__doc__ or '').split())}\n"
-            yield "| field | meaning | takes | range | default | instead of |"
-            yield "|---|---|---|---|---|---|"
-            yield from map(_row, own)
-            yield ""
-
-
-def _row(field: DeckField) -> str:
-    name = field.path.rpartition(".")[2]
-    default = "**needed**" if field.required and not field.default else field.default
-    cells = (f"`{name}`", field.meaning, field.takes, field.range, default, ", ".join(field.instead_of))
-    return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"

@@ -1,16 +1,16 @@
-"""Types of the fields of a deck: what a value must be, in which unit, and how it is read.
+"""Types of the fields of a deck: the form of a value, its unit, and how to read it.
 
-A type says it once: the reader, the documentation (`proprotor.deck.describe`) and the JSON schema
-(`proprotor.deck.schema`) all ask the `Reading` of the field.
+Each type is declared once. The documentation (`proprotor.deck.describe`) and the JSON schema (`proprotor.deck.schema`)
+walk the fields and ask the `Reading` of each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationInfo
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from pydantic_core import CoreSchema, core_schema
 
 from proprotor.datum import Datum
@@ -22,33 +22,21 @@ from proprotor.deck.reading import (
     POSITIVE,
     Bound,
     read_choice,
-    read_column,
     read_count,
-    read_curve,
-    read_distribution,
     read_file,
     read_frequency,
-    read_list,
-    read_profile,
     read_quantity,
 )
-from proprotor.errors import InputError
+from proprotor.deck.reading_lists import (
+    read_column,
+    read_curve,
+    read_distribution,
+    read_list,
+    read_profile,
+    read_spanwise,
+)
 from proprotor.rotor.rotor import HELD, NOTHING
 from proprotor.support.normal_modes import INCLUDES_ROTOR, SHAFT
-
-
-def read_spanwise(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
-    """One number for the whole wing, or a table ``{ y_over_span, value, unit, status, source }`` along it."""
-    if not isinstance(raw, dict) or "y_over_span" not in raw:
-        return read_quantity(raw, unit, bound)
-    try:
-        table = {"r_over_R" if key == "y_over_span" else key: entry for key, entry in raw.items()}
-        return read_distribution(table, unit, bound)
-    except InputError as error:
-        field = error.field.replace("r_over_R", "y_over_span")
-        rule = error.rule.replace("r_over_R", "y_over_span").replace("centre of rotation", "mount")
-        raise InputError(field, error.value, rule) from None
-
 
 _READERS: dict[str, Callable[..., Datum]] = {
     "number": read_quantity,
@@ -64,7 +52,7 @@ _READERS: dict[str, Callable[..., Datum]] = {
 
 @dataclass(frozen=True)
 class Reading:
-    """How a field that becomes a `Datum` is read.
+    """How to read a field that becomes a `Datum`.
 
     Parameters
     ----------
@@ -75,11 +63,11 @@ class Reading:
         SI unit.
     bound : Bound
     least : int
-        Of a count.
+        Smallest count.
     choices : tuple of str or bool
-        Of a choice.
+        Possible choices.
     beyond : str
-        What a distribution along the blade may say of the blade beyond its stations.
+        Word that a distribution along the blade may have for the blade beyond its stations.
     """
 
     form: str
@@ -90,12 +78,12 @@ class Reading:
     beyond: str = ""
 
     def read(self, raw: Any) -> Datum:
-        """The value of a field.
+        """Return the number of a field.
 
         Raises
         ------
         InputError
-            With the field's name left to who calls.
+            For a malformed value; the caller adds the name of the field.
         """
         if self.form == "count":
             return read_count(raw, self.least)
@@ -106,41 +94,42 @@ class Reading:
         return _READERS[self.form](raw, self.unit, self.bound)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
+        return core_schema.with_info_plain_validator_function(
+            lambda raw, info: self.read_after(raw, info.data), metadata={"reading": self}
+        )
 
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
-        from proprotor.deck.schema import value_schema
+    def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
+        """Return the number of a field, given the fields of its section that were read before.
 
-        return value_schema(self)
+        None where the unit follows from an earlier field that is itself malformed, and reported.
+        """
+        return self.read(raw)
 
 
 @dataclass(frozen=True)
-class ByCoordinate(Reading):
-    """A quantity whose unit follows the mode's coordinate, a field that is read before it.
+class _ByCoordinate(Reading):
+    """A quantity whose unit follows from the mode's coordinate, an earlier field.
 
     Parameters
     ----------
     unit : str
         SI unit where the coordinate is a length.
     of_angle : str
-        SI unit where it is an angle.
+        SI unit where the coordinate is an angle.
     """
 
     of_angle: str = ""
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
-        def read(raw: Any, info: ValidationInfo) -> Datum | None:
-            if "coordinate" not in info.data:  # itself wrong, and reported
-                return None
-            length = info.data["coordinate"] == "length"
-            return read_quantity(raw, self.unit if length else self.of_angle, self.bound)
-
-        return core_schema.with_info_plain_validator_function(read)
+    def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
+        if "coordinate" not in before:
+            return None
+        length = before["coordinate"] == "length"
+        return read_quantity(raw, self.unit if length else self.of_angle, self.bound)
 
 
 @dataclass(frozen=True)
-class ByAbscissa(Reading):
-    """Where a curve has its values, whose unit follows what it is against, a field that is read before.
+class _ByAbscissa(Reading):
+    """The abscissa of a curve, whose unit follows from the quantity that the curve is against, an earlier field.
 
     Parameters
     ----------
@@ -152,28 +141,22 @@ class ByAbscissa(Reading):
 
     of_speed: str = ""
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
-        def read(raw: Any, info: ValidationInfo) -> Datum | None:
-            if "against" not in info.data:  # itself wrong, and reported
-                return None
-            unit = self.unit if info.data["against"] == "collective" else self.of_speed
-            return read_list(raw, unit, self.bound, rising=True)
-
-        return core_schema.with_info_plain_validator_function(read)
+    def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
+        if "against" not in before:
+            return None
+        unit = self.unit if before["against"] == "collective" else self.of_speed
+        return read_list(raw, unit, self.bound, rising=True)
 
 
-class AlongTheBlade(Reading):
-    """Values at blade stations, which may stand in a file, there perhaps by r: hence the radius is read before."""
+class _AlongTheBlade(Reading):
+    """Values at blade stations, perhaps in a file with stations in units of length: the radius is an earlier field."""
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
-        def read(raw: Any, info: ValidationInfo) -> Datum | None:
-            if not isinstance(raw, dict) or not {"file", "column"}.intersection(raw):
-                return self.read(raw)
-            if info.data.get("radius") is None:  # itself wrong or missing, and reported
-                return None
-            return read_column(raw, self.unit, self.bound, info.data["radius"].si, self.beyond)
-
-        return core_schema.with_info_plain_validator_function(read)
+    def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
+        if not isinstance(raw, dict) or not {"file", "column"}.intersection(raw):
+            return self.read(raw)
+        if before.get("radius") is None:
+            return None
+        return read_column(raw, self.unit, self.bound, before["radius"].si, self.beyond)
 
 
 Number = Annotated[Datum | None, Reading("number")]
@@ -200,21 +183,21 @@ DampingRatio = Annotated[Datum | None, Reading("number", "", BELOW_CRITICAL)]
 Frequency = Annotated[Datum | None, Reading("frequency", "rad/s", NOT_NEGATIVE)]
 Count = Annotated[Datum | None, Reading("count", least=3)]
 Size = Annotated[Datum | None, Reading("count", least=1)]
-Chord = Annotated[Datum | None, AlongTheBlade("along the blade", "m", POSITIVE, beyond=HELD)]
-Twist = Annotated[Datum | None, AlongTheBlade("along the blade", "rad", beyond=HELD)]
+Chord = Annotated[Datum | None, _AlongTheBlade("along the blade", "m", POSITIVE, beyond=HELD)]
+Twist = Annotated[Datum | None, _AlongTheBlade("along the blade", "rad", beyond=HELD)]
 MassDistribution = Annotated[
-    Datum | None, AlongTheBlade("distribution", "kg/m", NOT_NEGATIVE, beyond=NOTHING)
+    Datum | None, _AlongTheBlade("distribution", "kg/m", NOT_NEGATIVE, beyond=NOTHING)
 ]
 TemperatureDifference = Annotated[Datum | None, Reading("number", "K")]
 CurvePerRev = Annotated[Datum | None, Reading("curve", "", POSITIVE)]
-Abscissa = Annotated[Datum | None, ByAbscissa("rising list", "rad", of_speed="m/s")]
+Abscissa = Annotated[Datum | None, _ByAbscissa("rising list", "rad", of_speed="m/s")]
 File = Annotated[Datum | None, Reading("file")]
 IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
 Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
 
-GeneralizedMass = Annotated[Datum | None, ByCoordinate("number", "kg", POSITIVE, of_angle="kg*m**2")]
-HubDisplacement = Annotated[Datum | None, ByCoordinate("number", "", of_angle="m/rad")]
-HubRotation = Annotated[Datum | None, ByCoordinate("number", "rad/m", of_angle="")]
+GeneralizedMass = Annotated[Datum | None, _ByCoordinate("number", "kg", POSITIVE, of_angle="kg*m**2")]
+HubDisplacement = Annotated[Datum | None, _ByCoordinate("number", "", of_angle="m/rad")]
+HubRotation = Annotated[Datum | None, _ByCoordinate("number", "rad/m", of_angle="")]
 
 BendingStiffness = Annotated[Datum | None, Reading("along the wing", "N*m**2", POSITIVE)]
 AxialStiffness = Annotated[Datum | None, Reading("along the wing", "N", POSITIVE)]
@@ -224,23 +207,25 @@ InertiaPerLength = Annotated[Datum | None, Reading("along the wing", "kg*m**2/m"
 Text = Annotated[str, StringConstraints(min_length=1, max_length=2000)]
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]*$", max_length=60)]
 
-Sides = tuple[tuple[str, ...], ...]  # of each choice, the fields of every side
+Sides = tuple[tuple[str, ...], ...]  # the fields of every side of a choice
 
 
 class Section(BaseModel):
-    """A table of a deck: no field of another type, none unknown."""
+    """A table of a deck, without fields of a wrong type and without unknown fields."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
-    alternatives: ClassVar[tuple[Sides, ...]] = ()  # of each, the fields of one side only
-    needed_unless_replaced: ClassVar[tuple[str, ...]] = ()  # those a deck must have, or their alternatives
+    alternatives: ClassVar[tuple[Sides, ...]] = ()  # choices of which a deck gives one side
+    needed_unless_replaced: ClassVar[
+        tuple[str, ...]
+    ] = ()  # fields that a deck must have, or their alternatives
 
 
 def needed(meaning: str) -> Any:
-    """A field that must be given, or may have to be (see `Section.alternatives`), and what it means."""
+    """Return a field that a deck must give, it or one of its alternatives, with its meaning."""
     return Field(description=meaning)
 
 
 def optional(meaning: str, default: Any = None) -> Any:
-    """A field that may be left out, and what it means."""
+    """Return a field that a deck may leave out, with its meaning."""
     return Field(default=default, description=meaning)

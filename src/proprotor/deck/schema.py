@@ -1,44 +1,46 @@
-"""The JSON schema of decks, by which editors complete and check a TOML file."""
+"""Write the JSON schema of decks, by which editors complete and check a TOML file."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core import CoreSchema
 
 from proprotor.datum import STATUSES
+from proprotor.deck.fields import Reading
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
+from proprotor.deck.sections import Deck
 from proprotor.units import meaning
 
-if TYPE_CHECKING:
-    from proprotor.deck.fields import Reading
-
-Schema = dict[str, Any]
+_Schema = dict[str, Any]
 
 _DIALECT = "http://json-schema.org/draft-07/schema#"  # the one that editors of TOML know
 _NUMBER = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
-_PROVENANCE: Schema = {
+_PROVENANCE: _Schema = {
     "status": {"enum": list(STATUSES), "description": "How well the number is known."},
     "source": {"type": "string", "description": "Where it was read, or how it was found."},
 }
-_LIMITS: dict[Bound, Schema] = {
+_LIMITS: dict[Bound, _Schema] = {
     POSITIVE: {"exclusiveMinimum": 0},
     NOT_NEGATIVE: {"minimum": 0},
     FRACTION: {"minimum": 0, "maximum": 1},
     BELOW_CRITICAL: {"minimum": 0, "exclusiveMaximum": 1},
 }
-_NUMBERS: Schema = {"type": "array", "items": {"type": "number"}, "minItems": 2}
+_NUMBERS: _Schema = {"type": "array", "items": {"type": "number"}, "minItems": 2}
 _STATIONS = {"distribution": "r_over_R", "along the blade": "r_over_R", "along the wing": "y_over_span"}
 
 
-def deck_schema() -> Schema:
-    """The JSON schema of a deck, draft 7.
+def deck_schema() -> _Schema:
+    """Return the JSON schema of a deck, draft 7.
 
-    It knows every table and field, what kind of value each takes, and what must be given, which with `base` is nothing.
-    It does not know units: that is for `proprotor.deck.sections.validate`, which is the judge.
+    The schema has every table and field, the kind of each value, and the required fields, of which a deck with `base`
+    has none. It does not check units: `proprotor.deck.validation.validate` does, and decides whether a deck is valid.
     """
-    from proprotor.deck.sections import Deck
-
-    schema: Schema = Deck.model_json_schema(ref_template="#/definitions/{model}")
-    definitions: Schema = schema.pop("$defs")
+    schema: _Schema = Deck.model_json_schema(
+        ref_template="#/definitions/{model}", schema_generator=_SchemaOfFields
+    )
+    definitions: _Schema = schema.pop("$defs")
     kinds = schema["properties"]["support"]
     kinds.pop("discriminator", None)
     whole = _what_must_be_given(definitions, schema.pop("required"), kinds.pop("oneOf"))
@@ -55,8 +57,17 @@ def deck_schema() -> Schema:
     }
 
 
-def _what_must_be_given(definitions: Schema, sections: list[str], kinds: list[Schema]) -> Schema:
-    """Of a deck that stands alone; taken out of the definitions, where a deck with a base may leave it out."""
+class _SchemaOfFields(GenerateJsonSchema):
+    """Pydantic's schema of the sections, with the schema of each field by its `Reading`."""
+
+    def function_plain_schema(self, schema: CoreSchema) -> _Schema:
+        """Return the schema of a field with a reader of its own; the only such field without a `Reading` is trim."""
+        reading = (schema.get("metadata") or {}).get("reading")
+        return _TRIM_SCHEMA if reading is None else _value_schema(reading)
+
+
+def _what_must_be_given(definitions: _Schema, sections: list[str], kinds: list[_Schema]) -> _Schema:
+    """Move the required fields out of the definitions, because only a deck without a base must give them."""
     names = [kind["$ref"].rpartition("/")[2] for kind in kinds]
     required = {name: definitions[name].pop("required", []) for name in (*names, *_TABLES)}
     places = {section: {"required": required[name]} for name, section in _TABLES.items() if section}
@@ -72,7 +83,7 @@ def _what_must_be_given(definitions: Schema, sections: list[str], kinds: list[Sc
     return {"deck": {"required": sections, "properties": places}, "support": names}
 
 
-# Definitions whose fields a base may give, and the section of the deck; the airfoil's stands within the rotor's.
+# Definitions whose fields a base may give, with the section of the deck; the airfoil is a section of the rotor.
 _TABLES = {
     "CaseSection": "case",
     "RotorSection": "rotor",
@@ -81,8 +92,8 @@ _TABLES = {
 }
 
 
-def value_schema(reading: Reading) -> Schema:
-    """What a field that a `Reading` reads may be: a value, or a table with its provenance."""
+def _value_schema(reading: Reading) -> _Schema:
+    """Return the schema of a field: of a plain value, or of a table with its provenance."""
     if reading.form == "distribution":
         return {"anyOf": [_distribution(reading), _with_beyond(_COLUMN, reading)]}
     if reading.form == "rising list":
@@ -99,39 +110,43 @@ def value_schema(reading: Reading) -> Schema:
     return {"anyOf": choices}
 
 
-def _value(reading: Reading) -> Schema:
+def _value(reading: Reading) -> _Schema:
+    """Return the schema of a plain value."""
     if reading.form == "count":
         return {"type": "integer", "minimum": reading.least}
     if reading.form == "file":
         return {"type": "string", "minLength": 1}
     if reading.form == "choice":
         return {"enum": list(reading.choices)}
-    text = {"type": "string", "pattern": _NUMBER, "description": _told(reading)}
+    text = {"type": "string", "pattern": _NUMBER, "description": _description(reading)}
     plain = {"type": "number", **_LIMITS.get(reading.bound, {})}
     dimensional = reading.unit and getattr(reading, "of_angle", reading.unit)
     return text if dimensional else {"anyOf": [text, plain]}
 
 
-def _told(reading: Reading) -> str:
+def _description(reading: Reading) -> str:
+    """Return the form and the range of a number in words."""
     rule = f"; {reading.bound.rule}" if reading.bound.rule else ""
     per_rev = ', or per revolution, "0.42/rev"' if reading.form == "frequency" else ""
     return f"{meaning(reading.unit)}{per_rev}{rule}"
 
 
-def _distribution(reading: Reading) -> Schema:
+def _distribution(reading: Reading) -> _Schema:
+    """Return the schema of a distribution along the blade or the wing."""
     stations = {"type": "array", "items": {"type": "number", "minimum": 0, "maximum": 1}, "minItems": 2}
     table = _table({_STATIONS[reading.form]: stations, "value": _NUMBERS, "unit": {"type": "string"}})
     return _with_beyond(table, reading)
 
 
-def _with_beyond(table: Schema, reading: Reading) -> Schema:
-    """The table of a distribution, with what it may say of the blade beyond its stations."""
+def _with_beyond(table: _Schema, reading: Reading) -> _Schema:
+    """Return the table of a distribution with its word for the blade beyond the stations."""
     if not reading.beyond:
         return table
     return table | {"properties": table["properties"] | {"beyond": {"const": reading.beyond}}}
 
 
-def _table(properties: Schema) -> Schema:
+def _table(properties: _Schema) -> _Schema:
+    """Return the schema of a table with some required properties and a provenance."""
     return {
         "type": "object",
         "properties": {**properties, **_PROVENANCE},
@@ -142,7 +157,7 @@ def _table(properties: Schema) -> Schema:
 
 _COLUMN = _table({name: {"type": "string", "minLength": 1} for name in ("file", "column")})
 
-TRIM_SCHEMA: Schema = {
+_TRIM_SCHEMA: _Schema = {
     "anyOf": [
         {"const": "windmill"},
         *(

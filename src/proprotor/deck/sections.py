@@ -1,15 +1,15 @@
-"""The sections and fields of a deck, and what each must be.
+"""The sections and fields of a deck, with the meaning and the form of each.
 
-`proprotor describe` and docs/decks.md tell them all, from the definitions here.
+`proprotor describe` and docs/decks.md list all fields, from the definitions in this file.
 
-A deck is a TOML file. A number with a dimension is text, ``radius = "12.5 ft"``, US and SI units as one
-likes; a plain number has none. Either may be a table that says where it comes from::
+A deck is a TOML file. A number with a dimension is text with its unit, ``radius = "12.5 ft"``, US or SI; a number
+without a dimension is plain. Either may be a table that names its source::
 
     radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
 
 with a status of published, derived, recalled, calibrated or assumed. Chord and twist take one value (twist:
 the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
-linear between its stations; chord, twist and mass_distribution also a column of a CSV file,
+linear between its stations; chord, twist and mass_distribution may also be a column of a CSV file,
 ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
 
 Stations of chord and twist reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
@@ -17,42 +17,47 @@ values hold there. Those of mass_distribution reach from the centre of rotation,
 tip, or their table says ``beyond = "nothing"``: no mass there.
 
 ``base``
-    Above all sections: the deck this one alters, a bundled name or a file beside it. A field given here
-    replaces the base's; one of two alternatives removes the other.
+    Above all sections: the deck that this deck alters, a bundled name or a file in the same folder. A field of this
+    deck replaces the field of the base; one of two alternatives removes the other.
 ``[case]``
-    name, title, description, calibration (what was calibrated to what), warnings.
+    name, title, description, calibration (which inputs to which result), warnings.
 ``[rotor]``
     The arguments of `proprotor.Rotor`, or instead of flap_stiffness and lag_stiffness: flap_frequency and
     lag_frequency, non-rotating, K = I ω²; of chord: lock_number γ, chord = γ I_b / (ρ c_lα R⁴) at the
     deck's density; of the seven mass integrals: mass_distribution.
 ``[rotor.airfoil]``
-    The arguments of `proprotor.Airfoil`, or instead of them: table, a C81 file, its name starting from the
-    deck's folder.
+    The arguments of `proprotor.Airfoil`, or instead: table, a C81 file, whose name starts from the deck's folder.
 ``[rotor.frequencies]``
-    Left out, or the arguments of `proprotor.BladeFrequencies`: against, "collective" or "airspeed"; at, a table
+    Optional; the arguments of `proprotor.BladeFrequencies`: against, "collective" or "airspeed"; at, a table
     ``{ value = [0, 20, 40], unit = "deg" }``; flap, lag and perhaps cyclic_flap, rotating, per revolution, one
-    number or a table ``{ value = [1.9, 1.8, 1.7] }`` with one for each of at. The model then has structure="tabulated".
+    number or a table ``{ value = [1.9, 1.8, 1.7] }`` with a value for each of at. The model has structure="tabulated".
 ``[operation]``
     rotor_speed, trim = "windmill" or { collective = "30 deg" }, { thrust_coefficient = 0.008 },
-    { power_coefficient = 0.01 }; density and speed_of_sound, or instead of them: altitude, a pressure altitude in
-    the standard atmosphere, and temperature_offset (`proprotor.rotor.atmosphere`).
+    { power_coefficient = 0.01 }; density and speed_of_sound, or instead: altitude, a pressure altitude in the
+    standard atmosphere, and temperature_offset (`proprotor.rotor.atmosphere`).
 ``[drive_train]``
-    Left out, or the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness.
+    Optional; the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness.
 ``[support]``
     kind and the fields of that kind: `proprotor.deck.support_sections` lists them.
 
 A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
-written in the same file, or in its base where the file gives none. It is a frequency in hertz from then on: a
-deck that alters another, ``--set``, a study and a map change the rotor speed and not the frequency, and a
-frequency that is set in /rev is one of the deck's own rotor speed too. `proprotor.units` lists the units.
+written in the same file, or in the base if the file gives none. The frequency is then fixed in hertz: a deck that
+alters this deck, ``--set``, a study and a map change the rotor speed and not the frequency. A frequency set in /rev
+also refers to the deck's own rotor speed. `proprotor.units` lists the units.
 """
 
 from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema, model_validator
+from pydantic import Field, PlainValidator, model_validator
 
+from proprotor.deck.alternatives import (
+    AIR_ALTERNATIVES,
+    AIRFOIL_ALTERNATIVES,
+    ALTERNATIVES,
+    TRIM_ALTERNATIVES,
+)
 from proprotor.deck.fields import (
     Abscissa,
     Angle,
@@ -89,23 +94,20 @@ from proprotor.deck.fields import (
     needed,
     optional,
 )
-from proprotor.deck.file import AIR_ALTERNATIVES, AIRFOIL_ALTERNATIVES, ALTERNATIVES, TRIM_ALTERNATIVES
 from proprotor.deck.reading import read_quantity
-from proprotor.deck.schema import TRIM_SCHEMA
-from proprotor.deck.support_sections import SUPPORT_KINDS, SUPPORT_TABLES, SupportSection
-from proprotor.deck.text import plain_text
+from proprotor.deck.support_sections import SUPPORT_TABLES, SupportSection
 from proprotor.errors import InputError, unknown_name
 
 
 class CaseSection(Section):
-    """What the case is, in words."""
+    """The case in words."""
 
-    name: Name = needed("Short name; a deck that alters another has its own.")
-    title: Text = needed("Stands above tables and plots.")
-    description: str = optional("What is modelled.", "")
+    name: Name = needed("Short name; a deck that alters another deck has its own.")
+    title: Text = needed("Title of tables and plots.")
+    description: str = optional("Description of the model.", "")
     calibration: str = optional("Which inputs were matched to which result; repeated with every result.", "")
     warnings: list[Text] = Field(
-        default_factory=list, description="What a reader of results should know, a text each."
+        default_factory=list, description="Remarks that a reader of results needs, one text each."
     )
 
 
@@ -132,13 +134,15 @@ class AirfoilSection(Section):
 
 
 class FrequenciesSection(Section):
-    """Rotating blade frequencies from a table, in place of springs; `--structure coupled` leaves them out."""
+    """Rotating blade frequencies from a table, in place of springs; `--structure coupled` ignores the table."""
 
-    against: Literal["collective", "airspeed"] = optional("What they depend on.", "collective")
-    at: Abscissa = optional("Where lists have their values, rising: collective or airspeed.")
+    against: Literal["collective", "airspeed"] = optional(
+        "The quantity on which the frequencies depend.", "collective"
+    )
+    at: Abscissa = optional("Rising collectives or airspeeds at which the lists have their values.")
     flap: CurvePerRev = needed("Flap frequency per revolution, without lag and at zero cone.")
     lag: CurvePerRev = needed("Lag frequency per revolution, without flap and at zero cone.")
-    cyclic_flap: CurvePerRev = optional("Of cyclic flapping where it is another than flap.")
+    cyclic_flap: CurvePerRev = optional("Cyclic flap frequency per revolution, if it differs from flap.")
 
     @model_validator(mode="after")
     def _one_value_for_each_place(self) -> FrequenciesSection:
@@ -155,7 +159,7 @@ class FrequenciesSection(Section):
 
 
 class RotorSection(Section):
-    """The rotor: the arguments of `proprotor.Rotor`, and what some of them may follow from."""
+    """The rotor: the arguments of `proprotor.Rotor`, and numbers from which some of them may follow."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = ALTERNATIVES
     needed_unless_replaced: ClassVar[tuple[str, ...]] = tuple(
@@ -163,10 +167,14 @@ class RotorSection(Section):
     )
 
     n_blades: Count = needed("Number of blades.")
-    radius: PositiveLength = needed("Centre of rotation to tip.")
-    root_cutout: Length = needed("Where the airloads begin, from the centre of rotation.")
-    flap_hinge_offset: Length = needed("Centre of rotation to flap hinge; at 0 lock flap or gimbal.")
-    lag_hinge_offset: Length = needed("Centre of rotation to lag hinge, not inboard of the flap hinge.")
+    radius: PositiveLength = needed("Radius, from the centre of rotation to the tip.")
+    root_cutout: Length = needed("Distance from the centre of rotation to the begin of the airloads.")
+    flap_hinge_offset: Length = needed(
+        "Distance from the centre of rotation to the flap hinge; at 0 lock flap or gimbal."
+    )
+    lag_hinge_offset: Length = needed(
+        "Distance from the centre of rotation to the lag hinge, not inboard of the flap hinge."
+    )
     precone: Angle = needed("Cone built into the hub, towards thrust.")
     blade_mass: Mass = optional("Integral of m over the whole blade.")
     blade_first_moment: FirstMoment = optional("Integral of m r over the whole blade.")
@@ -177,39 +185,45 @@ class RotorSection(Section):
     lag_inertia: Inertia = optional("Integral of m (r - e)² outboard of the lag hinge.")
     mass_distribution: MassDistribution = optional(
         "Mass per length from the centre (or with hub_mass from anywhere) to the tip, which gives all seven integrals; "
-        'beyond = "nothing" where it has no mass there.'
+        'beyond = "nothing" for a blade without mass beyond the stations.'
     )
     hub_mass: MassOrNone = optional(
-        "Of the whole rotor at the centre of rotation, for a mass_distribution that begins further out, and not once "
-        "more in the masses of the support."
+        "Mass of the whole hub at the centre of rotation, for a mass_distribution that begins further out; not to be "
+        "included in the masses of the support again."
     )
-    flap_stiffness: Stiffness = optional("Flap spring, hub and blade in series.")
+    flap_stiffness: Stiffness = optional("Stiffness of the flap spring, hub and blade in series.")
     flap_frequency: Frequency = optional("Flap frequency without rotation, K = I ω².")
-    lag_stiffness: Stiffness = optional("Lag spring, hub and blade in series.")
+    lag_stiffness: Stiffness = optional("Stiffness of the lag spring, hub and blade in series.")
     lag_frequency: Frequency = optional("Lag frequency without rotation, K = I ω².")
     flap_outboard_fraction: Fraction = needed("Share of the flap flexibility outboard of the pitch bearing.")
     lag_outboard_fraction: Fraction = needed("Share of the lag flexibility outboard of the pitch bearing.")
-    structural_pitch_offset: Angle = optional("From the collective reference to the blade's structural axes.")
-    gimbal_stiffness: Stiffness = needed("Hub spring.")
+    structural_pitch_offset: Angle = optional(
+        "Angle from the collective reference to the blade's structural axes."
+    )
+    gimbal_stiffness: Stiffness = needed("Stiffness of the hub spring.")
     pitch_gimbal_coupling: Number = needed("K_PG = tan δ3, pitch per gimbal tilt.")
-    pitch_inertia: InertiaOrNone = needed("Of one blade about its pitch axis.")
-    control_stiffness: Stiffness = needed("Control system of one blade, about its pitch axis.")
-    flap_damping: Damping = optional("Viscous damper of the flap hinge.")
-    lag_damping: Damping = optional("Viscous damper of the lag hinge.")
-    pitch_damping: Damping = optional("Viscous damper of the blade's pitch.")
-    gimbal_damping: Damping = optional("Viscous damper of the gimbal, which does not rotate.")
+    pitch_inertia: InertiaOrNone = needed("Inertia of one blade about its pitch axis.")
+    control_stiffness: Stiffness = needed(
+        "Stiffness of the control system of one blade, about its pitch axis."
+    )
+    flap_damping: Damping = optional("Viscous damping of the flap hinge.")
+    lag_damping: Damping = optional("Viscous damping of the lag hinge.")
+    pitch_damping: Damping = optional("Viscous damping of the blade's pitch.")
+    gimbal_damping: Damping = optional("Viscous damping of the gimbal, in non-rotating axes.")
     propeller_moment: bool = optional("Whether the propeller moment acts on the blade's pitch.", True)
     chord: Chord = optional(
         "Chord of the blade, one value or along r from root cutout to tip; "
-        'beyond = "held" where its end values hold beyond the stations.'
+        'beyond = "held" if the end values hold beyond the stations.'
     )
-    lock_number: Positive = optional("γ, chord = γ I_b / (ρ c_lα R⁴) at the deck's density.")
+    lock_number: Positive = optional("Lock number γ, chord = γ I_b / (ρ c_lα R⁴) at the deck's density.")
     twist: Twist = needed(
-        "One value: change from centre to tip, linear. Or along r from root cutout to tip; "
-        'beyond = "held" where its end values hold beyond the stations. Pitch counts from 0.75 R.'
+        "Twist, one value for a linear change from centre to tip, or along r from root cutout to tip; "
+        'beyond = "held" if the end values hold beyond the stations. Pitch is zero at 0.75 R.'
     )
     airfoil: AirfoilSection = needed("Sections of the blade.")
-    frequencies: FrequenciesSection | None = optional("Of the blades; from the springs where left out.")
+    frequencies: FrequenciesSection | None = optional(
+        "Frequencies of the blades; from the springs if left out."
+    )
 
     @model_validator(mode="after")
     def _one_side_of_each_pair(self) -> RotorSection:
@@ -230,7 +244,7 @@ class RotorSection(Section):
 
 
 class TrimSection(Section):
-    """What the rotor is trimmed to instead of windmilling."""
+    """The target of the trim, instead of windmilling."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = TRIM_ALTERNATIVES
     needed_unless_replaced: ClassVar[tuple[str, ...]] = (
@@ -239,9 +253,11 @@ class TrimSection(Section):
         "power_coefficient",
     )
 
-    collective: Angle = optional("Pitch at 0.75 R.")
-    thrust_coefficient: Number = optional("C_T = T/(ρπR²(ΩR)²).")
-    power_coefficient: Number = optional("C_P = P/(ρπR²(ΩR)³), power put into the rotor positive.")
+    collective: Angle = optional("Collective pitch at 0.75 R.")
+    thrust_coefficient: Number = optional("Thrust coefficient C_T = T/(ρπR²(ΩR)²).")
+    power_coefficient: Number = optional(
+        "Power coefficient C_P = P/(ρπR²(ΩR)³), positive for power into the rotor."
+    )
 
 
 _TRIM_RULE = (
@@ -250,6 +266,7 @@ _TRIM_RULE = (
 
 
 def _read_trim(raw: Any) -> str | TrimSection:
+    """Return the trim of an operation: "windmill", or a section with one target."""
     if raw == "windmill":
         return "windmill"
     if not isinstance(raw, dict) or len(raw) != 1:
@@ -266,20 +283,20 @@ def _read_trim(raw: Any) -> str | TrimSection:
 
 
 class OperationSection(Section):
-    """How the rotor is run, and in which air."""
+    """The operation of the rotor, and the air."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = AIR_ALTERNATIVES
     needed_unless_replaced: ClassVar[tuple[str, ...]] = ("density", "speed_of_sound", "altitude")
 
-    rotor_speed: RotorSpeed = needed("Ω.")
-    density: Density = optional("Of the air; 0 is a vacuum.")
-    speed_of_sound: Speed = optional("Of the air.")
+    rotor_speed: RotorSpeed = needed("Rotor speed Ω.")
+    density: Density = optional("Air density; 0 for a vacuum.")
+    speed_of_sound: Speed = optional("Speed of sound in the air.")
     altitude: Offset = optional("Pressure altitude in the standard atmosphere (ISA), -610 m to 32 km.")
     temperature_offset: TemperatureDifference = optional(
-        "Above the standard temperature of that altitude; none by default."
+        "Air temperature above the standard temperature at the altitude; none by default."
     )
-    trim: Annotated[Any, PlainValidator(_read_trim), WithJsonSchema(TRIM_SCHEMA)] = optional(
-        '"windmill", the collective without torque, or one target: { collective = "30 deg" }, '
+    trim: Annotated[Any, PlainValidator(_read_trim)] = optional(
+        '"windmill" for the collective without torque, or one target: { collective = "30 deg" }, '
         "{ thrust_coefficient = 0.008 } or { power_coefficient = 0.01 }.",
         "windmill",
     )
@@ -303,24 +320,24 @@ class OperationSection(Section):
 class DriveTrainSection(Section):
     """Engine and shaft on the rotor's azimuth, referred to the rotor's speed."""
 
-    drive_inertia: InertiaOrNone = optional("What turns with the rotor besides the blades.")
+    drive_inertia: InertiaOrNone = optional("Inertia that turns with the rotor, without the blades.")
     drive_damping: Damping = optional("Torque per change of rotor speed.")
     shaft_stiffness: Stiffness = optional(
-        "Torque per azimuth, to an end of constant speed; 0 leaves the rotor free to find its speed."
+        "Torque per azimuth of a shaft with an end of constant speed; 0 for a rotor whose speed is free."
     )
 
 
 class Deck(Section):
     """A case of the whirl-flutter analysis proprotor."""
 
-    case: CaseSection = needed("What the case is, in words.")
+    case: CaseSection = needed("The case in words.")
     rotor: RotorSection = needed("The rotor.")
-    operation: OperationSection = needed("How the rotor is run.")
-    drive_train: DriveTrainSection | None = optional("Engine and shaft; none where left out.")
-    support: SupportSection = needed("What carries the rotor.")
+    operation: OperationSection = needed("The operation of the rotor, and the air.")
+    drive_train: DriveTrainSection | None = optional("Engine and shaft; none if left out.")
+    support: SupportSection = needed("The support of the rotor.")
 
 
-_SECTIONS: dict[tuple[str, ...], type[Section]] = {
+SECTIONS: dict[tuple[str, ...], type[Section]] = {
     (): Deck,
     ("case",): CaseSection,
     ("rotor",): RotorSection,
@@ -334,86 +351,24 @@ _SECTIONS: dict[tuple[str, ...], type[Section]] = {
 
 
 def sections_at(place: tuple[str, ...]) -> dict[str, type[Section]]:
-    """The sections that may stand at a place, such as ``("support", "modes")``, by kind of support; "" elsewhere."""
+    """Return the sections at a place, such as ``("support", "modes")``, by kind of support; "" for other sections."""
     return {
         known[1] if known[:1] == ("support",) else "": section
-        for known, section in _SECTIONS.items()
-        if _in_the_deck(known) == place
+        for known, section in SECTIONS.items()
+        if in_the_deck(known) == place
     }
 
 
 def section_places() -> list[tuple[str, ...]]:
-    """Every place of a deck at which a section may stand, the deck itself first."""
-    return list(dict.fromkeys(tuple(map(str, _in_the_deck(known))) for known in _SECTIONS))
+    """Return every place of a section in a deck, the deck itself first."""
+    return list(dict.fromkeys(tuple(map(str, in_the_deck(known))) for known in SECTIONS))
 
 
-# How a message states what pydantic found, by pydantic's name for it.
-_RULES = {
-    "model_type": "must be a table",
-    "model_attributes_type": "must be a table",
-    "dict_type": "must be a table",
-    "int_type": "must be a whole number",
-    "list_type": "must be a list",
-    "string_type": "must be text",
-    "bool_type": "must be true or false",
-    "too_short": "must not be empty",
-    "string_too_short": "must not be empty",
-    "string_pattern_mismatch": "must be letters, digits, spaces, dots, dashes and underscores",
-}
-
-
-def validate(tables: dict[str, Any]) -> Deck:
-    """The tables of a TOML file as a deck.
-
-    Raises
-    ------
-    InputError
-        With every problem found, one line each.
-    """
-    tables = plain_text(tables, field_name)
-    try:
-        return Deck.model_validate(tables)
-    except ValidationError as error:
-        first, *others = [_input_error(problem, tables) for problem in error.errors(include_url=False)]
-        raise InputError(first.field, first.value, first.rule, others) from None
-
-
-def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
-    place, kind = problem["loc"], problem["type"]
-    field = field_name(_in_the_deck(place), tables)
-    if kind == "value_error":
-        error: InputError = problem["ctx"]["error"]
-        return error.within(field)
-    if kind == "extra_forbidden":
-        known = _SECTIONS[tuple(part for part in place[:-1] if isinstance(part, str))].model_fields
-        return InputError(field, problem["input"], unknown_name(str(place[-1]), known))
-    if kind == "literal_error":
-        return InputError(field, problem["input"], f"must be {problem['ctx']['expected']}")
-    if kind in ("missing", "union_tag_not_found"):
-        return InputError(field if kind == "missing" else f"{field}.kind", None, "is missing")
-    if kind == "union_tag_invalid":
-        rule = f"must be {', '.join(map(repr, SUPPORT_KINDS))}"
-        return InputError(f"{field}.kind", problem["ctx"]["tag"], rule)
-    return InputError(field, problem["input"], _RULES.get(kind, problem["msg"]))
-
-
-def _in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
-    """A place without the kind of support, which pydantic puts in."""
+def in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
+    """Return a place without the kind of support, which pydantic inserts."""
     return (place[0], *place[2:]) if place[:1] == ("support",) and len(place) > 1 else place
 
 
-def field_name(place: tuple[str | int, ...], tables: Any) -> str:
-    """``("support", "modes", 0, "x")`` as ``support.modes[beam].x``, an entry of a list by its name."""
-    text = ""
-    for part in place:
-        tables = tables[part] if not isinstance(tables, dict) or part in tables else None
-        if isinstance(part, str):
-            text += f".{part}" if text else part
-        else:
-            name = tables.get("name") if isinstance(tables, dict) else None
-            text += f"[{name if isinstance(name, str) and name else part}]"
-    return text
-
-
 def _listed(names: tuple[str, ...]) -> str:
+    """Return names in a list, several of them in brackets."""
     return names[0] if len(names) == 1 else f"({', '.join(names)})"

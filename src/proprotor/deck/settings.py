@@ -1,4 +1,4 @@
-"""Single fields of a deck set to other values before it is read: ``rotor.precone = "1.5 deg"``."""
+"""Set single fields of a deck to other values before it is validated: ``rotor.precone = "1.5 deg"``."""
 
 from __future__ import annotations
 
@@ -8,41 +8,45 @@ import tomllib
 from collections.abc import Mapping
 from typing import Any, Literal, get_args, get_origin
 
-from proprotor.deck.file import altered, per_revolution_of
+from proprotor.deck.alternatives import altered
+from proprotor.deck.describe import deck_fields
+from proprotor.deck.fields import Reading
+from proprotor.deck.per_revolution import per_revolution_of
+from proprotor.deck.sections import Deck, sections_at
 from proprotor.errors import InputError, unknown_name
 
 _STEP = re.compile(r"([^.\[\]]+)(?:\[([^\[\]]+)\])?(?:\.|$)")
 _SOURCE = "set for this run"
-_LONGEST_TITLE = 300  # characters of settings worth repeating above every result
+_LONGEST_TITLE = 300  # characters of settings that a title repeats
 
 
 class _Entry(str):
     """The name or number of an entry of a list."""
 
 
-Place = tuple[str, ...]
+_Place = tuple[str, ...]
 
 
 def with_settings(tables: Mapping[str, Any], settings: Mapping[str, str]) -> dict[str, Any]:
-    """The tables of a deck with some fields set, as if the deck had them so.
+    """Return the tables of a deck with some fields set, as if the deck had these values.
 
     Parameters
     ----------
     tables : mapping
-        Of `proprotor.deck.file.read_tables`.
+        Tables of a deck, see `proprotor.deck.file.read_tables`.
     settings : mapping of str to str
         Text by place: ``rotor.precone``, ``operation.trim``, ``support.modes[beam].frequency``, an entry of a list by
-        its name. A number is written with its unit, as in a deck; what else TOML has is read as TOML, and all other
-        text is text. A field replaces its alternatives, as chord does a Lock number. Numbers become
-        assumed ones, and the title tells what was set. A frequency per revolution is one of the deck's own rotor speed,
-        whatever speed is set.
+        its name. A number has its unit, as in a deck; any other TOML value is read as TOML, and the rest is text. A
+        field replaces its alternatives, as a chord replaces a Lock number. Numbers get the status assumed, and the
+        settings are added to the title. A frequency per revolution refers to the deck's own rotor speed, even if
+        another rotor speed is set.
 
     Raises
     ------
     InputError
-        For a place that no deck has, with the nearest one. Values are left to `proprotor.deck.sections.validate`.
+        For a place that no deck has, with the nearest place. `proprotor.deck.validation.validate` checks the values.
     """
-    entries: list[tuple[Place, Any]] = []
+    entries: list[tuple[_Place, Any]] = []
     changes: dict[str, Any] = {}
     for path, text in settings.items():
         steps = _steps(path, text)
@@ -58,9 +62,7 @@ def with_settings(tables: Mapping[str, Any], settings: Mapping[str, str]) -> dic
 
 
 def _steps(path: str, text: str) -> list[tuple[str, str]]:
-    """A place as names, each with the entry of a list or ""."""
-    from proprotor.deck.sections import Deck
-
+    """Return a place as names, each with an entry of a list or ""."""
     found = [match.groups(default="") for match in _STEP.finditer(path)]
     if "".join(match[0] for match in _STEP.finditer(path)) != path or path.endswith("."):
         raise InputError(path, text, "must be a field of a deck, such as rotor.precone")
@@ -70,15 +72,13 @@ def _steps(path: str, text: str) -> list[tuple[str, str]]:
     return steps
 
 
-def _place(steps: list[tuple[str, str]]) -> Place:
+def _place(steps: list[tuple[str, str]]) -> _Place:
+    """Return the names and entries of steps, one after the other."""
     return tuple(part for name, entry in steps for part in ((name, _Entry(entry)) if entry else (name,)))
 
 
 def _nearest(path: str) -> str:
-    """What is told of a field that stands in no section of a deck."""
-    from proprotor.deck.describe import deck_fields
-    from proprotor.deck.sections import Deck
-
+    """Return the message for a field that is in no section of a deck, with the nearest field."""
     by_name = {field.path.rpartition(".")[2]: field.path for field in deck_fields()}
     close = difflib.get_close_matches(path.rpartition(".")[2].lower(), by_name, n=1)
     if "." not in path and close:
@@ -87,9 +87,7 @@ def _nearest(path: str) -> str:
 
 
 def _value(text: str, steps: list[tuple[str, str]]) -> Any:
-    """Text as TOML has it where it does, and as a number with its provenance where the field is one."""
-    from proprotor.deck.fields import Reading
-
+    """Return text as a TOML value if possible, with a provenance for a field that is a number."""
     field = _field([name for name, _ in steps])
     try:
         read = tomllib.loads(f"value = {text}")
@@ -105,9 +103,7 @@ def _value(text: str, steps: list[tuple[str, str]]) -> Any:
 
 
 def _field(names: list[str]) -> Any:
-    """The definition of a field, which is one of several kinds of support perhaps; None where there is none."""
-    from proprotor.deck.sections import sections_at
-
+    """Return the definition of a field, for [support] of the first kind that has it; None for an unknown field."""
     found = [
         section.model_fields[names[-1]]
         for section in sections_at(tuple(names[:-1])).values()
@@ -127,7 +123,7 @@ def _assumed(value: Any) -> dict[str, Any]:
 
 
 def _put(changes: dict[str, Any], place: tuple[str, ...], value: Any) -> None:
-    """A value into nested tables."""
+    """Put a value into nested tables."""
     *outer, last = place
     for name in outer:
         within = changes.setdefault(name, {})
@@ -139,39 +135,39 @@ def _put(changes: dict[str, Any], place: tuple[str, ...], value: Any) -> None:
     changes[last] = value
 
 
-def _replaced(tables: Any, place: Place, value: Any, told: str) -> Any:
-    """Nested tables and lists with one value replaced, nothing changed in place."""
+def _replaced(tables: Any, place: _Place, value: Any, path: str) -> Any:
+    """Return nested tables and lists with one value replaced; the given ones do not change."""
     if not place:
         return value
     key, further = place[0], place[1:]
     if isinstance(key, _Entry):
         if not isinstance(tables, list):
-            raise InputError(f"{told}[{key}]", None, "is no entry of a list of this deck")
-        position = _position(tables, key, told)
-        replaced = _replaced(tables[position], further, value, f"{told}[{key}]")
+            raise InputError(f"{path}[{key}]", None, "is no entry of a list of this deck")
+        position = _position(tables, key, path)
+        replaced = _replaced(tables[position], further, value, f"{path}[{key}]")
         return [*tables[:position], replaced, *tables[position + 1 :]]
-    inner = f"{told}.{key}" if told else key
+    inner = f"{path}.{key}" if path else key
     if not isinstance(tables, dict):
         raise InputError(inner, None, "stands in no table of this deck")
     return tables | {key: _replaced(tables.get(key), further, value, inner)}
 
 
-def _position(entries: list[Any], name: str, told: str) -> int:
-    """Where an entry stands in a list, by its name, or by its number from 0."""
+def _position(entries: list[Any], name: str, path: str) -> int:
+    """Return the position of an entry in a list, by its name or by its number from 0."""
     names = [str(entry.get("name")) if isinstance(entry, dict) else "" for entry in entries]
     if name in names:
         return names.index(name)
     if name.isdecimal() and len(name) < 6 and int(name) < len(entries):
         return int(name)
-    raise InputError(f"{told}[{name}]", None, unknown_name(name, names, "name"))
+    raise InputError(f"{path}[{name}]", None, unknown_name(name, names, "name"))
 
 
 def _titled(tables: dict[str, Any], settings: Mapping[str, str]) -> dict[str, Any]:
-    """The tables with a title that tells what was set, so that no result is taken for the deck's own."""
+    """Return the tables with the settings in the title, so that no result is mistaken for one of the deck itself."""
     case = tables.get("case")
     if not settings or "case.title" in settings or not isinstance(case, dict):
         return tables
-    told = ", ".join(f"{path} = {' '.join(text.split())}" for path, text in settings.items())
-    told = told if len(told) <= _LONGEST_TITLE else f"{len(settings)} fields set"
+    listed = ", ".join(f"{path} = {' '.join(text.split())}" for path, text in settings.items())
+    listed = listed if len(listed) <= _LONGEST_TITLE else f"{len(settings)} fields set"
     title = case.get("title")
-    return tables | {"case": case | {"title": f"{title} ({told})"}} if isinstance(title, str) else tables
+    return tables | {"case": case | {"title": f"{title} ({listed})"}} if isinstance(title, str) else tables

@@ -1,4 +1,4 @@
-"""Distributions along the blade from a CSV file: one row a station, a unit in the head of each column.
+"""Read distributions along the blade from a CSV file: one row a station, a unit in the head of each column.
 
 ::
 
@@ -6,9 +6,9 @@
     0.0,    34.4,        17.0,         0.90
     12.5,   -5.8,        13.5,         0.15
 
-The column of the stations is ``r_over_R``, without a unit, or ``r`` with one. Columns are parted by commas, semicolons
-or tabs, numbers have a decimal point. Empty lines and lines that begin with ``#`` are passed over. Cells are numbers
-and nothing else: no formula is evaluated.
+The column of the stations is ``r_over_R``, without a unit, or ``r`` with a unit. Commas, semicolons or tabs separate
+the columns; numbers have a decimal point. Empty lines and lines that begin with ``#`` are ignored. Cells contain
+numbers only: no formula is evaluated.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from proprotor.errors import InputError, printable, unknown_name
 from proprotor.files.text import read_text
 from proprotor.units import factor_to_si
 
-STATIONS = ("r_over_R", "r")
+_STATIONS = ("r_over_R", "r")
 
 _LARGEST = 1_000_000  # bytes
 _MOST_STATIONS = 10_000
 _HEAD = re.compile(r"\s*([^\[\]]*?)\s*(?:\[([^\[\]]*)\])?\s*")
 _NUMBER = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*")
 _DELIMITERS = ",;\t"
-_ROUNDING = 1e-9  # of the radius: a tip of 150 inch is one of 12.5 ft
+_ROUNDING = 1e-9  # relative to the radius: a tip at 150 inch equals one at 12.5 ft
 
 
-class Distribution(NamedTuple):
+class _Distribution(NamedTuple):
     """A column of a file, along the blade.
 
     r_over_R : stations (n,), increasing; values : (n,) in SI; unit : as the file has it
@@ -56,7 +56,7 @@ class _Head(NamedTuple):
 
 
 class _Fault(Exception):
-    """A rule the file breaks."""
+    """A rule that the file breaks."""
 
 
 def read_stations(
@@ -67,8 +67,8 @@ def read_stations(
     radius: float | None = None,
     holds: Callable[[float], bool] = lambda value: True,
     rule: str = "",
-) -> Distribution:
-    """One column of a file of blade stations.
+) -> _Distribution:
+    """Return one column of a file of blade stations.
 
     Parameters
     ----------
@@ -76,11 +76,11 @@ def read_stations(
     column : str
         Name of the column, without its unit.
     unit : str
-        SI unit that values are wanted in; ``""`` for plain numbers.
+        SI unit of the returned values; ``""`` for plain numbers.
     radius : float, optional
         m; needed where the stations are ``r``.
     holds, rule : callable and str
-        A condition on each SI value, and how a message states it.
+        A condition on each SI value, and its rule for a message.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def read_stations(
 
 
 def _table(text: str) -> tuple[list[_Head], Iterator[tuple[int, list[str]]]]:
-    """The heads of the columns, and the lines of cells that follow, with their numbers."""
+    """Return the heads of the columns, and the lines of cells below with their line numbers."""
     lines = [
         (number, line)
         for number, line in enumerate(re.split("\r\n|\r|\n", text), start=1)
@@ -117,6 +117,7 @@ def _table(text: str) -> tuple[list[_Head], Iterator[tuple[int, list[str]]]]:
 
 
 def _rows(lines: list[tuple[int, str]], delimiter: str, columns: int) -> Iterator[tuple[int, list[str]]]:
+    """Yield the cells of each line with its line number."""
     for number, line in lines:
         cells = _cells(number, line, delimiter)
         if len(cells) > columns:  # a decimal comma makes two cells of a number
@@ -125,7 +126,7 @@ def _rows(lines: list[tuple[int, str]], delimiter: str, columns: int) -> Iterato
 
 
 def _cells(number: int, line: str, delimiter: str) -> list[str]:
-    """The cells of a line, without the empty ones that spreadsheets leave at its end."""
+    """Return the cells of a line, without the empty cells that spreadsheets leave at its end."""
     try:
         (cells,) = csv.reader([line], delimiter=delimiter, strict=True, skipinitialspace=True)
     except (csv.Error, ValueError):
@@ -136,6 +137,7 @@ def _cells(number: int, line: str, delimiter: str) -> list[str]:
 
 
 def _as_head(number: int, place: int, text: str) -> _Head:
+    """Return the head of a column from its text, name and unit."""
     match = _HEAD.fullmatch(text)
     if match is None or not match[1]:
         raise _Fault(f'line {number}, column {place + 1}: must be a name and a unit, such as "twist [deg]"')
@@ -143,6 +145,7 @@ def _as_head(number: int, place: int, text: str) -> _Head:
 
 
 def _head(heads: list[_Head], column: str) -> _Head:
+    """Return the head of a column by name."""
     for head in heads:
         if head.name == column:
             return head
@@ -150,14 +153,16 @@ def _head(heads: list[_Head], column: str) -> _Head:
 
 
 def _stations_head(heads: list[_Head]) -> _Head:
-    found = [head for head in heads if head.name in STATIONS]
+    """Return the head of the column of stations."""
+    found = [head for head in heads if head.name in _STATIONS]
     if len(found) != 1:
-        told = "has no column of stations" if not found else "has two columns of stations"
-        raise _Fault(f'{told}; give "r_over_R", or "r" with a unit')
+        fault = "has no column of stations" if not found else "has two columns of stations"
+        raise _Fault(f'{fault}; give "r_over_R", or "r" with a unit')
     return found[0]
 
 
 def _factor(head: _Head, unit: str) -> float:
+    """Return the size of a column's unit in the SI unit."""
     try:
         return factor_to_si(head.text, head.unit, unit)
     except InputError as error:
@@ -165,7 +170,7 @@ def _factor(head: _Head, unit: str) -> float:
 
 
 def _scale(head: _Head, radius: float | None) -> float:
-    """r/R of one unit of the stations."""
+    """Return r/R of one unit of the stations."""
     if head.name == "r_over_R":
         return _factor(head, "")
     if radius is None:
@@ -181,7 +186,7 @@ def _distribution(
     to_si: float,
     holds: Callable[[float], bool],
     rule: str,
-) -> Distribution:
+) -> _Distribution:
     r_over_R: list[float] = []
     found: list[float] = []
     for number, cells in rows:
@@ -199,16 +204,18 @@ def _distribution(
             raise _Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
     if len(found) < 2:
         raise _Fault("must have two stations or more")
-    return Distribution(tuple(r_over_R), tuple(found), values.unit)
+    return _Distribution(tuple(r_over_R), tuple(found), values.unit)
 
 
 def _on_the_blade(number: int, head: _Head, r: float) -> float:
+    """Return r/R, with rounding at root and tip removed."""
     if not -_ROUNDING <= r <= 1 + _ROUNDING:
         raise _at(number, head, f"is {r:.6g} R; must lie between 0 (centre of rotation) and R (tip)")
     return min(max(r, 0.0), 1.0)
 
 
 def _number(number: int, cells: list[str], head: _Head) -> float:
+    """Return the number in a column of a line."""
     if len(cells) <= head.place:
         raise _at(number, head, "has no such cell")
     text = cells[head.place]
@@ -220,4 +227,5 @@ def _number(number: int, cells: list[str], head: _Head) -> float:
 
 
 def _at(number: int, head: _Head, rule: str) -> _Fault:
+    """Return the fault at a line and column of the file."""
     return _Fault(f"line {number}, column {head.place + 1} ({head.text}): {rule}")

@@ -1,16 +1,16 @@
 """The section [support] of a deck, one set of fields for each kind.
 
 ``kind = "normal-modes"``
-    includes_rotor and shaft, how the rotor was held when the modes were found with it on, see `proprotor.model.rotor_share`;
-    a table ``[[support.modes]]`` for each mode with name; coordinate, "length" or "angle"; generalized_mass,
-    frequency, damping_ratio; and the motion of the hub per unit of the coordinate, x, y, z, alpha_x, alpha_y,
-    alpha_z, zero where left out.
+    includes_rotor and shaft, how the rotor was held while the modes were found with the rotor on, see
+    `proprotor.model.rotor_share`; a table ``[[support.modes]]`` for each mode with name; coordinate, "length" or
+    "angle"; generalized_mass, frequency, damping_ratio; and the motion of the hub per unit of the coordinate, x, y, z,
+    alpha_x, alpha_y, alpha_z, zero if left out.
 ``kind = "beam-wing"``
     The arguments of `proprotor.support.beam_wing.Wing` and `Pylon`, a property along the wing one value or
     ``{ y_over_span = [...], value = [...], unit = "lbf*in**2" }``. The downstop: downstop, on (true) or off;
-    downstop_stiffness_on and downstop_stiffness_off, rigid where left out. rotor_mass, what the rotor model has at
-    the hub. modes, how many to keep, all coordinates when left out; damping_ratio or loss_factor of every mode and
-    beam_damping_ratio, chord_damping_ratio, torsion_damping_ratio of those.
+    downstop_stiffness_on and downstop_stiffness_off, rigid if left out. rotor_mass, the mass of the rotor model at the
+    hub. modes, the number of modes, all coordinates if left out; damping_ratio or loss_factor of every mode, and
+    beam_damping_ratio, chord_damping_ratio, torsion_damping_ratio of the modes of these kinds.
 ``kind = "matrices"``
     file, an .npz file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names: see
     `proprotor.support.matrix_files`. A table hub; includes_rotor, shaft, rotor_mass, modes, damping_ratio, length_unit,
@@ -22,9 +22,9 @@
     distance from pivot to hub; pitch_inertia, yaw_inertia, pitch_stiffness, yaw_stiffness, pitch_damping,
     yaw_damping; includes_rotor, shaft.
 ``kind = "rigid"``
-    Nothing: the hub does not move.
+    No fields: the hub does not move.
 ``[support.wing_aerodynamics]``
-    Quasi-steady airloads of the wing, left out unless this table is there: lift_slope, chord, elastic_axis and perhaps
+    Quasi-steady airloads of the wing, only with this table: lift_slope, chord, elastic_axis and perhaps
     aerodynamic_centre and downwash_point, see `proprotor.support.wing_aerodynamics`; for kinds other than beam-wing
     also span, mast_length and sweep.
 """
@@ -35,6 +35,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from proprotor.deck.alternatives import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
 from proprotor.deck.fields import (
     Angle,
     AxialStiffness,
@@ -68,43 +69,47 @@ from proprotor.deck.fields import (
     needed,
     optional,
 )
-from proprotor.deck.file import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
 from proprotor.errors import InputError
 from proprotor.support.normal_modes import HUB_AXES
 
 _HELD = (
     "How the rotor, whose share is taken off, was held in these modes: tilting on its gimbal, as one body with the "
-    "shaft, a point mass at the hub; false where it was not on, true gimballed where there is a gimbal, else rigid."
+    "shaft, or a point mass at the hub; false for modes without rotor, true for gimballed if the rotor has a gimbal, "
+    "else rigid."
 )
-_SHAFT = "Whether the rotor could turn about its shaft then, gimballed or rigid; held where left out."
+_SHAFT = "Whether a gimballed or rigid rotor could turn about its shaft in these modes; held if left out."
 
 
 class WingAerodynamicsSection(Section):
     """Quasi-steady airloads of the wing."""
 
-    lift_slope: Slope = needed("Of a section across the elastic axis.")
-    chord: PositiveLength = needed("Streamwise.")
-    elastic_axis: Number = needed("In chords behind the leading edge.")
-    aerodynamic_centre: Number = optional("In chords behind the leading edge.")
-    downwash_point: Number = optional("In chords behind the leading edge.")
+    lift_slope: Slope = needed("Lift slope of a section across the elastic axis.")
+    chord: PositiveLength = needed("Streamwise chord of the wing.")
+    elastic_axis: Number = needed("Elastic axis, in chords behind the leading edge.")
+    aerodynamic_centre: Number = optional("Aerodynamic centre, in chords behind the leading edge.")
+    downwash_point: Number = optional("Point of the downwash, in chords behind the leading edge.")
 
 
 class AssumedShapeSection(WingAerodynamicsSection):
     """Quasi-steady airloads of a wing that is assumed to bend as a cantilever with a load at its tip."""
 
-    span: PositiveLength = needed("From the mount to the pylon.")
-    mast_length: Offset = needed("From the elastic axis at the tip forward to the hub.")
-    sweep: Angle = optional("Of the elastic axis, back positive.")
+    span: PositiveLength = needed("Span, from the mount to the pylon.")
+    mast_length: Offset = needed("Length from the elastic axis at the tip forward to the hub.")
+    sweep: Angle = optional("Sweep of the elastic axis, back positive.")
 
 
 class ModeSection(Section):
-    """A normal mode: its generalised mass, and the hub's motion per unit of its coordinate, 0 where left out."""
+    """A normal mode: its generalised mass, and the hub's motion per unit of its coordinate, 0 if left out."""
 
-    name: Name = needed("Of the mode, everywhere.")
-    coordinate: Literal["length", "angle"] = needed("What one unit of the mode is.")
-    generalized_mass: GeneralizedMass = needed("Mass for a length, moment of inertia for an angle.")
-    frequency: Frequency = needed("Undamped, without airloads.")
-    damping_ratio: DampingRatio = needed("Structural, of critical.")
+    name: Name = needed("Name of the mode in all results.")
+    coordinate: Literal["length", "angle"] = needed(
+        "Kind of the coordinate: one unit of the mode is a length or an angle."
+    )
+    generalized_mass: GeneralizedMass = needed(
+        "Generalised mass: a mass for a length, a moment of inertia for an angle."
+    )
+    frequency: Frequency = needed("Undamped frequency, without airloads.")
+    damping_ratio: DampingRatio = needed("Structural damping ratio, relative to critical.")
     x: HubDisplacement = optional("Hub motion up per unit of the coordinate.")
     y: HubDisplacement = optional("Hub motion outboard per unit of the coordinate.")
     z: HubDisplacement = optional("Hub motion forward along the shaft per unit of the coordinate.")
@@ -126,7 +131,7 @@ class NormalModesSection(Section):
     includes_rotor: IncludesRotor = needed(_HELD)
     shaft: Shaft = optional(_SHAFT)
     modes: Annotated[list[ModeSection], Field(min_length=1)] = needed("One table for each mode.")
-    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none where left out.")
+    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
 
     @model_validator(mode="after")
     def _names_differ(self) -> NormalModesSection:
@@ -144,42 +149,58 @@ class BeamWingSection(Section):
     needed_unless_replaced: ClassVar[tuple[str, ...]] = ("damping_ratio", "loss_factor")
 
     kind: Literal["beam-wing"] = needed("A wing of beam elements.")
-    span: PositiveLength = needed("From the mount to the pylon, outboard.")
-    beam_stiffness: BendingStiffness = needed("EI of bending up and down.")
-    chord_stiffness: BendingStiffness = needed("EI of bending fore and aft.")
-    torsion_stiffness: BendingStiffness = needed("GJ.")
-    axial_stiffness: AxialStiffness = needed("EA.")
-    mass_per_length: MassPerLength = needed("Along the elastic axis, the centre of mass on it.")
-    torsional_inertia_per_length: InertiaPerLength = needed("About the elastic axis.")
-    sweep: Angle = optional("Of the elastic axis, back positive.")
-    dihedral: Angle = optional("Of the elastic axis, up positive.")
-    elements: Size = optional("How many, of equal length.")
-    nacelle_mass: MassOrNone = needed("Without the rotor.")
-    nacelle_pitch_inertia: InertiaOrNone = needed("About the nacelle's centre of mass, nose up.")
-    nacelle_yaw_inertia: InertiaOrNone = needed("About the nacelle's centre of mass, about the upward axis.")
-    nacelle_roll_inertia: InertiaOrNone = needed("About the nacelle's centre of mass, about the shaft.")
-    nacelle_forward: Offset = optional("From the elastic axis at the tip to the nacelle's centre of mass.")
-    nacelle_up: Offset = optional("From the elastic axis at the tip to the nacelle's centre of mass.")
-    nacelle_outboard: Offset = optional("From the elastic axis at the tip to the nacelle's centre of mass.")
-    mast_length: Offset = needed("From the elastic axis at the tip forward to the hub.")
-    mast_height: Offset = optional("From the elastic axis at the tip up to the hub.")
-    mast_outboard: Offset = optional("From the elastic axis at the tip outboard to the hub.")
-    hub_mass: MassOrNone = optional("What belongs to the rotor and is not in its blades.")
-    rotor_mass: MassOrNone = needed("What the rotor model has at the hub; modes are those with it.")
+    span: PositiveLength = needed("Span, from the mount outboard to the pylon.")
+    beam_stiffness: BendingStiffness = needed("Stiffness EI of bending up and down.")
+    chord_stiffness: BendingStiffness = needed("Stiffness EI of bending fore and aft.")
+    torsion_stiffness: BendingStiffness = needed("Torsion stiffness GJ.")
+    axial_stiffness: AxialStiffness = needed("Axial stiffness EA.")
+    mass_per_length: MassPerLength = needed("Mass per length, with the centre of mass on the elastic axis.")
+    torsional_inertia_per_length: InertiaPerLength = needed(
+        "Moment of inertia per length about the elastic axis."
+    )
+    sweep: Angle = optional("Sweep of the elastic axis, back positive.")
+    dihedral: Angle = optional("Dihedral of the elastic axis, up positive.")
+    elements: Size = optional("Number of elements of equal length.")
+    nacelle_mass: MassOrNone = needed("Mass of the nacelle without the rotor.")
+    nacelle_pitch_inertia: InertiaOrNone = needed(
+        "Nose-up moment of inertia about the nacelle's centre of mass."
+    )
+    nacelle_yaw_inertia: InertiaOrNone = needed(
+        "Moment of inertia about the upward axis at the nacelle's centre of mass."
+    )
+    nacelle_roll_inertia: InertiaOrNone = needed(
+        "Moment of inertia about the shaft axis at the nacelle's centre of mass."
+    )
+    nacelle_forward: Offset = optional(
+        "Offset of the nacelle's centre of mass forward of the elastic axis at the tip."
+    )
+    nacelle_up: Offset = optional("Offset of the nacelle's centre of mass above the elastic axis at the tip.")
+    nacelle_outboard: Offset = optional("Offset of the nacelle's centre of mass outboard of the tip.")
+    mast_length: Offset = needed("Length from the elastic axis at the tip forward to the hub.")
+    mast_height: Offset = optional("Offset of the hub above the elastic axis at the tip.")
+    mast_outboard: Offset = optional("Offset of the hub outboard of the tip.")
+    hub_mass: MassOrNone = optional("Mass of the rotor's hub, without the blades.")
+    rotor_mass: MassOrNone = needed("Mass of the rotor model at the hub, which the modes include.")
     downstop: bool = optional("Whether the pylon is on its downstop.", True)
     downstop_stiffness_on: PositiveStiffness = optional(
-        "Pylon to wing in pitch, on the downstop; rigid where left out."
+        "Pitch stiffness from pylon to wing, on the downstop; rigid if left out."
     )
     downstop_stiffness_off: PositiveStiffness = optional(
-        "Pylon to wing in pitch, off the downstop; rigid where left out."
+        "Pitch stiffness from pylon to wing, off the downstop; rigid if left out."
     )
-    modes: Size = optional("How many of the lowest modes to keep; all coordinates where left out.")
-    damping_ratio: DampingRatio = optional("Of every mode, of critical.")
-    loss_factor: NotNegative = optional("Structural g of every mode, taken as g/2 of critical.")
-    beam_damping_ratio: DampingRatio = optional("Of beam modes instead of that of every mode.")
-    chord_damping_ratio: DampingRatio = optional("Of chord modes instead of that of every mode.")
-    torsion_damping_ratio: DampingRatio = optional("Of torsion modes instead of that of every mode.")
-    wing_aerodynamics: WingAerodynamicsSection | None = optional("Airloads of the wing; none where left out.")
+    modes: Size = optional("Number of lowest modes to keep; all coordinates if left out.")
+    damping_ratio: DampingRatio = optional("Damping ratio of every mode, relative to critical.")
+    loss_factor: NotNegative = optional(
+        "Structural loss factor g of every mode, used as a damping ratio g/2."
+    )
+    beam_damping_ratio: DampingRatio = optional("Damping ratio of beam modes, instead of that of every mode.")
+    chord_damping_ratio: DampingRatio = optional(
+        "Damping ratio of chord modes, instead of that of every mode."
+    )
+    torsion_damping_ratio: DampingRatio = optional(
+        "Damping ratio of torsion modes, instead of that of every mode."
+    )
+    wing_aerodynamics: WingAerodynamicsSection | None = optional("Airloads of the wing; none if left out.")
 
     @model_validator(mode="after")
     def _one_damping(self) -> BeamWingSection:
@@ -195,26 +216,26 @@ class MatricesSection(Section):
 
     kind: Literal["matrices"] = needed("Matrices from files.")
     file: File = optional("An .npz file with mass, stiffness, dofs and perhaps damping.")
-    mass: File = optional("A Matrix Market file.")
-    stiffness: File = optional("A Matrix Market file.")
-    damping: File = optional("A Matrix Market file.")
-    dofs: File = optional("A text file, the name of a coordinate on each line.")
+    mass: File = optional("Matrix Market file of the mass.")
+    stiffness: File = optional("Matrix Market file of the stiffness.")
+    damping: File = optional("Matrix Market file of the damping.")
+    dofs: File = optional("Text file with the name of a coordinate on each line.")
     hub: dict[str, str] | None = optional(
-        'For each of x, y, z, alpha_x, alpha_y, alpha_z the coordinate of the hub, "-" before it where it points '
-        "the other way; hub_x and so on where left out."
+        'Coordinate of the hub for each of x, y, z, alpha_x, alpha_y, alpha_z, with "-" in front if it has the '
+        "opposite direction; hub_x and so on if left out."
     )
     includes_rotor: IncludesRotor = needed(_HELD)
     shaft: Shaft = optional(_SHAFT)
     rotor_mass: MassOrNone = optional(
-        "What the rotor model has at the hub; modes are those with it. Not where the matrix includes the rotor."
+        "Mass of the rotor model at the hub, which the modes include; not for a mass matrix that includes the rotor."
     )
-    modes: Size = optional("How many of the lowest modes to keep; all coordinates where left out.")
+    modes: Size = optional("Number of lowest modes to keep; all coordinates if left out.")
     damping_ratio: DampingRatio = optional(
-        "Of every mode, of critical, where no damping matrix is given; 0 where left out."
+        "Damping ratio of every mode, relative to critical, without a damping matrix; 0 if left out."
     )
-    length_unit: PositiveLength = optional("The files' unit of length; 1 m where left out.")
-    mass_unit: Mass = optional("The files' unit of mass; 1 kg where left out.")
-    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none where left out.")
+    length_unit: PositiveLength = optional("Unit of length of the files; 1 m if left out.")
+    mass_unit: Mass = optional("Unit of mass of the files; 1 kg if left out.")
+    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
 
     @model_validator(mode="after")
     def _one_file_or_several(self) -> MatricesSection:
@@ -234,33 +255,35 @@ class NastranSection(Section):
     kind: Literal["nastran"] = needed("An .op2 file.")
     file: File = needed("The .op2 file.")
     grid: Size = needed("The grid point at the hub.")
-    subcase: Size = optional("Needed where the file has several.")
+    subcase: Size = optional("Subcase, needed for a file with several.")
     hub: dict[str, str] | None = optional(
-        'For each of x, y, z, alpha_x, alpha_y, alpha_z one of T1 to R3, "-" before it where it points the other '
-        "way; aircraft axes where left out."
+        'One of T1 to R3 for each of x, y, z, alpha_x, alpha_y, alpha_z, with "-" in front if it has the opposite '
+        "direction; aircraft axes if left out."
     )
     includes_rotor: IncludesRotor = needed(_HELD)
     shaft: Shaft = optional(_SHAFT)
-    modes: Size = optional("How many of the lowest modes; all where left out.")
-    damping_ratio: DampingRatio = optional("Of every mode, of critical; 0 where left out.")
-    length_unit: PositiveLength = optional("The run's unit of length; 1 m where left out.")
-    mass_unit: Mass = optional("The run's unit of mass; 1 kg where left out.")
-    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none where left out.")
+    modes: Size = optional("Number of lowest modes to keep; all if left out.")
+    damping_ratio: DampingRatio = optional(
+        "Damping ratio of every mode, relative to critical; 0 if left out."
+    )
+    length_unit: PositiveLength = optional("Unit of length of the run; 1 m if left out.")
+    mass_unit: Mass = optional("Unit of mass of the run; 1 kg if left out.")
+    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
 
 
 class PivotSection(Section):
-    """A rigid shaft that pitches and yaws about a point behind the hub; dampings left out are 0."""
+    """A rigid shaft that pitches and yaws about a point behind the hub; damping is 0 if left out."""
 
     kind: Literal["pivot"] = needed("A shaft on a pivot.")
     includes_rotor: IncludesRotor = needed(_HELD)
     shaft: Shaft = optional(_SHAFT)
-    distance: Offset = needed("From the pivot forward to the hub.")
-    pitch_inertia: Inertia = needed("About the pivot.")
-    yaw_inertia: Inertia = needed("About the pivot.")
-    pitch_stiffness: Stiffness = needed("Of the pivot.")
-    yaw_stiffness: Stiffness = needed("Of the pivot.")
-    pitch_damping: Damping = optional("Of the pivot.")
-    yaw_damping: Damping = optional("Of the pivot.")
+    distance: Offset = needed("Distance from the pivot forward to the hub.")
+    pitch_inertia: Inertia = needed("Moment of inertia in pitch about the pivot.")
+    yaw_inertia: Inertia = needed("Moment of inertia in yaw about the pivot.")
+    pitch_stiffness: Stiffness = needed("Pitch stiffness of the pivot.")
+    yaw_stiffness: Stiffness = needed("Yaw stiffness of the pivot.")
+    pitch_damping: Damping = optional("Pitch damping of the pivot.")
+    yaw_damping: Damping = optional("Yaw damping of the pivot.")
 
 
 class RigidSection(Section):
@@ -274,7 +297,7 @@ SupportSection = Annotated[
     Field(discriminator="kind"),
 ]
 
-# The tables of each kind by their place within [support].
+# The sections of each kind of support by their place in [support].
 SUPPORT_TABLES: dict[tuple[str, ...], type[Section]] = {
     ("normal-modes",): NormalModesSection,
     ("normal-modes", "modes"): ModeSection,
@@ -292,6 +315,7 @@ SUPPORT_KINDS = tuple(place[0] for place in SUPPORT_TABLES if len(place) == 1)
 
 
 def _exactly_one(section: Section, one: str, other: str) -> None:
+    """Refuse a section that gives both of two fields, or neither."""
     given = section.model_fields_set.intersection((one, other))
     if not given:
         raise InputError(one, None, f"is missing; give {one} or {other}")

@@ -1,4 +1,4 @@
-"""A deck as commented text: every field with its meaning, those left out as comments with an example."""
+"""Write a deck as commented text: every field with its meaning, fields left out as comments with an example."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from proprotor.deck.describe import DeckField, deck_fields
-from proprotor.deck.file import as_one_file
-from proprotor.deck.reading import FileName
+from proprotor.deck.per_revolution import as_one_file
+from proprotor.deck.written import FileName
 from proprotor.units import meaning
 
 _HEAD = """\
@@ -36,24 +36,24 @@ _SECTIONS = (
     "support.wing_aerodynamics",
 )
 _EXAMPLE = re.compile(r'such as ("[^"]*"|\S+?)(?:,| or|$)')
-_COLUMNS = 13  # of a list of numbers
+_COLUMNS = 13  # numbers of a list in one line
 
 
 def deck_text(
     tables: Mapping[str, Any], file: str | os.PathLike[str], base: str = "", variant: bool = False
 ) -> str:
-    """A deck with every field that there is.
+    """Return the text of a deck with every possible field.
 
     Parameters
     ----------
     tables : mapping
-        Of a valid deck, see `proprotor.deck.file.read_tables`.
+        Tables of a valid deck, see `proprotor.deck.file.read_tables`.
     file : str or path
-        Where the deck will stand: names of files start from there, and the case takes its name.
+        Place of the new deck: names of files start from its folder, and the case takes its name.
     base : str
-        The deck that these tables are of, for the head of the file.
+        Name of the deck that the tables belong to, for the head of the file.
     variant : bool
-        Only what differs from the base: its fields are comments, to be taken in where they change.
+        Whether to write a variant of the base: the fields of the base are comments, to be activated where they change.
     """
     place = Path(file)
     tables = tables if variant else as_one_file(dict(tables))
@@ -69,13 +69,13 @@ def deck_text(
 
 
 def case_name(file: str | os.PathLike[str]) -> str:
-    """The name of a case after its file."""
+    """Return the name of a case after its file."""
     name = re.sub(r"[^A-Za-z0-9 _.-]", "_", Path(file).name.removesuffix(".toml")).lstrip(" _.-")
     return name[:60] or "case"
 
 
 def example(field: DeckField) -> str:
-    """A value of a field as TOML has it: its default where it has one."""
+    """Return an example of a field as TOML: the default if it has one."""
     if field.default:
         return field.default if field.default[0] == '"' or " " not in field.default else f'"{field.default}"'
     if field.form == "distribution":
@@ -100,17 +100,18 @@ _EXAMPLES = {
 
 
 def _first_example(unit: str) -> str:
-    """Of a value in a unit, as messages give it."""
+    """Return the first example of a value in a unit that messages give."""
     found = _EXAMPLE.search(meaning(unit))
     return found[1] if found else "0"
 
 
 def _section(section: str, tables: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
+    """Yield the lines of a section."""
     given: Any = tables
     for name in section.split("."):
         given = given.get(name) if isinstance(given, Mapping) else None
     kind = tables["support"]["kind"] if section.startswith("support") else ""
-    own = [field for field in deck_fields() if _is_in(field, section, kind)]
+    own = [field for field in deck_fields() if _belongs_to(field, section, kind)]
     if not own:
         return
     absent = given is None
@@ -121,17 +122,13 @@ def _section(section: str, tables: Mapping[str, Any], place: Path, variant: bool
         if section == "case" and name == "name":
             yield from _given(field, name, case_name(place), place, "")
         elif isinstance(given, Mapping) and name in given and not _is_list_of_tables(given[name]):
-            keep = not variant or (section, name) in (("case", "title"),)
+            keep = not variant or (section, name) == ("case", "title")
             yield from _given(field, name, given[name], place, "" if keep else "# ")
-        elif (
-            not variant
-            and not (isinstance(given, Mapping) and name in given)
-            and not field.path.endswith("warnings")
-        ):
+        elif not (variant or name == "warnings" or (isinstance(given, Mapping) and name in given)):
             yield from _left_out(field, name)
 
 
-def _is_in(field: DeckField, section: str, kind: str) -> bool:
+def _belongs_to(field: DeckField, section: str, kind: str) -> bool:
     return field.path.rpartition(".")[0] == section and field.kind == kind
 
 
@@ -140,6 +137,7 @@ def _is_list_of_tables(value: Any) -> bool:
 
 
 def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
+    """Yield the lines of one normal mode of a support."""
     mark = "# " if variant else ""
     yield f"{mark}[[support.modes]]"
     for field in deck_fields():
@@ -149,16 +147,19 @@ def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
 
 
 def _given(field: DeckField, name: str, value: Any, place: Path, mark: str) -> Iterator[str]:
-    yield f"# {_told(field)}"
+    """Yield the lines of a field with its value, behind a mark."""
+    yield f"# {_comment(field)}"
     yield "\n".join(f"{mark}{line}" for line in f"{name} = {toml(_from(value, place))}".split("\n"))
 
 
 def _left_out(field: DeckField, name: str) -> Iterator[str]:
-    yield f"# {_told(field)}"
+    """Yield the lines of a field that the deck leaves out."""
+    yield f"# {_comment(field)}"
     yield f"# {name} = {example(field)}"
 
 
-def _told(field: DeckField) -> str:
+def _comment(field: DeckField) -> str:
+    """Return meaning, range, default and alternatives of a field."""
     parts = [field.meaning.rstrip(".")]
     if field.range:
         parts.append(field.range)
@@ -170,7 +171,7 @@ def _told(field: DeckField) -> str:
 
 
 def _from(value: Any, place: Path) -> Any:
-    """A value whose names of files start from the folder of the new deck."""
+    """Return a value in which names of files start from the folder of the new deck."""
     if isinstance(value, FileName):
         return os.path.relpath(value.folder / value, place.parent).replace(os.sep, "/")
     if isinstance(value, Mapping):
@@ -179,7 +180,7 @@ def _from(value: Any, place: Path) -> Any:
 
 
 def toml(value: Any) -> str:
-    """A value as TOML has it."""
+    """Return a value as TOML."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -192,6 +193,7 @@ def toml(value: Any) -> str:
 
 
 def _list(values: list[Any]) -> str:
+    """Return a list as TOML, a long list over several lines."""
     texts = [toml(value) for value in values]
     if len(texts) <= _COLUMNS and not any(isinstance(value, str) for value in values):
         return f"[{', '.join(texts)}]"

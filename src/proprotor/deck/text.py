@@ -1,4 +1,4 @@
-"""The text of a deck, which is somebody else's: printable, and its prose on one line."""
+"""Check the text of a deck, which may come from anyone: printable, with prose on one line."""
 
 from __future__ import annotations
 
@@ -7,27 +7,27 @@ from typing import Any
 
 from proprotor.errors import InputError, unprintable
 
-Place = tuple[str | int, ...]
+_Place = tuple[str | int, ...]
 
 
-def plain_text(tables: dict[str, Any], told: Callable[[Place, Any], str]) -> dict[str, Any]:
-    """The tables of a deck with line ends and tabs of its prose as spaces.
+def plain_text(tables: dict[str, Any], name_of: Callable[[_Place, Any], str]) -> dict[str, Any]:
+    """Return the tables of a deck with spaces in place of the line ends and tabs of its prose.
 
     Parameters
     ----------
     tables : dict
-    told : callable
-        The name of a field in a message, from its place and the tables.
+    name_of : callable
+        Returns the name of a field for a message from its place and the tables.
 
     Raises
     ------
     InputError
-        For text with control characters, which would move the cursor of a terminal, and with what turns the
-        direction of text round: a line for each.
+        For text with control characters, which would move the cursor of a terminal, or with characters that reverse
+        the direction of text: one line for each field.
     """
     plain: dict[str, Any] = _on_one_line(tables, ())
     problems = [
-        InputError(told(_of_number(place), tables), text, f"must be printable text, without {code}")
+        InputError(name_of(_of_number(place), tables), text, f"must be printable text, without {code}")
         for place, text in _texts(plain, ())
         if (code := unprintable(text))
     ]
@@ -37,12 +37,13 @@ def plain_text(tables: dict[str, Any], told: Callable[[Place, Any], str]) -> dic
     return plain
 
 
-def _of_number(place: Place) -> Place:
-    """The place of a number that is written as a table, for that of the text within the table."""
+def _of_number(place: _Place) -> _Place:
+    """Return the place of a number that is written as a table, from the place of the text in the table."""
     return place[:-1] if place[-1:] == ("value",) else place
 
 
-def _on_one_line(entry: Any, place: Place) -> Any:
+def _on_one_line(entry: Any, place: _Place) -> Any:
+    """Return an entry with its prose on one line."""
     if isinstance(entry, dict):
         return {name: _on_one_line(inner, (*place, name)) for name, inner in entry.items()}
     if isinstance(entry, list):
@@ -50,14 +51,14 @@ def _on_one_line(entry: Any, place: Place) -> Any:
     return " ".join(entry.split()) if isinstance(entry, str) and _is_prose(place) else entry
 
 
-def _is_prose(place: Place) -> bool:
+def _is_prose(place: _Place) -> bool:
     return place[-1] == "source" or (
         place[0] == "case" and place[1:2] in (("description",), ("calibration",), ("warnings",))
     )
 
 
-def _texts(entry: Any, place: Place) -> Iterator[tuple[Place, str]]:
-    """Every text of a deck with its place; names of fields are those that a deck has, or refused elsewhere."""
+def _texts(entry: Any, place: _Place) -> Iterator[tuple[_Place, str]]:
+    """Yield every text of a deck with its place; names of fields are checked by the sections."""
     if isinstance(entry, dict):
         for name, inner in entry.items():
             yield from _texts(inner, (*place, name))

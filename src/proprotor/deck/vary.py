@@ -1,4 +1,4 @@
-"""Other designs of a case: numbers of its deck replaced by others, one design or many at once."""
+"""Build other designs of a case by other values for numbers of its deck, one design or many at once."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from proprotor.datum import Datum
     from proprotor.deck.sections import Deck
 
-_FIXED = (str, int, tuple)  # files, whole numbers and lists, which do not vary as others do
+_FIXED = (str, int, tuple)  # files, whole numbers and lists, which have no range
 
 
 def design_inputs(case: Configuration) -> dict[str, Datum]:
-    """The numbers of a case's deck that may vary, by path, with value, SI unit, status and source.
+    """Return the numbers of a case's deck that may vary, by path, with value, SI unit, status and source.
 
     A path is the place in the deck: ``rotor.precone``, ``rotor.airfoil.lift_slope``, ``operation.rotor_speed``,
     ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. Distributions along the blade, blade
-    frequencies, files and what follows from other numbers are left out.
+    frequencies, files and numbers that follow from other numbers are left out.
 
     Parameters
     ----------
     case : Case
-        Made from a deck.
+        A case built from a deck.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
     Raises
     ------
     InputError
-        When the case was not made from a deck.
+        When the case was not built from a deck.
     """
     _deck_of(case)
     return {
@@ -52,11 +52,11 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
 
 
 def vary(case: C, values: Mapping[str, Any]) -> C:
-    """The case with other values of some numbers of its deck.
+    """Return the case with other values for some numbers of its deck.
 
-    What follows from a number follows: a spring from a frequency and an inertia, the chord from the Lock number. A
-    frequency per revolution was turned to rad/s at the rotor speed of its deck, and keeps that value when the rotor
-    speed varies, as it does when a setting or a variant of the deck changes it.
+    Numbers that follow from a changed number change too: a spring from a frequency and an inertia, the chord from the
+    Lock number. A frequency per revolution was converted to rad/s at the rotor speed of its deck, and keeps this value
+    when the rotor speed varies, by `vary` as by a setting or a variant of the deck.
 
     Parameters
     ----------
@@ -64,12 +64,12 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
     values : mapping of str to float, array, text, pint quantity or xarray.DataArray
         By path, see `design_inputs`: numbers in SI; text such as "1.5 deg", quantities, and data arrays with an
         attribute ``units`` are converted. Arrays broadcast with each other and with the airspeeds of
-        `Case.linearize`. Complex numbers are taken, for derivatives by a complex step.
+        `Case.linearize`. Complex numbers are allowed, for derivatives by a complex step.
 
     Returns
     -------
     Case
-        Its rotor, operation and support hold arrays where numbers were given as arrays.
+        A case whose rotor, operation and support have arrays for numbers given as arrays.
 
     Raises
     ------
@@ -87,6 +87,7 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
 
 
 def _deck_of(case: Configuration) -> Deck:
+    """Return the deck of a case; refuse a case without a deck."""
     if case.deck is None:
         raise InputError("case", case.name, "must be made from a deck, whose numbers may then vary")
     deck: Deck = case.deck
@@ -94,6 +95,7 @@ def _deck_of(case: Configuration) -> Deck:
 
 
 def _number(path: str, value: Any, unit: str) -> np.ndarray:
+    """Return the SI value of a number as an array, of floats or complex numbers."""
     if has_own_unit(value):
         from proprotor.units import values_in_si  # here, because pint takes long to import
 

@@ -1,9 +1,9 @@
 """Results in files of MATLAB (``.mat``, version 5), which Octave and SciPy read as well.
 
-Names that MATLAB does not take are altered (``rotor.precone`` to ``rotor_precone``), and ``names`` in the file tells
-what they were. Lists of text are cell arrays, logical values stay logical, complex numbers complex. Axes of a batch of
-models come last, as pages: M(:, :, k) is the mass matrix of the k-th point. A dataset keeps its order of axes, which
-``dims`` names.
+Names that MATLAB does not take are altered (``rotor.precone`` to ``rotor_precone``), and ``names`` in the file keeps
+the names of before. Lists of text are cell arrays, logical values stay logical, complex numbers complex. Axes of a
+batch of models come last, as pages: M(:, :, k) is the mass matrix of the k-th point. A dataset keeps its order of axes,
+which ``dims`` names.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
 
     A model becomes M, C, K, B (inputs of the second-order equations), dofs, inputs, airspeed, trim, and, where it has
     inputs, state_space with A, B, C, D, states, inputs and outputs. A dataset becomes one variable for each of its
-    variables and coordinates, with dims, units and attributes as structs by the same names. The attributes of both say
-    the case and the options in force (`proprotor.model.stamp`).
+    variables and coordinates, with dims, units and attributes as structs by the same names. Attributes of a model and
+    of a dataset say the case and the options in force (`proprotor.model.stamp`).
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
     Raises
     ------
     InputError
-        When the path is no such file or cannot be written, or the results are something else or too large for it.
+        When the path does not end in ``.mat`` or cannot be written, or the results are something else or too large.
     OSError
         When the file cannot be written.
     """
@@ -74,18 +74,18 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
 
 
 def matlab_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, str]:
-    """A name that MATLAB takes for each name: a letter, then letters, digits and underscores, 63 at most.
+    """Return a name that MATLAB takes for each name: a letter, then letters, digits and underscores, 63 at most.
 
     Parameters
     ----------
     names : iterable of str
     taken : iterable of str
-        Names that others have already.
+        Names that are in use already.
 
     Returns
     -------
     dict of str to str
-        By the names that were given.
+        The names of MATLAB by the given names.
     """
     found: dict[str, str] = {}
     used = set(taken)
@@ -126,10 +126,8 @@ def _of_dataset(data: xarray.Dataset) -> dict[str, Any]:
     if not hasattr(data, "data_vars"):
         raise InputError("results", type(data).__name__, "must be a LinearModel or an xarray.Dataset")
     names = matlab_names(map(str, data.variables), _OWN)
-    content: dict[str, Any] = {
-        names[str(name)]: _plain(variable.values) for name, variable in data.variables.items()
-    }
     by_name = {names[str(name)]: variable for name, variable in data.variables.items()}
+    content: dict[str, Any] = {name: _plain(variable.values) for name, variable in by_name.items()}
     content["dims"] = {name: _cells(map(str, variable.dims)) for name, variable in by_name.items()}
     content["units"] = {
         name: str(variable.attrs["units"]) for name, variable in by_name.items() if "units" in variable.attrs
@@ -150,12 +148,12 @@ def _attributes(attrs: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def _pages(matrices: Array) -> Array:
-    """Matrices (..., n, m) as (n, m, ...)."""
+    """Return matrices (..., n, m) as (n, m, ...)."""
     return np.moveaxis(np.asarray(matrices), (-2, -1), (0, 1))
 
 
 def _plain(values: Any) -> Any:
-    """Numbers as they are, times and text as text."""
+    """Return numbers as they are, times and text as text."""
     array = np.asarray(values)
     if array.dtype.kind in "biufc":
         return array
@@ -164,6 +162,6 @@ def _plain(values: Any) -> Any:
 
 
 def _cells(texts: Iterable[Any]) -> Array:
-    """Text as a cell array: a column of a list, the shape of an array."""
+    """Return text as a cell array: a list as a column, an array in its shape."""
     array = np.array(texts if isinstance(texts, np.ndarray) else list(texts), dtype=object)
     return array.reshape(-1, 1) if array.ndim == 1 else array

@@ -1,4 +1,4 @@
-"""Results in netCDF files that every reader opens: complex numbers are stored as real and imaginary parts."""
+"""Results in netCDF files, which every reader opens: complex numbers are stored as real and imaginary parts."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from proprotor.needs import need
 if TYPE_CHECKING:
     import xarray
 
-PARTS = ("_real", "_imag")
-_COMPLEX = "complex_of"  # attribute of both parts: the name of the number they make
+_PARTS = ("_real", "_imag")
+_COMPLEX = "complex_of"  # attribute of both parts: the name of their complex variable
 _ONE_AT_A_TIME = Lock()  # the netCDF library is not made for threads: two at once crash the process
 
 
@@ -36,8 +36,8 @@ def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        When the path is no such file or cannot be written, the library that writes netCDF is missing, or a variable is
-        in the way of a part.
+        When the path does not end in ``.nc`` or cannot be written, the library that writes netCDF is missing, or a
+        variable has the name that a part would have.
     OSError
         When the file cannot be written.
     """
@@ -46,18 +46,18 @@ def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
 
 
 def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
-    """See that results can be written there, before they are computed.
+    """Check that results can be written to a path, before they are computed.
 
     Parameters
     ----------
     path : str or path
     field : str
-        What a message calls it.
+        Name of the path in a message.
 
     Raises
     ------
     InputError
-        When the path does not end in ``.nc``, is a folder, lies in none or cannot be written, or the library that
+        When the path does not end in ``.nc``, is a folder, lies in no folder or cannot be written, or the library that
         writes netCDF is missing.
     """
     check_place(path, ".nc", field)
@@ -65,7 +65,7 @@ def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
 
 
 def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
-    """Read what `save_results` has written, complex numbers as such.
+    """Return the dataset that `save_results` has written, with complex numbers made whole.
 
     Parameters
     ----------
@@ -104,37 +104,35 @@ def _write(results: xarray.Dataset, path: str) -> None:
     try:
         with _ONE_AT_A_TIME:
             results.to_netcdf(path, engine="netcdf4", format="NETCDF4")
-    except RuntimeError as error:  # how the library tells a full disk
+    except RuntimeError as error:  # the library's error of a full disk
         raise OSError(errno.EIO, f"{error}: is the disk full?") from None
 
 
 def _in_parts(results: xarray.Dataset) -> xarray.Dataset:
-    """Complex variables as two; the parts are views, and no copies."""
+    """Return a dataset with complex variables as two parts; the parts are views, not copies."""
     parts = {}
     for name, variable in results.variables.items():
         if not np.iscomplexobj(variable.values):
             continue
         if name in results.coords:
             raise InputError(str(name), None, "cannot be stored: it is a complex coordinate")
-        for ending, array in zip(PARTS, (variable.values.real, variable.values.imag), strict=True):
+        for ending, array in zip(_PARTS, (variable.values.real, variable.values.imag), strict=True):
             if f"{name}{ending}" in results.variables:
-                raise InputError(
-                    f"{name}{ending}", None, f"has the name that a part of {name} is stored under"
-                )
+                rule = f"has the name that a part of {name} is stored under"
+                raise InputError(f"{name}{ending}", None, rule)
             parts[f"{name}{ending}"] = (variable.dims, array, {**variable.attrs, _COMPLEX: name})
     whole = {attributes[_COMPLEX] for _, _, attributes in parts.values()}
     return results.drop_vars(whole).assign(parts)
 
 
 def _whole(stored: xarray.Dataset) -> xarray.Dataset:
+    """Return a dataset with complex variables made of their two parts."""
     names = dict.fromkeys(v.attrs[_COMPLEX] for v in stored.data_vars.values() if _COMPLEX in v.attrs)
     for name in names:
-        real, imaginary = (stored[f"{name}{ending}"] for ending in PARTS)
-        number = np.empty(
-            real.shape, dtype=complex
-        )  # not real + 1j * imaginary, which loses signs and infinities
+        real, imaginary = (stored[f"{name}{ending}"] for ending in _PARTS)
+        number = np.empty(real.shape, dtype=complex)  # real + 1j * imaginary would lose signs and infinities
         number.real, number.imag = real.values, imaginary.values
         attributes = {key: value for key, value in real.attrs.items() if key != _COMPLEX}
         stored = stored.assign({name: (real.dims, number, attributes)})
-        stored = stored.drop_vars([f"{name}{ending}" for ending in PARTS])
+        stored = stored.drop_vars([f"{name}{ending}" for ending in _PARTS])
     return stored

@@ -1,4 +1,4 @@
-"""A component for OpenMDAO: flutter speed and damping of a case by its inputs, with exact partial derivatives.
+"""A component for OpenMDAO: flutter speed and damping of a case as functions of its inputs, with exact derivatives.
 
 ::
 
@@ -47,11 +47,11 @@ if TYPE_CHECKING:
 
     from proprotor.datum import Datum
 
-_UNITS = {"": None, "K": "degK"}  # where OpenMDAO writes a unit otherwise
+_UNITS = {"": None, "K": "degK"}  # units that OpenMDAO writes in another way
 
 
 def variable_name(path: str) -> str:
-    """The name of a variable of OpenMDAO for a path or a mode: ``support.modes[beam].x`` is support_modes_beam_x.
+    """Return the OpenMDAO variable of a path or a mode: ``support.modes[beam].x`` is support_modes_beam_x.
 
     Parameters
     ----------
@@ -69,28 +69,28 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
 
     Inputs are named by their paths (`variable_name`) and have SI units, which OpenMDAO converts: rotor_precone in rad.
     With `damping`, airspeed is an input as well, (speeds,) in m/s. Outputs: flutter_speed in m/s and flutter_frequency
-    in rad/s, of the lowest onset or of the mode that is asked for; damping_<mode> (speeds,), the ratio -Re λ/|λ|.
+    in rad/s, of the lowest onset or of the chosen mode; damping_<mode> (speeds,), the ratio -Re λ/|λ|.
 
-    A point that cannot be analysed raises `openmdao.api.AnalysisError` with the reason, which optimisers can step back
-    from: a trim that was not found, nothing that becomes unstable in the range, a mode that is not there, a number that
-    is not physical.
+    A point that cannot be analysed raises `openmdao.api.AnalysisError` with the reason, and optimisers can step back
+    from the point: no trim, no mode that becomes unstable in the range, an unknown mode, or a number that is not
+    physical.
 
     Parameters
     ----------
     case : Case or str
-        Or the name or path of a deck.
+        A case, or the name or path of a deck.
     inputs : sequence of str, or mapping of str to str
-        Paths of inputs (`proprotor.deck.vary.design_inputs`), or paths by the names that the variables shall have.
+        Paths of inputs (`proprotor.deck.vary.design_inputs`), or paths by the names of their variables.
     flutter_speed : bool
         Whether flutter_speed and flutter_frequency are outputs.
     search : airspeeds in m/s, text such as "100:400:5kt", or pint quantity
-        Where the flutter speed is searched; 0.2 to 1.2 of the tip speed by default.
+        Range in which the flutter speed is searched; 0.2 to 1.2 of the tip speed by default.
     mode : str
         The first boundary of this mode, instead of the lowest onset of any.
     level : float
         Damping ratio that counts as the boundary.
     damping : sequence of str
-        Modes whose damping is wanted.
+        Modes whose damping is an output.
     airspeed : as search
         First values of the input airspeed.
     model_options : mapping
@@ -127,7 +127,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         self._case = case if isinstance(case, Case) else load_case(case)
         self._paths = self._paths_by_name()
         self._damping = {f"damping_{variable_name(mode)}": mode for mode in self._modes()}
-        self._found: tuple[Any, Boundary] | None = None
+        self._found: dict[tuple[float, ...], Boundary] = {}  # by the inputs of the last flutter search
         if not (self.options["flutter_speed"] or self._damping):
             raise InputError("damping", None, "must name a mode, or flutter_speed must be true")
         for name, path in self._paths.items():
@@ -176,7 +176,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
                     boundary.position,
                     boundary.frequency,
                 )
-                self._found = self._key(inputs), boundary
+                self._found = {self._key(inputs): boundary}
             if self._damping:
                 modes = self._modes_at(case, inputs["airspeed"])
                 for output, mode in self._damping.items():
@@ -185,7 +185,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             raise om.AnalysisError(str(error)) from None
 
     def compute_partials(self, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
-        """Exact derivatives by complex steps of the equations; no further flutter search.
+        """Find exact derivatives by complex steps of the equations, without a further flutter search.
 
         Parameters
         ----------
@@ -221,7 +221,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         return dict(self.options["model_options"])
 
     def _paths_by_name(self) -> dict[str, str]:
-        """Paths of the inputs by the names of their variables."""
+        """Return the paths of the inputs by the names of their variables."""
         given = self.options["inputs"]
         if isinstance(given, str):
             raise InputError("inputs", given, "must be a list of paths")
@@ -244,7 +244,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         return tuple(inputs[name].item() for name in self._paths)
 
     def _boundary(self, case: Case) -> Boundary:
-        """The boundary that is the flutter speed."""
+        """Return the boundary whose position is the flutter speed."""
         mode, level = self.options["mode"], self.options["level"]
         found = flutter_point(case, self.options["search"], level=level, **self._model_options)
         wanted = [b for b in found.boundaries if (b.onset if mode is None else b.mode == mode)]
@@ -255,8 +255,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         return wanted[0]
 
     def _flutter_partials(self, case: Case, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
-        known = self._found is not None and self._found[0] == self._key(inputs)
-        boundary = self._found[1] if known and self._found else self._boundary(case)
+        boundary = self._found.get(self._key(inputs)) or self._boundary(case)
         numbers = {path: case.given[path] for path in self._paths.values()}
         rates = at_boundary(case, boundary, numbers, self._model_options)
         for name, path in self._paths.items():
@@ -288,7 +287,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             partials[output, "airspeed"] = rates[:, place]
 
     def _modes_at(self, case: Case, speeds: NDArray[np.float64]) -> xarray.Dataset:
-        """The modes at the airspeeds, all analysed and with all modes whose damping is wanted."""
+        """Return the modes at the airspeeds; refuse an airspeed that failed and a wanted mode that is not there."""
         line, places = np.unique(speeds, return_inverse=True)
         found = case.sweep(line, **self._model_options)
         for speed, reason in zip(line, found.reason.values, strict=True):

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from proprotor.deck.file import as_one_file, read_tables
-from proprotor.deck.reading import PerRevolution
+from proprotor.deck.file import read_tables
+from proprotor.deck.per_revolution import as_one_file
 from proprotor.deck.settings import with_settings
 from proprotor.deck.template import toml
+from proprotor.deck.written import PerRevolution
 from proprotor.explore.inputs import slider_input
 from proprotor.rotor.options import CHOICES, default_choice
 

@@ -22,7 +22,7 @@ from proprotor.explore.curves import curves, ends
 from proprotor.explore.inputs import SliderInput, first_inputs, slider_input
 from proprotor.model.doubts import MARK, doubtful_near, doubts_along, footnotes, marked
 from proprotor.model.provenance import reservations
-from proprotor.model.stamp import of_case, told_if_unusual
+from proprotor.model.stamp import of_case, unusual_options
 from proprotor.plots.style import UNSTABLE
 from proprotor.rotor.options import CHOICES
 from proprotor.typing import Array
@@ -136,7 +136,7 @@ class ExplorePage:
         self.dots.data = ends(columns)
         self.readout.text = readout(found, self.values, self.inputs)
         self.message.text = messages(found)
-        told = (*told_if_unusual(of_case(self.case, self.options)), *reservations(self.case))
+        told = (*unusual_options(of_case(self.case, self.options)), *reservations(self.case))
         self.foot.text = f"<small>{escape(' '.join(told))}</small>"
 
     # What is moved ----------------------------------------------------------------------------------------------

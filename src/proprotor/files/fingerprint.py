@@ -1,11 +1,12 @@
-"""A short text that is the same for the same inputs, today and in another process, and no other.
+"""A short text that is the same for the same inputs, today and in another process, and differs for other inputs.
 
-Numbers, texts, arrays and containers count by value. An object counts as what it would be pickled as: its class, and
-the state that another process would get of it. A function counts as what it does: its code, its defaults, what its
-closure and its attributes hold, and every global it refers to. What was installed counts by name and version instead,
-for these say what it does. What holds itself is followed once around.
+Numbers, texts, arrays and containers count by value. An object counts by its class and by the state that another
+process would receive in a pickle. A function counts by its code, its defaults, the contents of its closure and its
+attributes, and every global to which it refers. Installed modules count by name and version instead, because these
+define the code. An object that contains itself is followed once around.
 
-What cannot be told, such as an open file, is refused: a fingerprint without it could be that of other inputs.
+An object whose content cannot be read, such as an open file, is refused: without that content the fingerprint could be
+the fingerprint of other inputs.
 """
 
 from __future__ import annotations
@@ -37,40 +38,35 @@ import numpy as np
 
 from proprotor.errors import InputError
 
-_OWN = ("proprotor", "proprotor_equations")  # a study has the fingerprint of their text beside this one
+_OWN = ("proprotor", "proprotor_equations")  # `source_code` makes a fingerprint of their text
 _PLAIN = (type(None), bool, float, complex, bytes, EllipsisType, NotImplementedType)
 _CACHED_FUNCTION = type(functools.cache(lambda: None))
 _WRAPPERS = (property, staticmethod, classmethod, functools.cached_property, _CACHED_FUNCTION)
 _OF_GLOBALS = ("LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS")  # instructions
 _LONGEST = 8  # names of a path in a message
-_MADE_AS_IT_RUNS = 1 << 9  # flag of a class that Python has made
-_UNSEEN = ("eval", "exec", "open", "input", "globals", "__import__")  # read what is no part of a function
-_MADE_BY_PYTHON = (  # entries of a class that hold nothing of its own
-    *("__module__", "__qualname__", "__doc__", "__dict__", "__weakref__", "__firstlineno__"),
-    *(
-        "__slotnames__",
-        "__abstractmethods__",
-        "__static_attributes__",
-        "__dataclass_fields__",
-        "__dataclass_params__",
-        "_abc_impl",
-    ),
+_MADE_AS_IT_RUNS = 1 << 9  # flag of a class that Python code has made
+# Builtins that read what is no part of a function.
+_UNSEEN = ("eval", "exec", "open", "input", "globals", "__import__")
+_MADE_BY_PYTHON = (  # entries of a class that Python adds by itself
+    *("__module__", "__qualname__", "__doc__", "__dict__", "__weakref__", "__firstlineno__", "__slotnames__"),
+    *("__abstractmethods__", "__static_attributes__", "__dataclass_fields__", "__dataclass_params__"),
+    "_abc_impl",
 )
 
 
 def fingerprint(content: Any, name: str = "") -> str:
-    """SHA-256 of nested numbers, texts, arrays, containers, records, objects and functions, in hexadecimal.
+    """Return the SHA-256 of nested numbers, texts, arrays, containers, records, objects and functions, in hexadecimal.
 
     Parameters
     ----------
     content : object
     name : str
-        Of the content, for the message.
+        Name of the content, for the message.
 
     Raises
     ------
     InputError
-        For something whose content cannot be told.
+        When something within the content cannot be read.
     """
     walk = _Walk([name] if name else [])
     try:
@@ -81,16 +77,18 @@ def fingerprint(content: Any, name: str = "") -> str:
 
 
 class _Walk:
-    """A way through all that an object holds, and the digest of what was met on it."""
+    """A walk through everything that an object contains, with the digest of all that was met."""
 
     def __init__(self, path: list[str]) -> None:
         self.digest = hashlib.sha256()
-        self.path = path  # names of what is being looked at, from outside in
-        self.around: dict[int, int] = {}  # what is being looked at, by identity: its place on the way
-        self.met: dict[int, tuple[int, Any]] = {}  # functions and classes: the number of each, and itself
+        self.path = path  # names of the parts that are being read, from the outermost to the innermost
+        self.around: dict[
+            int, int
+        ] = {}  # parts that are being read, by identity, with their place on the walk
+        self.met: dict[int, tuple[int, Any]] = {}  # functions and classes by identity: number and object
 
     def add(self, it: Any) -> None:
-        """Go through one object."""
+        """Add one object with everything that it contains."""
         kind = type(it)
         if kind in _PLAIN:
             self.text(kind.__name__, repr(it))
@@ -108,43 +106,47 @@ class _Walk:
             del self.around[id(it)]
 
     def text(self, kind: str, text: str) -> None:
-        """Add one piece of text, so that no two pieces can be taken for one."""
+        """Add one piece of text with its length, so that two pieces never read as one."""
         raw = text.encode(errors="surrogatepass")
         self.digest.update(f"{kind}:{len(raw)}:".encode() + raw)
 
     def refusal(self, kind: str) -> InputError:
-        """The error for something that cannot be told."""
+        """Return the error for an object whose content cannot be read."""
         path = self.path if len(self.path) <= _LONGEST else [*self.path[:_LONGEST], "…"]
         where = f" of the study ({' → '.join(path)})" if path else ""
-        rule = f"stands among the inputs{where}, and what it holds cannot be told: give another, or no checkpoint"
+        rule = f"stands among the inputs{where}, and its content cannot be identified: give another, or no checkpoint"
         return InputError("checkpoint", kind, rule)
 
     @contextmanager
     def _within(self, name: str) -> Iterator[None]:
+        """Keep a name on the path while the part of that name is read."""
         self.path.append(name)
         yield
         self.path.pop()
 
-    def _named(self, of: Iterable[tuple[str, Any]]) -> None:
-        for name, value in of:
+    def _named(self, entries: Iterable[tuple[str, Any]]) -> None:
+        """Add values with their names."""
+        for name, value in entries:
             self.text("name", name)
             with self._within(name):
                 self.add(value)
 
     def _each(self, kind: str, many: Iterable[Any]) -> None:
+        """Add the number of some objects, and each of the objects."""
         entries = list(many)
         self.text(kind, str(len(entries)))
         for entry in entries:
             self.add(entry)
 
     def _alone(self, it: Any) -> str:
-        """The fingerprint of an entry of a set, which must not depend on the entries before it."""
+        """Return the fingerprint of an entry of a set, which must not depend on the entries before that one."""
         walk = _Walk(self.path)
         walk.around, walk.met = dict(self.around), dict(self.met)
         walk.add(it)
         return walk.digest.hexdigest()
 
     def _array(self, kind: type, it: np.ndarray[Any, Any]) -> None:
+        """Add type, shape and entries of an array."""
         self.text(kind.__name__, f"{it.dtype!r}{it.shape}")
         if it.dtype.hasobject:
             self._each("entries", it.reshape(-1).tolist())
@@ -152,6 +154,7 @@ class _Walk:
             self.digest.update(np.ascontiguousarray(it).reshape(-1).view(np.uint8).data)
 
     def _inside(self, kind: type, it: Any) -> None:
+        """Add an object that contains others, in the way of its kind."""
         if kind in (list, tuple):
             self._each(kind.__name__, it)
         elif kind in (dict, MappingProxyType):
@@ -172,6 +175,7 @@ class _Walk:
             self._object(kind, it)
 
     def _mapping(self, it: Mapping[Any, Any]) -> None:
+        """Add keys and values of a mapping, in an order that does not depend on insertion."""
         if all(type(key) is str for key in it):
             self.text("by name", str(len(it)))
             self._named(sorted(it.items()))
@@ -184,7 +188,7 @@ class _Walk:
     # Objects --------------------------------------------------------------------------------------
 
     def _object(self, kind: type, it: Any) -> None:
-        """Class and state of an object; of a record of this package the fields, and not what it has worked out."""
+        """Add class and state of an object; of this package's records the fields alone, without cached results."""
         self.text("object", kind.__name__)
         self.add(kind)
         if dataclasses.is_dataclass(it) and _package(kind.__module__) in _OWN:
@@ -192,7 +196,7 @@ class _Walk:
             return
         try:
             reduced = _reduced(kind, it)
-        except Exception:  # whatever a class raises that cannot be pickled
+        except Exception:  # a class that cannot be pickled may raise anything
             raise self.refusal(f"{kind.__module__}.{kind.__qualname__}") from None
         if isinstance(reduced, str):  # the name of a global
             module = str(pickle.whichmodule(it, reduced))  # type: ignore[attr-defined]
@@ -207,7 +211,7 @@ class _Walk:
         self._mapping(dict(pairs or ()))
 
     def _wrapper(self, kind: type, it: Any) -> None:
-        """A property, a method of a class, or a function that keeps what it has found: what is within."""
+        """Add what stands within a property, a method of a class or a cached function."""
         self.text("wrapper", kind.__qualname__)
         names = ("fget", "fset", "fdel", "func", "__func__", "__wrapped__")
         self._named((name, getattr(it, name)) for name in names if hasattr(it, name))
@@ -215,7 +219,7 @@ class _Walk:
     # Functions, classes and modules ---------------------------------------------------------------
 
     def _once(self, it: Any) -> None:
-        """A function or class: the first time by what it holds, then by its number."""
+        """Add a function or class: the first time by its content, after that by its number."""
         if id(it) in self.met:
             self.text("met", str(self.met[id(it)][0]))
             return
@@ -228,6 +232,7 @@ class _Walk:
             self._function(it)
 
     def _class(self, it: type) -> None:
+        """Add the bases and the entries of a class."""
         self._each("class", (type(it), *it.__bases__))
         own = {
             name: entry
@@ -237,6 +242,7 @@ class _Walk:
         self._mapping(own)
 
     def _function(self, it: FunctionType) -> None:
+        """Add code, defaults, closure and attributes of a function, and every global to which its code refers."""
         self.text("function", "")
         self.add(it.__code__)
         self._each("defaults", (it.__defaults__, it.__kwdefaults__))
@@ -244,7 +250,7 @@ class _Walk:
         self._named((name, _content(cell)) for name, cell in cells)
         self._mapping(vars(it))
         home = it.__globals__.get("__name__", "")
-        if _version(home) is not None:  # what its module has is told by the version
+        if _version(home) is not None:  # the version stands for the content of its module
             self.text("of", f"{home} {_version(home)}")
             return
         codes = list(_nested(it.__code__))
@@ -258,6 +264,7 @@ class _Walk:
                 self._imported(name, names)
 
     def _global(self, name: str, own: Mapping[str, Any], names: set[str]) -> None:
+        """Add a global of a function's module, or the name of a builtin."""
         self.text("global", name)
         if name not in own:
             if name in _UNSEEN:
@@ -269,7 +276,7 @@ class _Walk:
             self.add(own[name])
 
     def _imported(self, name: str, names: set[str]) -> None:
-        """A module that a function imports as it runs."""
+        """Add a module that a function imports while it runs."""
         self.text("import", name)
         if _version(name) is not None:
             self.text("installed", f"{name} {_version(name)}")
@@ -279,7 +286,7 @@ class _Walk:
             raise self.refusal(f"an import of {name}")
 
     def _module(self, it: ModuleType, names: set[str] | None) -> None:
-        """A module: by version, or by those of its attributes that a function names; without names by all."""
+        """Add a module by its version, else by the attributes that a function names, or by all without names."""
         if _version(it.__name__) is not None:
             self.text("installed", f"{it.__name__} {_version(it.__name__)}")
             return
@@ -297,6 +304,7 @@ class _Walk:
                     del self.around[id(value)]
 
     def _code(self, it: CodeType) -> None:
+        """Add names, constants and instructions of compiled code."""
         arguments = it.co_varnames[: it.co_argcount + it.co_kwonlyargcount]
         counts = (it.co_argcount, it.co_posonlyargcount, it.co_kwonlyargcount, it.co_flags)
         self._each("code", (counts, arguments, it.co_names, it.co_cellvars, it.co_freevars))
@@ -304,12 +312,13 @@ class _Walk:
 
 
 def _reduced(kind: type, it: Any) -> str | tuple[Any, ...]:
-    """What pickle takes an object apart into."""
+    """Return the parts into which pickle takes an object."""
     own = copyreg.dispatch_table.get(kind)
     return own(it) if own else it.__reduce_ex__(pickle.HIGHEST_PROTOCOL)
 
 
 def _content(cell: Any) -> Any:
+    """Return the content of a closure's cell."""
     try:
         return cell.cell_contents
     except ValueError:
@@ -317,7 +326,7 @@ def _content(cell: Any) -> Any:
 
 
 def _without_cached(kind: type, state: Any) -> Any:
-    """The state of an object without what `functools.cached_property` has kept in it; None for nothing."""
+    """Return the state of an object without the values of its cached properties; None if nothing is left."""
     if not isinstance(state, dict):
         return state
     cached = functools.cached_property
@@ -328,7 +337,7 @@ def _without_cached(kind: type, state: Any) -> Any:
 
 
 def _nested(code: CodeType) -> Iterator[CodeType]:
-    """The code of a function and of all functions and classes within it."""
+    """Yield the code of a function and of all functions and classes defined within that function."""
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
@@ -336,24 +345,27 @@ def _nested(code: CodeType) -> Iterator[CodeType]:
 
 
 def _globals_of(code: CodeType) -> set[str]:
+    """Return the names of the globals that compiled code reads."""
     return {step.argval for step in dis.get_instructions(code) if step.opname in _OF_GLOBALS}
 
 
 def _imports_of(code: CodeType) -> set[str]:
+    """Return the names of the modules that compiled code imports."""
     return {step.argval for step in dis.get_instructions(code) if step.opname == "IMPORT_NAME"}
 
 
 def _package(module: str) -> str:
+    """Return the package to which a module belongs."""
     return module.partition(".")[0]
 
 
 def _is_compiled(it: Any) -> bool:
-    """Whether something is a class of compiled code, which no script can make or alter."""
+    """Return whether an object is a class of compiled code, which no script can make or alter."""
     return isinstance(it, type) and not it.__flags__ & _MADE_AS_IT_RUNS
 
 
 def _is_installed(it: Any, module: str | None, name: str) -> bool:
-    """Whether something is what an installed module has by that name."""
+    """Return whether an object is the one that an installed module has under that name."""
     found: Any = sys.modules.get(module or "")
     if found is None or _version(found.__name__) is None:
         return False
@@ -363,19 +375,19 @@ def _is_installed(it: Any, module: str | None, name: str) -> bool:
 
 
 def _place(package: str) -> Path:
-    """Where a package is, whether or not it was imported; no place where there is none."""
+    """Return the path of a package, imported or not; an empty path if no such package exists."""
     if (module := sys.modules.get(package)) is not None:
         return Path(getattr(module, "__file__", None) or next(iter(getattr(module, "__path__", ())), ""))
     try:
         found = importlib.util.find_spec(package)
-    except ValueError:  # of no name
+    except ValueError:  # for an empty name
         return Path()
     return Path((found and found.origin) or "")
 
 
 @functools.cache
 def _version(module: str) -> str | None:
-    """The version of the package that a module was installed with; None where it was not, as a script of the user's."""
+    """Return the version of the package that installed a module; None for a module that was not installed."""
     from importlib import metadata
 
     package = _package(module)

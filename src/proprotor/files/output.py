@@ -1,4 +1,7 @@
-"""Files that are either written whole or not at all: every file that this package writes goes through here."""
+"""Files that are either written whole or not at all.
+
+Every file that this package writes is written by `write_whole`; a test looks for other writers.
+"""
 
 from __future__ import annotations
 
@@ -13,27 +16,27 @@ from typing import IO
 
 from proprotor.errors import InputError
 
-_NEW = 0o666  # permissions of a new file, of which the system takes off what the user's umask says
+_NEW = 0o666  # permissions of a new file, before the system applies the user's umask
 
 
 def write_whole(path: str | os.PathLike[str], write: Callable[[IO[bytes]], object]) -> None:
-    """Write a file beside its place and put it there when it is complete.
+    """Write a file under another name and move the complete file to its place.
 
-    Any number of threads and processes may write one path at once: each writes a file of its own, and the last to be
-    complete stays.
+    Any number of threads and processes may write one path at once: each writes a file of its own, and the last complete
+    file stays.
 
     Parameters
     ----------
     path : str or path
-        A file that exists is replaced, keeps its permissions, and stays as it is when writing fails. A symbolic link
-        stays a link: the file that it leads to is replaced.
+        An existing file is replaced and keeps its permissions; when writing fails, the old file stays as it was. A
+        symbolic link stays a link: the file at the end of the link is replaced.
     write : callable
-        Writes the content to the binary file it is given, or, by its own means, to the path ``file.name``.
+        Called with a binary file, writes the content to that file, or by other means to the path ``file.name``.
 
     Raises
     ------
     InputError
-        When the path is something other than a file.
+        When the path is a folder or another thing that is no file.
     OSError
         When the file cannot be written.
     """
@@ -42,16 +45,16 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[IO[bytes]], objec
         write(file)
         file.flush()
         os.fsync(file.fileno())
-        file.close()  # Windows moves no file that is open
+        file.close()  # Windows cannot move an open file
         if before is not None:
             _make_like(file.name, before)
         os.replace(file.name, place)
 
 
 def check_writable(path: str | os.PathLike[str]) -> None:
-    """Raise what `write_whole` would raise for a path, before what is to be written has been computed.
+    """Raise what `write_whole` would raise for a path, before the content has been computed.
 
-    A file is made in the folder and removed again: whether that works, permissions alone do not tell.
+    A file is made in the folder and removed again, because permissions alone do not show whether that works.
 
     Parameters
     ----------
@@ -60,9 +63,9 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        When the path is something other than a file.
+        When the path is a folder or another thing that is no file.
     OSError
-        When no file can be made in its folder, or the file that is there may not be replaced.
+        When no file can be made in the folder, or an existing file may not be replaced.
     """
     place, before = _place(path)
     with _unfinished(place, before):
@@ -70,20 +73,20 @@ def check_writable(path: str | os.PathLike[str]) -> None:
 
 
 def check_place(path: str | os.PathLike[str], ending: str, field: str = "path") -> None:
-    """Refuse a path that no file of a kind can be written to, before what is to be written has been computed.
+    """Refuse a path to which no file of a kind can be written, before the content has been computed.
 
     Parameters
     ----------
     path : str or path
     ending : str
-        That the kind of file has, such as ``.nc``.
+        Ending of that kind of file, such as ``.nc``.
     field : str
-        What a message calls the path.
+        Name of the path in messages.
 
     Raises
     ------
     InputError
-        When the path has another ending, is a folder, lies in none, or cannot be written.
+        When the path has another ending, is a folder, lies in no folder that exists, or cannot be written.
     """
     place = Path(os.path.realpath(path))
     if place.suffix.lower() != ending:
@@ -99,7 +102,7 @@ def check_place(path: str | os.PathLike[str], ending: str, field: str = "path") 
 
 
 def _place(path: str | os.PathLike[str]) -> tuple[Path, os.stat_result | None]:
-    """Return where the file is, links followed, and what is there now; None for nothing."""
+    """Return the real path of a file, links followed, and the state of the file there now, None without a file."""
     place = Path(os.path.realpath(path))
     try:
         before = place.stat()
@@ -107,18 +110,20 @@ def _place(path: str | os.PathLike[str]) -> tuple[Path, os.stat_result | None]:
         return place, None
     if not stat.S_ISREG(before.st_mode):
         raise InputError("output", path, "must be a file")
-    if not os.access(place, os.W_OK):  # moving another file over it would not ask
+    if not os.access(place, os.W_OK):  # os.replace would not ask for this permission
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
     return place, before
 
 
 @contextmanager
 def _unfinished(place: Path, before: os.stat_result | None) -> Iterator[IO[bytes]]:
-    """A new file in the same folder that nobody else has, removed at the end unless it was moved to its place.
+    """Yield a new file of a random name in the same folder, and remove that file unless it was moved to its place.
 
-    Its name says nothing of the place, whose name may be as long as the system allows.
+    The random name does not contain the final one, which may be as long as the system allows.
     """
-    mode = _NEW if before is None else before.st_mode & _NEW  # never open to more people than it will be
+    mode = (
+        _NEW if before is None else before.st_mode & _NEW
+    )  # never readable by more people than the final file
     name = place.with_name(f".proprotor-{secrets.token_hex(8)}.tmp")
     file = open(name, "xb", opener=lambda path, flags: os.open(path, flags, mode))  # noqa: SIM115, closed below
     try:
@@ -129,7 +134,7 @@ def _unfinished(place: Path, before: os.stat_result | None) -> Iterator[IO[bytes
 
 
 def _make_like(name: str, before: os.stat_result) -> None:
-    """Give a file the owner, as far as this user may, and the permissions that another had."""
+    """Give a file the permissions of an earlier one, and the same owner if this user is allowed to."""
     if hasattr(os, "chown"):
         with suppress(PermissionError):
             os.chown(name, before.st_uid, before.st_gid)

@@ -1,4 +1,4 @@
-"""Text files that people bring: read without the byte order mark that some editors write first."""
+"""Text files that users give: read without the byte order mark that some editors write first."""
 
 from __future__ import annotations
 
@@ -14,48 +14,48 @@ if TYPE_CHECKING:
 
 
 def read_text(
-    file: Path | Traversable, field: str, told: str, largest: int, *, encoding: str = "utf-8"
+    file: Path | Traversable, field: str, label: str, largest: int, *, encoding: str = "utf-8"
 ) -> str:
-    """Return the text of a file, line ends as they are.
+    """Return the text of a file, with its line ends unchanged.
 
     Parameters
     ----------
     file : path
-    field, told : str
-        The input and the name of the file, as a message has them.
+    field, label : str
+        Name of the input and name of the file, for messages.
     largest : int
-        Bytes.
+        Largest allowed size of the file, bytes.
     encoding : str
-        "latin-1" takes any bytes.
+        Encoding of the text; "latin-1" accepts any bytes.
 
     Raises
     ------
     InputError
-        When the file does not exist, cannot be read, is larger or is not text of that encoding.
+        When the file does not exist, cannot be read, is larger than allowed or is not text of that encoding.
     """
     try:
         found = file.is_file()
     except ValueError:  # a name with a null character
         found = False
-    except OSError as error:  # a name too long, a folder one may not enter
-        raise InputError(field, told, f"cannot be read ({error.strerror})") from None
+    except OSError as error:  # a name too long, a folder that this user may not enter
+        raise InputError(field, label, f"cannot be read ({error.strerror})") from None
     if not found:
-        raise InputError(field, told, "no such file")
+        raise InputError(field, label, "no such file")
     try:
         with file.open("rb") as stream:
             content = stream.read(largest + 1)
     except OSError as error:
-        raise InputError(field, told, f"cannot be read ({error.strerror})") from None
+        raise InputError(field, label, f"cannot be read ({error.strerror})") from None
     if len(content) > largest:
-        raise InputError(field, told, f"must not be larger than {largest} bytes")
+        raise InputError(field, label, f"must not be larger than {largest} bytes")
     try:
         return content.removeprefix(codecs.BOM_UTF8).decode(encoding)
     except UnicodeDecodeError:
-        raise InputError(field, told, f"must be text in {encoding.upper()}") from None
+        raise InputError(field, label, f"must be text in {encoding.upper()}") from None
 
 
 def open_text(path: Path, *, encoding: str = "utf-8") -> io.TextIOWrapper:
-    """Open a text file after its byte order mark, with all line ends as ``\\n``; see `read_text`."""
+    """Return a text file opened after its byte order mark, with all line ends as ``\\n``; see `read_text`."""
     file = path.open("rb")
     if file.read(len(codecs.BOM_UTF8)) != codecs.BOM_UTF8:
         file.seek(0)

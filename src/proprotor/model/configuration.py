@@ -1,4 +1,4 @@
-"""A rotor, how it is operated, and what carries it, with the source of every number."""
+"""The record of a configuration: a rotor, its operation and its support, with the source of every number."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from proprotor.datum import Datum
-from proprotor.model.linear_model import LinearModel, range_of, rotor_model
+from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
 from proprotor.model.provenance import reservations
+from proprotor.model.rotor_model import rotor_model
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
@@ -24,31 +25,31 @@ _RPM = math.pi / 30  # rad/s
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Configuration:
-    """A rotor, how it is operated, and what carries it.
+    """A rotor, its operation and its support.
 
     Attributes
     ----------
     name, title, description : str
-        What the case is.
+        The case in words.
     rotor : Rotor
     operation : Operation
     support : NormalModes
     calibration : str
-        What was calibrated to which published result; empty when nothing was.
+        Which inputs were calibrated to which published result; empty when none was.
     warnings : tuple of str
-        What a reader of results should know about the input.
+        Remarks on the input that a reader of results needs.
     sources : mapping of str to Datum
         Every number of the deck by its field (``rotor.radius``, ``support.modes[beam].frequency``): the
-        value as written, its SI value and unit, status and source. What follows from the deck's
-        numbers, such as a stiffness from a frequency, stands here as well.
+        value as written, its SI value and unit, status and source. Numbers that follow from numbers of the deck,
+        such as a stiffness from a frequency, are included.
     frequencies : BladeFrequencies, optional
-        Of the blades; with them the model has structure="tabulated" unless an option says otherwise.
+        Frequencies of the blades; with them the model has structure="tabulated" unless an option says otherwise.
     drive_train : DriveTrain, optional
-        On the rotor's azimuth, unless an option says otherwise.
+        Drive train on the rotor's azimuth, unless an option says otherwise.
     deck : Deck, optional
-        The deck the configuration was made from, which says how its numbers hang together.
+        The deck of the configuration, from which `proprotor.deck.vary` builds other designs.
     given : mapping of str to Datum
-        Those of `sources` that the deck gives.
+        The numbers of `sources` that the deck gives.
     """
 
     name: str
@@ -66,35 +67,36 @@ class Configuration:
     given: Mapping[str, Datum] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        """Return the rotor, what carries it, and what its numbers rest on, in a few lines."""
+        """Return the rotor, its support and the doubtful numbers, in a few lines."""
         rotor, speed = self.rotor, np.asarray(self.operation.rotor_speed) / _RPM
+        radius = range_text(np.asarray(rotor.radius))
         lines = [
             f"Case {self.name}" + (f": {self.title}" if self.title else ""),
-            f"  rotor: {rotor.n_blades} blades, radius {range_of(np.asarray(rotor.radius))} m, {range_of(speed)} rpm",
+            f"  rotor: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
             f"  support: {', '.join(self.support.names) or 'a rigid hub'}{_held(self.support)}",
         ]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
 
     def linearize(self, airspeed: Any, **options: Any) -> LinearModel:
-        """Equations of motion of the rotor on its support.
+        """Return the equations of motion of the rotor on its support.
 
         Parameters
         ----------
         airspeed : float, array (...) in m/s, text such as "250 kt", pint quantity or xarray.DataArray
-            One speed, or a batch of any shape.
+            One airspeed, or a batch of any shape.
         **options
             See `proprotor.rotor.options.Options`.
 
         Returns
         -------
         LinearModel
-            M, C, K (..., n, n), SI, on the coordinates of support and rotor; failed points are NaN, with their
-            reason in `trim`. A point whose mass matrix has no inverse has its matrices, but no modes.
+            M, C, K (..., n, n), SI, on the coordinates of support and rotor; failed points are NaN, with the
+            reason in `trim`. A point whose mass matrix has no inverse has matrices, but no modes.
 
         Raises
         ------
         InputError
-            For an unknown option, an airspeed that is none, or a rotor that the options do not allow.
+            For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
         """
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
@@ -102,7 +104,7 @@ class Configuration:
         return model if model.origin is None else replace(model, origin=model.origin._replace(case=self))
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
-        """Options of the model with what the case has in place of those that are not given.
+        """Return options of the model, completed with the blade frequencies and the drive train of the case.
 
         Parameters
         ----------
@@ -112,8 +114,8 @@ class Configuration:
         Returns
         -------
         dict
-            With ``structure="tabulated"`` and ``frequencies`` where the case has blade frequencies, and
-            ``drive_train`` where it has one; it turns nothing where the rotor speed is constant.
+            The options given, with ``structure="tabulated"`` and ``frequencies`` if the case has blade frequencies,
+            and with ``drive_train`` if the case has one and the rotor speed is not constant.
         """
         found = dict(options)
         if self.frequencies is not None and found.get("structure", "tabulated") == "tabulated":
@@ -124,7 +126,7 @@ class Configuration:
 
 
 def _held(support: NormalModes) -> str:
-    """How the rotor was held when the modes were found with it on."""
+    """Return how the rotor was held when the modes of the support were found, if it was on."""
     if not support.includes_rotor:
         return ""
     shaft = "" if support.includes_rotor == "mass only" else f", shaft {support.shaft}"

@@ -1,4 +1,4 @@
-"""Doubtful numbers: each has a question mark wherever it is shown, and beneath stands what makes it doubtful."""
+"""Mark doubtful numbers with a question mark wherever they are shown, and give the reasons in footnotes."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     import xarray
 
 MARK = "?"
-_SHARE = re.compile(r"\d+(?=%)")  # which differs from point to point, for the same reason
+_SHARE = re.compile(r"\d+(?=%)")  # differs from point to point for the same reason
 
 
 class Doubt(NamedTuple):
-    """What makes numbers doubtful, and between which positions.
+    """A reason for which numbers are doubtful, and the positions between which they are.
 
     Parameters
     ----------
     text : str
     low, high : float
-        The lowest and the highest position that have it, m/s or in SI units of the input.
+        The lowest and the highest doubtful position, m/s or in SI units of the input.
     """
 
     text: str
@@ -34,9 +34,9 @@ class Doubt(NamedTuple):
 
 
 def reasons_for_doubt(warnings: Iterable[str]) -> dict[str, list[int]]:
-    """The reasons in some warnings, in the order in which they come, each with the places of the warnings that have it.
+    """Return each reason in some warnings, in the order of appearance, with the places of its warnings.
 
-    One reason with a share that differs is told once, with the largest.
+    A reason that appears with several percentages is kept once, with the largest.
     """
     found: dict[str, list[tuple[int, str]]] = defaultdict(list)
     for place, warning in enumerate(warnings):
@@ -46,6 +46,7 @@ def reasons_for_doubt(warnings: Iterable[str]) -> dict[str, list[int]]:
 
 
 def _largest(texts: list[str]) -> str:
+    """Return the text with the largest percentage, as "up to", or the only text."""
     if len(set(texts)) == 1:
         return texts[0]
     largest = max(texts, key=lambda text: [int(share) for share in _SHARE.findall(text)])
@@ -53,7 +54,7 @@ def _largest(texts: list[str]) -> str:
 
 
 def doubts_along(positions: Array | float, warnings: Array) -> tuple[Doubt, ...]:
-    """The doubts along a line of positions (points,) with warnings (points,), or at one."""
+    """Return the doubts along a line of positions (points,) with warnings (points,), or at one position."""
     at = np.atleast_1d(np.asarray(positions, dtype=float))
     found = reasons_for_doubt(np.atleast_1d(warnings).tolist())
     return tuple(
@@ -62,23 +63,23 @@ def doubts_along(positions: Array | float, warnings: Array) -> tuple[Doubt, ...]
 
 
 def doubtful_near(positions: Array, warnings: Array, at: float) -> bool:
-    """Whether a point is doubtful of the two between which a position lies, or of which it is one."""
+    """Return whether one of the two points nearest to a position, below and above, is doubtful."""
     near = [positions[positions <= at].max(initial=-np.inf), positions[positions >= at].min(initial=np.inf)]
     return bool((warnings[np.isin(positions, near)] != "").any())
 
 
 def doubt_at(doubts: Iterable[Doubt], position: float) -> str:
-    """What makes a position doubtful by the doubts along its line; empty where nothing does."""
+    """Return the reasons for which a position is doubtful, from the doubts along its line; "" without any."""
     return "; ".join(doubt.text for doubt in doubts if doubt.low <= position <= doubt.high)
 
 
 def marked(number: str, warning: object) -> str:
-    """A number as it is shown: with a question mark where there is a warning."""
+    """Return a number as it is shown: with a question mark if it has a warning."""
     return f"{number}{MARK}" if warning else number
 
 
 def footnotes(doubts: Iterable[Doubt], unit: str, factor: float = 1.0) -> Iterator[str]:
-    """A sentence on each doubt, its positions in a unit of so many SI units."""
+    """Yield a sentence on each doubt, with positions in a unit; `factor` is the size of the unit in SI."""
     for doubt in doubts:
         low, high = (f"{float(f'{end / factor:.10g}'):g} {unit}".strip() for end in doubt[1:])
         where = f"at {low}" if low == high else f"from {low} to {high}"
@@ -86,7 +87,7 @@ def footnotes(doubts: Iterable[Doubt], unit: str, factor: float = 1.0) -> Iterat
 
 
 def map_doubts(found: xarray.Dataset) -> Iterator[str]:
-    """A sentence on each doubt of a stability map, of its points and of the boundary between them."""
+    """Yield a sentence on each doubt of a stability map, at its points and along its boundary."""
     points, vertices = (
         found[name].values.ravel().tolist() if name in found else []
         for name in ("warning", "boundary_warning")

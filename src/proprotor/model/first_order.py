@@ -1,4 +1,8 @@
-"""The equations of motion in first order: which coordinates and points have states, and the matrix of those states."""
+"""The equations of motion in first order, ẋ = A x: which points and coordinates have states, and the state matrix.
+
+The state x is the displacements, then the velocities of all n coordinates. The rotor's azimuth has no stiffness unless
+a shaft holds it; a free azimuth is no displacement of x, only a velocity.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +21,9 @@ _NO_SHAFT = "no shaft holds the azimuth: its rate has one root, where a shaft gi
 
 
 def state_matrix(model: LinearModel) -> Array:
-    """A of ẋ = A x with x the displacements without the azimuth, then all velocities; (..., 2n - 1, 2n - 1).
+    """Return A, (..., 2n - 1, 2n - 1) without a shaft and (..., 2n, 2n) with one; NaN at points without modes.
 
-    With a shaft the azimuth is among the displacements: (..., 2n, 2n), NaN in its row and column at points without.
+    In a batch with a shaft at some points only, the row and column of the azimuth are NaN at the other points.
     """
     model = without_massless(model)
     matrix = first_order(model)
@@ -28,7 +32,7 @@ def state_matrix(model: LinearModel) -> Array:
 
 
 def first_order(model: LinearModel) -> Array:
-    """The same for a model whose mass matrices are known to have inverses, see `have_modes`."""
+    """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
     n = len(model.dofs)
     held = held_coordinates(model)
     acceleration = -np.linalg.solve(model.M, np.concatenate([model.K[..., held], model.C], axis=-1))
@@ -44,43 +48,20 @@ def first_order(model: LinearModel) -> Array:
 
 
 def without_massless(model: LinearModel) -> LinearModel:
-    """The model with NaN for a mass matrix that has no inverse, so that it spoils no other point."""
+    """Return the model with NaN in place of each mass matrix that has no inverse, so that no other point fails."""
     good = have_modes(model)
     return model if good.all() else replace(model, M=np.where(good[..., None, None], model.M, np.nan))
 
 
-def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]:
-    """Places of the coordinates whose displacement is a state anywhere: all but an azimuth that no shaft holds.
-
-    With the number of states of a larger batch, those of that batch.
-    """
-    n = len(model.dofs)
-    held = bool(model.shaft_holds_azimuth.any()) if states is None else states == 2 * n
-    return [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or held]
-
-
-def lack_azimuth(model: LinearModel) -> Array:
-    """Which points (...) do not have the azimuth among their states, while others of the batch do."""
-    holds = model.shaft_holds_azimuth
-    if not holds.any():
-        return np.zeros(holds.shape, dtype=bool)
-    return np.asarray(~holds & np.isfinite(model.K).all(axis=(-2, -1)))
-
-
-def missing_roots(model: LinearModel, states: int | None = None) -> Array:
-    """Why a point (...) has fewer eigenvalues than `states`, by default the most of its batch; "" where it has not."""
-    n, holds = len(model.dofs), model.shaft_holds_azimuth
-    most = n + len(held_coordinates(model)) if states is None else states
-    own = 2 * n - ((ROTOR_SPEED in model.dofs) & ~holds)
-    fewer = (own < most) & np.isfinite(model.K).all(axis=(-2, -1))
-    return np.where(fewer, _NO_SHAFT, "").astype(object)
-
-
 def have_modes(model: LinearModel) -> Array:
-    """Which points of a batch (...) did not fail and have mass in every motion.
+    """Return which points of a batch (...) have a trim and mass in every motion.
 
-    A rotor alone has massless directions: its hub may move against azimuth and gimbal without moving any mass. It is
-    refused where no point is left.
+    A rotor alone has motions without mass: its hub can move against azimuth and gimbal so that no mass moves.
+
+    Raises
+    ------
+    InputError
+        For a rotor alone of which no point is left.
     """
     good, singular = np.asarray(np.isfinite(model.M).all(axis=(-2, -1))), massless(model.M)
     if model.hub is None and singular.any() and not (good & ~singular).any():
@@ -91,7 +72,41 @@ def have_modes(model: LinearModel) -> Array:
 
 
 def some_points(model: LinearModel, points: Any) -> LinearModel:
-    """M, C and K of a model at some of its points."""
+    """Return the model at some of its points, with M, C and K only."""
     parts = {name: getattr(model, name)[points] for name in "MCK"}
     shapes = None if model.shapes is None else model.shapes[points]
     return replace(model, **parts, B=None, hub=None, rotor=None, shapes=shapes)
+
+
+def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]:
+    """Return the places of the coordinates whose displacement is a state: all but an azimuth that no shaft holds.
+
+    Parameters
+    ----------
+    model : LinearModel
+    states : int, optional
+        Number of states of the larger batch that the model is a part of, where the shaft may hold other points.
+    """
+    n = len(model.dofs)
+    held = bool(model.shaft_holds_azimuth.any()) if states is None else states == 2 * n
+    return [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or held]
+
+
+def lack_azimuth(model: LinearModel) -> Array:
+    """Return which points (...) lack the azimuth among their states, while other points of the batch have it."""
+    holds = model.shaft_holds_azimuth
+    if not holds.any():
+        return np.zeros(holds.shape, dtype=bool)
+    return np.asarray(~holds & np.isfinite(model.K).all(axis=(-2, -1)))
+
+
+def missing_roots(model: LinearModel, states: int | None = None) -> Array:
+    """Return the reason for which a point (...) has fewer eigenvalues than `states`, else "".
+
+    `states` is by default the largest number of states in the batch.
+    """
+    n, holds = len(model.dofs), model.shaft_holds_azimuth
+    most = n + len(held_coordinates(model)) if states is None else states
+    own = 2 * n - ((ROTOR_SPEED in model.dofs) & ~holds)
+    fewer = (own < most) & np.isfinite(model.K).all(axis=(-2, -1))
+    return np.where(fewer, _NO_SHAFT, "").astype(object)

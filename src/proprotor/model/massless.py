@@ -1,7 +1,7 @@
-"""Motions that move no mass: flapping about the centre of rotation, say, against the tilt of a gimbal.
+"""Find motions that move no mass, such as flapping about the centre of rotation against the tilt of a gimbal.
 
-Such coordinates describe one motion twice. Their mass matrix has no inverse, though rounding may hide that, and no
-eigenvalue follows from it.
+Such coordinates describe one motion twice. Their mass matrix has no inverse, though rounding may hide that, so the
+motion has no eigenvalue.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import numpy as np
 from proprotor.model.linear_model import LinearModel
 from proprotor.typing import Array
 
-_CLEARLY_MASS = 1e-6  # pivot, of a mass matrix scaled to a unit diagonal, above which no more is asked
-_NO_INERTIA = 1e13  # condition number of that matrix, above which it has no inverse
+_CLEARLY_MASS = 1e-6  # pivot of a mass matrix scaled to a unit diagonal, above which an inverse exists
+_NO_INERTIA = 1e13  # condition number of the scaled matrix, above which the matrix has no inverse
 _TAKES_PART = 0.01  # component of a unit vector
 
 
 def massless(mass: Array) -> Array:
-    """Which mass matrices of a batch (..., n, n) have no inverse, (...); those of failed points are not asked."""
+    """Return which mass matrices of a batch (..., n, n) have no inverse, (...); False at failed points."""
     found = np.zeros(mass.shape[:-2], dtype=bool)
     good = np.isfinite(mass).all(axis=(-2, -1))
     numbers = np.real(mass[good])
@@ -29,7 +29,7 @@ def massless(mass: Array) -> Array:
 
 
 def massless_coordinates(mass: Array, dofs: tuple[str, ...]) -> list[str]:
-    """Names of the coordinates in which one singular matrix (n, n) has motions without mass."""
+    """Return the names of the coordinates that take part in the massless motions of one singular matrix (n, n)."""
     _, sizes, motions = np.linalg.svd(_scaled(np.real(mass)))
     without = motions[sizes * _NO_INERTIA < sizes[0]]
     share = np.abs(without).max(axis=0, initial=0.0)
@@ -37,7 +37,7 @@ def massless_coordinates(mass: Array, dofs: tuple[str, ...]) -> list[str]:
 
 
 def with_reasons(model: LinearModel) -> LinearModel:
-    """The model with its singular points failed, each with its reason; their matrices are kept."""
+    """Return the model with each singular point marked as failed, with its reason; the matrices are kept."""
     singular = massless(model.M)
     if not singular.any():
         return model
@@ -50,6 +50,7 @@ def with_reasons(model: LinearModel) -> LinearModel:
 
 
 def _scaled(mass: Array) -> Array:
+    """Return mass matrices scaled to a unit diagonal."""
     diagonal = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
     diagonal = np.where(diagonal > 0, diagonal, 1)
     scaled: Array = mass / diagonal[..., None, :] / diagonal[..., None]
@@ -57,7 +58,7 @@ def _scaled(mass: Array) -> Array:
 
 
 def _clearly_positive(mass: Array) -> bool:
-    """Whether every motion has mass by the triangular factors of M + Mᵀ, much cheaper than singular values."""
+    """Return whether every motion has mass, from a Cholesky factor of M + Mᵀ: much cheaper than singular values."""
     twice = mass + np.swapaxes(mass, -1, -2)
     try:
         pivots = np.diagonal(np.linalg.cholesky(twice), axis1=-2, axis2=-1) ** 2

@@ -1,4 +1,4 @@
-"""A rotor, or what stands in its place, on a support: hub coordinates replaced by the support's own."""
+"""Mount a rotor, or a model in its place, on a support: the support's coordinates replace the hub coordinates."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ from proprotor.typing import Array
 
 
 def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
-    """The coupled model on the coordinates of the support and of the rotor without its hub.
+    """Return the coupled model on the coordinates of the support and of the rotor without its hub.
 
-    Hub motion is Φ p, so by virtual work the rotor's matrices become Tᵀ (...) T, with the support's own
-    added. Where the support's generalised masses include the rotor, its share is taken off first:
+    Hub motion is Φ p, so by virtual work the rotor's matrices become Tᵀ (...) T, to which the support's matrices are
+    added. If the support's generalised masses include the rotor, the rotor's share is taken off first:
     `proprotor.model.rotor_share`.
 
     Parameters
     ----------
     rotor_alone : LinearModel
-        Six hub coordinates, then any others: `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere, these
-        with `mass_at_rest` where the support's masses include the rotor.
+        Six hub coordinates, then any others: `rotor_model`, `rigid_propeller`, or M, C and K from elsewhere, with
+        `mass_at_rest` if the support's masses include the rotor.
     support : NormalModes
 
     Returns
     -------
     LinearModel
-        With the coordinates of the support first, SI. A point whose mass matrix has no inverse has its matrices, but
-        no modes, and the reason in `trim`; one whose support has no mass without the rotor has neither.
+        With the coordinates of the support first, SI. A point whose mass matrix has no inverse has matrices, but no
+        modes, and the reason in `trim`; a point whose support has no mass without the rotor has NaN matrices too.
 
     Raises
     ------
     InputError
-        When the model does not begin with the hub coordinates, a coordinate of the support has the name of one of the
-        rotor's, the mass at rest is needed and missing, or the only support there is has no mass without the rotor.
+        When the model does not begin with the hub coordinates, a coordinate of the support has the name of a coordinate
+        of the rotor, the mass at rest is needed and missing, or a single support has no mass without the rotor.
     """
     if rotor_alone.dofs[: len(HUB)] != HUB:
         raise InputError("dofs", ", ".join(rotor_alone.dofs), f"must begin with {', '.join(HUB)}")
@@ -83,7 +83,7 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
     Raises
     ------
     InputError
-        When the refusal is that of all points at once.
+        When one refusal holds for all points.
     """
     if not refusal.ndim:
         refuse(refusal, support)
@@ -102,13 +102,14 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
 
 
 def _at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
-    """An array of many designs, with some axes of its own, at each point of a batch."""
+    """Return an array of many designs, whose last `own` axes are not those of the batch, at each point of a batch."""
     if values is None:
         return None
     return np.broadcast_to(values, (*shape, *values.shape[values.ndim - own :]))
 
 
 def _with_warning(trim: Trim, warning: Array | None) -> Trim:
+    """Return the trim with the warnings of the support appended to its own."""
     if warning is None:
         return trim
     pairs = zip(trim.warning.ravel(), warning.ravel(), strict=True)
@@ -117,7 +118,7 @@ def _with_warning(trim: Trim, warning: Array | None) -> Trim:
 
 
 def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
-    """Tᵀ (...) T with the support's own added; T = diag(Φ, 1) leaves the block of the rotor's own as it is."""
+    """Return Tᵀ (...) T plus the support's matrix; T = diag(Φ, 1) does not change the rotor's own block."""
     modes, hubs = hub.shape[-1], len(HUB)
     own = matrix.shape[-1] - hubs
     virtual = np.swapaxes(hub, -1, -2)
@@ -132,7 +133,7 @@ def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
 
 
 def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:
-    """Refuse a coordinate of the support that would be taken for one of the rotor, by its name or by its mode's."""
+    """Refuse a coordinate of the support whose name, or the name of its mode, is also one of the rotor's."""
     if clashes := [name for name in support if name in own]:
         rule = f"must not be a name of the rotor's own coordinates, {', '.join(own)}"
         raise InputError("support.names", ", ".join(clashes), rule)
@@ -140,7 +141,7 @@ def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:
 
 
 def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
-    """The model at every point of a batch that has more axes, those of the supports."""
+    """Return the model at every point of a batch that has more axes, those of the supports."""
     if model.M.shape[:-2] == shape:
         return model
     matrices = {name: getattr(model, name) for name in ("M", "C", "K", "B")}

@@ -1,4 +1,4 @@
-"""What a result rests on that was not read in a source."""
+"""Tell which numbers behind a result were not read in a source."""
 
 from __future__ import annotations
 
@@ -13,18 +13,20 @@ _READ_IN_A_SOURCE = ("published", "derived")
 
 
 def doubtful_inputs(case: Configuration) -> dict[str, Datum]:
-    """Inputs by field that are assumed, recalled, calibrated or of unstated origin."""
+    """Return the inputs, by field, that are assumed, recalled, calibrated or of unstated origin."""
     return {path: n for path, n in case.sources.items() if n.status not in _READ_IN_A_SOURCE}
 
 
 def reservations(case: Configuration) -> list[str]:
-    """Sentences to stand with every number and figure of the case: doubtful inputs, and the calibration."""
+    """Return the sentences to show with every result of the case: on doubtful inputs, and on the calibration."""
     doubtful = doubtful_inputs(case)
     counts = Counter(number.status for number in doubtful.values())
     sentences = []
     if counts:
-        told = ", ".join(f"{count} {status}" for status, count in sorted(counts.items()))
-        sentences.append(f"Rests on inputs that were not read in a source: {told}, of {len(case.sources)}.")
+        counted = ", ".join(f"{count} {status}" for status, count in sorted(counts.items()))
+        sentences.append(
+            f"Rests on inputs that were not read in a source: {counted}, of {len(case.sources)}."
+        )
     if case.calibration:
         sentences.append(f"Calibration: {case.calibration.rstrip('.')}.")
     return sentences

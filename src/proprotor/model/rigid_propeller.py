@@ -1,4 +1,4 @@
-"""A rigid propeller with published whirl derivatives, to stand in a rotor's place on its six hub coordinates.
+"""Model a rigid propeller with published whirl derivatives, in place of a rotor, on the six hub coordinates.
 
 The derivatives are those of NASA TN D-659 (Reed and Bland, 1961), in axes X forward along the shaft, Y to
 the right and Z down, the propeller turning about +X:
@@ -13,7 +13,7 @@ X = K, Y = J, Z = -I, and
     θ = αy        ψ = -αx        θ̄ = αy - ẋ/V        ψ̄ = -αx - ẏ/V
     f_x = -F_Z    f_y = F_Y      m_x = -M_Z          m_y = M_Y
 
-A hub that stands at l ahead of a pivot has ẋ = lθ̇ and ẏ = lψ̇, which gives the report's θ̄ = θ - lθ̇/V.
+A hub at a distance l ahead of a pivot has ẋ = lθ̇ and ẏ = lψ̇, which gives the report's θ̄ = θ - lθ̇/V.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ _TO_ATTITUDE = np.array([[0.0, 1.0], [-1.0, 0.0]])  # (θ, ψ) from (αx, αy)
 
 
 class WhirlDerivatives(NamedTuple):
-    """Derivatives of a propeller's forces and moments in pitch and yaw, dimensionless, as defined above.
+    """Derivatives of a propeller's forces and moments in pitch and yaw, dimensionless, as `rigid_propeller` uses them.
 
-    The propeller is alike in all directions, so these give the force along Y and the moment about Z as well.
+    The propeller is axisymmetric, so these derivatives also give the force along Y and the moment about Z.
 
     Parameters
     ----------
@@ -71,9 +71,9 @@ def rigid_propeller(
     polar_inertia: ArrayLike,
     diametral_inertia: ArrayLike,
 ) -> LinearModel:
-    """The propeller on its six hub coordinates: inertia, gyroscopic moments and airloads.
+    """Return the propeller on its six hub coordinates: inertia, gyroscopic moments and airloads.
 
-    It carries no steady thrust or torque, turns at constant speed, and its trim has no collective (NaN).
+    The propeller has no steady thrust or torque, turns at constant speed, and its trim has no collective (NaN).
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def rigid_propeller(
     Raises
     ------
     InputError
-        For a value that is not finite or, but for the derivatives, negative.
+        For a value that is not finite, or a negative value that is no derivative.
     """
     given = {
         "airspeed": in_metres_per_second(airspeed),
@@ -128,14 +128,19 @@ def rigid_propeller(
 def whirl_derivatives(
     damping: Array, stiffness: Array, airspeed: ArrayLike, radius: ArrayLike, density: ArrayLike
 ) -> WhirlDerivatives:
-    """The whirl derivatives in the airloads of any rotor that is alike in all directions.
+    """Return the whirl derivatives that the airloads of any axisymmetric rotor contain.
 
     Parameters
     ----------
     damping, stiffness : array (..., n, n)
-        What the airloads add to C and K; the six hub coordinates come first.
+        Contribution of the airloads to C and K, SI; the six hub coordinates are the first.
     airspeed, radius, density : float or array (...)
         m/s, above zero; m; kg/m³.
+
+    Returns
+    -------
+    WhirlDerivatives
+        Dimensionless, (...).
     """
     speed, radius, density = (np.asarray(value, dtype=float) for value in (airspeed, radius, density))
     force = density * speed**2 * np.pi * radius**2 / 2
@@ -152,7 +157,7 @@ def whirl_derivatives(
 def _airloads(
     speed: Array, radius: Array, density: Array, derivatives: WhirlDerivatives
 ) -> tuple[Array, Array]:
-    """Damping and stiffness (..., 6, 6): minus the loads per unit of rate and of displacement."""
+    """Return damping and stiffness (..., 6, 6): minus the loads per unit of rate and of displacement."""
     z_theta, z_psi, z_r, m_psi, m_q = derivatives
     arm = 2 * radius
     zero = np.zeros_like(speed)
@@ -170,11 +175,12 @@ def _airloads(
 
 
 def _set(matrix: Array, columns: list[int], loads: Array) -> None:
+    """Put the loads into the rows of forces and moments, in some columns of a matrix."""
     matrix[..., np.array(_LOADS)[:, None], np.array(columns)] = loads
 
 
 def _gyroscopic(momentum: Array) -> Array:
-    """α̇ × momentum K, what turning the spin axis takes."""
+    """Return the matrix of α̇ × momentum K, the moment that turns the spin axis."""
     matrix = np.zeros((*momentum.shape, len(HUB), len(HUB)))
     alpha_x, alpha_y = _ANGLES
     matrix[..., alpha_x, alpha_y], matrix[..., alpha_y, alpha_x] = momentum, -momentum
@@ -182,10 +188,12 @@ def _gyroscopic(momentum: Array) -> Array:
 
 
 def _diagonal(*entries: Array) -> Array:
+    """Return diagonal matrices (..., n, n) of n entries (...)."""
     return np.stack(entries, axis=-1)[..., None] * np.eye(len(entries))
 
 
 def _unloaded(shape: tuple[int, ...]) -> Trim:
+    """Return a trim without loads, of a batch of some shape."""
     still = {name: np.zeros(shape) for name in ("coning", "lag", "elastic_pitch", "thrust", "torque")}
     return Trim(
         **still,
@@ -198,6 +206,7 @@ def _unloaded(shape: tuple[int, ...]) -> Trim:
 
 
 def _finite(name: str, value: ArrayLike, not_negative: bool = False) -> Array:
+    """Return a value as an array; refuse one that is not finite or, if asked, negative."""
     array = np.asarray(value, dtype=float)
     if not np.all(np.isfinite(array)):
         raise InputError(name, value, "must be finite")

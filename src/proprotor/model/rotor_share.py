@@ -1,7 +1,7 @@
-"""The rotor's share in the masses of a support whose modes were measured or computed with the rotor on.
+"""Take the rotor's share off the masses of a support whose modes were measured or computed with the rotor on.
 
-The share depends on how the rotor was held then, never on the options of an analysis: it is the rotor's mass matrix at
-rest with its blades locked, less what a free gimbal or a free shaft took out of it (a Schur complement).
+The share depends on how the rotor was held at that time, never on the options of an analysis. It is the rotor's mass
+matrix at rest with locked blades, reduced by the motion of a free gimbal or a free shaft (a Schur complement).
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
-from proprotor.model.linear_model import MASS_AT_REST
+from proprotor.model.mass_at_rest import MASS_AT_REST
 from proprotor.rotor.motions import HUB
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
 _TRANSLATION = np.diag([1.0] * 3 + [0.0] * 3)
-_ABOUT_SHAFT = [HUB.index("alpha_z")]  # which moves a rotor at rest just as its azimuth does
+_ABOUT_SHAFT = [HUB.index("alpha_z")]  # moves a rotor at rest exactly as the azimuth does
 _GIMBAL = [MASS_AT_REST.index(name) for name in ("gimbal_1c", "gimbal_1s")]
-_ROUNDING = 1e-9  # of a mass scaled to a unit diagonal, as for the masses of a support
-_TOLD = 1e-3  # change of a frequency by the hub spring, from which on it is told
-_NO_MASS = 1e-12  # of the largest direction of a scaled mass
+_ROUNDING = 1e-9  # relative to a mass scaled to a unit diagonal, as for the masses of a support
+_REPORTED = 1e-3  # smallest relative change of a frequency by the hub spring that gives a warning
+_NO_MASS = 1e-12  # relative to the largest eigenvalue of a scaled mass
 
 
-def how_held(support: NormalModes, mass_at_rest: Array) -> str:
-    """Return the support's word for how the rotor was held; for True "gimballed" with a gimbal, "rigid" without."""
+def _how_held(support: NormalModes, mass_at_rest: Array) -> str:
+    """Return how the rotor was held: as the support says; for True "gimballed" with a gimbal, "rigid" without."""
     if isinstance(support.includes_rotor, str):
         return support.includes_rotor
     return "gimballed" if mass_at_rest.shape[-1] == len(MASS_AT_REST) else "rigid"
@@ -39,11 +39,12 @@ def rotor_share(mass_at_rest: ArrayLike, held: str, shaft: str = "held") -> Arra
     Parameters
     ----------
     mass_at_rest : array_like, shape (..., 8, 8) or (..., 6, 6)
-        Of `proprotor.model.linear_model.mass_at_rest`, or on the hub's coordinates alone for a rotor without gimbal; SI.
+        `proprotor.model.mass_at_rest.mass_at_rest` of the rotor, or on the hub's coordinates alone for a rotor without
+        gimbal; SI.
     held : "gimballed", "rigid" or "mass only"
         Free to tilt on its gimbal, as one body with the shaft, or a point mass at the hub.
     shaft : "held" or "free"
-        Whether the rotor could turn about its shaft; a point mass does not ask.
+        Whether the rotor could turn about its shaft; without effect on a point mass.
 
     Returns
     -------
@@ -53,7 +54,7 @@ def rotor_share(mass_at_rest: ArrayLike, held: str, shaft: str = "held") -> Arra
     Raises
     ------
     InputError
-        When the matrix has another size, or has no gimbal to be free on.
+        When the matrix has another size, or a gimballed rotor has no gimbal.
     """
     mass = np.asarray(mass_at_rest)
     if mass.shape[-2:] not in ((len(HUB),) * 2, (len(MASS_AT_REST),) * 2):
@@ -68,9 +69,9 @@ def rotor_share(mass_at_rest: ArrayLike, held: str, shaft: str = "held") -> Arra
 
 
 def _released(mass: Array, free: list[int]) -> Array:
-    """Return the mass that the hub moves when some coordinates are free to follow as they like."""
+    """Return the mass that the hub moves when some coordinates are free to follow."""
     own, coupling = mass[..., free, :][..., free], mass[..., free, : len(HUB)]
-    without = np.diagonal(own, axis1=-2, axis2=-1) == 0  # nothing follows where nothing has mass
+    without = np.diagonal(own, axis1=-2, axis2=-1) == 0  # a coordinate without mass does not follow
     own = own + without[..., None] * np.eye(len(free))
     at_hub = mass[..., : len(HUB), : len(HUB)]
     released: Array = at_hub - np.swapaxes(coupling, -1, -2) @ np.linalg.solve(own, coupling)
@@ -84,14 +85,14 @@ def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | N
     ----------
     support : NormalModes
     rotors : iterable of (hub, mass_at_rest)
-        Of each rotor the motion of its hub (..., 6, n), and its mass at rest as for `rotor_share`.
+        The motion of each rotor's hub (..., 6, n), and the rotor's mass at rest as for `rotor_share`.
 
     Returns
     -------
     mass : array (..., n, n)
-        SI; as the support has it where that does not include the rotor.
+        The mass of the support without the rotors, SI.
     refusal : array (...) of str
-        Why what is left is no mass; "" where it is one.
+        The reason for which the remainder is no valid mass; "" for a valid one.
 
     Raises
     ------
@@ -103,10 +104,10 @@ def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | N
         if at_rest is None:
             rule = "must be given with the model: the support's masses include the rotor"
             raise InputError("mass_at_rest", None, rule)
-        held = how_held(support, at_rest)
+        held = _how_held(support, at_rest)
         mass = mass - np.swapaxes(hub, -1, -2) @ rotor_share(at_rest, held, support.shaft) @ hub
     refusal = np.full(mass.shape[:-2], "", dtype=object)
-    if held and not _holds(mass, support.mass):
+    if held and not _all_positive(mass, support.mass):
         given = np.broadcast_to(np.real(support.mass), mass.shape)
         for place in np.ndindex(refusal.shape):
             refusal[place] = _refusal(np.real(mass[place]), given[place], support.names, held)
@@ -114,31 +115,31 @@ def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | N
 
 
 def settled(support: NormalModes, mass_at_rest: Array) -> NormalModes:
-    """Return the support with the word for how its rotor was held, and refuse one without a mass of its own.
+    """Return the support with the way its rotor was held in words; refuse a support without mass of its own.
 
-    In a batch each design fails by itself, when the rotor is mounted.
+    In a batch each design fails alone, when the rotor is mounted.
 
     Raises
     ------
     InputError
-        Naming includes_rotor and the units.
+        When the share of the rotor leaves no mass; the rule names includes_rotor and the units.
     """
     _, refusal = without_rotors(support, [(support.hub, mass_at_rest)])
     if not refusal.ndim:
         refuse(refusal, support)
     if support.includes_rotor is not True:
         return support
-    return replace(support, includes_rotor=how_held(support, mass_at_rest))
+    return replace(support, includes_rotor=_how_held(support, mass_at_rest))
 
 
 def refuse(refusal: Array, support: NormalModes) -> None:
-    """Raise the refusal of a single design, if it is one."""
+    """Raise an error if a single design is refused."""
     if reason := str(refusal[()]):
         raise InputError("support.includes_rotor", support.includes_rotor, reason)
 
 
-def _holds(left: Array, given: Array) -> bool:
-    """Whether no direction of what is left is negative, but for rounding: all have a Cholesky factor."""
+def _all_positive(left: Array, given: Array) -> bool:
+    """Return whether no remaining mass is negative, but for rounding: all have a Cholesky factor."""
     scaled = _scaled(np.real(left), np.real(given))
     try:
         np.linalg.cholesky(scaled + _ROUNDING * np.eye(scaled.shape[-1]))
@@ -148,7 +149,7 @@ def _holds(left: Array, given: Array) -> bool:
 
 
 def _scaled(left: Array, given: Array) -> Array:
-    """Return what is left in units of the diagonal it was taken from, which is not zero where all was taken."""
+    """Return the remaining mass in units of the diagonal of the given mass, which stays above zero."""
     diagonal = np.diagonal(given, axis1=-2, axis2=-1) + np.abs(np.diagonal(left, axis1=-2, axis2=-1))
     size = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     scaled: Array = left / size[..., :, None] / size[..., None, :]
@@ -156,7 +157,7 @@ def _scaled(left: Array, given: Array) -> Array:
 
 
 def _refusal(left: Array, given: Array, names: Sequence[str], held: str) -> str:
-    """Say of one design in which motion the rotor's share is more than the whole; "" where it is so in none."""
+    """Return the motion of one design in which the rotor's share exceeds the whole mass, in words; "" without one."""
     values, motions = np.linalg.eigh(_scaled(left, given))
     if values[0] >= -_ROUNDING:
         return ""
@@ -174,7 +175,7 @@ def _refusal(left: Array, given: Array, names: Sequence[str], held: str) -> str:
 def spring_warnings(
     support: NormalModes, mass_at_rest: Array, gimbal_stiffness: ArrayLike
 ) -> tuple[str, ...]:
-    """Tell where a hub spring, which is no mass, keeps modes found on a gimbal from coming out as given.
+    """Warn of modes found on a gimbal whose frequencies a hub spring changes, because a spring is no mass.
 
     Parameters
     ----------
@@ -183,13 +184,13 @@ def spring_warnings(
     gimbal_stiffness : float or array (...)
         N m/rad.
     """
-    if not support.includes_rotor or how_held(support, mass_at_rest) != "gimballed":
+    if not support.includes_rotor or _how_held(support, mass_at_rest) != "gimballed":
         return ()
     frequency, ratio, names = _modes_with_spring(support, np.real(mass_at_rest), np.real(gimbal_stiffness))
     changes = [
         f"{name} at {hertz:.4g} Hz by {100 * (times - 1):+.2g} %"
         for name, hertz, times in zip(names, frequency / (2 * np.pi), ratio, strict=True)
-        if abs(times - 1) > _TOLD
+        if abs(times - 1) > _REPORTED
     ]
     if not changes:
         return ()
@@ -202,11 +203,11 @@ def spring_warnings(
 def _modes_with_spring(
     support: NormalModes, mass_at_rest: Array, gimbal_stiffness: ArrayLike
 ) -> tuple[Array, Array, list[str]]:
-    """Return frequencies (n,) of the undamped modes in rad/s, what the spring makes of them as a ratio, and names.
+    """Return frequencies (n,) of the undamped modes in rad/s, their ratios with and without spring, and names.
 
-    Of many designs those which the spring moves most. One mode and the gimbal tilt it causes: with unit modal mass,
-    tilt c per unit, gimbal inertia I and spring K, the squares λ of the frequencies solve
-    I λ² - (I (ω² + K c²) + K) λ + ω² K = 0.
+    Of many designs, each mode is returned for the design that the spring changes most. For one mode and the gimbal tilt
+    it causes, with unit modal mass, tilt c per unit, gimbal inertia I and spring K, the squares λ of the frequencies
+    solve I λ² - (I (ω² + K c²) + K) λ + ω² K = 0.
     """
     square, shapes, scaled = _undamped_modes(np.real(support.mass), np.real(support.stiffness))
     own = mass_at_rest[..., _GIMBAL, :][..., _GIMBAL]
@@ -229,7 +230,7 @@ def _modes_with_spring(
 
 
 def _undamped_modes(mass: Array, stiffness: Array) -> tuple[Array, Array, Array]:
-    """Return ω² (..., n), shapes of unit modal mass, and these in scaled coordinates; zero where there is no mass."""
+    """Return ω² (..., n), shapes of unit modal mass, and the same shapes scaled; zero for a motion without mass."""
     size = np.sqrt(np.diagonal(mass, axis1=-2, axis2=-1))
     size = np.where(size > 0, size, 1.0)
     values, vectors = np.linalg.eigh(mass / size[..., :, None] / size[..., None, :])

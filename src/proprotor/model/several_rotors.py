@@ -1,4 +1,4 @@
-"""Several rotors on one support, such as the two of an aircraft that turn opposite ways."""
+"""Mount several rotors on one support, such as the two rotors of an aircraft that turn opposite ways."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from proprotor.rotor.motions import HUB, check_distinct
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
-# A mirror across the plane of I and K turns y around, and of the rotations (axial vectors) the other two.
-MIRROR = np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+# A mirror across the plane of I and K reverses y and, among the rotations (axial vectors), those about x and z.
+_MIRROR = np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 
 
 class MountedRotor(NamedTuple):
-    """A rotor and the place it has on a support.
+    """A rotor and its place on a support.
 
     model : LinearModel
         The rotor alone on its six hub coordinates.
     hub : array (6, n)
-        Motion of its hub per coordinate of the support, in the support's I, J, K.
+        Hub motion per unit of each coordinate of the support, along and about the support's I, J, K.
     mirrored : bool
-        Whether it is the model's mirror image: on the left side, turning the other way.
+        Whether the rotor is the model's mirror image: on the left side, turning the other way.
     """
 
     model: LinearModel
@@ -38,24 +38,19 @@ class MountedRotor(NamedTuple):
     mirrored: bool = False
 
 
-Placed = tuple[
-    MountedRotor, Array, slice
-]  # with the motion of its hub, and the places of its own coordinates
-
-
 def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> LinearModel:
-    """The coupled model of a support and its rotors.
+    """Return the coupled model of a support and its rotors.
 
-    Coordinates of a rotor are named after it, "right gimbal_1c". The own coordinates of a mirrored rotor are mirrored
-    with it: in the same motion of both, the aircraft stays symmetric. Azimuths are displacements here, each with a
-    root at zero; rotor_speed="constant" leaves them out. The trim is that of the first rotor.
+    Coordinates of a rotor have its name in front, "right gimbal_1c". The coordinates of a mirrored rotor are mirrored
+    too: when both rotors move alike, the aircraft stays symmetric. Azimuths are displacements in this model, each with
+    a root at zero; rotor_speed="constant" leaves them out. The trim is that of the first rotor.
 
     Parameters
     ----------
     rotors : mapping of str to MountedRotor
-        By name, all at the same points.
+        The rotors by name, all at the same points.
     support : NormalModes
-        Its own `hub` is not used: each rotor has one.
+        The support; its `hub` is not used, because each rotor has a hub of its own.
 
     Returns
     -------
@@ -65,66 +60,61 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     Raises
     ------
     InputError
-        Without a rotor, for a model that does not begin with the hub coordinates, a hub of another shape, a mass at
+        Without any rotor, for a model that does not begin with the hub coordinates, a hub of another shape, a mass at
         rest that is needed and missing, or a support that has no mass without the rotors.
     """
     if not rotors:
         raise InputError("rotors", None, "must be one or more")
-    names = list(support.names)
-    n = len(names)
-    placed: dict[str, Placed] = {}
-    for name, rotor in rotors.items():
-        hub = _hub_of(name, rotor, n)
-        own = rotor.model.dofs[len(HUB) :]
-        placed[name] = (rotor, hub, slice(len(names), len(names) + len(own)))
-        names += [f"{name} {dof}" for dof in own]
+    n = len(support.names)
+    hubs = {name: _hub_of(name, rotor, n) for name, rotor in rotors.items()}
+    own = {name: [f"{name} {dof}" for dof in rotor.model.dofs[len(HUB) :]] for name, rotor in rotors.items()}
+    names = [*support.names, *(dof for dofs in own.values() for dof in dofs)]
     if len(set(names)) < len(names):
-        raise InputError(
-            "support.names", ", ".join(support.names), "must differ from the rotors' coordinates"
-        )
+        rule = "must differ from the rotors' coordinates"
+        raise InputError("support.names", ", ".join(support.names), rule)
     check_distinct("support.names", tuple(names))
-    shape = np.broadcast_shapes(
-        *(rotor.model.M.shape[:-2] for rotor in rotors.values()), support.mass.shape[:-2]
-    )
+    models = {name: rotor.model for name, rotor in rotors.items()}
     mass, refusal = without_rotors(
-        support, [(hub, rotor.model.mass_at_rest) for rotor, hub, _ in placed.values()]
+        support, [(hubs[name], model.mass_at_rest) for name, model in models.items()]
     )
-    shape = np.broadcast_shapes(shape, mass.shape[:-2])
+    shape = np.broadcast_shapes(
+        *(matrix.shape[:-2] for matrix in (support.mass, mass, *(model.M for model in models.values())))
+    )
     matrices: dict[str, Any] = {}
-    for kind, of_support in (
-        ("M", mass),
-        ("C", support.damping),
-        ("K", support.stiffness),
-    ):
+    for kind, of_support in {"M": mass, "C": support.damping, "K": support.stiffness}.items():
         whole = np.zeros((*shape, len(names), len(names)))
         whole[..., :n, :n] = of_support
-        for rotor, hub, places in placed.values():
-            to_rotor = np.zeros((len(rotor.model.dofs), len(names)))
-            to_rotor[: len(HUB), :n] = hub
-            to_rotor[len(HUB) :, places] = np.eye(places.stop - places.start)
-            whole += to_rotor.T @ getattr(rotor.model, kind) @ to_rotor
+        for name, model in models.items():
+            to_rotor = _to_rotor(hubs[name], [names.index(dof) for dof in own[name]], len(names))
+            whole += to_rotor.T @ getattr(model, kind) @ to_rotor
         matrices[kind] = whole
-    (first, hub, _), *_ = placed.values()
-    motion = np.pad(hub, ((0, 0), (0, len(names) - n)))
-    told = {stamp.of_model(rotor.model).get("options") for rotor in rotors.values()}
-    # Of rotors with different options there is no one stamp.
-    origin = first.model.origin if len(told) == 1 else None
+    first, *others = models.values()
+    options = stamp.of_model(first).get("options")
     coupled = replace(
-        first.model,
+        first,
         **matrices,
         B=None,
         dofs=tuple(names),
-        hub=motion,
+        hub=np.pad(next(iter(hubs.values())), ((0, 0), (0, len(names) - n))),
         rotor=None,
         mass_at_rest=None,
         shapes=None,
-        origin=origin,
+        # Rotors with different options have no common stamp.
+        origin=first.origin if all(stamp.of_model(o).get("options") == options for o in others) else None,
     )
     return refused_where(refusal, coupled, support)
 
 
+def _to_rotor(hub: Array, own: list[int], count: int) -> Array:
+    """Return the coordinates of a rotor alone per unit of each coordinate of the whole, (6 + len(own), count)."""
+    rows = np.zeros((len(HUB) + len(own), count))
+    rows[: len(HUB), : hub.shape[-1]] = hub
+    rows[len(HUB) :, own] = np.eye(len(own))
+    return rows
+
+
 def _hub_of(name: str, rotor: MountedRotor, n: int) -> Array:
-    """Hub motion in the axes of the rotor's own model."""
+    """Return the hub motion in the axes of the rotor's own model."""
     if rotor.model.dofs[: len(HUB)] != HUB:
         raise InputError(
             f"rotors[{name}].model", ", ".join(rotor.model.dofs), f"must begin with {', '.join(HUB)}"
@@ -134,4 +124,4 @@ def _hub_of(name: str, rotor: MountedRotor, n: int) -> Array:
         raise InputError(
             f"rotors[{name}].hub", f"array of shape {hub.shape}", f"must be finite, {(len(HUB), n)}"
         )
-    return MIRROR @ hub if rotor.mirrored else hub
+    return _MIRROR @ hub if rotor.mirrored else hub

@@ -1,9 +1,8 @@
-"""State space of a linear model, with names: for control design, frequency response and simulation.
+"""Build the state space of a linear model, with names, for control design, frequency response and simulation.
 
-Inputs are swashplate collective and cyclics (rad) and gusts along I, J, K (m/s). Outputs are hub motion, the
-rotor's loads on the
-hub and the blades' motion. With the pitch equations kept, the pitch coordinates are the whole perturbation of
-blade pitch.
+Inputs are swashplate collective and cyclics (rad) and gusts along I, J, K (m/s). Outputs are hub motion, the rotor's
+loads on the hub and the blades' motion. With the pitch equations kept, the pitch coordinates are the whole
+perturbation of blade pitch.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import control
 
-Rows = tuple[Array, Array, Array]  # of displacements, rates and accelerations, by the states
-Block = tuple[tuple[str, ...], Array, Array]  # names of outputs, their rows of C and of D
+_Rows = tuple[Array, Array, Array]  # displacements, rates and accelerations per unit of each state
+_Block = tuple[tuple[str, ...], Array, Array]  # names of outputs, their rows of C and of D
 
 LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 
@@ -34,26 +33,25 @@ LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 class StateSpace:
     """ẋ = A x + B u, y = C x + D u, batched over leading axes; NaN at failed points.
 
-    Where a shaft holds the azimuth at some points of a batch only, the azimuth is a state and an output, NaN at the
-    other points in its row and column of A, its rows of B, C and D and its column of C; its rate is an output too.
+    If a shaft holds the azimuth at some points of a batch only, the azimuth is a state and an output. At the other
+    points its row and column of A, its rows of B, C and D and its column of C are NaN. Its rate is an output too.
 
     Attributes
     ----------
     A : array (..., states, states)
         SI units.
     B : array (..., states, inputs)
-        Per unit of the inputs, SI.
+        SI units.
     C : array (..., outputs, states)
         SI units.
     D : array (..., outputs, inputs)
         SI units.
     states, inputs, outputs : tuple of str
         States are displacements (without the rotor's azimuth unless a shaft holds it), then rates ("… rate").
-        Outputs: hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
-        inertial axes)
-        and the rotor's own coordinates; of an azimuth that no shaft holds, the rate.
+        Outputs are hub displacement, rate and acceleration, the rotor's loads on the hub (N, N m, along and about
+        inertial axes) and the rotor's own coordinates; for an azimuth that no shaft holds, the rate.
     warning, reason : array of str
-        (...): what makes a point doubtful, and why one failed; empty where nothing does.
+        (...): the reason for which a point is doubtful, and the reason for which a point failed; empty without one.
     stamp : mapping of str to str
         The case and the options in force, see `proprotor.model.stamp`.
     """
@@ -70,7 +68,7 @@ class StateSpace:
     stamp: Stamp = field(default_factory=dict)
 
     def to_control(self) -> control.StateSpace:
-        """The same as a `control.StateSpace` of python-control; one point at a time.
+        """Return one point as a `control.StateSpace` of python-control.
 
         Returns
         -------
@@ -94,7 +92,7 @@ class StateSpace:
 
 
 def state_space(model: LinearModel) -> StateSpace:
-    """State space of a rotor, alone or on a support.
+    """Return the state space of a rotor, alone or on a support.
 
     Parameters
     ----------
@@ -108,7 +106,7 @@ def state_space(model: LinearModel) -> StateSpace:
     Raises
     ------
     InputError
-        When the model has no inputs, as one from elsewhere may.
+        When the model has no inputs, such as a model from elsewhere.
     """
     if model.B is None:
         raise InputError("B", None, "must be given: the model has no inputs")
@@ -137,9 +135,9 @@ def state_space(model: LinearModel) -> StateSpace:
 
 
 def _outputs(
-    model: LinearModel, motion: Rows, acceleration_by_input: Array
+    model: LinearModel, motion: _Rows, acceleration_by_input: Array
 ) -> tuple[tuple[str, ...], Array, Array]:
-    """Names, rows of C and of D."""
+    """Return the names of the outputs and their rows of C and D."""
     hub = np.eye(len(HUB), len(model.dofs)) if model.hub is None else model.hub
     rotor = model if model.rotor is None else model.rotor
     own = [place for place, name in enumerate(model.dofs) if name in rotor.dofs[len(HUB) :]]
@@ -147,7 +145,7 @@ def _outputs(
     loads, loads_by_input = _hub_loads(model, motion, acceleration_by_input)
     shape = acceleration.shape[:-2]
     none = np.zeros((len(HUB), len(INPUTS)))
-    blocks: list[Block] = [
+    blocks: list[_Block] = [
         (HUB, hub @ displacement, none),
         (tuple(f"{name} rate" for name in HUB), hub @ rate, none),
         (tuple(f"{name} acceleration" for name in HUB), hub @ acceleration, hub @ acceleration_by_input),
@@ -162,8 +160,8 @@ def _outputs(
     return names, rows, feedthrough
 
 
-def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: Array) -> list[Block]:
-    """Displacements of the rotor's own coordinates, and the rate of one that is no displacement everywhere."""
+def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: Array) -> list[_Block]:
+    """Return the rotor's own displacements, and the rate of a coordinate that is not a state at every point."""
     held, mixed = held_coordinates(model), bool(lack_azimuth(model).any())
     moved = [place for place in own if place in held]
     turning = [p for p in own if p not in held or (mixed and model.dofs[p] == ROTOR_SPEED)]
@@ -177,8 +175,11 @@ def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: A
     ]
 
 
-def _hub_loads(model: LinearModel, motion: Rows, acceleration_by_input: Array) -> tuple[Array, Array]:
-    """Perturbation of the rotor's loads on the hub: minus the hub rows of the rotor alone, plus its inputs."""
+def _hub_loads(model: LinearModel, motion: _Rows, acceleration_by_input: Array) -> tuple[Array, Array]:
+    """Return the perturbation of the rotor's loads on the hub by states and inputs.
+
+    These loads are minus the hub rows of the rotor alone, plus the hub rows of its inputs.
+    """
     rotor = model if model.rotor is None else model.rotor
     if rotor.dofs[: len(HUB)] != HUB:
         raise InputError(
@@ -188,16 +189,16 @@ def _hub_loads(model: LinearModel, motion: Rows, acceleration_by_input: Array) -
     rows = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
     displacement, rate, acceleration = motion
     loads = -(rows["M"] @ acceleration + rows["C"] @ rate + rows["K"] @ displacement)
-    assert rotor.B is not None  # as its mounted model has inputs
+    assert rotor.B is not None  # the mounted model has inputs, so its rotor has too
     return loads, rotor.B[..., : len(HUB), :] - rows["M"] @ acceleration_by_input
 
 
 def _to_rotor(model: LinearModel) -> Array:
-    """Coordinates of the rotor alone in those of the mounted model."""
-    assert model.rotor is not None and model.hub is not None  # those of a mounted model
+    """Return the coordinates of the rotor alone per unit of each coordinate of the mounted model."""
+    assert model.rotor is not None and model.hub is not None  # a mounted model has both
     own = model.rotor.dofs[len(HUB) :]
     rows = np.zeros((len(own), len(model.dofs)))
     for place, name in enumerate(own):
-        if name in model.dofs:  # a coordinate left out of a submodel stays at zero
+        if name in model.dofs:  # a coordinate that a submodel leaves out stays at zero
             rows[place, model.dofs.index(name)] = 1
     return np.concatenate([model.hub, np.broadcast_to(rows, (*model.hub.shape[:-2], *rows.shape))], axis=-2)

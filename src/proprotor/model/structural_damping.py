@@ -1,4 +1,4 @@
-"""Structural (hysteretic) damping: springs S (1 + ig), which have a meaning in steady oscillation, s = iω."""
+"""Find neutral structural (hysteretic) damping: springs S (1 + ig), which are defined in steady oscillation, s = iω."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from proprotor.errors import InputError
 from proprotor.model.linear_model import LinearModel
 from proprotor.typing import Array
 
-_ROUNDING = 1e-6  # what it may leave of a part that is zero, relative to the whole
+_ROUNDING = 1e-6  # largest part, relative to the whole, that counts as zero
 
 
 class NeutralDamping(NamedTuple):
-    """Structural dampings at which a model oscillates steadily: the largest first, NaN after the last.
+    """Structural dampings at which a model oscillates steadily, from the largest down, then NaN.
 
     damping : array (..., n²)
-        g; beyond the largest no mode is left to become unstable or stable.
+        g, dimensionless; above the largest value no mode changes its stability.
     frequency : array (..., n²)
         ω, rad/s, above zero.
     shape : array (..., n², n)
@@ -31,10 +31,10 @@ class NeutralDamping(NamedTuple):
 
 
 def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
-    """All structural dampings g of the springs S at which a mode is neutrally stable, without iteration.
+    """Return all structural dampings g of the springs S at which a mode is neutrally stable, without iteration.
 
-    With s = iω the equations are (A + igS) u = 0, A = K - ω²M + iωC. Where g is real their conjugates have
-    the same g, and it drops out of both together: (A ⊗ S + S ⊗ A*)(u ⊗ u*) = 0, or
+    With s = iω the equations are (A + igS) u = 0, A = K - ω²M + iωC. For a real g the conjugate equations have
+    the same g, which both together eliminate: (A ⊗ S + S ⊗ A*)(u ⊗ u*) = 0, or
 
         s² (M ⊗ S + S ⊗ M) + s (C ⊗ S - S ⊗ C) + (K ⊗ S + S ⊗ K) = 0
 
@@ -43,14 +43,14 @@ def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
     Parameters
     ----------
     model : LinearModel
-        Without structural damping, its stiffness with the springs as elastic ones; viscous damping stays.
+        The model without structural damping; its stiffness contains the elastic springs S, its damping is viscous.
     springs : array_like, shape (n, n)
         S, SI (N/m, N m/rad), invertible, such as the stiffness of the support of a rigid propeller.
 
     Returns
     -------
     NeutralDamping
-        The largest first, dampings dimensionless, frequencies in rad/s.
+        From the largest damping down, dampings dimensionless, frequencies in rad/s.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
 
 
 def _frequencies(model: LinearModel, springs: Array) -> Array:
-    """Frequencies (..., n²) at which a damping may be real, 0 in place of roots off the imaginary axis."""
+    """Return frequencies (..., n²) at which a damping may be real, 0 in place of roots off the imaginary axis."""
     M, C, K = (getattr(model, name) for name in "MCK")
     mass, stiffness = (np.kron(matrix, springs) + np.kron(springs, matrix) for matrix in (M, K))
     damping = np.kron(C, springs) - np.kron(springs, C)
@@ -89,5 +89,5 @@ def _frequencies(model: LinearModel, springs: Array) -> Array:
     companion[..., n:, :n] = -np.linalg.solve(mass, stiffness)
     companion[..., n:, n:] = -np.linalg.solve(mass, damping)
     s = np.linalg.eigvals(np.nan_to_num(companion))  # failed points of a rotor are NaN
-    s = np.take_along_axis(s, np.argsort(-s.imag, axis=-1)[..., :n], -1)  # they come in pairs ±s
+    s = np.take_along_axis(s, np.argsort(-s.imag, axis=-1)[..., :n], -1)  # the roots are pairs ±s
     return np.where(np.abs(s.real) < _ROUNDING * np.abs(s), s.imag, 0.0)

@@ -151,5 +151,5 @@ def _small_print(motion: ModeMotion) -> str:
     sketch = " The wing is a sketch in the proportions of the XV-15." if motion.sketched else ""
     doubt = f" {MARK} Doubtful: {motion.warning}." if motion.warning else ""
     return "\n".join(
-        filter(None, (told + sketch, textwrap.fill(f"{stamp.told(motion.stamp)}{doubt}", _LETTERS)))
+        filter(None, (told + sketch, textwrap.fill(f"{stamp.line(motion.stamp)}{doubt}", _LETTERS)))
     )

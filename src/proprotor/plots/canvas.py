@@ -71,7 +71,7 @@ def note(ax: Axes, text: str) -> None:
 
 def say_origin(ax: Axes, attributes: Mapping[Any, Any], doubts: Iterable[str] = ()) -> None:
     """Write in small print beneath some axes the case and the options of what is drawn, and what is doubtful in it."""
-    text = " ".join((stamp.told(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
+    text = " ".join((stamp.line(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
     figure = ax.get_figure(root=True)
     if not text or figure is None:
         return

@@ -158,7 +158,7 @@ def plot_sweep(
     figure.subplots_adjust(left=0.09, right=RIGHT, top=0.94, bottom=0.06, hspace=0.14)
     line = positions(sweep, unit)
     told = f"Broad lines: modes of the support, and modes that become unstable. {_gaps_told(sweep)}".strip()
-    origin = (stamp.told(sweep.attrs), *(f"{MARK} {doubt}" for doubt in along(sweep, line)))
+    origin = (stamp.line(sweep.attrs), *(f"{MARK} {doubt}" for doubt in along(sweep, line)))
     add_footer(figure, " ".join(filter(None, (told, footer, *origin))))
     _draw_frequency(above, sweep, line, rotor_speed)
     _draw_damping(below, sweep, line, damping_limits)

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.datum import Datum
-from proprotor.deck.reading import FilePath
+from proprotor.deck.written import FilePath
 from proprotor.errors import as_toml
+from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import MARK, doubt_at, footnotes, marked
+from proprotor.model.options_in_force import chosen, option_text, options_in_result
 from proprotor.model.provenance import doubtful_inputs, reservations
-from proprotor.model.stamp import chosen, deck_fingerprint, option_told, options_told
 from proprotor.report import pictures
 from proprotor.report.analyses import Findings
 from proprotor.report.document import Document, Section, Table, Text
 from proprotor.stability.flutter_messages import boundary_record, mechanism_message, verdict
 from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records
-from proprotor.tables.tables import SweepTable
-from proprotor.tables.terminal import heading
+from proprotor.tables.sweep_table import SweepTable, heading
 from proprotor.typing import Array
 from proprotor.units import factor_to_si
 
@@ -181,10 +181,10 @@ def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterat
 def _model(case: Case, table: SweepTable, settings: Mapping[str, str]) -> Iterator[Table | Text]:
     paragraphs = (case.description, f"{len(table.airspeed)} airspeeds, {_range(table, 0, -1)[5:]}.")
     yield Text(tuple(filter(None, paragraphs)))
-    every = options_told(table.sweep.attrs)
+    every = options_in_result(table.sweep.attrs)
     other = chosen(every)
     rows = [
-        (name.replace("_", " "), option_told(value), "chosen" if name in other else "default")
+        (name.replace("_", " "), option_text(value), "chosen" if name in other else "default")
         for name, value in every.items()
         if value is not None
     ]

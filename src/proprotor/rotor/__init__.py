@@ -1,1 +1,93 @@
-"""Rotor."""
+"""Rotor: a rotor trimmed in its air, with the section loads along its blades.
+
+In: geometry, masses and springs of a rotor, its airfoil, its operation and the modelling options, all in SI. Out: the
+trim of many points at once, with the quantities of the whole blade and of its segments from which `model` makes its
+matrices. This room imports `errors`, `typing` and `files`, and the generated equations.
+
+What a rotor is:
+    rotor                a proprotor: geometry, mass, springs, chord and twist
+    airfoil              section coefficients; the linear airfoil
+    airfoil_table        an airfoil from tables, c81 : files of such tables
+    coefficient_surface  the smooth surface through a table
+    drive_train          engine and shaft
+    blade_frequencies    frequencies given in tables, in place of springs
+
+How a rotor is used:
+    operation            rotor speed, air and target of the trim
+    atmosphere           the standard atmosphere
+    options              modelling options
+    generated            calls of the generated equations by names of quantities
+    motions              coordinates as motions, and the names of their modes
+
+Loads and trim:
+    quadrature           stations along the blade and radial moments
+    section_loads        section loads gathered into radial moments
+    trim                 the trim, and the target that closes it
+    trim_balance         the balance of one blade and its slopes
+    trim_start           first guess and undeflected blade
+    trim_bound           a bound that shows which equilibrium belongs to the undeflected blade
+    trim_path            the path from the undeflected blade to the trim
+    trim_reasons         reasons and warnings
+    trim_solver          Newton's method for all points
+
+All public names of the module `motions` belong to the face.
+"""
+
+from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
+from proprotor.rotor.airfoil_table import AirfoilTable
+from proprotor.rotor.atmosphere import Air, standard_air
+from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate
+from proprotor.rotor.operation import Operation
+from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice, parse_options
+from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
+from proprotor.rotor.section_loads import (
+    BladeSections,
+    closed_form_moments,
+    compressible,
+    has_closed_form,
+    load_moments,
+    segment_quantities,
+)
+from proprotor.rotor.trim import UNKNOWNS, Target, Trim, trim_target, with_trim
+from proprotor.rotor.trim_solver import Settled, solve_trim
+
+__all__ = [
+    "CHOICES",
+    "EQUATION_SETS",
+    "HELD",
+    "LOCKABLE",
+    "MASS_INTEGRALS",
+    "NOTHING",
+    "UNKNOWNS",
+    "Air",
+    "Airfoil",
+    "AirfoilTable",
+    "BladeFrequencies",
+    "BladeSections",
+    "DriveTrain",
+    "EquationSet",
+    "Operation",
+    "Options",
+    "Rotor",
+    "SectionCoefficients",
+    "SectionModel",
+    "Settled",
+    "Target",
+    "Trim",
+    "Warns",
+    "closed_form_moments",
+    "compressible",
+    "default_choice",
+    "evaluate",
+    "has_closed_form",
+    "load_moments",
+    "motions",
+    "parse_options",
+    "segment_quantities",
+    "solve_trim",
+    "standard_air",
+    "trim_target",
+    "with_trim",
+]

@@ -1,4 +1,4 @@
-"""What a blade section makes of its angle of attack and Mach number."""
+"""Coefficients of a blade section against angle of attack and Mach number: the linear airfoil, and any other model."""
 
 from __future__ import annotations
 
@@ -8,53 +8,49 @@ from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, check_number
+from proprotor.errors import check_finite
 from proprotor.typing import Array
 
 
 class SectionCoefficients(NamedTuple):
-    """Lift, drag and moment coefficients and their derivatives with angle of attack (rad) and Mach number."""
+    """Lift, drag and moment coefficients and their derivatives with angle of attack (1/rad) and Mach number."""
 
-    lift_coefficient: ArrayLike
-    lift_coefficient_alpha: ArrayLike
-    lift_coefficient_mach: ArrayLike
-    drag_coefficient: ArrayLike
-    drag_coefficient_alpha: ArrayLike
-    drag_coefficient_mach: ArrayLike
-    moment_coefficient: ArrayLike
-    moment_coefficient_alpha: ArrayLike
-    moment_coefficient_mach: ArrayLike
+    lift_coefficient: ArrayLike = 0.0
+    lift_coefficient_alpha: ArrayLike = 0.0
+    lift_coefficient_mach: ArrayLike = 0.0
+    drag_coefficient: ArrayLike = 0.0
+    drag_coefficient_alpha: ArrayLike = 0.0
+    drag_coefficient_mach: ArrayLike = 0.0
+    moment_coefficient: ArrayLike = 0.0
+    moment_coefficient_alpha: ArrayLike = 0.0
+    moment_coefficient_mach: ArrayLike = 0.0
 
 
 class SectionModel(Protocol):
-    """Anything that can stand for an airfoil.
-
-    `contains_compressibility` says that the coefficients depend on Mach number already, so that no Prandtl-
-    Glauert factor is
-    put on them.
-    """
+    """Anything that can stand for an airfoil."""
 
     @property
-    def contains_compressibility(self) -> bool: ...
+    def contains_compressibility(self) -> bool:
+        """Whether the coefficients depend on Mach number already, and take no Prandtl-Glauert factor."""
+        ...
 
     def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
-        """Coefficients and derivatives at angles of attack (rad) and Mach numbers of the same shape."""
+        """Return coefficients and derivatives at angles of attack (rad) and Mach numbers of the same shape."""
         ...
 
 
 @runtime_checkable
 class Warns(Protocol):
-    """A section model that knows where its coefficients are not to be trusted."""
+    """A section model that says where its coefficients are doubtful."""
 
     def warnings(self, alpha: Array, mach: Array) -> dict[str, Array]:
-        """Reasons for mistrust and where each holds, masks of the shape of `alpha` and `mach` broadcast."""
+        """Return masks by reason for doubt, of the shape to which `alpha` and `mach` broadcast."""
         ...
 
 
-# Beyond these a straight lift line and the Prandtl-Glauert factor are not to be trusted (assumed, typical of
-# thin sections).
-LINEAR_ALPHA = np.radians(12.0)
-LINEAR_MACH = 0.85
+# Limits of a straight lift line and of the Prandtl-Glauert factor (assumed, typical of thin sections).
+_LINEAR_ALPHA = np.radians(12.0)
+_LINEAR_MACH = 0.85
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,16 +83,11 @@ class Airfoil:
 
     def __post_init__(self) -> None:
         for entry in fields(self):
-            value = getattr(self, entry.name)
-            check_number(entry.name, value)
-            if not np.all(np.isfinite(value)):
-                raise InputError(entry.name, value, "must be finite")
-        for name in ("lift_slope", "drag"):
-            if np.any(np.real(getattr(self, name)) < 0):
-                raise InputError(name, getattr(self, name), "must not be negative")
+            sign = "not negative" if entry.name in ("lift_slope", "drag") else ""
+            check_finite(entry.name, getattr(self, entry.name), sign)
 
     def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
-        """Linear lift, constant drag and moment.
+        """Return linear lift, constant drag and constant moment.
 
         Parameters
         ----------
@@ -113,22 +104,17 @@ class Airfoil:
         return SectionCoefficients(
             lift_coefficient=self.lift_slope * (alpha - self.zero_lift_angle),
             lift_coefficient_alpha=self.lift_slope,
-            lift_coefficient_mach=0.0,
             drag_coefficient=self.drag,
-            drag_coefficient_alpha=0.0,
-            drag_coefficient_mach=0.0,
             moment_coefficient=self.moment,
-            moment_coefficient_alpha=0.0,
-            moment_coefficient_mach=0.0,
         )
 
     def flattened(self, shape: tuple[int, ...]) -> Airfoil:
-        """Arrays of designs broadcast to `shape` and flattened, with a last axis for the stations.
+        """Return the airfoil with arrays of designs broadcast to `shape`, flattened, and with a last axis for stations.
 
         Parameters
         ----------
         shape : tuple of int
-            Of the batch.
+            Shape of the batch.
 
         Returns
         -------
@@ -141,7 +127,7 @@ class Airfoil:
         return replace(self, **many)
 
     def take(self, rows: Array | slice) -> Airfoil:
-        """A flattened airfoil at some of the points.
+        """Return a flattened airfoil at some of the points.
 
         Parameters
         ----------
@@ -157,7 +143,7 @@ class Airfoil:
         return replace(self, **many) if many else self
 
     def warnings(self, alpha: Array, mach: Array) -> dict[str, Array]:
-        """Where linear lift or the Prandtl-Glauert factor is not to be trusted.
+        """Return where linear lift or the Prandtl-Glauert factor is doubtful.
 
         Parameters
         ----------
@@ -172,6 +158,6 @@ class Airfoil:
             Masks of the broadcast shape, by reason.
         """
         return {
-            f"angle of attack beyond {np.degrees(LINEAR_ALPHA):.0f} deg": np.abs(alpha) > LINEAR_ALPHA,
-            f"Mach number beyond {LINEAR_MACH:g}": np.real(mach) > LINEAR_MACH,
+            f"angle of attack beyond {np.degrees(_LINEAR_ALPHA):.0f} deg": np.abs(alpha) > _LINEAR_ALPHA,
+            f"Mach number beyond {_LINEAR_MACH:g}": np.real(mach) > _LINEAR_MACH,
         }

@@ -15,20 +15,19 @@ from proprotor.rotor.c81 import COEFFICIENTS, Table, read_c81
 from proprotor.rotor.coefficient_surface import CoefficientSurface, broken_rules
 from proprotor.typing import Array
 
-BEYOND_STALL = "angle of attack beyond stall"
-BEYOND_ALPHA = "angle of attack outside the airfoil table"
-BEYOND_MACH = "Mach number outside the airfoil table"
-
-_NO_STALL = 100.0  # rad, which no angle reaches
+_BEYOND_STALL = "angle of attack beyond stall"
+_BEYOND_ALPHA = "angle of attack outside the airfoil table"
+_BEYOND_MACH = "Mach number outside the airfoil table"
+_NO_STALL = 100.0  # rad, beyond every angle
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AirfoilTable:
     """Section coefficients interpolated in a table, with the exact derivatives of the interpolation.
 
-    Interpolation is that of `proprotor.rotor.coefficient_surface`: smooth, exact at the nodes, without overshoot
-    along the rows and columns of the table. Outside it the coefficients go on straight in angle of attack and
-    are held in Mach number (a table from -180 to 180 deg closes on itself); `warnings` says where that is so.
+    `proprotor.rotor.coefficient_surface` interpolates: smooth, exact at the nodes, without overshoot along the rows
+    and columns of the table. Outside the table the coefficients go on straight in angle of attack and are held in
+    Mach number (a table from -180 to 180 deg closes on itself); `warnings` says where a point lies outside.
 
     Parameters
     ----------
@@ -37,10 +36,10 @@ class AirfoilTable:
     mach : array (m,), optional
         Mach numbers, increasing; a single one makes coefficients that hold at every Mach number.
     lift, drag, moment : array (n, m), or a tuple (alpha, mach, values)
-        Section coefficients c_l, c_d (not negative) and c_m about the reference line, nose up, at the angles
-        and Mach numbers of the table, or with their own.
+        Section coefficients c_l, c_d (not negative) and c_m about the reference line, nose up, dimensionless, at the
+        angles and Mach numbers of the table, or with angles and Mach numbers of their own.
     name : str
-        What the airfoil is.
+        Name of the airfoil.
 
     Raises
     ------
@@ -63,7 +62,7 @@ class AirfoilTable:
 
     @classmethod
     def from_c81(cls, path: str | os.PathLike[str]) -> AirfoilTable:
-        """The airfoil of a C81 file; its name is the file's title.
+        """Return the airfoil of a C81 file; the title in the file is the airfoil's name.
 
         Parameters
         ----------
@@ -84,11 +83,11 @@ class AirfoilTable:
 
     @property
     def contains_compressibility(self) -> bool:
-        """Whether the coefficients depend on Mach number, so that no factor for it belongs on them."""
+        """Whether the coefficients depend on Mach number, and take no Prandtl-Glauert factor."""
         return any(len(surface.mach) > 1 for surface in self._surfaces.values())
 
     def coefficients(self, alpha: ArrayLike, mach: ArrayLike) -> SectionCoefficients:
-        """Coefficients and derivatives by smooth interpolation.
+        """Return coefficients and derivatives by smooth interpolation.
 
         Complex arguments give complex coefficients, for derivatives by a complex step.
 
@@ -106,15 +105,15 @@ class AirfoilTable:
             broadcast shape.
         """
         alpha, mach = np.broadcast_arrays(alpha, mach)
-        with np.errstate(invalid="ignore"):  # not a number in, not a number out
+        with np.errstate(invalid="ignore"):  # NaN gives NaN
             parts = [self._surfaces[name].at(alpha, mach) for name in COEFFICIENTS]
         return SectionCoefficients(*(number for part in parts for number in part))
 
     def warnings(self, alpha: ArrayLike, mach: ArrayLike) -> dict[str, Array]:
-        """Where the coefficients are not to be trusted, and why.
+        """Return where the coefficients are doubtful, and why.
 
         Stall begins at the first maximum of the lift curve above the angle nearest zero, and at the first
-        minimum below it; between the columns of the table these angles are linear in Mach number.
+        minimum below that angle; between the columns of the table these angles are linear in Mach number.
 
         Parameters
         ----------
@@ -133,17 +132,18 @@ class AirfoilTable:
         lowest, highest = (np.interp(np.real(mach), *stall) for stall in self._stall)
         surfaces = self._surfaces.values()
         return {
-            BEYOND_STALL: (angle < lowest) | (angle > highest),
-            BEYOND_ALPHA: np.logical_or.reduce([surface.beyond_alpha(alpha) for surface in surfaces]),
-            BEYOND_MACH: np.logical_or.reduce([surface.beyond_mach(mach) for surface in surfaces]),
+            _BEYOND_STALL: (angle < lowest) | (angle > highest),
+            _BEYOND_ALPHA: np.logical_or.reduce([surface.beyond_alpha(alpha) for surface in surfaces]),
+            _BEYOND_MACH: np.logical_or.reduce([surface.beyond_mach(mach) for surface in surfaces]),
         }
 
     @cached_property
     def _surfaces(self) -> dict[str, CoefficientSurface]:
+        """Surfaces of lift, drag and moment by name."""
         return {name: CoefficientSurface(*self._table(name)) for name in COEFFICIENTS}
 
     def _table(self, name: str) -> Table:
-        """Angles, Mach numbers and values of one coefficient as arrays that fit each other."""
+        """Return angles, Mach numbers and values of one coefficient as arrays of matching shapes."""
         given = getattr(self, name)
         parts = given if isinstance(given, tuple) and len(given) == 3 else (self.alpha, self.mach, given)
         try:
@@ -159,7 +159,7 @@ class AirfoilTable:
 
     @cached_property
     def _stall(self) -> tuple[tuple[Array, Array], ...]:
-        """Mach numbers and, for each, the angle of stall: those below zero, and those above."""
+        """Mach numbers with the angle of stall below zero, and Mach numbers with the angle of stall above zero."""
         lift = self._surfaces["lift"]
         start = int(np.argmin(np.abs(lift.alpha)))
         rises = np.diff(lift.values, axis=0) > 0
@@ -169,7 +169,7 @@ class AirfoilTable:
 
 
 def _first_stop(rises: Array, angles: Array) -> Array:
-    """The angle (m,) at the start of the first step (n, m) that does not rise, `_NO_STALL` where all do."""
+    """Return the angle (m,) where the first step (n, m) that does not rise begins; `_NO_STALL` if all steps rise."""
     stops = np.vstack([~rises, np.ones(rises.shape[1], dtype=bool)])
     found: Array = np.append(angles, _NO_STALL)[stops.argmax(axis=0)]
     return found

@@ -1,8 +1,8 @@
 """Air of the International Standard Atmosphere at a pressure altitude, on a standard, hot or cold day.
 
-The atmosphere itself is that of the library `fluids` (US Standard Atmosphere 1976, up to 32 km the same as ISO 2533
-and ICAO Doc 7488). Here altitudes are geopotential, as those of altimeters and flight levels are; a temperature
-offset changes temperature and density at the pressure of that altitude ("ISA + 15").
+The library `fluids` has the atmosphere (US Standard Atmosphere 1976, up to 32 km the same as ISO 2533 and ICAO Doc
+7488). Here altitudes are geopotential, like the altitudes of altimeters and flight levels; a temperature offset changes
+temperature and density at the pressure of the altitude ("ISA + 15").
 """
 
 from __future__ import annotations
@@ -15,8 +15,13 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError, check_number
 from proprotor.typing import Array
 
-LOWEST, HIGHEST = -610.0, 32_000.0  # m: where the library holds, and where the standards are one
-MOST_OFFSET = 100.0  # K: beyond what the air of any day has; a temperature given as an offset is told by it
+_LOWEST, _HIGHEST = (
+    -610.0,
+    32_000.0,
+)  # m: the lower limit of the library, the height up to which the standards agree
+_MOST_OFFSET = (
+    100.0  # K: more than the air of any day has, so that a temperature given as an offset is refused
+)
 
 
 class Air(NamedTuple):
@@ -32,13 +37,13 @@ class Air(NamedTuple):
 
 
 def standard_air(altitude: ArrayLike, temperature_offset: ArrayLike = 0.0) -> Air:
-    """Air at pressure altitudes.
+    """Return the air at pressure altitudes.
 
     Parameters
     ----------
     altitude : float or array (...)
-        Geopotential pressure altitude, m, -610 to 32 000. Complex numbers are taken to first order in their imaginary
-        part, which is what a complex step needs.
+        Geopotential pressure altitude, m, -610 to 32 000. Complex numbers are followed to first order in their
+        imaginary part, for derivatives by a complex step.
     temperature_offset : float or array (...)
         Above the standard temperature, K, within 100 K.
 
@@ -54,8 +59,8 @@ def standard_air(altitude: ArrayLike, temperature_offset: ArrayLike = 0.0) -> Ai
     check_number("altitude", altitude)
     check_number("temperature_offset", temperature_offset)
     altitude, offset = np.broadcast_arrays(np.asarray(altitude), np.asarray(temperature_offset))
-    _check("altitude", altitude, LOWEST, HIGHEST, "m")
-    _check("temperature_offset", offset, -MOST_OFFSET, MOST_OFFSET, "K")
+    _check("altitude", altitude, _LOWEST, _HIGHEST, "m")
+    _check("temperature_offset", offset, -_MOST_OFFSET, _MOST_OFFSET, "K")
     density, sound, pressure, temperature, lapse, gravity = _standard(altitude.real)
     if np.iscomplexobj(altitude):
         # dp/dH = -g0 ρ, dT/dH as in the layer, ρ ~ p/T
@@ -71,6 +76,7 @@ def standard_air(altitude: ArrayLike, temperature_offset: ArrayLike = 0.0) -> Ai
 
 
 def _check(field: str, values: Array, least: float, most: float, unit: str) -> None:
+    """Refuse values that are not finite or out of range."""
     wrong = ~((values.real >= least) & (values.real <= most) & np.isfinite(values))
     if wrong.any():
         rule = f"must lie between {least:g} and {most:g} {unit}"
@@ -78,7 +84,7 @@ def _check(field: str, values: Array, least: float, most: float, unit: str) -> N
 
 
 def _standard(altitude: Array) -> tuple[Array, ...]:
-    """ρ, a, p, T, dT/dH and g0 at real altitudes; the library takes one altitude at a time."""
+    """Return ρ, a, p, T, dT/dH and g0 at real altitudes; the library takes one altitude at a time."""
     from fluids import atmosphere  # here, because few decks need it
 
     found = np.empty((altitude.size, 5))

@@ -1,4 +1,4 @@
-"""Flap and lag frequencies given against collective or airspeed, as simple analyses with tabulated rotors take them."""
+"""Flap and lag frequencies of a blade given against collective or airspeed, as analyses with tabulated rotors use."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError
 from proprotor.typing import Array
 
-Curve = float | ArrayLike | Callable[[Array], Array]
-ABSCISSAE = ("collective", "airspeed")
+_Curve = float | ArrayLike | Callable[[Array], Array]
+_ABSCISSAE = ("collective", "airspeed")
 _STEP = 1e-6  # of the abscissa, for the slope of a function
 
 
@@ -24,14 +24,14 @@ class BladeFrequencies:
     Parameters
     ----------
     against : "collective" or "airspeed"
-        What they depend on: trim collective in rad, or airspeed in m/s.
+        Abscissa of the frequencies: trim collective in rad, or airspeed in m/s.
     at : array (k,), optional
-        Where the tables have their entries, rad or m/s, increasing; not needed for numbers and functions.
+        Abscissae of the tables' entries, rad or m/s, increasing; not needed for numbers and functions.
     flap, lag : float, array (k,) or function of an array
         Frequency per revolution. Tables are interpolated smoothly without overshoot and held at their ends.
     cyclic_flap : the same, optional
-        Frequency of cyclic flapping where it is not that of the collective, as when the gimbal is locked and its mode
-        stands in the blade's place.
+        Frequency of cyclic flapping if it differs from collective flapping, as when the gimbal is locked and the
+        gimbal's mode stands in the blade's place.
 
     Raises
     ------
@@ -39,15 +39,15 @@ class BladeFrequencies:
         When a table does not fit its abscissa or a frequency is not positive.
     """
 
-    flap: Curve
-    lag: Curve
-    cyclic_flap: Curve | None = None
+    flap: _Curve
+    lag: _Curve
+    cyclic_flap: _Curve | None = None
     against: str = "collective"
     at: ArrayLike | None = None
 
     def __post_init__(self) -> None:
-        if self.against not in ABSCISSAE:
-            raise InputError("against", self.against, f"must be one of {', '.join(ABSCISSAE)}")
+        if self.against not in _ABSCISSAE:
+            raise InputError("against", self.against, f"must be one of {', '.join(_ABSCISSAE)}")
         if self.at is not None:
             at = np.asarray(self.at, dtype=float)
             if at.ndim != 1 or at.size < 2 or not np.all(np.isfinite(at)) or np.any(np.diff(at) <= 0):
@@ -55,7 +55,8 @@ class BladeFrequencies:
         for name in ("flap", "lag", "cyclic_flap"):
             self._check(name, getattr(self, name))
 
-    def _check(self, name: str, curve: Curve | None) -> None:
+    def _check(self, name: str, curve: _Curve | None) -> None:
+        """Refuse a table that does not fit the abscissae, or a frequency that is not positive."""
         if curve is None or callable(curve):
             return
         values = np.asarray(curve, dtype=float)
@@ -64,16 +65,16 @@ class BladeFrequencies:
         if not np.all(np.isfinite(values)) or np.any(values <= 0):
             raise InputError(name, curve, "must be above zero")
 
-    def _evaluate(self, curve: Curve, abscissa: Array) -> Array:
-        """A curve at an abscissa; an imaginary part of it is followed to first order, which a complex step needs."""
+    def _evaluate(self, curve: _Curve, abscissa: Array) -> Array:
+        """Return a curve at an abscissa; an imaginary part is followed to first order, for a complex step."""
         if not np.iscomplexobj(abscissa):
             return self._value(curve, abscissa)
         at = np.asarray(abscissa.real)
         followed: Array = self._value(curve, at) + 1j * self._slope(curve, at) * abscissa.imag
         return followed
 
-    def _slope(self, curve: Curve, abscissa: Array) -> Array:
-        """Derivative of a curve: that of the interpolation, or of a function by central differences."""
+    def _slope(self, curve: _Curve, abscissa: Array) -> Array:
+        """Return the derivative of a curve: exact for a table, by central differences for a function."""
         if callable(curve):
             step = _STEP * np.maximum(np.abs(abscissa), 1.0)
             change: Array = self._value(curve, abscissa + step) - self._value(curve, abscissa - step)
@@ -84,18 +85,19 @@ class BladeFrequencies:
         slope: Array = self._interpolation(curve).derivative()(np.clip(abscissa, at[0], at[-1]))
         return np.asarray(np.where((abscissa < at[0]) | (abscissa > at[-1]), 0.0, slope))
 
-    def _interpolation(self, curve: Curve) -> Any:
+    def _interpolation(self, curve: _Curve) -> Any:
+        """Return the interpolant of a table."""
         from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
 
         return PchipInterpolator(np.asarray(self.at, dtype=float), np.asarray(curve, dtype=float))
 
-    def _value(self, curve: Curve, abscissa: Array) -> Array:
+    def _value(self, curve: _Curve, abscissa: Array) -> Array:
+        """Return a curve at a real abscissa; a function must give positive values."""
         if callable(curve):
             values = np.asarray(curve(abscissa), dtype=float)
             if np.any(np.isfinite(abscissa) & ~(values > 0)):
-                raise InputError(
-                    "frequencies", float(np.min(values)), "must be above zero wherever a function gives them"
-                )
+                rule = "must be above zero wherever a function gives them"
+                raise InputError("frequencies", float(np.min(values)), rule)
             return values
         given = np.asarray(curve, dtype=float)
         if given.ndim == 0:
@@ -105,7 +107,7 @@ class BladeFrequencies:
         return found
 
     def rotating(self, collective: Array, airspeed: Array, rotor_speed: Array) -> dict[str, Array]:
-        """Rotating frequencies by the names of the derivation; the arguments broadcast.
+        """Return rotating frequencies by the names of the derivation; the arguments broadcast.
 
         Parameters
         ----------
@@ -124,14 +126,12 @@ class BladeFrequencies:
         Raises
         ------
         InputError
-            Where a function gives what is not above zero.
+            When a function gives a frequency that is not above zero.
         """
         abscissa = np.asarray(collective if self.against == "collective" else airspeed)
-        cyclic = self.flap if self.cyclic_flap is None else self.cyclic_flap
-        curves = {"flap": self.flap, "lag": self.lag, "cyclic": cyclic}
-        per_rev = {name: self._evaluate(curve, abscissa) for name, curve in curves.items()}
-        return {
-            "rotating_flap_frequency": per_rev["flap"] * rotor_speed,
-            "rotating_lag_frequency": per_rev["lag"] * rotor_speed,
-            "cyclic_flap_frequency": per_rev["cyclic"] * rotor_speed,
+        curves = {
+            "rotating_flap_frequency": self.flap,
+            "rotating_lag_frequency": self.lag,
+            "cyclic_flap_frequency": self.flap if self.cyclic_flap is None else self.cyclic_flap,
         }
+        return {name: self._evaluate(curve, abscissa) * rotor_speed for name, curve in curves.items()}

@@ -1,12 +1,12 @@
-"""C81 airfoil files: card images of seven columns a number.
+"""C81 airfoil files: card images of seven columns for each number.
 
-Line 1 has a title (columns 1-30) and six counts of two digits: Mach numbers and angles of lift, of drag, of
-moment. Each of the three tables is a line of Mach numbers, its first seven columns blank, and a line for
-every angle of attack in degrees; nine values to a line, more on further lines that begin with seven blanks.
+Line 1 has a title (columns 1-30) and six counts of two digits: Mach numbers and angles of lift, of drag and of moment.
+Each of the three tables is a line of Mach numbers, whose first seven columns are blank, and a line for every angle of
+attack in degrees. A line has nine values; more values follow on lines that begin with seven blanks.
 
-The reader is the package's own. The one on the package index, c81utils 1.1.0, splits lines at blanks: it
-refuses files whose numbers fill their columns (``-180.00-0.2800``) or that have more than 18 Mach numbers,
-and takes others in silence that are wrong: a column too many, NaN, overflow. Its errors name no line.
+The package has a reader of its own. The reader on the package index, c81utils 1.1.0, splits lines at blanks: it refuses
+files whose numbers fill their columns (``-180.00-0.2800``) or that have more than 18 Mach numbers, and accepts wrong
+files without a message: a column too many, NaN, overflow. Its errors name no line.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from proprotor.files.text import read_text
 from proprotor.rotor.coefficient_surface import broken_rules
 from proprotor.typing import Array
 
-# In the order of the file, with what each must not be less than.
+# In the order of the file, with the least allowed value of each coefficient.
 COEFFICIENTS = {"lift": -np.inf, "drag": 0.0, "moment": -np.inf}
 
-_LARGEST = 1_000_000  # bytes; 99 angles at 99 Mach numbers, three times, take a quarter of it
+_LARGEST = 1_000_000  # bytes; three tables of 99 angles at 99 Mach numbers take a quarter of this
 _WIDTH, _TO_A_LINE = 7, 9
 _COUNTS = slice(30, 42)
 _NUMBER = re.compile(r" *[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)? *")
@@ -36,12 +36,12 @@ Table = tuple[Array, Array, Array]  # angles in rad (n,), Mach numbers (m,), val
 
 
 def read_c81(path: str | os.PathLike[str]) -> tuple[str, dict[str, Table]]:
-    """The title of a C81 file and its tables of lift, drag and moment.
+    """Return the title of a C81 file and its tables of lift, drag and moment.
 
     Raises
     ------
     InputError
-        When the file cannot be read or is not C81: one line with the file, the line in it and the rule.
+        When the file cannot be read or is not C81: one line with the file, the number of the wrong line and the rule.
     """
     try:
         text = read_text(Path(path), "table", os.fspath(path), _LARGEST, encoding="latin-1")  # any title
@@ -51,12 +51,12 @@ def read_c81(path: str | os.PathLike[str]) -> tuple[str, dict[str, Table]]:
 
 
 class _Fault(Exception):
-    """A rule the file breaks."""
+    """A rule that the file breaks."""
 
 
 @dataclass
 class _Lines:
-    """The lines of a file, taken one by one."""
+    """The lines of a file, read one after another."""
 
     text: str
     number: int = 0
@@ -66,16 +66,19 @@ class _Lines:
         self.lines = re.split("\r\n|\r|\n", self.text.rstrip())
 
     def take(self, what: str) -> str:
+        """Return the next line, which must hold something named for the message."""
         if self.number == len(self.lines):
             raise _Fault(f"line {self.number + 1}: is missing; it must have {what}")
         self.number += 1
         return self.lines[self.number - 1]
 
     def fault(self, rule: str, number: int | None = None) -> _Fault:
+        """Return the error of a line, by default the line read last."""
         return _Fault(f"line {number or self.number}: {rule}")
 
 
 def _read(lines: _Lines) -> tuple[str, dict[str, Table]]:
+    """Return the title and the tables in the lines of a file."""
     header = lines.take("a title and six counts")
     counts = _counts(lines, header[_COUNTS])
     tables = {}
@@ -88,6 +91,7 @@ def _read(lines: _Lines) -> tuple[str, dict[str, Table]]:
 
 
 def _counts(lines: _Lines, written: str) -> list[int]:
+    """Return the counts of Mach numbers and angles in line 1, for lift, drag and moment."""
     if not re.fullmatch("([ 0-9][0-9]){6}", written):
         raise lines.fault("must have six counts of two digits in columns 31 to 42")
     counts = [int(written[i : i + 2]) for i in range(0, len(written), 2)]
@@ -97,6 +101,7 @@ def _counts(lines: _Lines, written: str) -> list[int]:
 
 
 def _table(lines: _Lines, name: str, columns: int, rows: int, least: float) -> Table:
+    """Return one table: its Mach numbers, and a row for each angle of attack."""
     numbers, records = [], []
     for row in range(rows + 1):
         first = f"the Mach numbers of {name}" if row == 0 else f"row {row} of {rows} of the {name} table"
@@ -110,7 +115,7 @@ def _table(lines: _Lines, name: str, columns: int, rows: int, least: float) -> T
 
 
 def _record(lines: _Lines, what: str, columns: int, has_angle: bool) -> list[float]:
-    """One row of a table: the angle, if it has one, and its values, from as many lines as they take."""
+    """Return one row of a table, its angle first if the row has one, from as many lines as the row takes."""
     line = lines.take(what)
     values = [_number(lines, line, 0)] if has_angle else []
     for start in range(0, columns, _TO_A_LINE):
@@ -126,6 +131,7 @@ def _record(lines: _Lines, what: str, columns: int, has_angle: bool) -> list[flo
 
 
 def _number(lines: _Lines, line: str, place: int) -> float:
+    """Return the number in one field of seven columns."""
     start = place * _WIDTH
     written = line[start : start + _WIDTH]
     value = float(written) if _NUMBER.fullmatch(written) else math.nan

@@ -1,11 +1,11 @@
-"""One section coefficient over angle of attack and Mach number: a table, and the smooth surface through it.
+"""One section coefficient over angle of attack and Mach number: a smooth surface through the nodes of a table.
 
 Between the nodes the surface is bicubic, with nodal slopes after Fritsch and Butland (SciPy's PCHIP) in both
 directions; the cross derivative is the slope, in Mach number, of the slopes in angle of attack. The surface
 meets the table at every node, is continuously differentiable, and along every row and column runs
-monotonically from node to node: it does not overshoot there, and lift peaks where the table's does. A slope
+monotonically from node to node: the surface does not overshoot, and lift peaks where it peaks in the table. A slope
 follows from the two cells beside the node alone. A C² spline would be smoother, but the kink of a stall makes
-it ring into the linear range, whose slope decides flutter.
+the spline oscillate in the linear range, whose slope decides flutter.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from proprotor.typing import Array
 
-_CLOSEST = 1e-9  # nodes nearer than this are one
+_CLOSEST = 1e-9  # nodes nearer than this count as one node
 _FASTEST = 10.0  # Mach number
 _LARGEST = 1000.0  # of a coefficient
 _SAME = 1e-9  # coefficients and angles that differ by less are equal
@@ -26,10 +26,10 @@ _SAME = 1e-9  # coefficients and angles that differ by less are equal
 
 @dataclass(frozen=True, eq=False)
 class CoefficientSurface:
-    """A coefficient at n angles and m Mach numbers, and everywhere else.
+    """A coefficient at n angles and m Mach numbers, and between and beyond these nodes.
 
-    Outside the table the surface goes on straight in angle of attack and is held in Mach number, its Mach
-    derivative zero. A table from -180 to 180 deg whose ends agree closes on itself instead, and one with a
+    Outside the table the surface goes on straight in angle of attack and is held in Mach number, with a Mach
+    derivative of zero. A table from -180 to 180 deg whose ends agree closes on itself instead, and a table with a
     single column holds at every Mach number.
 
     Parameters
@@ -52,12 +52,12 @@ class CoefficientSurface:
         return full and np.allclose(self.values[0], self.values[-1], rtol=0, atol=_SAME)
 
     def at(self, alpha: Array, mach: Array) -> tuple[Array, Array, Array]:
-        """Value and exact derivatives with angle of attack (1/rad) and Mach number, (...).
+        """Return value and exact derivatives with angle of attack (1/rad) and Mach number, (...).
 
         Parameters
         ----------
         alpha, mach : array (...)
-            Real, or complex for a complex step; NaN where either is.
+            Angle in rad and Mach number, real, or complex for a complex step. NaN in either gives NaN.
         """
         row, angle = _place(self.alpha, self.turned(alpha))
         column, speed = _place(self.mach, mach)
@@ -66,26 +66,26 @@ class CoefficientSurface:
         return *_horner(along_alpha, angle), _horner(by_mach, angle)[0]
 
     def beyond_alpha(self, alpha: Array) -> Array:
-        """Where an angle of attack lies outside the table, (...)."""
+        """Return whether angles of attack lie outside the table, (...)."""
         if self.wraps:
             return np.zeros(np.shape(alpha), dtype=bool)
         beyond: Array = (np.real(alpha) < self.alpha[0]) | (np.real(alpha) > self.alpha[-1])
         return beyond
 
     def beyond_mach(self, mach: Array) -> Array:
-        """Where a Mach number lies outside the table, (...)."""
+        """Return whether Mach numbers lie outside the table, (...)."""
         if len(self.mach) == 1:
             return np.zeros(np.shape(mach), dtype=bool)
         beyond: Array = (np.real(mach) < self.mach[0]) | (np.real(mach) > self.mach[-1])
         return beyond
 
     def turned(self, alpha: Array) -> Array:
-        """The same angle of attack, within half a turn if the table closes on itself."""
+        """Return an angle of attack moved to within half a turn if the table closes on itself."""
         return alpha - 2 * np.pi * np.round(np.real(alpha) / (2 * np.pi)) if self.wraps else alpha
 
     @cached_property
     def _polynomials(self) -> Array:
-        """Coefficients (4, 4, n + 1, m + 1) of the powers of Mach number and angle from each cell's start.
+        """Coefficients (4, 4, n + 1, m + 1) of the powers of Mach number and angle from the start of each cell.
 
         The first and last cell of either direction lie outside the table.
         """
@@ -97,6 +97,7 @@ class CoefficientSurface:
 
     @property
     def _alpha_slopes(self) -> Array:
+        """Slopes at the nodes along the angle of attack, those of a closed table across its ends."""
         if not self.wraps:
             return _slopes(self.alpha, self.values)
         turn = 2 * np.pi
@@ -105,13 +106,13 @@ class CoefficientSurface:
 
 
 def broken_rules(alpha: Array, mach: Array, values: Array, least: float) -> Iterator[tuple[int, str]]:
-    """What is wrong with a table of the right shape, as row and rule: row 0 is that of the Mach numbers.
+    """Yield row and rule of every fault in a table of the right shape; row 0 stands for the Mach numbers.
 
     Parameters
     ----------
     alpha, mach, values : array (n,), (m,), (n, m)
     least : float
-        What a value must not lie below.
+        Least allowed value.
     """
     if not np.all((mach >= 0) & (mach <= _FASTEST)):
         yield 0, f"Mach numbers must lie between 0 and {_FASTEST:g}"
@@ -128,18 +129,19 @@ def broken_rules(alpha: Array, mach: Array, values: Array, least: float) -> Iter
 
 
 def _first_row(holds: Array, rule: str) -> Iterator[tuple[int, str]]:
+    """Yield the first row in which a rule does not hold."""
     return ((int(row) + 1, rule) for row in np.flatnonzero(~holds)[:1])
 
 
 def _place(nodes: Array, x: Array) -> tuple[Array, Array]:
-    """Cell of each x, 0 below the first node, and the distance from its start; nodes count as inside."""
+    """Return the cell of each x, 0 below the first node, and the distance from the cell's start; nodes are inside."""
     starts = np.append(nodes[:-1], np.nextafter(nodes[-1], np.inf))
     cell = np.searchsorted(starts, np.real(x), side="right")
     return cell, x - nodes[np.maximum(cell - 1, 0)]
 
 
 def _horner(coefficients: Array, t: Array) -> tuple[Array, Array]:
-    """A polynomial and its derivative, coefficients along the first axis, the constant term first."""
+    """Return a polynomial and its derivative; coefficients stand along the first axis, the constant term first."""
     value, slope = coefficients[-1], np.zeros_like(t)
     for coefficient in coefficients[-2::-1]:
         slope = slope * t + value
@@ -148,21 +150,21 @@ def _horner(coefficients: Array, t: Array) -> tuple[Array, Array]:
 
 
 def _slopes(x: Array, values: Array) -> Array:
-    """Slopes at the nodes along the first axis."""
+    """Return the slopes at the nodes along the first axis."""
     from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
 
     if len(x) == 1:
         return np.zeros_like(values)
-    # Reciprocals of the smallest differences overflow, and end up as zero slopes.
+    # Reciprocals of the smallest differences overflow, and become zero slopes.
     with np.errstate(over="ignore"):
         slopes: Array = PchipInterpolator(x, values, axis=0)(x, nu=1)
     return slopes
 
 
 def _cubics(x: Array, values: Array, slopes: Array, outside: float) -> Array:
-    """Coefficients (n + 1, 4, ...) of the cubics between n nodes along the first axis, and of lines outside.
+    """Return the coefficients (n + 1, 4, ...) of the cubics between n nodes along the first axis, and of lines outside.
 
-    `outside` is the part of the end slope that goes on: 1, or 0 to hold the value.
+    `outside` is the factor on the slope beyond the ends: 1 to go on straight, 0 to hold the value.
     """
     step = np.diff(x).reshape(-1, *[1] * (values.ndim - 1))
     secant, left, right = np.diff(values, axis=0) / step, slopes[:-1], slopes[1:]

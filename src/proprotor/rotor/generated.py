@@ -1,4 +1,4 @@
-"""The generated equations: which functions make up the model, and how they are called by the names of quantities."""
+"""Generated equations: the modules that make up a model, and calls of their functions by the names of quantities."""
 
 from __future__ import annotations
 
@@ -15,9 +15,15 @@ from proprotor_equations import published
 
 @dataclass(frozen=True)
 class EquationSet:
-    """Generated modules that a dropped term can change; what both sets share is imported where it is used.
+    """Generated modules that a dropped term can change, for the option ``equations``.
 
-    `derive.emit.reduced_modules` makes such modules for any choice of dropped terms.
+    The functions that all sets share are imported from `proprotor_equations` where they are used.
+
+    Parameters
+    ----------
+    inertia, flap_lag_springs, pitch, airloads : module
+        Each with the functions of the module of `proprotor_equations.published` that has its name, under the arguments
+        of that module. A set of one's own has modules of its own in some of the four places.
     """
 
     inertia: ModuleType
@@ -38,19 +44,19 @@ EQUATION_SETS = {
 
 @cache
 def keywords(function: Callable[..., Any]) -> tuple[str, ...]:
-    """Names of the quantities a generated function takes."""
+    """Return the names of the quantities that a generated function takes."""
     parameters = inspect.signature(function).parameters.values()
     return tuple(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
 
 
 def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matrices: Any) -> Any:
-    """Result of a generated function whose keyword arguments are looked up by name.
+    """Return the result of a generated function, whose keyword arguments are looked up among quantities by name.
 
     A quantity has one name throughout the derivation, so the names are the interface.
 
     Raises
     ------
     KeyError
-        When a quantity the function needs is not there.
+        When a quantity that the function needs is missing.
     """
     return function(*matrices, **{name: quantities[name] for name in keywords(function)})

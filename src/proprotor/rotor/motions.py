@@ -1,4 +1,4 @@
-"""Motions of a model: which coordinates make one, alone or as a cyclic pair, and what its modes are called."""
+"""Motions of a model: a single coordinate or a cyclic pair of coordinates, with the names of each motion's modes."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from proprotor_equations import FIXED_COORDINATES
 from proprotor.errors import InputError, unprintable
 
 HUB = FIXED_COORDINATES[:6]
-ROTOR_SPEED = "azimuth"  # enters as a rate: nothing holds the rotor's azimuth
+ROTOR_SPEED = "azimuth"  # the model has the rate of this coordinate: nothing holds the rotor's azimuth
 _COLLECTIVE = {"flap": "coning"}
 _AZIMUTH = "rotor speed"
 SECOND = ", second root"
 
 
 class Motion(NamedTuple):
-    """A coordinate, or a cyclic pair of them, and the names of its modes.
+    """A coordinate or a cyclic pair of coordinates, with the names of the modes.
 
     Attributes
     ----------
     names : tuple of str
-        One, or regressive and progressive.
+        One name, or the names of the regressive and the progressive mode.
     places : tuple of int
-        Of the coordinate, or of its cosine and its sine part, among the coordinates of the model.
+        Places of the coordinate, or of the cosine and the sine part, among the coordinates of the model.
     """
 
     names: tuple[str, ...]
@@ -34,14 +34,14 @@ class Motion(NamedTuple):
 
 
 def reactionless_coordinates(n_blades: int) -> tuple[str, ...]:
-    """Blade motions beyond Eq. 17: harmonics 2 to below N/2, and for even N neighbours against each other."""
+    """Return the blade motions beyond Eq. 17: harmonics 2 to below N/2, for even N also neighbours in opposition."""
     angles = ("flap", "lag", "pitch")
     pairs = [f"{angle}_{n}{part}" for n in range(2, (n_blades + 1) // 2) for angle in angles for part in "cs"]
     return tuple(pairs + [f"{angle}_d" for angle in angles] * (n_blades % 2 == 0))
 
 
 def motions(dofs: tuple[str, ...]) -> list[Motion]:
-    """The motions of a model, in the order of its coordinates."""
+    """Return the motions of a model, in the order of its coordinates."""
     found = []
     for place, dof in enumerate(dofs):
         partner = dof[:-1] + "s"
@@ -53,17 +53,20 @@ def motions(dofs: tuple[str, ...]) -> list[Motion]:
 
 
 def _is_cosine(dof: str) -> bool:
+    """Return whether a coordinate is the cosine part of a cyclic motion, such as flap_1c."""
     stem, _, part = dof.rpartition("_")
     return bool(stem) and part.endswith("c") and part[:-1].isdigit()
 
 
 def _cyclic_names(dof: str) -> tuple[str, str]:
+    """Return the names of the two modes of a cyclic motion, by its cosine part."""
     stem, _, part = dof.rpartition("_")
     motion = stem if part == "1c" else f"{stem} {part[:-1]}"
     return f"regressive {motion}", f"progressive {motion}"
 
 
 def _single_name(dof: str) -> str:
+    """Return the name of the mode of a single coordinate."""
     stem, _, part = dof.rpartition("_")
     if dof == ROTOR_SPEED:
         return _AZIMUTH
@@ -75,23 +78,23 @@ def _single_name(dof: str) -> str:
 
 
 def name_list(dofs: tuple[str, ...]) -> list[str]:
-    """All names of a model, in the order of its coordinates."""
+    """Return all mode names of a model, in the order of its coordinates."""
     return [name for motion in motions(dofs) for name in motion.names]
 
 
 def check_support_names(field: str, names: Sequence[str]) -> None:
-    """Refuse names of a support's coordinates that a rotor's coordinate or mode has, or that make two modes alike.
+    """Refuse names of a support's coordinates that a rotor's coordinate or mode has, or that give two modes one name.
 
     Parameters
     ----------
     field : str
-        What a message calls the names.
+        Name of the input, for the message.
     names : sequence of str
 
     Raises
     ------
     InputError
-        For a name that is no printable text, or one that is taken, with the first of them.
+        For the first name that is not printable text or is already taken.
     """
     for name in names:
         if unprintable(name) or not name.strip():
@@ -103,12 +106,12 @@ def check_support_names(field: str, names: Sequence[str]) -> None:
 
 
 def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
-    """Refuse coordinates of a model where two modes would have one name.
+    """Refuse coordinates of a model whose modes would have the same name.
 
     Raises
     ------
     InputError
-        With the coordinates whose modes would.
+        With the first two such coordinates.
     """
     by_name: dict[str, str] = {}
     for motion in motions(dofs):
@@ -121,6 +124,6 @@ def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
 
 @lru_cache(maxsize=1)
 def _names_of_rotors() -> frozenset[str]:
-    """Coordinates and modes of rotors with any number of blades, the number of a harmonic written as 2."""
+    """Return the coordinates and modes of rotors with any number of blades, each harmonic written as 2."""
     dofs = (*FIXED_COORDINATES[len(HUB) :], *reactionless_coordinates(6))
     return frozenset(re.sub(r"\d+", "2", name) for name in (*dofs, *name_list(dofs)))

@@ -1,6 +1,7 @@
-"""Modelling options: one keyword each, the same everywhere, the first choice is the default.
+"""Modelling options: one keyword for each, the same in every function and command.
 
-A first choice None stands for one of the others, which `default_choice` finds by what else is chosen.
+The first choice is the default. A first choice None stands for one of the other choices: `default_choice` says for
+which one, from the rest of the options.
 """
 
 from __future__ import annotations
@@ -27,12 +28,15 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
 }
-FURTHER = ("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling", "drive_train")
+_FURTHER = ("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling", "drive_train")
 LOCKABLE = ("flap", "lag", "pitch", "gimbal")
 
 
 def default_choice(name: str, options: Mapping[str, Any]) -> Any:
-    """Return what an option is when it is not given; the paper's equations have no section damping, the others do."""
+    """Return the value of an option that is not given.
+
+    Section damping is off with the paper's equations, and on with the consistent ones.
+    """
     if name == "section_damping":
         return options.get("equations", CHOICES["equations"][0]) != "published"
     return CHOICES[name][0]
@@ -42,43 +46,43 @@ def default_choice(name: str, options: Mapping[str, Any]) -> Any:
 class Options:
     """Choices of the model.
 
-    Section damping that is not given stands in the object as what it means, True or False.
+    The object always holds section damping as True or False, given or not.
 
     Parameters
     ----------
     equations : "consistent" or "published"
         Every first-order term, or what AIAA-2002-1604 keeps of the perturbation equations (the trim is the same); an
-        `EquationSet` of generated modules stands for itself.
+        `EquationSet` has generated modules of its own.
     pitch : "dynamic", "coupling" or "rigid"
         Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
     structure : "coupled", "diagonal" or "tabulated"
-        Springs that turn with the pitch (Eqs. 20-22); the same without the flap-lag stiffness; or the stiffness that
-        gives the frequencies of `frequencies`, whatever the rotor's springs are.
+        Springs that turn with the pitch (Eqs. 20-22); these springs without the flap-lag stiffness; or the stiffness
+        that gives the frequencies of `frequencies`, whatever the rotor's springs are.
     frequencies : BladeFrequencies
         For structure="tabulated".
     pitch_flap_coupling, pitch_lag_coupling : float or array that broadcasts with the airspeeds, optional
         For pitch="coupling": values (dimensionless) in place of Eqs. 36 and 37.
     airloads : "full", "lift-slope" or "none"
-        Perturbation airloads: all, those proportional to the lift slope, or none. The trim has them all.
+        Perturbation airloads: all, the part proportional to the lift slope, or none. The trim always has all airloads.
     compressibility : bool
-        Prandtl-Glauert factor on lift and moment.
+        Put the Prandtl-Glauert factor on lift and moment.
     section_damping : bool, optional
         Quasi-steady damping of turning sections (lift by the incidence at 3/4 chord, and the moment about the quarter
-        chord), in the trim too. Not given: on, and off with equations="published", to which True adds it. Lift-slope
-        airloads keep its lift alone.
+        chord), in the trim too. When not given, the damping is on, but off with equations="published"; True adds the
+        damping to these equations. Lift-slope airloads keep the lift of the damping alone.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional
         Engine and shaft on the rotor's azimuth.
     reactionless : bool
-        Keep the blade motions that no load of the hub feels, for more than three blades.
+        Keep the blade motions that make no load at the hub, for more than three blades.
     locked : collection of "flap", "lag", "pitch", "gimbal"
-        Coordinates removed; they stay at zero in trim too.
+        Coordinates that are removed; they stay at zero in the trim too.
 
     Raises
     ------
     InputError
-        For a choice that does not exist, with those that do.
+        For a choice that does not exist, with the choices that do.
     """
 
     equations: str | EquationSet = "consistent"
@@ -112,17 +116,17 @@ class Options:
         self._check_combinations()
 
     def _check_combinations(self) -> None:
+        """Refuse options that do not go together."""
         if (self.structure == "tabulated") != isinstance(self.frequencies, BladeFrequencies):
-            raise InputError(
-                "frequencies", self.frequencies, 'must be BladeFrequencies, with structure="tabulated" only'
-            )
+            rule = 'must be BladeFrequencies, with structure="tabulated" only'
+            raise InputError("frequencies", self.frequencies, rule)
         for name in ("pitch_flap_coupling", "pitch_lag_coupling"):
             value = getattr(self, name)
             if value is None:
                 continue
             if self.pitch != "coupling":
                 raise InputError(name, value, 'goes with pitch="coupling"')
-            if not np.all(np.isfinite(np.asarray(value, dtype=float))):
+            if not np.all(np.isfinite(np.asarray(np.real(value), dtype=float))):
                 raise InputError(name, value, "must be finite")
         if self.drive_train is not None and not isinstance(self.drive_train, DriveTrain):
             raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
@@ -141,17 +145,16 @@ class Options:
 
 
 def parse_options(options: Mapping[str, Any]) -> Options:
-    """`Options` from keywords.
+    """Return `Options` from keywords.
 
     Raises
     ------
     InputError
-        For an unknown keyword, with the known ones.
+        For an unknown keyword, with the known keywords.
     """
-    known = (*CHOICES, *FURTHER)
+    known = (*CHOICES, *_FURTHER)
     for name in options:
         if name not in known:
-            raise InputError(
-                name, options[name], f"{unknown_name(name, known, 'option')} (options: {', '.join(known)})"
-            )
+            rule = f"{unknown_name(name, known, 'option')} (options: {', '.join(known)})"
+            raise InputError(name, options[name], rule)
     return Options(**options)

@@ -1,4 +1,4 @@
-"""A proprotor: geometry, mass, springs, control system and blade sections, in SI units."""
+"""A proprotor in SI units: geometry, mass, springs, control system and blade sections."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from proprotor_equations import inertia
 
-from proprotor.errors import InputError, check_number
+from proprotor.errors import InputError, check_finite, check_number
 from proprotor.rotor.airfoil import SectionModel
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
@@ -44,18 +44,18 @@ _NOT_NEGATIVE = (
 )
 _FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
 _REACH = 1e-3  # of the radius: stations may be printed to three digits
-HELD, NOTHING = "held", "nothing"  # what a table may say of the blade beyond its stations
+HELD, NOTHING = "held", "nothing"  # words for the blade beyond the stations of a table
 
-Table = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, str]  # r, values, perhaps `HELD`
-Distribution = float | Table | Callable[[Array], Array]
+_Table = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, str]  # r, values, perhaps `HELD`
+_Distribution = float | _Table | Callable[[Array], Array]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rotor:
     """A gimballed rotor of equal blades, each with a flap and a lag hinge and a flexible control system.
 
-    All values in SI units and radians. The mass integrals are over the whole blade (blade_*, about the centre of
-    rotation) and over what lies outboard of a hinge (flap_*, lag_*, about that hinge). Any number may be an array that
+    All values are in SI units and radians. The mass integrals are over the whole blade (blade_*, about the centre of
+    rotation) and over the part outboard of a hinge (flap_*, lag_*, about that hinge). Any number may be an array that
     broadcasts with the airspeeds, for many designs at once.
 
     Parameters
@@ -73,25 +73,26 @@ class Rotor:
     flap_stiffness, lag_stiffness : float
         Hub and blade spring in series, N m/rad (Eq. 18 of AIAA-2002-1604).
     flap_outboard_fraction, lag_outboard_fraction : float
-        Share of that flexibility (dimensionless) outboard of the pitch bearing, 0 to 1 (Eq. 19).
+        Share of the flexibility of that spring outboard of the pitch bearing, dimensionless, 0 to 1 (Eq. 19).
     gimbal_stiffness : float
         Hub spring, N m/rad.
     pitch_gimbal_coupling : float
         K_PG = tan δ3 (Eq. 16), dimensionless.
     pitch_inertia, control_stiffness : float
-        Of one blade: kg m², N m/rad.
+        Inertia and stiffness for one blade: kg m², N m/rad.
     flap_damping, lag_damping, pitch_damping, gimbal_damping : float
         Viscous dampers, N m s/rad; the gimbal's does not rotate.
     structural_pitch_offset : float
-        From the collective reference to the blade's structural axes, rad.
+        Angle from the collective reference to the blade's structural axes, rad.
     propeller_moment : bool
         Whether the propeller moment acts on the blade's pitch.
     chord, twist : float, (r, values) or function of r
-        m and rad. A number is a constant chord and a linear twist over the radius; a pair of arrays is interpolated
-        linearly between its stations, which reach from the root cutout to the tip; (r, values, "held") says that the
-        end values hold beyond them. A smooth function takes an array of radii. Twist counts from the pitch at 0.75 R.
+        m and rad. A number is a constant chord, or a linear twist over the radius. A pair of arrays is interpolated
+        linearly between its stations, which reach from the root cutout to the tip; with (r, values, "held") the end
+        values hold beyond the stations. A smooth function takes an array of radii. Twist counts from the pitch at
+        0.75 R.
     airfoil : SectionModel
-        Such as `Airfoil`.
+        Section coefficients, such as `Airfoil`.
 
     Raises
     ------
@@ -126,8 +127,8 @@ class Rotor:
     gimbal_damping: float = 0.0
     structural_pitch_offset: float = 0.0
     propeller_moment: bool = True
-    chord: Distribution
-    twist: Distribution = 0.0
+    chord: _Distribution
+    twist: _Distribution = 0.0
     airfoil: SectionModel = field(repr=False)
 
     def __post_init__(self) -> None:
@@ -141,6 +142,7 @@ class Rotor:
         self._check_mass()
 
     def _check_number(self, name: str) -> None:
+        """Refuse a field that is no finite number."""
         value = getattr(self, name)
         if name in ("chord", "twist") and (isinstance(value, tuple) or callable(value)):
             return  # a distribution, checked once the radius it stretches with is known to be positive
@@ -154,12 +156,10 @@ class Rotor:
             raise InputError(name, value, "must be finite")
 
     def _check_signs(self) -> None:
-        for name in _POSITIVE:
-            if np.any(np.real(getattr(self, name)) <= 0):
-                raise InputError(name, getattr(self, name), "must be above zero")
-        for name in _NOT_NEGATIVE:
-            if np.any(np.real(getattr(self, name)) < 0):
-                raise InputError(name, getattr(self, name), "must not be negative")
+        """Refuse numbers of the wrong sign, and fractions and angles out of range."""
+        for names, sign in ((_POSITIVE, "above zero"), (_NOT_NEGATIVE, "not negative")):
+            for name in names:
+                check_finite(name, getattr(self, name), sign)
         for name in _FRACTIONS:
             if np.any((np.real(getattr(self, name)) < 0) | (np.real(getattr(self, name)) > 1)):
                 raise InputError(name, getattr(self, name), "must lie between 0 and 1")
@@ -174,19 +174,17 @@ class Rotor:
             raise InputError("precone", self.precone, "must lie within 90 deg")
 
     def _check_hinges(self) -> None:
-        if np.any(np.real(self.root_cutout) >= np.real(self.radius)):
-            raise InputError(
-                "root_cutout", self.root_cutout, f"must lie inboard of the tip ({_shown(self.radius)} m)"
-            )
+        """Refuse a root cutout or hinges in the wrong order along the radius."""
         if np.any(np.real(self.lag_hinge_offset) < np.real(self.flap_hinge_offset)):
             rule = f"must not lie inboard of the flap hinge ({_shown(self.flap_hinge_offset)} m)"
             raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
-        if np.any(np.real(self.lag_hinge_offset) >= np.real(self.radius)):
-            rule = f"must lie inboard of the tip ({_shown(self.radius)} m)"
-            raise InputError("lag_hinge_offset", self.lag_hinge_offset, rule)
+        for name in ("root_cutout", "lag_hinge_offset"):
+            if np.any(np.real(getattr(self, name)) >= np.real(self.radius)):
+                rule = f"must lie inboard of the tip ({_shown(self.radius)} m)"
+                raise InputError(name, getattr(self, name), rule)
 
     def _check_reach(self) -> None:
-        """Chord and twist are known wherever there are airloads, or said to hold beyond their stations."""
+        """Refuse a chord or twist whose stations do not cover all the airloads, unless its end values hold."""
         radius, cutout = np.real(self.radius), np.real(self.root_cutout)
         for name in ("chord", "twist"):
             table = getattr(self, name)
@@ -201,7 +199,11 @@ class Rotor:
                 raise InputError(name, f"{np.size(table[1])} values", rule)
 
     def _check_mass(self) -> None:
-        """Integrals of m times two of the arms 1, r, ρβ, ρζ are inner products: no negative Gram matrix."""
+        """Refuse mass integrals that no blade can have.
+
+        The integrals of m times two of the arms 1, r, ρβ, ρζ are inner products, so that their Gram matrix has no
+        negative eigenvalue.
+        """
         i_beta_alpha = np.real(self.flap_hub_inertia)
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
             rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
@@ -216,7 +218,7 @@ class Rotor:
             raise InputError("blade_inertia", self.blade_inertia, rule)
 
     def _gram_matrix(self) -> Array:
-        """Integrals of m times two of the arms 1, r, ρβ, ρζ."""
+        """Return the integrals of m times two of the arms 1, r, ρβ, ρζ."""
         entries = (
             (self.blade_mass, self.blade_first_moment, self.flap_first_moment, self.lag_first_moment),
             (self.blade_first_moment, self.blade_inertia, self.flap_hub_inertia, self.lag_hub_inertia),
@@ -228,13 +230,12 @@ class Rotor:
 
     @functools.cached_property
     def _dependent(self) -> Any:
-        return evaluate(
-            inertia.dependent_inertias, {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        )
+        """Inertias that follow from the others."""
+        return evaluate(inertia.dependent_inertias, {e.name: getattr(self, e.name) for e in fields(self)})
 
     @property
     def flap_hub_inertia(self) -> Any:
-        """I_βα = ∫ m r (r - e_β), kg m²; follows from the flap inertia, first moment and hinge offset."""
+        """I_βα = ∫ m r (r - e_β), kg m², which follows from flap inertia, first moment and hinge offset."""
         return self._dependent.flap_hub_inertia
 
     @property
@@ -251,23 +252,18 @@ class Rotor:
     def quadrature(self) -> RadialQuadrature:
         """Radial stations and weights from cutout to tip, split at hinges and tabulated stations."""
         knots = [np.asarray(d[0]) for d in (self.chord, self.twist) if isinstance(d, tuple)]
-        return gauss_panels(
-            root_cutout=self.root_cutout,
-            radius=self.radius,
-            flap_hinge_offset=self.flap_hinge_offset,
-            lag_hinge_offset=self.lag_hinge_offset,
-            knots=_joined(knots),
-        )
+        return gauss_panels(**self._radii, knots=_joined(knots))
 
     @functools.cached_property
     def coarse_quadrature(self) -> RadialQuadrature:
-        """A few stations, enough to come near the trim."""
-        return coarse_panels(
-            root_cutout=self.root_cutout,
-            radius=self.radius,
-            flap_hinge_offset=self.flap_hinge_offset,
-            lag_hinge_offset=self.lag_hinge_offset,
-        )
+        """Radial stations and weights of a few points, enough to come near the trim."""
+        return coarse_panels(**self._radii)
+
+    @property
+    def _radii(self) -> dict[str, Any]:
+        """Radii between which the blade has airloads, by name."""
+        names = ("root_cutout", "radius", "flap_hinge_offset", "lag_hinge_offset")
+        return {name: getattr(self, name) for name in names}
 
     @functools.cached_property
     def station_chord(self) -> Array:
@@ -280,12 +276,12 @@ class Rotor:
         return self.twist_at(self.quadrature.stations)
 
     def chord_at(self, r: Array) -> Array:
-        """Chord at radii.
+        """Return the chord at radii.
 
         Parameters
         ----------
         r : array (..., stations)
-            From the centre of rotation, m.
+            Radii from the centre of rotation, m.
 
         Returns
         -------
@@ -297,17 +293,17 @@ class Rotor:
         return np.asarray(self.chord)[..., None]
 
     def twist_at(self, r: Array) -> Array:
-        """Twist at radii.
+        """Return the twist at radii.
 
         Parameters
         ----------
         r : array (..., stations)
-            From the centre of rotation, m.
+            Radii from the centre of rotation, m.
 
         Returns
         -------
         array (..., stations)
-            From the pitch at 0.75 R, rad.
+            Twist from the pitch at 0.75 R, rad.
         """
         reference = 0.75 * np.asarray(self.radius)[..., None]
         if isinstance(self.twist, tuple) or callable(self.twist):
@@ -326,12 +322,13 @@ class Rotor:
         hub_mass: ArrayLike | None = None,
         **fields_: Any,
     ) -> Rotor:
-        """A rotor whose seven mass integrals come from mass per length, linear between stations.
+        """Return a rotor whose seven mass integrals come from mass per length, linear between stations.
 
-        Exact for that distribution: each interval between stations and hinges is integrated as the cubic it is. Hinge
+        The integrals are exact for that distribution: the integrand is a cubic between stations and hinges. Hinge
         offsets and, with leading axes, r may be arrays of many designs.
 
-        Stations reach from the centre of rotation to the tip, where those within 0.1 % of the radius are taken to be.
+        Stations reach from the centre of rotation to the tip; stations within 0.1 % of the radius count as centre or
+        tip.
 
         Parameters
         ----------
@@ -342,7 +339,7 @@ class Rotor:
         beyond : "" or "nothing"
             "nothing" says that there is no mass inboard of the first station and outboard of the last.
         hub_mass : float or array, optional
-            Of the whole rotor at the centre of rotation, kg, for stations that begin further out; it may be 0.
+            Mass of the whole rotor's hub at the centre of rotation, kg, for stations that begin further out; may be 0.
         **fields_
             The other fields of `Rotor`.
 
@@ -353,17 +350,16 @@ class Rotor:
         Raises
         ------
         InputError
-            When the distribution is not increasing in r or negative, ends short of centre or tip without a word, or a
-            field is wrong.
+            When the distribution does not increase in r or is negative, when it ends short of centre or tip without
+            `beyond` or `hub_mass`, or when a field is wrong.
         """
         r, mass = np.asarray(r), np.asarray(mass_per_length, dtype=float)
         _check_distribution("mass_distribution", (r, mass))
         if np.any(mass < 0):
             raise InputError("mass_distribution", float(mass.min()), "must not be negative")
         if beyond not in ("", NOTHING):
-            raise InputError(
-                "mass_distribution", beyond, f'must say "{NOTHING}" of what is beyond, or not say it'
-            )
+            rule = f'must say "{NOTHING}" of what is beyond, or not say it'
+            raise InputError("mass_distribution", beyond, rule)
         r = _reaching(r, fields_.get("radius"), beyond, hub_mass)
         _check_distribution("mass_distribution", (r, mass))
         hinges = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
@@ -375,7 +371,7 @@ class Rotor:
         return rotor if hub_mass is None else rotor._with_hub(hub_mass)
 
     def _with_hub(self, hub_mass: ArrayLike) -> Rotor:
-        """The rotor with a mass at its centre, a share of it in every blade."""
+        """Return the rotor with a mass at its centre, of which every blade has a share."""
         check_number("hub_mass", hub_mass)
         if not np.all(np.isfinite(hub_mass)) or np.any(np.real(hub_mass) < 0):
             raise InputError("hub_mass", hub_mass, "must be finite and not negative")
@@ -384,20 +380,19 @@ class Rotor:
 
 
 def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) -> Array:
-    """Return the stations of the mass, with those near centre and tip moved there; refuse ones that leave mass out."""
+    """Return the stations with those near centre and tip moved there; refuse stations that leave mass out."""
     try:
         tip = np.asarray(radius, dtype=complex if np.iscomplexobj(radius) else float)
     except (TypeError, ValueError):
-        return r  # refused as a field of the rotor
+        return r  # the rotor refuses this radius
     if not np.all(np.real(tip) > 0):
         return r
     first, last = (np.real(r[..., end]) / np.real(tip) for end in (0, -1))
     reached = f"has stations from {_shown(first)} R to {_shown(last)} R"
     at_centre, at_tip = np.abs(first) <= _REACH, np.abs(last - 1) <= _REACH
     if np.any(first < -_REACH) or np.any(last > 1 + _REACH):
-        raise InputError(
-            "mass_distribution", f"{r.shape[-1]} values", f"{reached}; there is no blade beyond its tip"
-        )
+        rule = f"{reached}; there is no blade beyond its tip"
+        raise InputError("mass_distribution", f"{r.shape[-1]} values", rule)
     if hub_mass is not None and np.any(at_centre):
         rule = "must not be given with a mass_distribution that begins at the centre of rotation and holds the hub"
         raise InputError("hub_mass", hub_mass, rule)
@@ -415,19 +410,19 @@ def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) ->
 
 
 def _shown(value: ArrayLike) -> str:
-    """A number, or the range of an array of designs."""
+    """Return a number as text, or the range of an array of designs."""
     low, high = np.min(np.real(value)), np.max(np.real(value))
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
-def _check_distribution(name: str, distribution: Table) -> None:
+def _check_distribution(name: str, distribution: _Table) -> None:
+    """Refuse a table whose stations and values do not fit each other, are not finite or do not increase."""
     if (further := distribution[2:]) not in ((), (HELD,)):
         raise InputError(name, further, f'must be (r, values), or (r, values, "{HELD}")')
     r, values = (np.real(part) for part in distribution[:2])
     if values.ndim != 1 or r.shape[-1:] != values.shape or values.size < 2:
-        raise InputError(
-            name, f"arrays of shape {r.shape} and {values.shape}", "must be two lists of equal length"
-        )
+        shapes = f"arrays of shape {r.shape} and {values.shape}"
+        raise InputError(name, shapes, "must be two lists of equal length")
     if not (np.isfinite(r).all() and np.isfinite(values).all()):
         raise InputError(name, values.tolist(), "must be finite")
     if np.any(np.diff(r) <= 0):
@@ -435,15 +430,15 @@ def _check_distribution(name: str, distribution: Table) -> None:
 
 
 def _joined(knots: list[Array]) -> Array:
-    """Stations of several distributions along the last axis."""
+    """Return the stations of several distributions, one after another along the last axis."""
     if not knots:
         return np.empty(0)
     leading = np.broadcast_shapes(*(stations.shape[:-1] for stations in knots))
     return np.concatenate([np.broadcast_to(s, (*leading, s.shape[-1])) for s in knots], axis=-1)
 
 
-def _interpolate(distribution: Table | Callable[[Array], Array], r: Array) -> Array:
-    """Values (..., stations) at radii r (..., stations), linear and constant beyond the ends, complex if r is."""
+def _interpolate(distribution: _Table | Callable[[Array], Array], r: Array) -> Array:
+    """Return values (..., stations) at radii r (..., stations): linear, constant beyond the ends, complex if r is."""
     if callable(distribution):
         return np.asarray(distribution(r))
     stations, values = np.asarray(distribution[0]), np.asarray(distribution[1])
@@ -459,7 +454,7 @@ def _interpolate(distribution: Table | Callable[[Array], Array], r: Array) -> Ar
 
 
 def _outboard_moment(r: Array, mass: Array, axis: ArrayLike | None, power: int) -> Any:
-    """∫ m (r - axis)^power outboard of an axis (...), over all the blade about its centre for None."""
+    """Return ∫ m (r - axis)^power outboard of an axis (...), or over the whole blade about its centre for None."""
     nodes, weights = np.polynomial.legendre.leggauss(2)
     inboard, outboard = r[..., :-1], r[..., 1:]
     center = np.zeros(()) if axis is None else np.asarray(axis)[..., None]

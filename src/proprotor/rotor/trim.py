@@ -1,4 +1,4 @@
-"""Steady state of the rotor: what it is, what closes it, and the quantities that follow from it."""
+"""Steady state of the rotor: the unknowns, what closes the trim, and the quantities that follow from a trim state."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from proprotor_equations import flap_lag_springs, inertia
+from proprotor_equations import trim as equations
 
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.operation import Operation
@@ -15,8 +16,14 @@ from proprotor.rotor.options import Options
 from proprotor.rotor.rotor import Rotor
 from proprotor.typing import Array
 
-UNKNOWNS = ("coning", "lag", "elastic_pitch", "collective")
-TORQUE, THRUST = 3, 4  # rows of a blade's balance
+UNKNOWNS = (
+    "coning",
+    "lag",
+    "elastic_pitch",
+    "collective",
+)  # in the order of the columns of `equations.jacobian`
+TORQUE, THRUST = equations.AZIMUTH, equations.HUB_K  # rows of a blade's balance
+_FLAP_LAG = tuple(f"flap_lag_stiffness{derivative}" for derivative in ("", "_slope", "_curvature"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,19 +33,19 @@ class Trim:
     Attributes
     ----------
     collective, coning, lag, elastic_pitch : array
-        rad; the pitch at 0.75 R is collective and elastic pitch together.
+        rad; the pitch at 0.75 R is the sum of collective and elastic pitch.
     thrust : array
-        Of the airloads on the whole rotor along +K, N.
+        Force of the airloads on the whole rotor along +K, N.
     torque : array
-        Of the airloads on the whole rotor, positive where it speeds the rotor up, N m.
+        Moment of the airloads on the whole rotor, positive if it speeds the rotor up, N m.
     converged : array of bool
-        Whether a trim was found, and the model has modes there.
+        Whether a trim was found; the model has modes at these points alone.
     reason : array of str
-        Why a point failed, empty where it did not.
+        Why a point failed; empty at a converged point.
     warning : array of str
-        What makes a converged point doubtful, empty where nothing does.
+        Why the trim of a converged point is doubtful; empty if it is not.
     iterations : array of int
-        Steps taken.
+        Number of steps taken.
     """
 
     collective: Array
@@ -58,12 +65,12 @@ class Trim:
         return self.collective + self.elastic_pitch
 
     def broadcast(self, shape: tuple[int, ...]) -> Trim:
-        """The same at every point of a batch with more axes.
+        """Return the trim repeated at every point of a batch with more axes.
 
         Parameters
         ----------
         shape : tuple of int
-            Of the batch.
+            Shape of the batch.
 
         Returns
         -------
@@ -74,7 +81,19 @@ class Trim:
 
 @dataclass(frozen=True)
 class Target:
-    """What closes the trim: a given collective, or the row of a balance and the load on one blade that meets it."""
+    """The condition that closes the trim: a given collective, or a balance row with the load on one blade.
+
+    Attributes
+    ----------
+    collective : float, array or None
+        rad; None if the trim has to find the collective.
+    row : int
+        Row of the balance that closes the collective: `TORQUE` or `THRUST`.
+    load : float or array
+        Load that this row must have on one blade, N m or N.
+    windmilling : bool
+        Whether the rotor windmills, for messages.
+    """
 
     collective: Any = None
     row: int = TORQUE
@@ -83,11 +102,12 @@ class Target:
 
     @property
     def finds_collective(self) -> bool:
+        """Whether the collective is an unknown of the trim."""
         return self.collective is None
 
 
 def trim_target(rotor: Rotor, operation: Operation) -> Target:
-    """Target of an operation; coefficients are C_T = T/(ρπR²(ΩR)²) and C_P = QΩ/(ρπR²(ΩR)³), power put in positive."""
+    """Return the target of an operation, by C_T = T/(ρπR²(ΩR)²) and C_P = QΩ/(ρπR²(ΩR)³), power put in positive."""
     if isinstance(operation.trim, str):
         return Target(windmilling=True)
     (name, value), *_ = operation.trim.items()
@@ -101,29 +121,25 @@ def trim_target(rotor: Rotor, operation: Operation) -> Target:
 
 
 def take(quantities: Mapping[str, Any], rows: Array) -> dict[str, Any]:
-    """Quantities at some of the points; scalars hold for all."""
+    """Return quantities at some of the points; scalars hold at all points."""
     return {name: value[rows] if np.ndim(value) else value for name, value in quantities.items()}
 
 
 def with_trim(quantities: Mapping[str, Any], options: Options, state: Mapping[str, Any]) -> dict[str, Any]:
-    """All quantities of the whole blade at a trim state."""
-    pool = dict(quantities) | dict(state)
-    pool["pitch"] = state["collective"] + state["elastic_pitch"]
-    pool["structural_pitch"] = pool["pitch"] + quantities["structural_pitch_offset"]
-    pool |= evaluate(inertia.trim_integrals, pool)._asdict()
-    return pool | _springs(options, pool)
+    """Return all quantities of the whole blade at a trim state: pitch, trim integrals and springs are added."""
+    found = dict(quantities) | dict(state)
+    found["pitch"] = state["collective"] + state["elastic_pitch"]
+    found["structural_pitch"] = found["pitch"] + quantities["structural_pitch_offset"]
+    found |= evaluate(inertia.trim_integrals, found)._asdict()
+    return found | _springs(options, found)
 
 
-def _springs(options: Options, pool: Mapping[str, Any]) -> dict[str, Any]:
-    """Effective flap and lag stiffness and its change with pitch, as the structure option has it."""
-    if options.frequencies is not None:  # structure="tabulated"
-        none = dict.fromkeys(flap_lag_springs.EffectiveStiffness._fields, 0.0)
-        rotating = options.frequencies.rotating(pool["collective"], pool["airspeed"], pool["rotor_speed"])
-        given: dict[str, Any] = evaluate(
-            flap_lag_springs.stiffness_of_frequencies, dict(pool) | rotating
-        )._asdict()
-        return none | given
-    springs: dict[str, Any] = evaluate(flap_lag_springs.effective_stiffness, pool)._asdict()
-    if options.structure == "diagonal":
-        springs |= {name: 0.0 for name in springs if name.startswith("flap_lag_")}
-    return springs
+def _springs(options: Options, quantities: dict[str, Any]) -> dict[str, Any]:
+    """Return effective flap and lag stiffness and its change with pitch, as the option `structure` has it."""
+    if options.frequencies is None:
+        springs: dict[str, Any] = evaluate(flap_lag_springs.effective_stiffness, quantities)._asdict()
+        return springs | dict.fromkeys(_FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
+    given = (quantities[name] for name in ("collective", "airspeed", "rotor_speed"))
+    tabulated = quantities | options.frequencies.rotating(*given)
+    springs = evaluate(flap_lag_springs.stiffness_of_frequencies, tabulated)._asdict()
+    return dict.fromkeys(flap_lag_springs.EffectiveStiffness._fields, 0.0) | springs

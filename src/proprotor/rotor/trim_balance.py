@@ -1,6 +1,6 @@
-"""Balance of one blade at many points, with its slopes, at all of the loads or at a share of them.
+"""Balance of one blade at many points and its slopes, with all of the airloads or with a share λ of them.
 
-A share multiplies precone, and the airloads in the rows of flap, lag and pitch.
+The share multiplies precone, and the airloads in the rows of flap, lag and pitch.
 """
 
 from __future__ import annotations
@@ -19,18 +19,17 @@ from proprotor.rotor.section_loads import BladeSections, load_moments, segment_q
 from proprotor.rotor.trim import UNKNOWNS, Target, take, with_trim
 from proprotor.typing import Array
 
-LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
-_COLLECTIVE = UNKNOWNS.index("collective")
+_LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
 _COMPLEX_STEP = 1e-30
 
-State = dict[str, Array]
+State = dict[str, Array]  # the unknowns by name, (points,)
 
 
 class Slopes(NamedTuple):
     """Change of the balances with the free unknowns, N m/rad, (n, k, k).
 
     full : with all of the airloads.
-    airloads : what the airloads have in it on the rows of flap, lag and pitch; zero on the row that closes the trim.
+    airloads : the part of the airloads in the rows of flap, lag and pitch; zero in the row that closes the collective.
     """
 
     full: Array
@@ -38,55 +37,55 @@ class Slopes(NamedTuple):
 
     @classmethod
     def unknown(cls, n: int, k: int) -> Slopes:
-        """Not a number at n points with k unknowns."""
+        """Return NaN at n points with k unknowns."""
         return cls(*np.full((2, n, k, k), np.nan))
 
     def put(self, rows: Array, slopes: Slopes) -> None:
-        """Note those of some of the points."""
+        """Set the slopes at some of the points."""
         self.full[rows], self.airloads[rows] = slopes
 
     def at(self, share: Array) -> Array:
-        """The slopes (n, k, k) at a share (n,) of the loads."""
+        """Return the slopes (n, k, k) at a share (n,) of the loads."""
         slopes: Array = self.full - (1 - share[:, None, None]) * self.airloads
         return slopes
 
     def by_moments(self, sprung: Array) -> Slopes:
-        """The same per unit of the moments that springs and centrifugal force make of flap and lag, not of the angles.
+        """Return the slopes per unit of the moments that springs and centrifugal force set against flap and lag.
 
-        So counted a spring as stiff as can be that turns with the pitch changes no slope.
+        Counted in this way, a spring of any stiffness that turns with the pitch changes no slope.
         """
         structure = np.where(sprung[:, None], self.full - self.airloads, np.eye(len(sprung)))
         angles = solve(structure, np.broadcast_to(np.eye(len(sprung)), structure.shape))
         return Slopes(self.full @ angles, self.airloads @ angles)
 
     def of(self, rows: Array) -> Slopes:
-        """Those of some of the points."""
+        """Return the slopes at some of the points."""
         return Slopes(self.full[rows], self.airloads[rows])
 
 
 class Linear(NamedTuple):
-    """The balance near a state.
+    """The balance linearised at a state.
 
     residual : array (n, k)
         With all of the airloads, of the rows that close the free unknowns, N m; N for thrust.
     slopes : Slopes
     work, work_slopes : array (n, 5), (n, 5, k)
-        Virtual work of the airloads on all rows, and less their change with the free unknowns.
-    pool, segments : dict
-        Quantities of the whole blade, and those of each segment with the moments of its loads.
+        Virtual work of the airloads on all rows, and minus its change with the free unknowns.
+    quantities, segments : dict
+        Quantities of the whole blade, and of each segment with the radial moments of the section loads.
     """
 
     residual: Array
     slopes: Slopes
     work: Array
     work_slopes: Array
-    pool: dict[str, Any]
+    quantities: dict[str, Any]
     segments: dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """Balance of one blade at many points: inputs, and the unknowns that are free."""
+    """Balance of one blade at many points: inputs, and the places of the free unknowns among `UNKNOWNS`."""
 
     sections: BladeSections
     quantities: Mapping[str, Any]
@@ -96,89 +95,25 @@ class Balance:
 
     @property
     def rows(self) -> list[int]:
-        """Rows that close the free unknowns, in their order."""
-        return [self.target.row if place == _COLLECTIVE else place for place in self.free]
+        """Rows of the balance that close the free unknowns, in the order of these unknowns."""
+        return [self.target.row if place == equations.COLLECTIVE else place for place in self.free]
 
     @property
     def hinged(self) -> Array:
-        """Which of these rows (k,) are the blade's flap, lag and pitch."""
-        return np.array([place != _COLLECTIVE for place in self.free], dtype=bool)
+        """Which of these rows (k,) are flap, lag and pitch of the blade."""
+        return np.array([place != equations.COLLECTIVE for place in self.free], dtype=bool)
+
+    @property
+    def sprung(self) -> Array:
+        """Which of these rows (k,) are flap and lag of the blade."""
+        return np.array([place in (equations.FLAP, equations.LAG) for place in self.free], dtype=bool)
 
     def air_direction(self, points: int) -> Array:
-        """Direction of the air at 0.75 R (points,), rad."""
+        """Return the direction of the air at 0.75 R (points,), rad."""
         airspeed, rotor_speed, radius = (
             np.real(self.quantities[name]) for name in ("airspeed", "rotor_speed", "radius")
         )
         return np.broadcast_to(np.arctan2(airspeed, 0.75 * rotor_speed * radius), (points,))
-
-    @property
-    def sprung(self) -> Array:
-        """Which of these rows (k,) are the blade's flap and lag."""
-        return np.array([UNKNOWNS[place] in ("coning", "lag") for place in self.free], dtype=bool)
-
-    def pool(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
-        """Quantities of the whole blade at a state, and at a share of its precone."""
-        there = {name: value[rows] for name, value in state.items()}
-        given = take(self.quantities, rows)
-        if share is not None:
-            given["precone"] = share * given["precone"]
-        return with_trim(given, self.options, there)
-
-    def loads(self, pool: Mapping[str, Any], rows: Array, **wanted: Any) -> dict[str, Any]:
-        """Quantities of each segment and the radial moments of its loads."""
-        sections = self.sections.take(rows)
-        segments = segment_quantities(sections, pool)
-        return segments | load_moments(
-            sections, segments, compressibility=self.options.compressibility, **wanted
-        )
-
-    def residual(
-        self, pool: Mapping[str, Any], segments: Mapping[str, Any], rows: Array
-    ) -> tuple[Array, Array]:
-        """Residual (n, 5) of balances and thrust, and the steady airloads in it."""
-        motion = {
-            "virtual_motion": evaluate(equations.virtual_motion, segments),
-            "steady_loads": evaluate(airloads.steady_loads, segments),
-        }
-        work = evaluate(airloads.steady_work, motion)[..., 0]
-        residual = evaluate(equations.residual, pool)[..., 0] - work
-        load = np.asarray(self.target.load)
-        residual[..., self.target.row] += load[rows] if load.ndim else load
-        return residual, work
-
-    def left(self, state: State, rows: Array, share: float | None = None) -> Array:
-        """Residual (n, k) with all of the airloads, without slopes."""
-        pool = self.pool(state, rows, share)
-        residual, _ = self.residual(pool, self.loads(pool, rows, steady_only=True), rows)
-        return residual[:, self.rows]
-
-    def slopes(
-        self, state: State, rows: Array, pool: Mapping[str, Any], segments: Mapping[str, Any]
-    ) -> tuple[Slopes, Array]:
-        """Change of the balances with the free unknowns, and the airloads' part (n, 5, k) in that of all rows."""
-        motion = {
-            name: evaluate(getattr(equations, name), segments)
-            for name in ("virtual_motion", "displacement_motion", "geometric_stiffness")
-        }
-        motion["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
-        of_airloads = evaluate(airloads.stiffness, motion)
-        structure = evaluate(equations.jacobian, pool)
-        if self.options.frequencies is not None and _COLLECTIVE in self.free:
-            structure = np.broadcast_to(structure, of_airloads.shape).copy()
-            structure[..., _COLLECTIVE] = self._with_collective(state, rows)
-        whole = (structure + of_airloads)[..., self.free]
-        of_airloads = of_airloads[..., self.free]
-        blade = of_airloads[:, self.rows] * self.hinged[:, None]
-        return Slopes(whole[:, self.rows], blade), of_airloads
-
-    def _with_collective(self, state: State, rows: Array) -> Array:
-        """Change (n, 5) of the structure's balances with the collective, on which tabulated frequencies may depend."""
-        there = {name: np.real(value) for name, value in state.items()}
-        there["collective"] = there["collective"] + 1j * _COMPLEX_STEP
-        real = {name: np.real(value) for name, value in take(self.quantities, rows).items()}
-        pool = with_trim(real, self.options, {name: value[rows] for name, value in there.items()})
-        change: Array = evaluate(equations.residual, pool)[..., 0].imag / _COMPLEX_STEP
-        return change
 
     def near(
         self,
@@ -187,38 +122,104 @@ class Balance:
         share: Array | float | None = None,
         doubts: dict[str, Array] | None = None,
     ) -> Linear:
-        """Residual and slopes at a state and a share of the precone, with all they are made of."""
-        pool = self.pool(state, rows, share)
-        segments = self.loads(pool, rows, doubts=doubts)
-        residual, work = self.residual(pool, segments, rows)
-        slopes, work_slopes = self.slopes(state, rows, pool, segments)
-        return Linear(residual[:, self.rows], slopes, work, work_slopes, pool, segments)
+        """Return residual and slopes at a state and a share of the precone, with the quantities they follow from."""
+        quantities = self._at(state, rows, share)
+        segments = self._loads(quantities, rows, doubts=doubts)
+        residual, work = self._residual(quantities, segments, rows)
+        slopes, work_slopes = self._slopes(state, rows, quantities, segments)
+        return Linear(residual[:, self.rows], slopes, work, work_slopes, quantities, segments)
+
+    def left(self, state: State, rows: Array, share: float | None = None) -> Array:
+        """Return the residual (n, k) with all of the airloads, without slopes."""
+        quantities = self._at(state, rows, share)
+        residual, _ = self._residual(quantities, self._loads(quantities, rows, steady_only=True), rows)
+        return residual[:, self.rows]
 
     def relieved(self, here: Linear, share: Array) -> Array:
-        """Residual (n, k) at a share (n,) of the airloads."""
+        """Return the residual (n, k) at a share (n,) of the airloads."""
         work = here.work[:, self.rows] * self.hinged
         relieved: Array = here.residual + (1 - share[:, None]) * work
         return relieved
 
     def precone_load(self, rows: Array) -> Array:
-        """What precone adds to the residual (n, k) of the undeflected blade."""
+        """Return the part of precone in the residual (n, k) of the undeflected blade."""
         load = np.zeros((len(rows), len(self.free)))
-        load[:, self.hinged] = evaluate(equations.precone_load, take(self.quantities, rows))[
-            ..., self.free[: sum(self.hinged)], 0
-        ]
+        places = np.array(self.free)[self.hinged]
+        precone = evaluate(equations.precone_load, take(self.quantities, rows))
+        load[:, self.hinged] = precone[..., places, equations.TRIM]
         return load
 
     def take_step(self, state: State, rows: Array, step: Array) -> None:
-        """Take a step (n, k) off the free unknowns."""
+        """Subtract a step (n, k) from the free unknowns."""
         for column, place in enumerate(self.free):
             state[UNKNOWNS[place]][rows] -= step[:, column]
 
+    def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
+        """Return the quantities of the whole blade at a state and at a share of its precone."""
+        given = take(self.quantities, rows)
+        if share is not None:
+            given["precone"] = share * given["precone"]
+        return with_trim(given, self.options, take(state, rows))
+
+    def _loads(self, quantities: Mapping[str, Any], rows: Array, **wanted: Any) -> dict[str, Any]:
+        """Return the quantities of each segment and the radial moments of the section loads."""
+        sections = self.sections.take(rows)
+        segments = segment_quantities(sections, quantities)
+        return segments | load_moments(
+            sections, segments, compressibility=self.options.compressibility, **wanted
+        )
+
+    def _residual(
+        self, quantities: Mapping[str, Any], segments: Mapping[str, Any], rows: Array
+    ) -> tuple[Array, Array]:
+        """Return the residual (n, 5) of balances and thrust, and the virtual work (n, 5) of the steady airloads."""
+        motion = {
+            "virtual_motion": evaluate(equations.virtual_motion, segments),
+            "steady_loads": evaluate(airloads.steady_loads, segments),
+        }
+        work = evaluate(airloads.steady_work, motion)[..., airloads.TRIM]
+        residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
+        load = np.asarray(self.target.load)
+        residual[..., self.target.row] += load[rows] if load.ndim else load
+        return residual, work
+
+    def _slopes(
+        self, state: State, rows: Array, quantities: Mapping[str, Any], segments: Mapping[str, Any]
+    ) -> tuple[Slopes, Array]:
+        """Return the change of the balances with the free unknowns, and the airloads' part (n, 5, k) in all rows."""
+        motion = {
+            name: evaluate(getattr(equations, name), segments)
+            for name in ("virtual_motion", "displacement_motion", "geometric_stiffness")
+        }
+        motion["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
+        of_airloads = evaluate(airloads.stiffness, motion)
+        structure = evaluate(equations.jacobian, quantities)
+        if self.options.frequencies is not None and equations.COLLECTIVE in self.free:
+            structure = np.broadcast_to(structure, of_airloads.shape).copy()
+            structure[..., equations.COLLECTIVE] = self._with_collective(state, rows)
+        whole = (structure + of_airloads)[..., self.free]
+        of_airloads = of_airloads[..., self.free]
+        blade = of_airloads[:, self.rows] * self.hinged[:, None]
+        return Slopes(whole[:, self.rows], blade), of_airloads
+
+    def _with_collective(self, state: State, rows: Array) -> Array:
+        """Return the change (n, 5) of the structure's balances with the collective by a complex step.
+
+        Tabulated frequencies may depend on the collective, and the generated Jacobian does not know the table.
+        """
+        real = {name: np.real(value) for name, value in state.items()}
+        real["collective"] = real["collective"] + 1j * _COMPLEX_STEP
+        given = {name: np.real(value) for name, value in take(self.quantities, rows).items()}
+        quantities = with_trim(given, self.options, take(real, rows))
+        change: Array = evaluate(equations.residual, quantities)[..., equations.TRIM].imag / _COMPLEX_STEP
+        return change
+
 
 def solve(slopes: Array, right: Array) -> Array:
-    """slopes⁻¹ right, (n, k, m); NaN at the points whose slopes have no inverse."""
+    """Return slopes⁻¹ right, (n, k, m); NaN at the points whose slopes have no inverse."""
     try:
         return np.linalg.solve(slopes, right)
-    except np.linalg.LinAlgError:  # at one point: it is undefined there, not at the others
+    except np.linalg.LinAlgError:  # raised for all points if the slopes of one are singular
         good = np.isfinite(slopes).all(axis=(1, 2)) & (np.abs(np.linalg.det(slopes)) > 0)
         found = np.full(right.shape, np.nan, dtype=np.result_type(slopes, right))
         found[good] = np.linalg.solve(slopes[good], right[good])
@@ -226,12 +227,12 @@ def solve(slopes: Array, right: Array) -> Array:
 
 
 def newton_step(slopes: Array, residual: Array) -> Array:
-    """Step (n, k) to take off the unknowns; NaN where the slopes have no inverse."""
+    """Return the step (n, k) to subtract from the unknowns; NaN if the slopes have no inverse."""
     step = solve(slopes, residual[..., None])[..., 0]
-    return step if np.iscomplexobj(step) else np.clip(step, -LARGEST_STEP, LARGEST_STEP)
+    return step if np.iscomplexobj(step) else np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
 
 
 def copy_state(state: State, rows: Array, onto: State) -> None:
-    """Set one state to another at some points."""
+    """Set one state to another at some of the points."""
     for name in UNKNOWNS:
         onto[name][rows] = state[name][rows]

@@ -99,7 +99,19 @@ class Failed(NamedTuple):
     reason: str
 
     def message(self, unit: str = "", factor: float = 1.0) -> str:
-        """Return a sentence on the stretch, its positions in a unit of so many SI units."""
+        """Return a sentence on the stretch.
+
+        Parameters
+        ----------
+        unit : str
+            Unit of the positions.
+        factor : float
+            SI units in that unit.
+
+        Returns
+        -------
+        str
+        """
         low, high = (f"{end / factor:.4g}" for end in (self.first, self.last))
         return (
             f"Not analysed: {low if low == high else f'{low} to {high}'} {unit}".rstrip()
@@ -161,7 +173,7 @@ class Crossings(NamedTuple):
             ratio, mode, position = self.least
             first += f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
         lines = [*map(repr, self.boundaries), *start_and_gaps(self.unstable_at_start, self.failed)]
-        return "\n  ".join([first, *lines, *stamp.told_if_unusual(self.stamp)])
+        return "\n  ".join([first, *lines, *stamp.unusual_options(self.stamp)])
 
 
 def start_and_gaps(

@@ -9,7 +9,7 @@ import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.model.first_order import some_points
-from proprotor.model.stamp import options_of
+from proprotor.model.options_of_result import options_of
 from proprotor.rotor.motions import name_list
 from proprotor.stability.branches import names_of
 from proprotor.stability.matching import Spectrum, conjugate, link

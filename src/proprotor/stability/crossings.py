@@ -527,9 +527,10 @@ def each_once(found: list[Crossing]) -> list[Crossing]:
 
 
 def _same(one: Crossing, other: Crossing) -> bool:
-    """Whether two are one: both states of a pair that parts within a step may be found to cross as the same root."""
+    """Return whether two crossings are one: both states of a pair that joins within a step may be found to cross."""
     near = abs(one.position - other.position) <= 1e-7 * max(abs(one.position), abs(other.position))
-    alike = abs(one.value - other.value) <= 1e-6 * max(1.0, abs(one.value))
+    values = [complex(found.value.real, abs(found.value.imag)) for found in (one, other)]
+    alike = abs(values[0] - values[1]) <= 1e-6 * max(1.0, abs(one.value))
     return one.line == other.line and one.onset == other.onset and near and alike
 
 

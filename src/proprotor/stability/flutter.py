@@ -94,7 +94,7 @@ class FlutterPoint:
         ]
         lines += start_and_gaps(self.unstable_at_start, self.failed, "kt", KNOT)
         lines += [f"{MARK} {line}" for line in footnotes(self.doubts, "kt", KNOT)]
-        return "\n  ".join([first, *lines, *stamp.told_if_unusual(self.stamp)])
+        return "\n  ".join([first, *lines, *stamp.unusual_options(self.stamp)])
 
     @property
     def warning(self) -> str:

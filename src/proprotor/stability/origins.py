@@ -14,19 +14,14 @@ import numpy as np
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_train, multiblade, pitch
 
 from proprotor.errors import InputError
-from proprotor.model.linear_model import (
-    COUPLINGS,
-    LinearModel,
-    airload_matrices,
-    batch_shape,
-    couplings,
-    in_closed_form,
-    mass_at_rest,
-    model_quantities,
-)
+from proprotor.model.linear_model import LinearModel
+from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mount import mount
+from proprotor.model.options_of_result import check_options
+from proprotor.model.quantities import COUPLINGS, batch_shape, couplings, model_quantities
+from proprotor.model.rotor_model import airload_matrices, in_closed_form
 from proprotor.model.rotor_share import without_rotors
-from proprotor.model.stamp import check_options, of_model
+from proprotor.model.stamp import of_model
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options, parse_options

@@ -18,7 +18,8 @@ from proprotor.deck.vary import design_inputs
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.first_order import some_points
-from proprotor.model.linear_model import LinearModel, batch_shape
+from proprotor.model.linear_model import LinearModel
+from proprotor.model.quantities import batch_shape
 from proprotor.needs import check_memory
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array

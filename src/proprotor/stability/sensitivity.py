@@ -19,6 +19,7 @@ from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
+from proprotor.model.options_of_result import options_of
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.crossings import growth_rate
 from proprotor.stability.eigenvalue_derivatives import (
@@ -218,7 +219,7 @@ def at_boundary(
     InputError
         For another case or another option than the boundary's.
     """
-    options = stamp.options_of(boundary.stamp, case, options)
+    options = options_of(boundary.stamp, case, options)
     speed, level = boundary.position, boundary.level
     model = case.linearize(speed, **options)
     spectrum = decomposition(model)

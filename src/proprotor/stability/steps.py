@@ -40,9 +40,9 @@ class Steps:
     """Pairs of neighbouring points of one line.
 
     before, after (steps,) of int; successor (steps, states) of int and quality (steps, states), see
-    `proprotor.stability.matching.link`, NaN where it is not known yet; wrong (steps, states), the error of the cubic by what was
-    seen when the step was parted from a longer one, NaN where it was not; depth (steps,), how often that was; open
-    (steps,), whether it is still to be looked at.
+    `proprotor.stability.matching.link`, NaN where it is not known yet; wrong (steps, states), the error of the cubic
+    by what was seen when the step was parted from a longer one, NaN where it was not; depth (steps,), how often that
+    was; open (steps,), whether it is still to be looked at.
     """
 
     before: Array
@@ -147,12 +147,12 @@ def undecided(
     if not len(share):
         return share
     ends, sides, counts = steps.ends(points), steps.sides(points), steps.counts(points)
-    rise = ends[1] - ends[0]
-    bend = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
+    bend = _bend(ends)
     width = np.where(np.isnan(steps.wrong), _UNSEEN * bend, np.fmax(steps.wrong, _SEEN * bend))
     width = width / trust
     counts = counts & (sides != 0).any(axis=0)  # neutral all along is no crossing
-    near = _may_reach(steps, points, ends, sides, width)
+    square, square_width = _squares(steps, points)
+    near = _may_reach(steps, points, ends, sides, width + _most_parted(square, square_width))
     _learn_quality(steps, points, near & counts)
     poor = (steps.quality < POOR) & counts
     row, state = np.nonzero(poor & near)
@@ -162,43 +162,93 @@ def undecided(
     row = looked[row]
     open_at = _open_at(
         ends[:, row, state], sides[:, row, state], width[row, state],
-        steps.errors(points)[:, row, state], *_splitting(steps, points, row, state),
+        steps.errors(points)[:, row, state], square[:, row, state], square_width[row, state],
     )  # fmt: skip
     for one, place in zip(row[np.isfinite(open_at)], open_at[np.isfinite(open_at)], strict=True):
         if np.isnan(share[one]):  # one point in a step and round
             share[one] = place
     deepest = np.where((poor & near).any(axis=1), _NEAR_LEVEL, _FOR_NAMES if names else 0)
     share[poor.any(axis=1) & (steps.depth < deepest)] = 0.5
-    for one, place in _where_real_roots_join(steps, points, sides):
+    for one, place in _where_real_roots_join(steps, points, sides, trust):
         share[one] = place
     return share
 
 
-def _where_real_roots_join(steps: Steps, points: Points, sides: Array) -> Iterator[tuple[int, float]]:
-    """Yield steps in which two real roots on different sides of the level are one pair at the other end, and where.
+def _where_real_roots_join(
+    steps: Steps, points: Points, sides: Array, trust: float
+) -> Iterator[tuple[int, float]]:
+    """Yield steps in which two real roots of one end are one pair at the other end, and where to part such a step.
 
-    Whether they join on this side of the level or beyond it, the ends do not tell: one root more may cross it and come
-    back. The square of what parts them passes zero where they join, nearly on a straight line.
+    Such a step is parted where its ends do not tell how often the two roots cross the level. The mean μ of the two
+    roots and the square of half their distance, δ², run smoothly through the point at which the roots join; the roots
+    μ ± δ do not, and a cubic through their own values and slopes is worth nothing.
     """
+    rows, couples, real_end = _couples(steps, points)
+    if not len(rows):
+        return
+    mean, square = _mean_and_distance(steps, points, rows, couples)
+    one, other = sides[real_end, rows, couples[0]], sides[real_end, rows, couples[1]]
+    pair = sides[1 - real_end, rows, couples[0]]
+    joint = np.clip(square[0] / (square[0] - square[1]), _EDGE, 1 - _EDGE)
+    highest, where = _reach_of_couple(mean, square, pair, trust)
+    for k in np.flatnonzero(steps.depth[rows] < _DEEPEST_JOINT).tolist():
+        if one[k] * other[k] < 0:  # one of them crosses before the two join, or two roots do after
+            yield int(rows[k]), float(joint[k])
+        elif one[k] == other[k] == pair[k] != 0 and highest[k] >= 0:
+            yield int(rows[k]), float(where[k])
+
+
+def _couples(steps: Steps, points: Points) -> tuple[Array, Array, Array]:
+    """Return steps (k,), two states (2, k) that are real at one end and a pair at the other, and which end that is."""
     values = points.spectrum.values
-    ends = values[steps.before], steps.later(values)
-    real = [end.imag == 0 for end in ends]
-    for side, is_real in zip(sides, real, strict=True):
-        mixed = is_real & (real[0] != real[1])
-        both = [(mixed & (side == sign)).any(axis=1) for sign in (1, -1)]
-        for step in np.flatnonzero(both[0] & both[1] & (steps.depth < _DEEPEST_JOINT)):
-            yield from _joint(int(step), [end[step] for end in ends], mixed[step], side[step])
+    ends = np.stack([values[steps.before], steps.later(values)])
+    real = ends.imag == 0
+    found = []
+    for end in (0, 1):
+        mixed = real[end] & ~real[1 - end] & np.isfinite(ends[0]) & np.isfinite(ends[1])
+        for row in np.flatnonzero(mixed.sum(axis=1) > 1).tolist():
+            pair = ends[1 - end, row]
+            found += [
+                (row, one, other, end)
+                for one, other in combinations(np.flatnonzero(mixed[row]).tolist(), 2)
+                if pair[one] == pair[other].conjugate()
+            ]
+    rows, *couples, ends_of = np.array(found, dtype=int).reshape(-1, 4).T
+    return np.asarray(rows), np.stack(couples), np.asarray(ends_of)
 
 
-def _joint(step: int, ends: list[Array], mixed: Array, side: Array) -> Iterator[tuple[int, float]]:
-    """Yield the step and the place in it where two of its real roots on different sides join, if any do."""
-    pair = ends[0] if (ends[0][mixed].imag != 0).all() else ends[1]
-    for one, other in combinations(np.flatnonzero(mixed), 2):
-        if side[one] * side[other] < 0 and pair[one] == pair[other].conjugate():
-            first, last = (
-                (end[one] - end[other]).real ** 2 - (end[one] - end[other]).imag ** 2 for end in ends
-            )
-            yield step, float(np.clip(first / (first - last), _EDGE, 1 - _EDGE))
+def _mean_and_distance(steps: Steps, points: Points, rows: Array, couples: Array) -> tuple[Array, Array]:
+    """Return the cubics (4, k) of the mean of two roots, and of the square of half their distance, by their ends."""
+    before, after = steps.before[rows], steps.after[rows]
+    length = points.position[after] - points.position[before]
+    later = steps.successor[rows, couples]
+    values = np.stack([points.spectrum.values[before, couples], points.spectrum.values[after, later]])
+    changes = np.stack([points.change[before, couples], points.change[after, later]]) * length
+    half, moved = (values[:, 0] - values[:, 1]) / 2, (changes[:, 0] - changes[:, 1]) / 2
+    mean = np.concatenate([values.mean(axis=1), changes.mean(axis=1)]).real
+    return mean, np.concatenate([half**2, 2 * half * moved]).real
+
+
+def _reach_of_couple(mean: Array, square: Array, side: Array, trust: float) -> tuple[Array, Array]:
+    """Return how far (k,) two real roots may come beyond the level from one side of it in a step, and where that is.
+
+    A real root crosses every level where it crosses zero.
+    """
+    band = 16 * _GRID**2 * (1 - _GRID) ** 2 / trust
+    of_mean, of_square = (hermite(_GRID, ends[:, :, None]) for ends in (mean, square))
+    apart = np.sqrt(np.maximum(of_square + band * _UNSEEN * _bend(square)[:, None], 0))
+    reach = -side[:, None] * of_mean + band * _UNSEEN * _bend(mean)[:, None] + apart
+    # Where the two roots are no longer real it is their mean that moves, and its own cubic that tells.
+    reach = np.where(apart > 0, reach, -np.inf)
+    place = reach.argmax(axis=1)
+    return reach[np.arange(len(place)), place], _GRID[place]
+
+
+def _bend(ends: Array) -> Array:
+    """Return how far cubics, by their ends (4, ...), may leave the straight line between the ends."""
+    rise = ends[1] - ends[0]
+    bend: Array = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
+    return bend
 
 
 def _may_reach(steps: Steps, points: Points, ends: Array, sides: Array, width: Array) -> Array:
@@ -219,21 +269,35 @@ def _learn_quality(steps: Steps, points: Points, near: Array) -> None:
         steps.quality[row, state] = ~may_meet(first, last, state[:, None])[:, 0].any(axis=1)
 
 
-def _splitting(steps: Steps, points: Points, row: Array, state: Array) -> tuple[Array, Array]:
-    """Ends (4, m) of the cubics of (Im λ)², and how much they may be wrong (m,): infinite for roots that are no pairs.
+def _squares(steps: Steps, points: Points) -> tuple[Array, Array]:
+    """Return the cubics of (Im λ)² over steps, by their ends (4, steps, states), and how wrong they may be.
 
-    Below zero a pair has parted into two real roots, by the square root of what is missing.
+    The error (steps, states) is minus infinity for roots that are no pairs at both ends. Where a cubic is below zero a
+    pair has parted into two real roots, by the square root of what is missing.
     """
-    before, after = steps.before[row], steps.after[row]
-    place = steps.successor[row, state]
-    length = points.position[after] - points.position[before]
-    values = points.spectrum.values[before, state], points.spectrum.values[after, place]
-    changes = points.change[before, state] * length, points.change[after, place] * length
-    ends = np.stack([value.imag**2 for value in values]
-                    + [2 * v.imag * c.imag for v, c in zip(values, changes, strict=True)])  # fmt: skip
-    rise = ends[1] - ends[0]
-    width = _UNSEEN * np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
-    return ends, np.where((ends[:2] > 0).all(axis=0), width, -np.inf)
+    values, length = (
+        points.spectrum.values,
+        (points.position[steps.after] - points.position[steps.before])[:, None],
+    )
+    change = 2 * values.imag * points.change.imag
+    ends = np.stack([
+        values[steps.before].imag ** 2,
+        steps.later(values).imag ** 2,
+        change[steps.before] * length,
+        steps.later(change) * length,
+    ])  # fmt: skip
+    return ends, np.where((ends[:2] > 0).all(axis=0), _UNSEEN * _bend(ends), -np.inf)
+
+
+def _most_parted(square: Array, width: Array) -> Array:
+    """Return how far (steps, states) real roots may part from each other's mean where a pair becomes real in a step.
+
+    A cubic leaves the straight line between its ends by at most 4/27 of the sum of what its slopes differ from it.
+    """
+    rise = square[1] - square[0]
+    bend = 4 / 27 * (np.abs(square[2] - rise) + np.abs(square[3] - rise))
+    most: Array = np.sqrt(np.maximum(bend + width - square[:2].min(axis=0), 0))
+    return most
 
 
 def _open_at(

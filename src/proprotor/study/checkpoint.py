@@ -1,9 +1,10 @@
-"""A folder in which a study keeps each batch it has finished, so that it can be killed and go on.
+"""A folder in which a study keeps each finished batch, so that a study that was killed can go on.
 
-`.held` keeps other studies from the folder while one is running; only who holds it reads, writes or removes anything.
-`manifest.json` says of which study the batches are, and how it is divided; `batch-00000012` is a SHA-256 and then a
-NumPy archive of one batch. Every file is written beside its place and moved there when it is complete. The SHA-256 is
-of the study and of the batch's number too, so that a batch of another study, wherever it came from, is none of this.
+The lock `.held` keeps other studies from the folder while one is running; only the study that holds the lock reads,
+writes or removes files. `manifest.json` names the study of the batches, and how the study is divided; `batch-00000012`
+is a SHA-256 and then a NumPy archive of one batch. Every file is written beside its place and moved there when it is
+complete. The SHA-256 covers the study and the batch's number too, so that a batch of another study is never taken for
+one of this study.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ _MANIFEST, _LOCK = "manifest.json", ".held"
 _DIGEST = hashlib.sha256().digest_size
 
 
-class CorruptBatch(Exception):
-    """A stored batch that is not what was written."""
+class _CorruptBatch(Exception):
+    """A stored batch whose bytes are not the ones that were written."""
 
 
 class Checkpoint:
@@ -43,11 +44,11 @@ class Checkpoint:
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
-        self._study = b""  # what the batches are of
+        self._study = b""  # identity and division of the study of the batches
 
     @contextmanager
     def open(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-        """Hold the folder, and begin there or go on with what is there. The hold ends with the process at the latest.
+        """Hold the folder, and begin a study there or go on with its batches; it ends with the process or earlier.
 
         Parameters
         ----------
@@ -66,20 +67,20 @@ class Checkpoint:
         InputError
             When the folder holds another study, is held by one that is running, or cannot be used.
         """
-        with self._held():
+        with self._hold():
             division = self._begun(identity, division)
             self._study = json.dumps([dict(identity), division], sort_keys=True).encode()
             yield division
 
     @contextmanager
-    def _held(self) -> Iterator[None]:
+    def _hold(self) -> Iterator[None]:
         """Keep all other threads and processes from the folder."""
         from filelock import FileLock, Timeout  # here, because most studies keep nothing
 
         lock = FileLock(self.folder / _LOCK, timeout=0)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            self._check_ours()  # before anything is put there
+            self._check_ours()  # before the lock is put there
             lock.acquire()
         except Timeout:
             raise InputError("checkpoint", self.folder, "is in use by a study that is running") from None
@@ -96,7 +97,7 @@ class Checkpoint:
             raise InputError("checkpoint", self.folder, rule)
 
     def _begun(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the division in the manifest, which is written where there is none."""
+        """Return the division in the manifest; write the manifest first if there is none."""
         place = self.folder / _MANIFEST
         manifest = {"format": _FORMAT, "identity": dict(identity), "division": dict(division)}
         try:
@@ -141,12 +142,12 @@ class Checkpoint:
         return digest.digest()
 
     def load(self, number: int) -> dict[str, Array] | None:
-        """A batch kept before, None where there is none.
+        """Return a batch that was kept before, or None.
 
         Raises
         ------
-        CorruptBatch
-            When the file is not what this study has written.
+        _CorruptBatch
+            When the bytes of the file are not the ones that this study has written.
         """
         try:
             content = self._place(number).read_bytes()
@@ -154,16 +155,16 @@ class Checkpoint:
             return None
         digest, payload = content[:_DIGEST], memoryview(content)[_DIGEST:]
         if self._digest(number, payload) != digest:
-            raise CorruptBatch(str(self._place(number)))
+            raise _CorruptBatch(str(self._place(number)))
         with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
             return {name: _as_objects(stored[name]) for name in stored.files}
 
     def finished(self, count: int) -> Iterator[tuple[int, dict[str, Array]]]:
-        """The batches kept before, of a study of so many; one that is damaged is told, removed and left out."""
+        """Yield the batches that were kept, of a number; warn of a damaged batch, remove it and leave it out."""
         for number in range(count):
             try:
                 found = self.load(number)
-            except CorruptBatch as error:
+            except _CorruptBatch as error:
                 warn(f"{error} is damaged: the batch is computed again", stacklevel=2)
                 self._place(number).unlink()
                 continue
@@ -175,7 +176,7 @@ class Checkpoint:
 
 
 def _plain(array: Array) -> Array:
-    """Texts with a fixed width, which need no pickle."""
+    """Return texts with a fixed width, which need no pickle."""
     return array.astype(str) if array.dtype == object else array
 
 

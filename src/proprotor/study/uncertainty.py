@@ -1,4 +1,4 @@
-"""How uncertain a result is, and because of which inputs: distributions and Sobol indices from a study of a sample."""
+"""How uncertain a result is, and which inputs make it so: distributions and Sobol indices from a study of a sample."""
 
 from __future__ import annotations
 
@@ -12,29 +12,30 @@ from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.needs import check_memory, need
-from proprotor.study.batch import STABLE, UNSTABLE
+from proprotor.study.designs import check_count
+from proprotor.study.variables import STABLE, UNSTABLE
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray
 
-PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
+_PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
 _MOST_LEFT_OUT = 0.05  # of the base samples, before indices say little about the sample that was drawn
 
 
 def distribution(
-    results: xarray.Dataset, of: str = "flutter_speed", percentiles: Sequence[float] = PERCENTILES
+    results: xarray.Dataset, of: str = "flutter_speed", percentiles: Sequence[float] = _PERCENTILES
 ) -> xarray.Dataset:
-    """Percentiles of a result over the designs of a sample.
+    """Return percentiles of a result over the designs of a sample.
 
-    Designs that stay stable throughout the airspeeds have a flutter speed above them, and those unstable from the
-    start one below: they count as such, and a percentile among them is inf or -inf, not a number made up. Failed
-    designs are left out and counted.
+    The flutter speed of a design that stays stable lies above the airspeeds of the study, and that of a design that is
+    unstable from the start lies below: such designs count as above or below, and a percentile among them is inf or
+    -inf, not a number made up. Failed designs are left out and counted.
 
     Parameters
     ----------
     results : xarray.Dataset
-        A study of `latin_hypercube`, `sobol`, or `points`. Of a Saltelli sample too, whose designs repeat values.
+        A study of a plan of `latin_hypercube`, `sobol` or `points`; of `saltelli` too, whose designs repeat values.
     of : str
         A variable with one number for each design.
     percentiles : sequence of float
@@ -44,12 +45,13 @@ def distribution(
     -------
     xarray.Dataset
         ``value`` over ``percentile``, and how many designs are ``known``, ``above`` or ``below`` the range, ``failed``,
-        and of those known ``doubtful``; the attribute ``doubts`` says why. The case and its options stand there too.
+        and how many known ones are ``doubtful``; the attribute ``doubts`` says why. Other attributes say the case and
+        its options.
 
     Raises
     ------
     InputError
-        For a variable that is not there or not one number a design, or when no design is left.
+        For a variable that the results do not have, or not as one number a design, or when no design is left.
     """
     import xarray
 
@@ -81,7 +83,7 @@ def distribution(
 
 
 def _warnings(results: xarray.Dataset, of: str) -> Array:
-    """What makes the result of each design (designs,) doubtful."""
+    """Return the warning that makes the result of each design (designs,) doubtful."""
     name = "flutter_warning" if of.startswith("flutter_") else "warning"
     if name in results and results[name].dims == results[of].dims:
         return np.asarray(results[name].values)
@@ -89,13 +91,13 @@ def _warnings(results: xarray.Dataset, of: str) -> Array:
 
 
 def _attributes(results: xarray.Dataset, of: str, warnings: Array) -> dict[str, Any]:
-    """Where a result over the designs comes from, and its doubts."""
+    """Return attributes that say which case and options a result over the designs comes from, and its doubts."""
     doubts = {"doubts": "; ".join(reasons_for_doubt(warnings.tolist()))}
     return stamp.of(results.attrs) | {"of": of} | doubts
 
 
 def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed") -> float:
-    """Share of the designs whose result is below a limit (SI), such as those that flutter below a speed.
+    """Return the share of the designs whose result is below a limit (SI), such as a flutter speed below an airspeed.
 
     Parameters
     ----------
@@ -131,39 +133,42 @@ def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed"
 def sobol_indices(
     results: xarray.Dataset, of: str = "flutter_speed", confidence: float = 0.95, resamples: int = 100
 ) -> xarray.Dataset:
-    """Share of the variance that each input of a Saltelli sample is behind (SALib).
+    """Return the share of the variance that each input of a Saltelli sample causes (SALib).
 
     Parameters
     ----------
     results : xarray.Dataset
-        A study of `proprotor.study.sampling.saltelli`.
+        A study of `proprotor.sampling.saltelli`.
     of : str
-        A variable with one number for each design. Base samples with a design that has none are left out, at most
-        5 % of them.
+        A variable with one number for each design. Base samples with a design without a number are left out, at most
+        5 % of all.
     confidence : float
         Level of the intervals, dimensionless, from 0 to 1.
     resamples : int
-        Of the bootstrap that finds them.
+        Of the bootstrap that finds the intervals.
 
     Returns
     -------
     xarray.Dataset
         Over ``input``: ``first``, the share of the input alone, ``total``, with all its interactions, and half the
-        width of their intervals; ``second`` over two inputs where the sample has what it needs. ``doubtful`` counts the
-        designs whose result is; the attribute ``doubts`` says why. The case and its options stand there too.
+        width of both intervals; ``second`` over two inputs if the sample was drawn with ``second_order``. ``doubtful``
+        counts the designs whose result is doubtful; the attribute ``doubts`` says why. Other attributes say the case
+        and its options.
 
     Raises
     ------
     InputError
-        When the results are of no Saltelli sample, too many designs have no value, or all have the same; when SALib is
-        not installed, or the resamples do not fit into memory.
+        When the results are of no Saltelli sample, too many designs have no value, or all have the same value; when
+        SALib is not installed, or the resamples do not fit into memory.
     """
     need("SALib", "of", "Sobol indices", "study")
     import xarray
     from SALib.analyze import sobol as salib_sobol
 
     sample = _saltelli_of(results)
-    _check_count("resamples", resamples, results.sizes.get("design", 0))
+    check_count("resamples", resamples)
+    size = 24.0 * resamples * results.sizes.get("design", 0)  # places, and two values at each
+    check_memory("resamples", resamples, size, "the bootstrap")
     names, second_order = sample["inputs"], sample["second_order"]
     block = len(names) * (2 if second_order else 1) + 2
     values, above, below = _one_a_design(results, of)
@@ -200,14 +205,8 @@ def sobol_indices(
     return xarray.Dataset(table, coordinates, attributes)
 
 
-def _check_count(field: str, count: int, designs: int) -> None:
-    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
-        raise InputError(field, count, "must be a whole number above zero")
-    check_memory(field, count, 24.0 * count * designs, "the bootstrap")  # places, and two values at each
-
-
 def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array]:
-    """Values of the designs, and which of them lie above and below the airspeeds of the study."""
+    """Return the values of the designs, and which designs lie above and below the airspeeds of the study."""
     if of not in results.data_vars:
         known = ", ".join(str(name) for name in results.data_vars)
         raise InputError("of", of, f"must be a variable of the results ({known})")
@@ -231,9 +230,7 @@ def _range(results: xarray.Dataset) -> tuple[float, float]:
 def _saltelli_of(results: xarray.Dataset) -> dict[str, Any]:
     sample: dict[str, Any] = json.loads(results.attrs.get("sample", "{}"))
     if sample.get("method") != "saltelli":
-        raise InputError(
-            "results", sample.get("method"), "must be a study of proprotor.study.sampling.saltelli"
-        )
+        raise InputError("results", sample.get("method"), "must be a study of proprotor.sampling.saltelli")
     return sample
 
 
@@ -241,10 +238,10 @@ def _check_left_out(of: str, whole: Array, beyond: int) -> None:
     left_out = len(whole) - whole.sum()
     if left_out > _MOST_LEFT_OUT * len(whole):
         hint = f"; {beyond} designs are stable or unstable throughout: widen the airspeeds" if beyond else ""
-        told = f"no value in {left_out} of {len(whole)} base samples"
-        raise InputError(of, told, f"must be known in {1 - _MOST_LEFT_OUT:.0%} of them{hint}")
+        count = f"no value in {left_out} of {len(whole)} base samples"
+        raise InputError(of, count, f"must be known in {1 - _MOST_LEFT_OUT:.0%} of them{hint}")
 
 
 def _both_ways(upper: Array) -> Array:
-    """A symmetric table from the half that SALib fills; NaN on the diagonal."""
+    """Return a symmetric table from the half that SALib fills; NaN on the diagonal."""
     return np.where(np.isnan(upper), upper.T, upper)

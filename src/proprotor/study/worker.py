@@ -1,8 +1,8 @@
-"""What a process does that analyses batches for a study.
+"""What a worker process does: it analyses batches for a study.
 
-It reads pickled messages from its standard input and answers on its standard output, one answer to each: an `Analysis`
-(answered by None) for all batches that follow, or a batch, answered by what was found. An exception is an answer too.
-It ends with its input, so that it never outlives the study.
+The process reads pickled messages from its standard input and answers each on its standard output: an `Analysis` for
+all batches that follow is answered by None, a batch by its variables. An exception is an answer too. The process ends
+with its input, so that it never outlives the study.
 """
 
 from __future__ import annotations
@@ -47,14 +47,14 @@ def main() -> None:
     """Answer messages until there are no more."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the study ends its workers
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # whatever prints must not get among the answers
+    os.dup2(2, 1)  # prints of other code must not get among the answers
     analysis: Any = None
     while True:
         try:
             message = receive(sys.stdin.buffer)
         except EOFError:
             return
-        except Exception as error:  # what was sent cannot be loaded here
+        except Exception as error:  # the message cannot be loaded in this process
             answer: Any = error
         else:
             try:

@@ -1,11 +1,11 @@
 """Who analyses the batches of a study: this process, processes of this computer, or a dask.distributed cluster.
 
-Each is a generator that takes batches by number and gives back (number, what was found), in no particular order, and
-never holds more than a few of them.
+Each of the three is a generator that takes numbered batches and yields pairs (number, variables), in no particular
+order, and never holds more than a few batches.
 
-Processes and not threads: most of the time beside LAPACK is spent in short NumPy calls that hold the interpreter. Each
-process has one BLAS thread, because matrices of this size gain nothing from more, and threads that share one BLAS wait
-for each other.
+Processes and not threads, because most of the time beside LAPACK is spent in short NumPy calls that hold the
+interpreter. Each process has one BLAS thread, because matrices of this size gain nothing from more, and threads that
+share one BLAS wait for each other.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from queue import SimpleQueue
 from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any
 
-from proprotor.study.worker import receive, send
+from proprotor.study.worker import main, receive, send
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -38,21 +38,21 @@ _ONE_THREAD = (
     "BLIS_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
-_MOST_DEATHS = 3  # of workers at one batch: it is the batch that kills them
-_AHEAD = 2  # batches per worker of a cluster, so that none waits for the next
+_MOST_DEATHS = 3  # of workers at one batch: then the batch kills them
+_AHEAD = 2  # batches per worker of a cluster, so that no worker waits for its next batch
 
 
 class NotLoadable(Exception):
-    """What is to be analysed cannot be loaded in another process."""
+    """The analysis of a study cannot be loaded in another process."""
 
 
 def cores() -> int:
-    """Processor cores that this process may use."""
+    """Return the number of processor cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def here(analysis: Analysis, batches: Numbered) -> Found:
-    """Batches one after another in this process."""
+    """Analyse batches one after another in this process."""
     for number, batch in batches:
         yield number, analysis(batch)
 
@@ -61,19 +61,19 @@ def here(analysis: Analysis, batches: Numbered) -> Found:
 
 
 class Worker:
-    """One process; it is kept from study to study, since starting it takes longer than a small study."""
+    """One process, kept from study to study, because starting a process takes longer than a small study."""
 
     def __init__(self) -> None:
         environment = os.environ | dict.fromkeys(_ONE_THREAD, "1")
         environment["PYTHONPATH"] = os.pathsep.join(path or os.getcwd() for path in sys.path)
-        command = [sys.executable, "-c", "from proprotor.study.worker import main; main()"]
+        command = [sys.executable, "-c", f"from {main.__module__} import main; main()"]
         pipe = subprocess.PIPE
         self.process = subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe)
         assert self.process.stdin is not None and self.process.stdout is not None  # pipes
         self.questions, self.answers = self.process.stdin, self.process.stdout
 
     def ask(self, message: Any) -> Any:
-        """The answer to a message.
+        """Return the answer to a message.
 
         Raises
         ------
@@ -91,14 +91,15 @@ class Worker:
 
     @property
     def lives(self) -> bool:
+        """Whether the process is running."""
         return self.process.poll() is None
 
     def end(self) -> None:
-        """Have it end, at once."""
+        """End the process at once."""
         self.process.kill()
         self.process.wait()
         for pipe in (self.questions, self.answers):
-            with suppress(OSError):  # of what was not sent any more
+            with suppress(OSError):  # a message that was not sent any more
                 pipe.close()
 
 
@@ -107,7 +108,7 @@ _lock = Lock()
 
 
 def idle_workers() -> int:
-    """Workers that wait for a study."""
+    """Return the number of workers that wait for a study."""
     with _lock:
         for worker in [worker for worker in _idle if not worker.lives]:
             _idle.remove(worker)
@@ -116,7 +117,7 @@ def idle_workers() -> int:
 
 
 def process_ids() -> list[int]:
-    """Of the workers that wait for a study."""
+    """Return the process ids of the workers that wait for a study."""
     with _lock:
         return [worker.process.pid for worker in _idle]
 
@@ -145,12 +146,12 @@ def end_workers() -> None:
 
 
 def check_loadable(analysis: Analysis) -> None:
-    """See whether a worker process can load what it is to do.
+    """Check that a worker process can load an analysis.
 
     Raises
     ------
     NotLoadable
-        When the case holds something that only this process knows, such as a function of a script.
+        When the case holds an object that only this process knows, such as a function of a script.
     """
     worker = _take()
     try:
@@ -165,7 +166,7 @@ def check_loadable(analysis: Analysis) -> None:
 
 
 def in_processes(analysis: Analysis, batches: Numbered, workers: int) -> Found:
-    """Batches in several processes; the batch of one that dies goes to another.
+    """Analyse batches in several processes; the batch of a process that dies goes to another process.
 
     Raises
     ------
@@ -176,7 +177,7 @@ def in_processes(analysis: Analysis, batches: Numbered, workers: int) -> Found:
 
 
 class _Processes:
-    """A thread for each process: it hands over batches and waits for what comes back."""
+    """A thread for each process: the thread hands over batches and waits for the answers."""
 
     def __init__(self, analysis: Analysis, batches: Numbered, workers: int) -> None:
         self.analysis, self.batches, self.workers = analysis, iter(batches), workers
@@ -200,7 +201,7 @@ class _Processes:
                     yield item
         finally:
             self.stopped = True
-            if running:  # ended before all was done: nobody waits for what is still at work
+            if running:  # ended before all was done: nobody waits for the batches still at work
                 with self.lock:
                     for worker in self.at_work:
                         worker.process.kill()
@@ -227,8 +228,8 @@ class _Processes:
                         if self.stopped:
                             return
                         if death == _MOST_DEATHS:
-                            told = f"batch {number} of the study has killed {death} worker processes; is memory short?"
-                            raise RuntimeError(told) from None
+                            deaths = f"batch {number} of the study has killed {death} worker processes"
+                            raise RuntimeError(f"{deaths}; is memory short?") from None
         except BaseException as error:
             self.found.put(error)
         finally:
@@ -261,7 +262,7 @@ class _Processes:
 
 
 def on_cluster(analysis: Analysis, batches: Numbered, client: Client) -> Found:
-    """Batches on a `dask.distributed` cluster, which gives those of a lost worker to another.
+    """Analyse batches on a `dask.distributed` cluster, which gives the batches of a lost worker to another worker.
 
     At most two batches a thread of the cluster are under way, so that neither side holds many results.
     """
@@ -285,7 +286,7 @@ def on_cluster(analysis: Analysis, batches: Numbered, client: Client) -> Found:
 
 
 def threads_of(client: Client) -> int:
-    """Batches that a cluster analyses at once."""
+    """Return the number of batches that a cluster analyses at once."""
     threads: dict[str, int] = client.nthreads()
     return max(1, sum(threads.values()))
 

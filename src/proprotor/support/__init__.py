@@ -1,1 +1,43 @@
-"""Support."""
+"""Support: the structure that carries a rotor, as coordinates with mass, damping, stiffness and motion at the hub.
+
+In: a beam wing, or the modes or matrices of any finite-element code. Out: `NormalModes`, on which `model` mounts a rotor.
+This room imports `errors`, `typing`, `needs`, `files` and, for the names of coordinates, `rotor`.
+
+    normal_modes       coordinates of a support; two-axis pivot; rigid support
+    modal_reduction    lowest modes of a structure, and the structure on these modes
+    beam_wing          a cantilever wing of beam elements with a pylon
+    wing_aerodynamics  airloads of the wing itself, by strips
+    nastran            modes from a Nastran run
+    matrix_files       matrices of any finite-element code, matrix_market : files of such matrices
+
+All public names of the modules `beam_wing`, `matrix_files`, `nastran` and `wing_aerodynamics` belong to the face.
+"""
+
+from proprotor.support.modal_reduction import StructuralModes, lowest_modes
+from proprotor.support.normal_modes import (
+    HUB_AXES,
+    INCLUDES_ROTOR,
+    ROTATION,
+    SHAFT,
+    TRANSLATION,
+    NormalModes,
+    rigid_support,
+    two_axis_pivot,
+)
+
+__all__ = [
+    "HUB_AXES",
+    "INCLUDES_ROTOR",
+    "ROTATION",
+    "SHAFT",
+    "TRANSLATION",
+    "NormalModes",
+    "StructuralModes",
+    "beam_wing",
+    "lowest_modes",
+    "matrix_files",
+    "nastran",
+    "rigid_support",
+    "two_axis_pivot",
+    "wing_aerodynamics",
+]

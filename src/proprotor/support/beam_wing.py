@@ -1,6 +1,6 @@
 """A cantilever wing as beam finite elements, with a rigid pylon at its tip and the hub ahead of it.
 
-Elements are those of pystran (Euler-Bernoulli bending in two planes, free torsion, extension; consistent mass with
+The elements are those of pystran (Euler-Bernoulli bending in two planes, free torsion, extension; consistent mass with
 torsional inertia). The elastic axis is straight, from the mount at the origin to the pylon, and all axes are the
 rotor's: I up, J outboard, K forward along the shaft. The pylon is rigid; it may turn about J against a spring at
 the wing tip, the downstop.
@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, unknown_name
-from proprotor.support.modal_reduction import ModalSupport, on_modes
-from proprotor.support.normal_modes import HUB_AXES, NormalModes
+from proprotor.support.modal_reduction import ModalSupport, on_modes, symmetric
+from proprotor.support.normal_modes import HUB_AXES, ROTATION, TRANSLATION, NormalModes
 from proprotor.typing import Array
 
-UP, OUTBOARD, FORWARD = np.eye(3)
-PYLON_PITCH = "pylon_pitch"
-SpanwiseProfile = float | tuple[ArrayLike, ArrayLike]
+_UP, _OUTBOARD, _ = np.eye(3)
+_PYLON_PITCH = "pylon_pitch"
+_SpanwiseProfile = float | tuple[ArrayLike, ArrayLike]
 _MOST_ELEMENTS = 200
 _PER_NODE = len(HUB_AXES)
 
@@ -38,35 +38,35 @@ class Wing:
     Parameters
     ----------
     span : float
-        From the mount to the pylon along J, m.
+        Distance from the mount to the pylon along J, m.
     beam_stiffness, chord_stiffness : number or profile
-        EI of bending up and down, and fore and aft, N m².
+        EI of bending up and down, and of bending fore and aft, N m².
     torsion_stiffness : number or profile
         GJ, N m².
     axial_stiffness : number or profile
         EA, N.
     mass_per_length : number or profile
-        kg/m along the elastic axis, the centre of mass on it.
+        kg/m along the elastic axis; the centre of mass lies on this axis.
     torsional_inertia_per_length : number or profile
         kg m²/m about the elastic axis.
     sweep, dihedral : float
-        Of the elastic axis, rad: back and up positive.
+        Angles of the elastic axis, rad, positive back and up.
     elements : int
-        How many of equal length.
+        Number of elements, all of equal length.
 
     Raises
     ------
     InputError
-        When a value is not finite, out of its range, or a profile does not reach from 0 to 1.
+        When a value is not finite or out of range, or a profile does not reach from 0 to 1.
     """
 
     span: float
-    beam_stiffness: SpanwiseProfile
-    chord_stiffness: SpanwiseProfile
-    torsion_stiffness: SpanwiseProfile
-    axial_stiffness: SpanwiseProfile
-    mass_per_length: SpanwiseProfile
-    torsional_inertia_per_length: SpanwiseProfile
+    beam_stiffness: _SpanwiseProfile
+    chord_stiffness: _SpanwiseProfile
+    torsion_stiffness: _SpanwiseProfile
+    axial_stiffness: _SpanwiseProfile
+    mass_per_length: _SpanwiseProfile
+    torsional_inertia_per_length: _SpanwiseProfile
     sweep: float = 0.0
     dihedral: float = 0.0
     elements: int = 8
@@ -77,18 +77,18 @@ class Wing:
             _check(name, getattr(self, name))
             if abs(getattr(self, name)) >= np.pi / 2:
                 raise InputError(name, getattr(self, name), "must lie between -90 and 90 degrees")
-        for name in PROFILES:
+        for name in _PROFILES:
             _check_profile(name, getattr(self, name), above_zero=name.endswith("stiffness"))
         if not isinstance(self.elements, int) or not 1 <= self.elements <= _MOST_ELEMENTS:
             raise InputError("elements", self.elements, f"must be a whole number from 1 to {_MOST_ELEMENTS}")
 
     @property
     def tip(self) -> Array:
-        """Where the elastic axis meets the pylon, m (3,)."""
+        """Point where the elastic axis meets the pylon, m (3,)."""
         return self.span * np.array([np.tan(self.dihedral), 1.0, -np.tan(self.sweep)])
 
 
-PROFILES = (
+_PROFILES = (
     "beam_stiffness",
     "chord_stiffness",
     "torsion_stiffness",
@@ -100,22 +100,22 @@ PROFILES = (
 
 @dataclass(frozen=True, kw_only=True)
 class Pylon:
-    """A rigid nacelle at the wing tip and what of the hub no rotor model holds.
+    """A rigid nacelle at the wing tip, and the mass of the hub that no rotor model contains.
 
     Parameters
     ----------
     nacelle_mass : float
         kg, without the rotor.
     nacelle_pitch_inertia, nacelle_yaw_inertia, nacelle_roll_inertia : float
-        About the nacelle's centre of mass and the axes J, I and K, kg m².
+        Inertias about the axes J, I and K through the nacelle's centre of mass, kg m².
     mast_length, mast_height, mast_outboard : float
-        From the elastic axis at the tip to the hub along K, I and J, m.
+        Distances from the elastic axis at the tip to the hub along K, I and J, m.
     nacelle_forward, nacelle_up, nacelle_outboard : float
-        From the elastic axis at the tip to the nacelle's centre of mass along K, I and J, m.
+        Distances from the elastic axis at the tip to the nacelle's centre of mass along K, I and J, m.
     hub_mass : float
-        At the hub, kg: what belongs to the rotor and is not in its blades.
+        Mass at the hub that belongs to the rotor but not to its blades, kg.
     pitch_stiffness : float or None
-        Of the downstop about J, N m/rad; None holds the pylon rigidly to the wing tip.
+        Stiffness of the downstop about J, N m/rad; with None the pylon is rigidly attached to the wing tip.
 
     Raises
     ------
@@ -149,12 +149,12 @@ class Pylon:
 
     @property
     def hub(self) -> Array:
-        """From the elastic axis at the tip to the hub, m (3,) along I, J, K."""
+        """Vector from the elastic axis at the tip to the hub, m (3,) along I, J, K."""
         return np.array([self.mast_height, self.mast_outboard, self.mast_length])
 
     @property
     def nacelle(self) -> Array:
-        """From the elastic axis at the tip to the nacelle's centre of mass, m (3,)."""
+        """Vector from the elastic axis at the tip to the nacelle's centre of mass, m (3,)."""
         return np.array([self.nacelle_up, self.nacelle_outboard, self.nacelle_forward])
 
 
@@ -162,17 +162,17 @@ class BeamStructure(NamedTuple):
     """Mass and stiffness of wing and pylon on the motions of the nodes between mount and tip, then of the hub.
 
     names : tuple of str
-        The n coordinates: six for each node, six of the hub (m and rad), and with a downstop the pitch of the
+        Names of the n coordinates: six for each node, six of the hub (m and rad), and with a downstop the pitch of the
         pylon against the wing tip, nose up.
     mass : array (n, n)
     stiffness_parts : mapping of str to array (n, n)
-        The stiffness by what it comes from: beam, chord, torsion (with the downstop) and axial.
+        Parts of the stiffness: beam, chord, torsion (with the downstop) and axial.
     hub : array (6, n)
-        Hub motion.
+        Motion of the hub for each coordinate.
     nodes : array (elements + 1, 6, n)
-        Motion of each node of the elastic axis, the mount first.
+        Motion of each node of the elastic axis for each coordinate, the mount first.
     positions : array (elements + 1, 3)
-        Where the nodes are, m.
+        Positions of the nodes, m.
     """
 
     names: tuple[str, ...]
@@ -189,7 +189,7 @@ class BeamStructure(NamedTuple):
 
 
 def beam_structure(wing: Wing, pylon: Pylon) -> BeamStructure:
-    """The finite-element matrices of wing and pylon, without the rotor."""
+    """Return the finite-element matrices of wing and pylon, without the rotor."""
     mass, parts, positions = wing_elements(wing)
     nodes, hub, names = _coordinates(wing, pylon)
     motion = nodes.reshape(-1, len(names))
@@ -199,8 +199,8 @@ def beam_structure(wing: Wing, pylon: Pylon) -> BeamStructure:
     mass = motion.T @ mass @ motion + hub.T @ _pylon_mass(pylon) @ hub
     return BeamStructure(
         names=names,
-        mass=_symmetric(mass),
-        stiffness_parts={name: _symmetric(part) for name, part in parts.items()},
+        mass=symmetric(mass),
+        stiffness_parts={name: symmetric(part) for name, part in parts.items()},
         hub=hub,
         nodes=nodes,
         positions=positions,
@@ -215,21 +215,22 @@ def beam_wing(
     damping_ratio: ArrayLike | Mapping[str, float] = 0.0,
     rotor_mass: float = 0.0,
 ) -> NormalModes:
-    """The wing as a support.
+    """Return the wing as a support.
 
     Parameters
     ----------
     wing, pylon : Wing, Pylon
     modes : int, optional
-        How many of the lowest modes to keep; all coordinates of the finite elements when left out. Modes are
-        named beam, chord, torsion or axial by where most of their strain energy is, with a number from the second on.
+        How many of the lowest modes to keep; by default all coordinates of the finite elements. A mode is called beam,
+        chord, torsion or axial after the stiffness with most of the mode's strain energy, from the second mode of a
+        kind on with a number.
     damping_ratio : float, array (j,) or mapping
-        Structural damping of the lowest modes, of critical, the last value for those above; or that of all beam, chord,
-        torsion and axial modes by these names. A loss factor g (hysteretic damping) is equivalent to g/2 at
-        the frequency of each mode.
+        Structural damping as a fraction of critical: of the lowest modes, the last value for all modes above, or of all
+        beam, chord, torsion and axial modes by these names. A loss factor g (hysteretic damping) is equivalent to g/2
+        at the frequency of each mode.
     rotor_mass : float
-        kg; the modes, those kept and those damped, are the ones with this mass at the hub. It does not stay in
-        the matrices: the rotor model brings it.
+        Mass at the hub while modes are computed and damped, kg. This mass does not stay in the matrices, because the
+        rotor model brings it.
 
     Returns
     -------
@@ -238,7 +239,7 @@ def beam_wing(
     Raises
     ------
     InputError
-        When there are fewer modes than asked for, or coordinates without mass are not reduced to modes.
+        When there are fewer modes than asked for, or when all coordinates are kept and some have no mass.
     """
     structure = beam_structure(wing, pylon)
     return on_coordinates(structure, modes, damping_ratio, rotor_mass).support
@@ -250,7 +251,7 @@ def on_coordinates(
     damping_ratio: ArrayLike | Mapping[str, float],
     rotor_mass: float,
 ) -> ModalSupport:
-    """The structure as a support on all coordinates, or on its `count` lowest modes, as `beam_wing` has it."""
+    """Return the structure as a support on all coordinates or on its `count` lowest modes; see `beam_wing`."""
     given: ArrayLike | Callable[[Array], ArrayLike]
     if isinstance(damping_ratio, Mapping):
         _check_kinds(damping_ratio, structure)
@@ -265,11 +266,12 @@ def on_coordinates(
         count=count,
         damping_ratio=given,
         rotor_mass=rotor_mass,
-        name_modes=partial(_named_by_energy, structure),
+        name_modes=partial(_names_by_energy, structure),
     )
 
 
 def _check_kinds(damping_ratio: Mapping[str, float], structure: BeamStructure) -> None:
+    """Refuse damping ratios that are not given for each kind of mode."""
     for kind in structure.stiffness_parts:
         if kind not in damping_ratio:
             raise InputError(f"damping_ratio[{kind}]", None, "is missing")
@@ -280,26 +282,26 @@ def _check_kinds(damping_ratio: Mapping[str, float], structure: BeamStructure) -
 
 
 def _dominant(structure: BeamStructure, shapes: Array) -> list[str]:
-    """What most of the strain energy of each mode is in."""
+    """Return for each mode the part of the stiffness that has most of the strain energy."""
     energy = [np.einsum("ij,ij->j", shapes, part @ shapes) for part in structure.stiffness_parts.values()]
     kinds = list(structure.stiffness_parts)
     return [kinds[place] for place in np.argmax(energy, axis=0)]
 
 
 def _ratios_by_kind(structure: BeamStructure, ratios: Mapping[str, float], shapes: Array) -> list[float]:
+    """Return the damping ratio of each mode from the ratio of its kind."""
     return [ratios[kind] for kind in _dominant(structure, shapes)]
 
 
-def _named_by_energy(structure: BeamStructure, shapes: Array) -> tuple[str, ...]:
-    dominant = _dominant(structure, shapes)
-    counts = [dominant[: place + 1].count(kind) for place, kind in enumerate(dominant)]
-    return tuple(
-        kind if count == 1 else f"{kind}_{count}" for kind, count in zip(dominant, counts, strict=True)
-    )
+def _names_by_energy(structure: BeamStructure, shapes: Array) -> list[str]:
+    """Return the names of modes by their kind, from the second mode of a kind on with a number."""
+    kinds = _dominant(structure, shapes)
+    counts = [kinds[: place + 1].count(kind) for place, kind in enumerate(kinds)]
+    return [kind if count == 1 else f"{kind}_{count}" for kind, count in zip(kinds, counts, strict=True)]
 
 
 def wing_elements(wing: Wing) -> tuple[Array, dict[str, Array], Array]:
-    """Mass and stiffness parts on the motions of all nodes, the mount's included, and where the nodes are."""
+    """Return mass and stiffness parts on the motions of all nodes, with the mount, and the positions of the nodes."""
     from pystran import beam, model, section  # here, because it brings matplotlib along
 
     stations = np.linspace(0, 1, wing.elements + 1)
@@ -308,14 +310,14 @@ def wing_elements(wing: Wing) -> tuple[Array, dict[str, Array], Array]:
     for node, position in enumerate(positions):
         model.add_joint(frame, node, position, dof=_PER_NODE * node + np.arange(_PER_NODE))
     joints = frame["joints"]
-    given = {name: _means(getattr(wing, name), stations) for name in PROFILES}
+    given = {name: _means(getattr(wing, name), stations) for name in _PROFILES}
     size = _PER_NODE * len(stations)
     mass = np.zeros((size, size))
     parts = {name: np.zeros((size, size)) for name in ("beam", "chord", "torsion", "axial")}
     for place in range(wing.elements):
         ends = joints[place], joints[place + 1]
         own = {name: values[place] for name, values in given.items()}
-        # pystran's x is along the beam, z upwards and y forward; a section here has one stiffness and unit modulus.
+        # In pystran x is along the beam, z up and y forward; here each section has one stiffness and unit modulus.
         stiffness = {
             "beam": {"E": 1.0, "Iy": own["beam_stiffness"]},
             "chord": {"E": 1.0, "Iz": own["chord_stiffness"]},
@@ -323,33 +325,32 @@ def wing_elements(wing: Wing) -> tuple[Array, dict[str, Array], Array]:
             "axial": {"E": 1.0, "A": own["axial_stiffness"]},
         }
         for name, properties in stiffness.items():
-            beam.assemble_stiffness(
-                parts[name], {"section": section.beam_3d_section(name, xz_vector=UP, **properties)}, *ends
-            )
+            member = {"section": section.beam_3d_section(name, xz_vector=_UP, **properties)}
+            beam.assemble_stiffness(parts[name], member, *ends)
         inertia = {"A": own["mass_per_length"], "Ix": own["torsional_inertia_per_length"]}
-        whole = section.beam_3d_section("mass", rho=1.0, xz_vector=UP, **inertia)
+        whole = section.beam_3d_section("mass", rho=1.0, xz_vector=_UP, **inertia)
         beam.assemble_mass(mass, {"section": whole}, *ends)
     return mass, parts, positions
 
 
 def _coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:
-    """Motion of the nodes and of the hub per coordinate, and the coordinates' names."""
+    """Return the motion of the nodes and of the hub for each coordinate, and the names of the coordinates."""
     inner = _PER_NODE * (wing.elements - 1)
     free = pylon.pitch_stiffness is not None
     names = [f"wing_{node}_{axis}" for node in range(1, wing.elements) for axis in HUB_AXES]
-    names += [f"hub_{axis}" for axis in HUB_AXES] + [PYLON_PITCH] * free
+    names += [f"hub_{axis}" for axis in HUB_AXES] + [_PYLON_PITCH] * free
     nodes = np.zeros((wing.elements + 1, _PER_NODE, len(names)))
     nodes[1:-1, :, :inner] = np.eye(inner).reshape(wing.elements - 1, _PER_NODE, inner)
     hub = np.zeros((_PER_NODE, len(names)))
     hub[:, inner : inner + _PER_NODE] = np.eye(_PER_NODE)
     nodes[-1] = rigid_motion(-pylon.hub) @ hub
     if free:
-        nodes[-1, 3:, -1] = -OUTBOARD  # the wing tip turns by as much less than the pylon
+        nodes[-1, ROTATION, -1] = -_OUTBOARD  # the wing tip turns by the rotation of the hub less this pitch
     return nodes, hub, tuple(names)
 
 
 def _pylon_mass(pylon: Pylon) -> Array:
-    """Mass of nacelle and hub hardware (6, 6) on the motion of the hub."""
+    """Return the mass of nacelle and hub hardware (6, 6) on the motion of the hub."""
     inertia = (pylon.nacelle_yaw_inertia, pylon.nacelle_pitch_inertia, pylon.nacelle_roll_inertia)
     nacelle = np.diag([pylon.nacelle_mass] * 3 + list(inertia))
     motion = rigid_motion(pylon.nacelle - pylon.hub)
@@ -357,14 +358,17 @@ def _pylon_mass(pylon: Pylon) -> Array:
 
 
 def rigid_motion(offset: ArrayLike) -> Array:
-    """Motion (6, 6) of a point of a rigid body per motion of another, `offset` (3,) from it to the point, m."""
+    """Return the motion (6, 6) of a point of a rigid body per motion of a reference point.
+
+    `offset` (3,) is the vector from the reference point to the point, m.
+    """
     motion = np.eye(6)
-    motion[:3, 3:] = np.cross(np.eye(3), np.asarray(offset, dtype=float)).T
+    motion[TRANSLATION, ROTATION] = np.cross(np.eye(3), np.asarray(offset, dtype=float)).T
     return motion
 
 
-def _means(profile: SpanwiseProfile, stations: Array) -> Array:
-    """The mean of a profile over each element."""
+def _means(profile: _SpanwiseProfile, stations: Array) -> Array:
+    """Return the mean of a profile over each element."""
     if not isinstance(profile, tuple):
         return np.full(len(stations) - 1, float(profile))
     given, values = (np.asarray(part, dtype=float) for part in profile)
@@ -375,11 +379,8 @@ def _means(profile: SpanwiseProfile, stations: Array) -> Array:
     return means
 
 
-def _symmetric(matrix: Array) -> Array:
-    return (matrix + matrix.T) / 2  # products leave rounding
-
-
 def _check(name: str, value: float, above_zero: bool = False) -> None:
+    """Refuse a value that is no finite real number or, if asked, not above zero."""
     is_number = np.isscalar(value) and np.isreal(value) and np.isfinite(value)
     if not is_number:
         raise InputError(name, value, "must be a finite number")
@@ -387,7 +388,8 @@ def _check(name: str, value: float, above_zero: bool = False) -> None:
         raise InputError(name, value, "must be above zero")
 
 
-def _check_profile(name: str, profile: SpanwiseProfile, above_zero: bool) -> None:
+def _check_profile(name: str, profile: _SpanwiseProfile, above_zero: bool) -> None:
+    """Refuse a profile that does not reach from 0 to 1, is not finite, or has values of the wrong sign."""
     rule = "must be above zero" if above_zero else "must not be negative"
     if not isinstance(profile, tuple):
         _check(name, profile)

@@ -1,6 +1,6 @@
 """A support from the matrices of any finite-element code: Matrix Market files or one .npz file.
 
-Coordinates are named, and six of them are the hub's: x, y, z in the length unit of the matrices, αx, αy, αz in rad,
+Coordinates are named, and six coordinates are the hub's: x, y, z in the length unit of the matrices, αx, αy, αz in rad,
 along the rotor's axes (I up, J outboard, K forward along the shaft). A finite-element axis that points the other
 way has a minus sign before its name.
 """
@@ -23,34 +23,35 @@ from proprotor.errors import InputError, unknown_name
 from proprotor.files.text import read_text
 from proprotor.support.matrix_market import MatrixMarketError, read_matrix
 from proprotor.support.modal_reduction import on_modes
-from proprotor.support.normal_modes import HUB_AXES, NormalModes
+from proprotor.support.normal_modes import HUB_AXES, TRANSLATION, NormalModes, signed_names
 from proprotor.typing import Array
 
 _LARGEST = 500_000_000  # bytes of a file, unpacked
 _LARGEST_UNIT = 1e12  # m or kg
-_LARGEST_ENTRY = 1e100  # beyond it products overflow
-_SYMMETRY = 1e-6  # files have few digits
+_LARGEST_ENTRY = 1e100  # beyond this value products overflow
+_SYMMETRY = 1e-6  # files may have few digits
 _KEYS = ("mass", "stiffness", "damping", "dofs")
 
 
 def read_npz(
     file: str | os.PathLike[str], hub: Mapping[str, str] | None = None, **options: Any
 ) -> NormalModes:
-    """A support from a NumPy file with the arrays mass, stiffness, dofs (n names) and perhaps damping.
+    """Return a support from a NumPy file with the arrays mass, stiffness, dofs (n names) and, optionally, damping.
 
     Parameters
     ----------
     file : str or path
     hub : mapping of str to str, optional
-        For each of x, y, z, alpha_x, alpha_y, alpha_z the name of the hub's coordinate, "-" before it where it
-        points the other way; when left out the names hub_x … hub_alpha_z are looked for.
+        For each of x, y, z, alpha_x, alpha_y, alpha_z the name of the hub's coordinate, with "-" before a coordinate
+        that points the other way; by default hub_x … hub_alpha_z.
     **options
         As for `support_from_matrices`.
 
     Raises
     ------
     InputError
-        When the file is missing, damaged, too large or holds Python objects, or the matrices are not a support's.
+        When the file is missing, damaged, too large or contains Python objects, or when the matrices are not those of a
+        support.
     """
     path = _existing("file", file)
     with _readable("file", path), zipfile.ZipFile(path) as archive:
@@ -80,7 +81,7 @@ def read_matrix_market(
     hub: Mapping[str, str] | None = None,
     **options: Any,
 ) -> NormalModes:
-    """A support from Matrix Market files, and a text file of the coordinates' names, one a line.
+    """Return a support from Matrix Market files and a text file with the name of each coordinate on a line.
 
     Parameters
     ----------
@@ -91,7 +92,7 @@ def read_matrix_market(
     Raises
     ------
     InputError
-        When a file is missing, damaged or too large, or the matrices are not a support's.
+        When a file is missing, damaged or too large, or the matrices are not those of a support.
     """
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _matrix_market(name, path) for name, path in given.items() if path is not None}
@@ -117,32 +118,34 @@ def support_from_matrices(
     length_unit: float = 1.0,
     mass_unit: float = 1.0,
 ) -> NormalModes:
-    """A support from matrices, dense or sparse.
+    """Return a support from matrices, dense or sparse.
 
     Parameters
     ----------
     mass, stiffness, damping : array or sparse array, shape (n, n)
-        Of the whole structure without the rotor, or with it.
+        Matrices of the whole structure, with the rotor or without.
     dofs : sequence of str
-        The n coordinates' names.
+        Names of the n coordinates.
     hub : mapping of str to str, optional
         As for `read_npz`.
     includes_rotor, shaft : bool or str, str
-        How the mass holds the rotor's, as for `proprotor.support.normal_modes.NormalModes`.
+        How the mass includes the rotor, as for `proprotor.support.normal_modes.NormalModes`.
     modes : int, optional
-        How many of the lowest modes to keep, named mode_1 and so on; all coordinates when left out.
+        How many of the lowest modes to keep, named mode_1 and so on; by default all coordinates.
     damping_ratio : float or array
-        Of the lowest modes, of critical, the last for all above, added to the damping matrix.
+        Fraction of critical damping of the lowest modes, the last value for all modes above; added to the damping
+        matrix.
     rotor_mass : float
-        kg at the hub while modes are looked for, as for `proprotor.support.beam_wing.beam_wing`.
+        Mass at the hub while modes are computed, kg, as for `proprotor.support.beam_wing.beam_wing`.
     length_unit, mass_unit : float
-        m and kg per unit of the file: a force is mass length/s², so that 0.0254 and 175.1268 are inches and lbf s²/in.
+        m and kg per unit of the file. A force is mass times length/s²: 0.0254 and 175.1268 are for inches and
+        lbf s²/in.
 
     Raises
     ------
     InputError
         When sizes differ, an entry is not finite, a matrix is not symmetric, a coordinate of the hub is missing, or a
-        rotor's mass is given beside the one that the mass includes.
+        rotor's mass is given although the mass includes the rotor.
     """
     if includes_rotor and np.any(rotor_mass):
         raise InputError("rotor_mass", rotor_mass, "must not be given where the mass includes the rotor")
@@ -153,9 +156,9 @@ def support_from_matrices(
         if not 1 / _LARGEST_UNIT <= unit <= _LARGEST_UNIT:
             rule = f"must be above zero, from {1 / _LARGEST_UNIT:g} to {_LARGEST_UNIT:g}"
             raise InputError(name, unit, rule)
-    # A translation counts lengths of the file's unit, a rotation radians: all entries then have one unit, of energy.
+    # A translation counts lengths in the file's unit, a rotation radians: all entries then have the unit of energy.
     motion = _hub_motion(names, hub)
-    motion[:3] *= length_unit
+    motion[TRANSLATION] *= length_unit
     matrices = {name: matrix * (mass_unit * length_unit**2) for name, matrix in matrices.items()}
     return on_modes(
         names,
@@ -170,7 +173,7 @@ def support_from_matrices(
 
 
 def _texts(path: Path, dofs: Array) -> list[str]:
-    """The names of an array, which may hold numbers that are no characters."""
+    """Return the names in an array, or refuse an array with numbers that are no characters."""
     if dofs.dtype.kind == "U":
         numbers = np.frombuffer(dofs.tobytes(), dtype=np.dtype("u4").newbyteorder(dofs.dtype.byteorder))
         if (numbers > sys.maxunicode).any():
@@ -179,6 +182,7 @@ def _texts(path: Path, dofs: Array) -> list[str]:
 
 
 def _names(dofs: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the coordinates, or refuse a name that two coordinates have."""
     names = tuple(dofs)
     if len(set(names)) < len(names):
         repeated = next(name for place, name in enumerate(names) if name in names[:place])
@@ -187,27 +191,20 @@ def _names(dofs: Sequence[str]) -> tuple[str, ...]:
 
 
 def _hub_motion(names: Sequence[str], hub: Mapping[str, str] | None) -> Array:
-    """Φ (6, n): which coordinate, with which sign, is the motion of the hub along each axis."""
+    """Return Φ (6, n), with the sign of the coordinate that is the motion of the hub along each axis."""
     hub = {axis: f"hub_{axis}" for axis in HUB_AXES} if hub is None else hub
-    for axis in hub:
-        if axis not in HUB_AXES:
-            raise InputError(f"hub.{axis}", hub[axis], unknown_name(axis, HUB_AXES, "axis"))
     motion = np.zeros((len(HUB_AXES), len(names)))
-    for row, axis in enumerate(HUB_AXES):
-        if axis not in hub:
-            raise InputError(f"hub.{axis}", None, "is missing: all six coordinates of the hub must be named")
-        written = str(hub[axis])
-        name = written.removeprefix("-")
+    for row, (axis, name, sign) in zip(motion, signed_names(hub, "coordinates"), strict=True):
         if name not in names:
-            raise InputError(f"hub.{axis}", written, "is none of the coordinates of the matrices")
+            raise InputError(f"hub.{axis}", hub[axis], "is none of the coordinates of the matrices")
         if motion[:, names.index(name)].any():
-            raise InputError(f"hub.{axis}", written, "must not be named for two axes")
-        motion[row, names.index(name)] = -1.0 if written.startswith("-") else 1.0
+            raise InputError(f"hub.{axis}", hub[axis], "must not be named for two axes")
+        row[names.index(name)] = sign
     return motion
 
 
 def _checked(name: str, matrix: Any, n: int) -> Any:
-    """The matrix as float, when it is one of a structure with n coordinates."""
+    """Return the matrix as float, or refuse a matrix that does not belong to a structure with n coordinates."""
     sparse = hasattr(matrix, "tocsc")
     values = matrix.data if sparse else np.asarray(matrix)
     if values.dtype.kind not in "fiu":
@@ -217,7 +214,7 @@ def _checked(name: str, matrix: Any, n: int) -> Any:
         raise InputError(name, size, f"must be {n} x {n}, one row and column for each of the dofs")
     if not np.isfinite(values).all():
         raise InputError(name, None, "must be finite: it has an entry that is infinite or not a number")
-    with np.errstate(over="ignore"):  # of numbers wider than a float
+    with np.errstate(over="ignore"):  # numbers may be wider than a float
         matrix = matrix.tocsc().astype(float) if sparse else values.astype(float)
     if not (np.abs(matrix.data if sparse else matrix) <= _LARGEST_ENTRY).all():
         raise InputError(name, None, f"must not have an entry above {_LARGEST_ENTRY:g}")
@@ -226,7 +223,7 @@ def _checked(name: str, matrix: Any, n: int) -> Any:
 
 
 def _check_symmetry(name: str, matrix: Any) -> None:
-    """Entries may differ from those across the diagonal by rounding, of what the diagonal says is large there."""
+    """Refuse a matrix whose entries differ from their opposites by more than rounding, in the scale of the diagonal."""
     from scipy.sparse import diags_array
 
     diagonal = np.sqrt(np.abs(matrix.diagonal()))
@@ -239,29 +236,31 @@ def _check_symmetry(name: str, matrix: Any) -> None:
 
 
 def _matrix_market(field: str, path: str | os.PathLike[str]) -> Any:
+    """Return the matrix of a Matrix Market file."""
     path = _existing(field, path)
     with _readable(field, path):
         return read_matrix(path)
 
 
 def _existing(field: str, path: str | os.PathLike[str]) -> Path:
+    """Return the path of a file that exists and is not too large."""
     path = Path(path)
     try:
         if not path.is_file():
             raise InputError(field, str(path), "no such file")
         if path.stat().st_size > _LARGEST:
             raise InputError(field, str(path), f"must not be larger than {_LARGEST // 10**6} MB")
-    except OSError as error:  # a name too long, a folder one may not enter
+    except OSError as error:  # a name too long, a folder that this user may not enter
         raise InputError(field, str(path), f"cannot be read ({error.strerror})") from None
     return path
 
 
 @contextmanager
 def _readable(field: str, path: Path) -> Iterator[None]:
-    """Whatever a damaged file does to its reader, told in one line."""
+    """Turn any error that a damaged file causes in its reader into an `InputError` of one line."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what an old file is warned of, it is read nevertheless
+            warnings.simplefilter("ignore")  # an old file is read in spite of its warnings
             yield
     except InputError:
         raise
@@ -269,6 +268,6 @@ def _readable(field: str, path: Path) -> Iterator[None]:
         raise InputError(field, str(path), f"cannot be read ({error.strerror or error})") from None
     except MatrixMarketError as error:
         raise InputError(field, str(path), str(error)) from None
-    except Exception as error:  # a third-party reader may raise anything; the file is at fault
+    except Exception as error:  # a third-party reader may raise anything: the file is wrong
         reason = "holds Python objects" if "pickle" in str(error) else "is damaged, or another kind of file"
         raise InputError(field, str(path), reason) from None

@@ -1,7 +1,7 @@
 """Matrix Market files: a heading, a line of sizes, and the entries.
 
-The reader is the package's own. SciPy's (`scipy.io.mmread` of 1.17) ends the process without a message at an array
-file that calls itself symmetric and is not square, and takes one that is cut short, with zeros for what is missing.
+The package has a reader of its own. SciPy's reader (`scipy.io.mmread` of 1.17) ends the process without a message at an
+array file that calls itself symmetric and is not square, and reads a truncated file with zeros for the missing entries.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ import numpy as np
 from proprotor.files.text import open_text
 from proprotor.typing import Array
 
-MOST_COORDINATES = 50_000  # of a file that leaves zeros out
-MOST_DENSE = 5_000  # of one that does not
-_LAYOUTS = ("coordinate", "array")
+_LARGEST = {
+    "coordinate": 50_000,
+    "array": 5_000,
+}  # rows or columns, by layout: without zeros, and with all entries
 _FIELDS = ("real", "double", "integer")
 _OTHER_FIELDS = ("complex", "pattern")
 _SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
@@ -26,33 +27,35 @@ _LONGEST_LINE = 1024  # characters, as the format has it
 
 
 class MatrixMarketError(ValueError):
-    """What is wrong with a file, as the end of a sentence."""
+    """Fault of a file, as the end of a sentence."""
 
 
 class _Heading(NamedTuple):
+    """Layout, symmetry and sizes of a matrix."""
+
     layout: str
     symmetry: str
     rows: int
     columns: int
-    entries: int  # lines that follow
+    entries: int  # the number of lines that follow
 
 
 def read_matrix(path: Path) -> Any:
-    """The matrix of a file with real or whole numbers.
+    """Return the matrix of a file with real or whole numbers.
 
     Returns
     -------
     array or scipy.sparse.coo_array, shape (rows, columns)
-        Sparse where the file leaves zeros out. Entries given twice are to be added.
+        Sparse if the file leaves out zeros. Entries that the file gives twice are to be added.
 
     Raises
     ------
     MatrixMarketError
-        When the file is no Matrix Market file, is damaged or too large, or has no real numbers.
+        When the file is no Matrix Market file, is damaged or too large, or has other than real numbers.
     OSError
         When the file cannot be read.
     """
-    with open_text(path, encoding="latin-1") as file:  # any comment can be read
+    with open_text(path, encoding="latin-1") as file:  # comments may have any encoding
         heading = _heading(file)
         found = _numbers(file.read(), heading)
     if heading.layout == "array":
@@ -61,29 +64,25 @@ def read_matrix(path: Path) -> Any:
 
 
 def _heading(file: io.TextIOBase) -> _Heading:
-    """The heading and the sizes; the file is left at the first entry."""
+    """Return heading and sizes, and leave the file at the first entry."""
     words = file.readline(_LONGEST_LINE).lower().split()
     if len(words) != 5 or words[:2] != ["%%matrixmarket", "matrix"]:
         raise MatrixMarketError("is damaged, or another kind of file: it has no heading of Matrix Market")
     layout, field, symmetry = words[2:]
     if field in _OTHER_FIELDS:
         raise MatrixMarketError(f"must hold real numbers, not {field}")
-    if layout not in _LAYOUTS or field not in _FIELDS or symmetry not in _SYMMETRIES:
+    if layout not in _LARGEST or field not in _FIELDS or symmetry not in _SYMMETRIES:
         raise MatrixMarketError("is damaged: its heading has unknown words")
-    count = 3 if layout == "coordinate" else 2
-    sizes = _sizes(file, count)
-    largest = MOST_COORDINATES if layout == "coordinate" else MOST_DENSE
-    rows, columns = sizes[:2]
-    if max(rows, columns) > largest:
+    rows, columns, *entries = _sizes(file, 3 if layout == "coordinate" else 2)
+    if max(rows, columns) > _LARGEST[layout]:
         raise MatrixMarketError(f"is too large: {rows} x {columns}")
     if rows != columns and symmetry != "general":
         raise MatrixMarketError(f"is damaged: it cannot be {symmetry} with {rows} x {columns} entries")
-    return _Heading(
-        layout, symmetry, rows, columns, sizes[2] if count == 3 else _given(symmetry, rows, columns)
-    )
+    return _Heading(layout, symmetry, rows, columns, *(entries or [_given(symmetry, rows, columns)]))
 
 
 def _sizes(file: io.TextIOBase, count: int) -> list[int]:
+    """Return the whole numbers of the first line that is neither comment nor blank."""
     for line in iter(lambda: file.readline(), ""):
         if line.startswith("%") or not line.strip():
             continue
@@ -97,17 +96,17 @@ def _sizes(file: io.TextIOBase, count: int) -> list[int]:
 
 
 def _given(symmetry: str, rows: int, columns: int) -> int:
-    """Numbers in an array file."""
+    """Return how many numbers an array file gives."""
     if symmetry == "general":
         return rows * columns
     return rows * (rows - 1) // 2 if symmetry == "skew-symmetric" else rows * (rows + 1) // 2
 
 
 def _numbers(body: str, heading: _Heading) -> Array:
-    """The numbers of each line (entries, 1) or (entries, 3)."""
+    """Return the numbers of each line, (entries, 1) or (entries, 3)."""
     columns = 3 if heading.layout == "coordinate" else 1
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a file without entries
+        warnings.simplefilter("ignore")  # NumPy warns of a file without entries
         try:
             found = np.loadtxt(io.StringIO(body), comments="%", ndmin=2)
         except (ValueError, OverflowError):
@@ -120,7 +119,7 @@ def _numbers(body: str, heading: _Heading) -> Array:
 
 
 def _full(numbers: Array, heading: _Heading) -> Array:
-    """Columns one after another; below the diagonal alone where what is above follows."""
+    """Return the matrix of an array file: columns one after another, below the diagonal alone if the rest follows."""
     n, m = heading.rows, heading.columns
     if heading.symmetry == "general":
         return numbers.reshape((m, n)).T
@@ -132,6 +131,7 @@ def _full(numbers: Array, heading: _Heading) -> Array:
 
 
 def _sparse(found: Array, heading: _Heading) -> Any:
+    """Return the matrix of a coordinate file, with the entries that follow from symmetry."""
     from scipy.sparse import coo_array
 
     places, numbers = found[:, :2], found[:, 2]
@@ -141,14 +141,11 @@ def _sparse(found: Array, heading: _Heading) -> Any:
     rows, columns = places.astype(np.int64).T - 1
     if heading.symmetry != "general":
         side = rows - columns
-        if (side > 0).any() and (side < 0).any():
-            raise MatrixMarketError(
-                f"is damaged: it has entries on both sides, although it is {heading.symmetry}"
-            )
-        if _strict(heading) and (side == 0).any():
-            raise MatrixMarketError(
-                f"is damaged: it has entries on the diagonal, although it is {heading.symmetry}"
-            )
+        both_sides = (side > 0).any() and (side < 0).any()
+        if both_sides or (_strict(heading) and (side == 0).any()):
+            where = "both sides" if both_sides else "the diagonal"
+            rule = f"is damaged: it has entries on {where}, although it is {heading.symmetry}"
+            raise MatrixMarketError(rule)
         other = side != 0
         rows, columns = np.append(rows, columns[other]), np.append(columns, rows[other])
         numbers = np.append(numbers, _sign(heading) * numbers[other])
@@ -156,8 +153,10 @@ def _sparse(found: Array, heading: _Heading) -> Any:
 
 
 def _strict(heading: _Heading) -> int:
+    """Return 1 for a matrix whose diagonal is zero and left out, else 0."""
     return int(heading.symmetry == "skew-symmetric")
 
 
 def _sign(heading: _Heading) -> float:
+    """Return the factor between an entry and its opposite."""
     return -1.0 if heading.symmetry == "skew-symmetric" else 1.0

@@ -1,4 +1,4 @@
-"""Lowest modes of a structure, and the structure as a support, whole or on a few of them."""
+"""Lowest modes of a structure, and the structure as a support on all its coordinates or on its lowest modes."""
 
 from __future__ import annotations
 
@@ -9,15 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
-from proprotor.support.normal_modes import NormalModes
+from proprotor.support.normal_modes import TRANSLATION, NormalModes
 from proprotor.typing import Array
 
-_MASSLESS = 1e-12  # of the largest 1/ω²: a motion that carries no mass has no mode
-_RIGID = 1e-9  # of the largest ω²: a motion that strains nothing
+_MASSLESS = 1e-12  # of the largest 1/ω²: a motion without mass has no mode
+_RIGID = 1e-9  # of the largest ω²: a motion without strain
 _NONE = 1e-200  # N/m or N m/rad, whose inverse times a mass would overflow
 _DENSE = 1500  # coordinates up to which all modes are found at once
 _MOST_KEPT = 400  # coordinates of a support: a rotor's eigenvalues are found with all of them
-_TRANSLATION = np.diag([1.0] * 3 + [0.0] * 3)
 
 
 class StructuralModes(NamedTuple):
@@ -28,7 +27,7 @@ class StructuralModes(NamedTuple):
 
 
 class ModalSupport(NamedTuple):
-    """A support, the shapes (n, k) of its coordinates in those of the structure, and the structure's modes."""
+    """A support, the shapes (n, k) of its coordinates in coordinates of the structure, and the structure's modes."""
 
     support: NormalModes
     shapes: Array
@@ -49,31 +48,31 @@ def on_modes(
     shaft: str = "held",
     name_modes: Callable[[Array], Sequence[str]] | None = None,
 ) -> ModalSupport:
-    """A structure as a support, on all its coordinates or on its lowest modes.
+    """Return a structure as a support, on all its coordinates or on its lowest modes.
 
     Parameters
     ----------
     names : sequence of str
-        Of the n coordinates.
+        Names of the n coordinates.
     mass, stiffness, damping : array or sparse array, shape (n, n)
     hub : array (6, n)
     count : int, optional
-        How many of the lowest modes to keep; every coordinate when left out.
+        How many of the lowest modes to keep; every coordinate by default.
     damping_ratio : float, array (j,) or callable
-        Structural damping added, of critical: for the lowest modes, the last value for all above them; or what gives
-        those of shapes (n, k).
+        Structural damping to add, as a fraction of critical: one value for each of the lowest modes, of which the last
+        holds for all modes above, or a function that returns the values for shapes (n, k).
     rotor_mass : float
-        kg at the hub for the modes that are kept and damped. It does not stay in the mass: the rotor model brings
-        it. Modes without it would bend too little near the hub, and six would not be enough.
+        Mass at the hub while modes are computed and damped, kg. This mass does not stay in the support, because the
+        rotor model brings it. Modes without the rotor would bend too little near the hub, and six would not be enough.
     includes_rotor, shaft : bool or str, str
-        How the mass holds the rotor already, as for `proprotor.support.normal_modes.NormalModes`.
+        How the mass includes the rotor already, as for `proprotor.support.normal_modes.NormalModes`.
     name_modes : callable, optional
-        The names of shapes (n, k); mode_1 and so on when left out.
+        Function that returns the names of shapes (n, k); by default mode_1 and so on.
 
     Raises
     ------
     InputError
-        When there are fewer modes than asked for, coordinates without mass are kept, or too many coordinates.
+        When there are fewer modes than asked for, when coordinates without mass are kept, or too many coordinates.
     """
     if count is None and len(names) > _MOST_KEPT:
         raise InputError("modes", None, f"must be given with more than {_MOST_KEPT} coordinates")
@@ -87,14 +86,14 @@ def on_modes(
     ratio = per_mode(given, len(found.frequency))
     if count is None:
         shapes = np.eye(len(names))
-        structural = modal_damping(_dense(loaded), found, ratio)
+        structural = _modal_damping(_dense(loaded), found, ratio)
     else:
         shapes = found.shapes
         structural = np.diag(2 * ratio * found.frequency)
         names = name_modes(shapes) if name_modes else [f"mode_{k}" for k in range(1, count + 1)]
     matrices = {"mass": mass, "stiffness": stiffness, "damping": damping}
     reduced = {name: _projected(matrix, shapes) for name, matrix in matrices.items() if matrix is not None}
-    reduced["damping"] = reduced.get("damping", 0.0) + _symmetric(structural)
+    reduced["damping"] = reduced.get("damping", 0.0) + symmetric(structural)
     support = NormalModes(
         names=names, **reduced, hub=hub @ shapes, includes_rotor=includes_rotor, shaft=shaft
     )
@@ -102,14 +101,14 @@ def on_modes(
 
 
 def lowest_modes(mass: Any, stiffness: Any, count: int | None = None) -> StructuralModes:
-    """The lowest modes of K φ = ω² M φ.
+    """Return the lowest modes of K φ = ω² M φ.
 
     Parameters
     ----------
     mass, stiffness : array or sparse array, shape (n, n)
-        Symmetric, without negative directions, at least one of them without a massless or free one.
+        Symmetric, without negative directions; at least one of the two must be positive definite.
     count : int, optional
-        How many modes; all that carry mass when left out.
+        How many modes; by default all that carry mass.
 
     Raises
     ------
@@ -121,15 +120,15 @@ def lowest_modes(mass: Any, stiffness: Any, count: int | None = None) -> Structu
     return _of_few(_dense(mass), _dense(stiffness), count)
 
 
-def modal_damping(mass: Array, modes: StructuralModes, damping_ratio: ArrayLike) -> Array:
-    """Viscous damping (n, n) that gives each mode of a mass its ratio (k,): C = M Φ (2ζω) Φᵀ M."""
+def _modal_damping(mass: Array, modes: StructuralModes, damping_ratio: ArrayLike) -> Array:
+    """Return the viscous damping (n, n) that gives each mode of a mass its ratio (k,): C = M Φ (2ζω) Φᵀ M."""
     forces = mass @ modes.shapes
     damping: Array = (forces * (2 * np.asarray(damping_ratio) * modes.frequency)) @ forces.T
     return damping
 
 
 def per_mode(damping_ratio: ArrayLike, count: int) -> Array:
-    """One ratio for each of `count` modes; the last given value is repeated.
+    """Return one damping ratio for each of `count` modes; the last given value is repeated.
 
     Raises
     ------
@@ -143,6 +142,7 @@ def per_mode(damping_ratio: ArrayLike, count: int) -> Array:
 
 
 def _of_few(mass: Array, stiffness: Array, count: int | None) -> StructuralModes:
+    """Return the lowest modes of dense matrices, from all their modes."""
     from scipy.linalg import LinAlgError, eigh  # here, because scipy is slow to import
 
     if not mass.any():
@@ -151,7 +151,7 @@ def _of_few(mass: Array, stiffness: Array, count: int | None) -> StructuralModes
     scale = 1 / np.sqrt(np.where(diagonal > _NONE, diagonal, 1.0))
     mass, stiffness = (matrix * np.outer(scale, scale) for matrix in (mass, stiffness))
     try:
-        # Turned over, M φ = (1/ω²) K φ: the lowest modes come out most accurate, and massless motions as zeros.
+        # Solve M φ = (1/ω²) K φ: the lowest modes are then the most accurate, and massless motions give zeros.
         compliance, shapes = eigh(mass, stiffness)
         order = np.argsort(-compliance)
         carrying = compliance[order] > _MASSLESS * np.abs(compliance).max()
@@ -170,17 +170,19 @@ def _of_few(mass: Array, stiffness: Array, count: int | None) -> StructuralModes
         square = np.where(square < _RIGID * square[-1], 0.0, square)
     count = len(square) if count is None else count
     if not 1 <= count <= len(square):
-        raise InputError(
-            "modes", count, f"must be from 1 to {len(square)}, the number of modes that carry mass"
-        )
+        rule = f"must be from 1 to {len(square)}, the number of modes that carry mass"
+        raise InputError("modes", count, rule)
     return StructuralModes(np.sqrt(square[:count]), (scale[:, None] * shapes)[:, :count])
 
 
 def _lowest_of_many(mass: Any, stiffness: Any, count: int) -> StructuralModes:
+    """Return the lowest modes of large matrices by shifted inverse iteration."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import ArpackError, eigsh
 
-    start = np.random.default_rng(0).standard_normal(mass.shape[0])  # the same modes at each call
+    start = np.random.default_rng(0).standard_normal(
+        mass.shape[0]
+    )  # fixed, so that each call finds the same modes
     try:
         square, shapes = eigsh(csc_array(stiffness), k=count, M=csc_array(mass), sigma=0.0, v0=start)
     except (ArpackError, RuntimeError):  # a factor that is exactly singular
@@ -194,23 +196,28 @@ def _lowest_of_many(mass: Any, stiffness: Any, count: int) -> StructuralModes:
 
 
 def _with_mass_at_hub(mass: Any, hub: Array, rotor_mass: float) -> Any:
+    """Return the mass with a point mass at the hub."""
     if rotor_mass == 0:
         return mass
+    moving: Any = hub[TRANSLATION]
     if not hasattr(mass, "toarray"):
-        return mass + rotor_mass * hub.T @ _TRANSLATION @ hub
+        return mass + rotor_mass * moving.T @ moving
     from scipy.sparse import csc_array
 
-    moving = csc_array(hub[:3])
+    moving = csc_array(moving)
     return csc_array(mass) + rotor_mass * (moving.T @ moving)
 
 
 def _projected(matrix: Any, shapes: Array) -> Array:
-    return _symmetric(shapes.T @ (matrix @ shapes))
+    """Return a matrix on the coordinates of shapes (n, k)."""
+    return symmetric(shapes.T @ (matrix @ shapes))
 
 
-def _symmetric(matrix: Array) -> Array:
-    return (matrix + matrix.T) / 2  # products leave rounding
+def symmetric(matrix: Array) -> Array:
+    """Return the symmetric part of a matrix: products leave rounding errors."""
+    return (matrix + matrix.T) / 2
 
 
 def _dense(matrix: Any) -> Array:
+    """Return a matrix as a dense array."""
     return matrix.toarray() if hasattr(matrix, "toarray") else np.asarray(matrix, dtype=float)

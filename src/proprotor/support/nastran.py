@@ -1,6 +1,6 @@
-"""A support from a Nastran normal-modes run: eigenvectors at the hub and generalised masses of an .op2 file.
+"""A support from a Nastran normal-modes run: eigenvectors at the hub and generalised masses from an .op2 file.
 
-pyNastran reads the file; it is the optional extra `nastran`.
+pyNastran reads the file; the extra `nastran` installs it.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError, unknown_name
 from proprotor.needs import need
 from proprotor.support.modal_reduction import per_mode
-from proprotor.support.normal_modes import HUB_AXES, NormalModes
+from proprotor.support.normal_modes import TRANSLATION, NormalModes, signed_names
 from proprotor.typing import Array
 
-COMPONENTS = ("T1", "T2", "T3", "R1", "R2", "R3")
-# Nastran's usual aircraft axes, X aft, Y to the right, Z up, in the rotor's: I up, J outboard, K forward.
+_COMPONENTS = ("T1", "T2", "T3", "R1", "R2", "R3")
+# The hub axes (I up, J outboard, K forward) in Nastran's usual aircraft axes: X aft, Y to the right, Z up.
 AIRCRAFT_AXES = {"x": "T3", "y": "T2", "z": "-T1", "alpha_x": "R3", "alpha_y": "R2", "alpha_z": "-R1"}
 _LARGEST = 2_000_000_000  # bytes
 
@@ -42,7 +42,7 @@ def nastran_modes(
     mass_unit: float = 1.0,
     names: Sequence[str] | None = None,
 ) -> NormalModes:
-    """The real modes of a Nastran run as a support.
+    """Return the real modes of a Nastran run as a support.
 
     Parameters
     ----------
@@ -50,23 +50,24 @@ def nastran_modes(
         An .op2 file with eigenvectors (OUGV1, DISPLACEMENT(PLOT) = ALL or a set with the grid) and the eigenvalue
         table LAMA.
     grid : int
-        The grid point at the hub; its motion is read in its own output coordinate system.
+        The grid point at the hub; its motion is read in the output coordinate system of this grid point.
     includes_rotor, shaft : bool or str, str
-        How the run had the rotor on, as for `proprotor.support.normal_modes.NormalModes`: "mass only" for a point mass at the hub's
-        grid point (CONM2 without inertias), "rigid" with the rotor's inertias, "gimballed" with a gimbal between.
+        How the run had the rotor on, as for `proprotor.support.normal_modes.NormalModes`: "mass only" for a point mass
+        at the hub's grid point (CONM2 without inertias), "rigid" with the rotor's inertias, "gimballed" with a gimbal
+        between rotor and hub.
     damping_ratio : float or array
-        Of critical for the lowest modes, the last for all above them.
+        Fraction of critical damping of the lowest modes, the last value for all modes above.
     modes : int, optional
-        How many of the lowest modes, all when left out.
+        How many of the lowest modes to keep; by default all.
     subcase : int, optional
-        Needed when the file has several.
+        Number of the subcase, needed when the file has several.
     hub : mapping of str to str, optional
-        For each of x, y, z, alpha_x, alpha_y, alpha_z one of T1 … R3, "-" before it where it points the other way;
-        `AIRCRAFT_AXES` when left out.
+        For each of x, y, z, alpha_x, alpha_y, alpha_z one of T1 … R3, with "-" before a component that points the other
+        way; `AIRCRAFT_AXES` by default.
     length_unit, mass_unit : float
         m and kg per unit of the run, such as 0.0254 and 175.1268 for inches and lbf s²/in.
     names : sequence of str, optional
-        Of the modes; mode_1 and so on when left out.
+        Names of the modes; by default mode_1 and so on.
 
     Raises
     ------
@@ -91,9 +92,8 @@ def nastran_modes(
         np.isfinite(motion).all() and np.isfinite(generalized_mass).all() and (generalized_mass > 0).all()
     ):
         raise InputError("file", str(file), "must hold finite eigenvectors and generalised masses above zero")
-    motion[:3] *= (
-        length_unit  # the coordinate of a mode is a number: a translation counts lengths of the run's unit
-    )
+    # The coordinate of a mode is a number without unit: a translation counts lengths in the run's unit.
+    motion[TRANSLATION] *= length_unit
     return NormalModes.from_frequencies(
         names=tuple(names) if names else [f"mode_{place}" for place in range(1, count + 1)],
         generalized_mass=generalized_mass * mass_unit * length_unit**2,
@@ -106,6 +106,7 @@ def nastran_modes(
 
 
 def _read(path: Path) -> Any:
+    """Return the results in an .op2 file as pyNastran holds them."""
     if not path.is_file():
         raise InputError("file", str(path), "no such file")
     if path.stat().st_size > _LARGEST:
@@ -120,14 +121,14 @@ def _read(path: Path) -> Any:
             try:
                 with redirect_stdout(StringIO()):
                     results.read_op2(str(path), build_dataframe=False)
-            except Exception as error:  # a reader of damaged binary files fails in every way there is
+            except Exception as error:  # a reader of damaged binary files can raise anything
                 rule = f"is damaged, or no .op2 file with results ({type(error).__name__})"
                 raise InputError("file", str(path), rule) from None
     return results
 
 
 class _Silent:
-    """A log that keeps what a reader has to say to itself."""
+    """A log that drops all messages of a reader."""
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -137,7 +138,7 @@ class _Silent:
 
 @contextmanager
 def _names_of_older_numpy() -> Iterator[None]:
-    """numpy.in1d, which NumPy 2.4 dropped, while pyNastran 1.3 is at work."""
+    """Give NumPy its function in1d, which NumPy 2.4 dropped, while pyNastran 1.3 is running."""
     dropped = "in1d"
     if hasattr(np, dropped):
         yield
@@ -150,13 +151,13 @@ def _names_of_older_numpy() -> Iterator[None]:
 
 
 def _one_subcase(eigenvectors: Mapping[Any, Any], subcase: int | None, path: Any) -> Any:
+    """Return the real eigenvectors of one subcase."""
     if not eigenvectors:
         raise InputError("file", str(path), "has no real eigenvectors: ask Nastran for DISPLACEMENT(PLOT)")
     real = {key: vectors for key, vectors in eigenvectors.items() if hasattr(vectors, "eigns")}
     if not real:
-        raise InputError(
-            "file", str(path), "has complex eigenvectors alone: ask Nastran for real ones (SOL 103)"
-        )
+        rule = "has complex eigenvectors alone: ask Nastran for real ones (SOL 103)"
+        raise InputError("file", str(path), rule)
     numbers = {getattr(vectors, "isubcase", key): vectors for key, vectors in real.items()}
     if subcase is None:
         if len(numbers) > 1:
@@ -168,7 +169,7 @@ def _one_subcase(eigenvectors: Mapping[Any, Any], subcase: int | None, path: Any
 
 
 def _table(tables: Mapping[Any, Any], vectors: Any, path: Any) -> Any:
-    """The eigenvalue table that belongs to the eigenvectors: the one with their eigenvalues."""
+    """Return the eigenvalue table that belongs to the eigenvectors, which is the table with the same eigenvalues."""
     for table in tables.values():
         known = dict(zip(table.mode, table.eigenvalues, strict=True))
         given = zip(vectors.modes, vectors.eigns, strict=True)
@@ -178,17 +179,11 @@ def _table(tables: Mapping[Any, Any], vectors: Any, path: Any) -> Any:
 
 
 def _turned(motion: Array, hub: Mapping[str, str] | None) -> Array:
-    """Rows x … αz from rows T1 … R3."""
+    """Return the rows x … αz from the rows T1 … R3."""
     hub = AIRCRAFT_AXES if hub is None else hub
     rows = []
-    for axis in hub:
-        if axis not in HUB_AXES:
-            raise InputError(f"hub.{axis}", hub[axis], unknown_name(axis, HUB_AXES, "axis"))
-    for axis in HUB_AXES:
-        if axis not in hub:
-            raise InputError(f"hub.{axis}", None, "is missing: all six motions of the hub must be named")
-        name = str(hub[axis]).removeprefix("-")
-        if name not in COMPONENTS:
-            raise InputError(f"hub.{axis}", hub[axis], unknown_name(name, COMPONENTS, "component"))
-        rows.append(motion[COMPONENTS.index(name)] * (-1 if str(hub[axis]).startswith("-") else 1))
+    for axis, name, sign in signed_names(hub, "motions"):
+        if name not in _COMPONENTS:
+            raise InputError(f"hub.{axis}", hub[axis], unknown_name(name, _COMPONENTS, "component"))
+        rows.append(sign * motion[_COMPONENTS.index(name)])
     return np.array(rows)

@@ -1,14 +1,18 @@
-"""What carries the rotor: coordinates of a support and their motion at the hub, a two-axis pivot, or nothing."""
+"""Support of a rotor: coordinates with mass, damping and stiffness, and their motion at the hub.
+
+The simplest supports are here too: a two-axis pivot, and a support that does not move.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from proprotor.errors import InputError, is_choice, told_choices
+from proprotor.errors import InputError, is_choice, list_choices, unknown_name
+from proprotor.rotor.motions import check_support_names
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -16,6 +20,7 @@ if TYPE_CHECKING:
     from proprotor.typing import Array
 
 HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
+TRANSLATION, ROTATION = slice(0, 3), slice(3, 6)  # of the hub axes, or of the six motions of any node
 INCLUDES_ROTOR = ("gimballed", "rigid", "mass only", True, False)
 SHAFT = ("held", "free")
 
@@ -27,7 +32,7 @@ class NormalModes:
     Parameters
     ----------
     names : sequence of str
-        One name per coordinate, all different and none of them that of a coordinate or mode of a rotor.
+        One name for each coordinate, all different, and none the name of a coordinate or mode of a rotor.
     mass, damping, stiffness : array_like, shape (..., n, n)
         Symmetric, SI (kg or kg m² and so on, as the coordinate is a length in m or an angle in rad).
         The mass must have no negative eigenvalue. Leading axes are many supports at once.
@@ -36,16 +41,16 @@ class NormalModes:
         inertial axes I, J, K of the rotor, K along the shaft.
     includes_rotor : "gimballed", "rigid", "mass only", True or False
         How the rotor was held when `mass` was measured or computed with the rotor on, its blades locked or stiff: free
-        to tilt on its gimbal; as one body with its shaft; a point mass at the hub. Its share, which follows from
-        that, is taken off, lest it count twice. False: no rotor was on. True: "gimballed" for a rotor
-        with a gimbal, "rigid" for one without.
+        to tilt on its gimbal; as one body with its shaft; a point mass at the hub. The rotor's share of the mass, which
+        follows from this choice, is subtracted so that it does not count twice. False: no rotor was on. True:
+        "gimballed" for a rotor with a gimbal, "rigid" for a rotor without one.
     shaft : "held" or "free"
-        Whether the rotor could turn about its shaft then; a point mass does not ask.
+        Whether the rotor could turn about its shaft then; without effect for a point mass.
     shapes : array, shape (..., m, n), optional
-        The coordinates as motions of the structure that they stand for, where designs differ in them: what tells the
-        coordinates of one design in those of the next.
+        Shapes of the structure for each coordinate, if these differ between designs: the shapes show which coordinates
+        of two designs belong together.
     warning : array of str, shape (...), optional
-        What makes a design doubtful, a text for each of many.
+        Why a design is doubtful, a text for each of many designs.
 
     Raises
     ------
@@ -55,7 +60,7 @@ class NormalModes:
     """
 
     names: Sequence[str]
-    mass: Array  # these four are kept as arrays, whatever they were given as
+    mass: Array  # this and the next three are kept as arrays, also when given as lists
     damping: Array
     stiffness: Array
     hub: Array
@@ -72,9 +77,7 @@ class NormalModes:
             raise InputError("names", ", ".join(names), "must name each mode, all differently")
         for field, choices in (("includes_rotor", INCLUDES_ROTOR), ("shaft", SHAFT)):
             if not is_choice(getattr(self, field), choices):
-                raise InputError(field, getattr(self, field), f"must be {told_choices(choices)}")
-        from proprotor.rotor.motions import check_support_names
-
+                raise InputError(field, getattr(self, field), f"must be {list_choices(choices)}")
         check_support_names("names", names)
         n = len(names)
         object.__setattr__(self, "names", names)
@@ -90,7 +93,7 @@ class NormalModes:
             raise InputError("mass", self.mass.tolist(), "must not be negative in any direction")
 
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
-        """The support at airspeeds and densities: itself, for its matrices depend on neither.
+        """Return the support at airspeeds and densities: itself, since its matrices depend on neither.
 
         Parameters
         ----------
@@ -116,7 +119,7 @@ class NormalModes:
         includes_rotor: bool | str,
         shaft: str = "held",
     ) -> NormalModes:
-        """Uncoupled modes: stiffness m ω², damping 2 ζ ω m, with the whole generalised mass m.
+        """Return a support of uncoupled modes: stiffness m ω², damping 2 ζ ω m, with the whole generalised mass m.
 
         Parameters
         ----------
@@ -164,19 +167,19 @@ def two_axis_pivot(
     includes_rotor: bool | str,
     shaft: str = "held",
 ) -> NormalModes:
-    """A rigid shaft that pitches and yaws about a point behind the hub, as a propeller in its nacelle does.
+    """Return a rigid shaft that pitches and yaws about a point behind the hub, like a propeller in its nacelle.
 
     Pitch raises the hub along I and yaw moves it outboard along J, each by `distance` per radian.
 
     Parameters
     ----------
     distance : float or array (...)
-        From the pivot forward to the hub, m.
+        Distance from the pivot forward to the hub, m.
     inertia, stiffness, damping : array_like, shape (..., 2)
-        Of pitch and yaw about the pivot: kg m², N m/rad, N m s/rad (viscous; for hysteretic damping see
+        Values of pitch and yaw about the pivot: kg m², N m/rad, N m s/rad (viscous; for hysteretic damping see
         `proprotor.model.structural_damping`).
     includes_rotor, shaft : bool or str, str
-        How the inertias include the rotor's, its mass at the hub included: as for `NormalModes`.
+        How the inertias include the rotor's, with its mass at the hub: as for `NormalModes`.
 
     Returns
     -------
@@ -204,7 +207,7 @@ def two_axis_pivot(
 
 
 def rigid_support() -> NormalModes:
-    """A support that does not move: no coordinate, the hub fixed.
+    """Return a support that does not move: no coordinate, the hub fixed.
 
     Returns
     -------
@@ -214,7 +217,33 @@ def rigid_support() -> NormalModes:
     return NormalModes((), none, none, none, hub=np.zeros((len(HUB_AXES), 0)), includes_rotor=False)
 
 
+def signed_names(hub: Mapping[str, str], what: str) -> Iterator[tuple[str, str, float]]:
+    """Yield each hub axis with the name given for the axis, and the sign before that name.
+
+    Parameters
+    ----------
+    hub : mapping of str to str
+        For each of `HUB_AXES` a name, with "-" before it if the named motion points the other way.
+    what : str
+        What the names are, for the message.
+
+    Raises
+    ------
+    InputError
+        For an axis that is missing or unknown.
+    """
+    for axis in hub:
+        if axis not in HUB_AXES:
+            raise InputError(f"hub.{axis}", hub[axis], unknown_name(axis, HUB_AXES, "axis"))
+    for axis in HUB_AXES:
+        if axis not in hub:
+            raise InputError(f"hub.{axis}", None, f"is missing: all six {what} of the hub must be named")
+        written = str(hub[axis])
+        yield axis, written.removeprefix("-"), -1.0 if written.startswith("-") else 1.0
+
+
 def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return a read-only array whose last axes have the shape; refuse another shape or numbers that are not finite."""
     array = np.array(value, dtype=complex if np.iscomplexobj(value) else float)
     if array.shape[-len(shape) :] != shape:
         raise InputError(field, f"array of shape {array.shape}", f"must have the shape {shape}")
@@ -225,7 +254,10 @@ def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 def _nowhere_negative(matrix: Array) -> bool:
-    # Scaled to a unit diagonal, so that slug and slug·ft² in one matrix do not set the tolerance.
+    """Return whether a matrix has no negative eigenvalue.
+
+    The matrix is scaled to a unit diagonal, so that kg and kg m² in one matrix do not set the tolerance.
+    """
     diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
     if (diagonal < 0).any():
         return False
@@ -235,4 +267,5 @@ def _nowhere_negative(matrix: Array) -> bool:
 
 
 def _diagonal(values: Array) -> Array:
+    """Return diagonal matrices (..., n, n) of values (..., n)."""
     return values[..., None] * np.eye(values.shape[-1])

@@ -1,11 +1,11 @@
 """Quasi-steady airloads of the wing itself, by strip theory: damping and stiffness that grow with the airspeed.
 
-A strip of width dy flies along K at V. Its downwash is taken at a point behind the elastic axis, three quarters of
-the chord for a thin airfoil, and its lift acts at the aerodynamic centre:
+A strip of width dy flies along K at V. The downwash of the strip is taken at a point behind the elastic axis, three
+quarters of the chord for a thin airfoil, and the lift acts at the aerodynamic centre:
 
     w = V α - ẋ_d            dL = ½ ρ V cos Λ  a c w dy            Q = ∫ δx_a dL
 
-with x up, α the nose-up turn about J, and Λ the sweep: a is the lift slope of sections across the elastic axis.
+with x up, α the nose-up rotation about J, Λ the sweep, and a the lift slope of sections across the elastic axis.
 Left out are steady lift, drag, induced velocity, apparent mass and the lag of unsteady flow.
 """
 
@@ -17,20 +17,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError
+from proprotor.errors import InputError, check_finite
 from proprotor.support.beam_wing import BeamStructure
-from proprotor.support.normal_modes import HUB_AXES, NormalModes
+from proprotor.support.normal_modes import HUB_AXES, ROTATION, TRANSLATION, NormalModes
 from proprotor.typing import Array
 
-_UP, _PITCH = HUB_AXES.index("x"), HUB_AXES.index("alpha_y")
+_UP, _OUTBOARD, _PITCH = (HUB_AXES.index(axis) for axis in ("x", "y", "alpha_y"))
 _STRIPS = 64
 _PER_ELEMENT = 4  # Gauss points; products of two cubics are integrated exactly
 
 
 class Strips(NamedTuple):
-    """How the elastic axis moves: widths (..., k) along J in m, rise and pitch (..., k, n) per unit of each coordinate.
+    """Motion of the elastic axis: widths (..., k) along J in m, rise and pitch (..., k, n) per unit of each coordinate.
 
-    rise is along I at the elastic axis; pitch is nose up, about J.
+    rise is the displacement along I of the elastic axis; pitch is the rotation about J, nose up.
     """
 
     width: Array
@@ -40,23 +40,23 @@ class Strips(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class WingAerodynamics:
-    """What the strips have in common; numbers, or arrays (...) of many designs.
+    """Lift slope and geometry of all strips; numbers, or arrays (...) of many designs.
 
     Parameters
     ----------
     lift_slope : float
-        a of a section across the elastic axis, per rad.
+        Lift slope a of a section across the elastic axis, 1/rad.
     chord : float
-        c, streamwise, m.
+        Streamwise chord c, m.
     sweep : float
-        Λ, rad.
+        Sweep Λ, rad.
     elastic_axis, aerodynamic_centre, downwash_point : float
-        In chords behind the leading edge.
+        Positions in chords behind the leading edge.
 
     Raises
     ------
     InputError
-        When a value is not finite, or slope or chord not above zero.
+        When a value is not finite, or lift slope or chord is not above zero.
     """
 
     lift_slope: float
@@ -68,14 +68,11 @@ class WingAerodynamics:
 
     def __post_init__(self) -> None:
         for entry in fields(self):
-            value = np.asarray(getattr(self, entry.name))
-            if not np.isfinite(value).all():
-                raise InputError(entry.name, getattr(self, entry.name), "must be finite")
-            if entry.name in ("lift_slope", "chord") and (value.real <= 0).any():
-                raise InputError(entry.name, getattr(self, entry.name), "must be above zero")
+            sign = "above zero" if entry.name in ("lift_slope", "chord") else ""
+            check_finite(entry.name, getattr(self, entry.name), sign)
 
     def matrices(self, strips: Strips) -> tuple[Array, Array]:
-        """What the airloads add to C per ρV, and to K per ρV²; both (..., n, n)."""
+        """Return the parts of the airloads in C per ρV and in K per ρV²; both (..., n, n)."""
         own = {entry.name: np.asarray(getattr(self, entry.name))[..., None, None] for entry in fields(self)}
         loaded = strips.rise + (own["elastic_axis"] - own["aerodynamic_centre"]) * own["chord"] * strips.pitch
         washed = strips.rise + (own["elastic_axis"] - own["downwash_point"]) * own["chord"] * strips.pitch
@@ -85,101 +82,105 @@ class WingAerodynamics:
 
 
 @dataclass(frozen=True, eq=False)
-class LoadedModes(NormalModes):
-    """Coordinates of a support in an airstream: damping and stiffness need not be symmetric."""
+class _LoadedModes(NormalModes):
+    """Coordinates of a support in an airstream, whose damping and stiffness need not be symmetric."""
 
     symmetric = ("mass",)
 
 
 @dataclass(frozen=True, eq=False)
 class WingInAirstream(NormalModes):
-    """A support with what an airstream adds to it; its own matrices are those in still air.
+    """A support with the airloads of its wing; its own matrices are those in still air.
 
     Parameters
     ----------
     airload_damping, airload_stiffness : array (..., n, n)
-        Added to C per ρV and to K per ρV², as `WingAerodynamics.matrices` gives them.
+        Parts of the airloads in C per ρV and in K per ρV², from `WingAerodynamics.matrices`.
     """
 
     airload_damping: ArrayLike = field(kw_only=True)
     airload_stiffness: ArrayLike = field(kw_only=True)
 
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
-        """The support at airspeeds (m/s) and densities (kg/m³), arrays that broadcast: matrices (..., n, n)."""
+        """Return the support, with matrices (..., n, n), at airspeeds (m/s) and densities (kg/m³) that broadcast."""
         speed, density = np.asarray(airspeed)[..., None, None], np.asarray(density)[..., None, None]
-        return LoadedModes(
-            names=self.names,
-            mass=self.mass,
-            damping=self.damping + density * speed * np.asarray(self.airload_damping),
-            stiffness=self.stiffness + density * speed**2 * np.asarray(self.airload_stiffness),
-            hub=self.hub,
-            includes_rotor=self.includes_rotor,
-            shaft=self.shaft,
-            shapes=self.shapes,
-            warning=self.warning,
-        )
+        own = {entry.name: getattr(self, entry.name) for entry in fields(NormalModes)}
+        own["damping"] = self.damping + density * speed * np.asarray(self.airload_damping)
+        own["stiffness"] = self.stiffness + density * speed**2 * np.asarray(self.airload_stiffness)
+        return _LoadedModes(**own)
 
 
 def in_airstream(support: NormalModes, strips: Strips, aerodynamics: WingAerodynamics) -> WingInAirstream:
-    """A support with the airloads of its wing.
+    """Return a support with the airloads of its wing.
 
     Raises
     ------
     InputError
-        When the strips have another number of coordinates.
+        When the strips have another number of coordinates than the support.
     """
     if strips.rise.shape[-1] != len(support.names):
-        raise InputError(
-            "strips", strips.rise.shape[-1], f"must move with the {len(support.names)} coordinates"
-        )
+        rule = f"must move with the {len(support.names)} coordinates"
+        raise InputError("strips", strips.rise.shape[-1], rule)
     damping, stiffness = aerodynamics.matrices(strips)
     own = {entry.name: getattr(support, entry.name) for entry in fields(NormalModes)}
     return WingInAirstream(**own, airload_damping=damping, airload_stiffness=stiffness)
 
 
 def beam_strips(structure: BeamStructure, shapes: ArrayLike) -> Strips:
-    """Strips of a beam wing that move as its elements do.
+    """Return strips of a beam wing that move with its elements.
 
     Parameters
     ----------
     structure : BeamStructure
     shapes : array (n, k)
-        The support's coordinates in those of the structure, as `proprotor.support.beam_wing.on_coordinates` gives them.
+        The support's coordinates in coordinates of the structure, from `proprotor.support.beam_wing.on_coordinates`.
     """
-    from pystran.geometry import herm_basis, herm_basis_xi  # here, because it brings matplotlib along
-
     points, weights = np.polynomial.legendre.leggauss(_PER_ELEMENT)
     nodes = structure.nodes @ np.asarray(shapes)
-    widths, rises, pitches = [], [], []
-    for start, end, left, right in zip(
-        structure.positions[:-1], structure.positions[1:], nodes[:-1], nodes[1:], strict=True
-    ):
-        axis = end - start
-        length = np.linalg.norm(axis)
-        along = axis / length
-        across = np.eye(3) - np.outer(along, along)
-        # ∂u/∂s = φ × axis at the ends; rotation vectors give the slopes of the cubic.
-        slopes = [np.cross(node[3:].T, along).T for node in (left, right)]
-        for point, weight in zip(points, weights, strict=True):
-            # pystran's second and fourth function belong to a rotation that lowers the beam: minus the slope.
-            cubic, rate = herm_basis(point), herm_basis_xi(point) * 2 / length
-            ends = (left[:3], -slopes[0] * length / 2, right[:3], -slopes[1] * length / 2)
-            bent = across @ sum(factor * part for factor, part in zip(cubic, ends, strict=True))
-            slope = across @ sum(factor * part for factor, part in zip(rate, ends, strict=True))
-            share = (1 + point) / 2
-            twist = np.outer(along, along) @ ((1 - share) * left[3:] + share * right[3:])
-            stretch = np.outer(along, along) @ ((1 - share) * left[:3] + share * right[:3])
-            turn = twist + np.cross(along, slope.T).T
-            widths.append(weight / 2 * axis[1])
-            rises.append((bent + stretch)[0])
-            pitches.append(turn[1])
+    widths, motions = [], []
+    for axis, left, right in zip(np.diff(structure.positions, axis=0), nodes[:-1], nodes[1:], strict=True):
+        widths += [weight / 2 * axis[_OUTBOARD] for weight in weights]
+        motions += [_motion_within(axis, left, right, point) for point in points]
+    rises, pitches = zip(*motions, strict=True)
     return Strips(np.array(widths), np.array(rises), np.array(pitches))
 
 
-def cantilever_strips(support: NormalModes, span: float, mast_length: float) -> Strips:
-    """Strips of a wing known by its motion at the hub alone, in an assumed shape.
+def _motion_within(axis: Array, left: Array, right: Array, point: float) -> tuple[Array, Array]:
+    """Return rise and pitch (n,) of a beam element at a point from -1 to 1 along the element.
 
-    Between mount and tip the wing is taken to bend as a cantilever loaded at its tip, (3η² - η³)/2, and to twist
+    Parameters
+    ----------
+    axis : array (3,)
+        Vector from the left node to the right node, m.
+    left, right : array (6, n)
+        Motion of the two nodes for each coordinate.
+    point : float
+    """
+    from pystran.geometry import herm_basis, herm_basis_xi  # here, because it brings matplotlib along
+
+    length = np.linalg.norm(axis)
+    along = axis / length
+    lengthwise = np.outer(along, along)
+    across = np.eye(3) - lengthwise
+    # ∂u/∂s = φ × axis at the ends: rotation vectors give the slopes of the cubic.
+    slopes = [np.cross(node[ROTATION].T, along).T for node in (left, right)]
+    # The second and the fourth function of pystran belong to a rotation that lowers the beam: minus the slope.
+    ends = (left[TRANSLATION], -slopes[0] * length / 2, right[TRANSLATION], -slopes[1] * length / 2)
+    cubic, rate = herm_basis(point), herm_basis_xi(point) * 2 / length
+    bent = across @ sum(factor * part for factor, part in zip(cubic, ends, strict=True))
+    slope = across @ sum(factor * part for factor, part in zip(rate, ends, strict=True))
+    share = (1 + point) / 2
+    stretch, twist = (
+        lengthwise @ ((1 - share) * left[part] + share * right[part]) for part in (TRANSLATION, ROTATION)
+    )
+    turn = twist + np.cross(along, slope.T).T
+    return (bent + stretch)[_UP], turn[_OUTBOARD]
+
+
+def cantilever_strips(support: NormalModes, span: float, mast_length: float) -> Strips:
+    """Return strips, in an assumed shape, of a wing whose motion is known at the hub alone.
+
+    Between mount and tip the wing is assumed to bend as a cantilever loaded at its tip, (3η² - η³)/2, and to twist
     linearly, η, with η from 0 to 1 along the span. The tip is the point `mast_length` behind the hub.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Tables as CSV: what the numbers come from and rest on in lines that begin with #, then a head and a row each."""
+"""Tables as CSV: lines that begin with # say which case and options the numbers come from, then a head and rows."""
 
 from __future__ import annotations
 
@@ -12,25 +12,29 @@ from typing import Any
 from proprotor.errors import printable
 from proprotor.model import stamp
 
-_FORMULA = ("=", "+", "-", "@")  # with which a cell begins that a spreadsheet works out
+_FORMULA = ("=", "+", "-", "@")  # first characters of a cell that a spreadsheet computes
 _QUANTITY = re.compile(r"[-+][\d.]+(e[-+]?\d+)?( ?[\w*/%°]+)?")
 
 
 def csv_of(
     records: Sequence[Mapping[str, Any]], columns: Sequence[str], found: Mapping[Any, Any] | None = None
 ) -> bytes:
-    """Records as CSV in UTF-8, with all digits; an empty cell for None and what is not finite.
+    """Return records as CSV in UTF-8, with all digits; an empty cell for None and numbers that are not finite.
 
     Parameters
     ----------
     records : sequence of mapping
     columns : sequence of str
-        The head.
+        The head: names of the entries of a record, in their order.
     found : mapping, optional
-        Attributes of the results, whose stamp is told in comments above the head (pandas: ``comment="#"``).
+        Attributes of the results, whose case and options stand in comments above the head (pandas: ``comment="#"``).
+
+    Returns
+    -------
+    bytes
     """
     text = io.StringIO(newline="")
-    for line in head(found or {}):
+    for line in _comments(found or {}):
         text.write(f"# {printable(line)}\n")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([_cell(column) for column in columns])
@@ -38,20 +42,20 @@ def csv_of(
     return text.getvalue().encode()
 
 
-def head(found: Mapping[Any, Any]) -> Iterator[str]:
-    """What stands above a table: the case, its options, all of them, and what the numbers rest on."""
+def _comments(found: Mapping[Any, Any]) -> Iterator[str]:
+    """Yield the comments above a table: the case, all options, and the reservations about the case."""
     own = stamp.of(found)
     if "options" not in own:
         return
     if "title" in own:
         yield own["title"]
-    yield f"{stamp.told(own)} {own['made_by']}."
+    yield f"{stamp.line(own)} {own['made_by']}."
     yield f"options: {own['options']}"
     yield from filter(None, (own.get("reservations"), own.get("case_warnings")))
 
 
 def _cell(value: Any) -> Any:
-    """A value as a spreadsheet is to take it: numbers as numbers, and text never as a formula."""
+    """Return a value that a spreadsheet reads as it is meant: numbers as numbers, and text never as a formula."""
     if isinstance(value, float) and not math.isfinite(value):
         return None
     if isinstance(value, str):

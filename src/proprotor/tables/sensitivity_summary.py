@@ -1,4 +1,4 @@
-"""Sensitivities in the units people read, and those that the deck is written in."""
+"""Sensitivities as records: in the units that people read, and in the units that the deck is written in."""
 
 from __future__ import annotations
 
@@ -12,12 +12,26 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
-# Of each quantity: the unit people read, and how many SI units it is.
+# For each quantity: the unit that people read, and how many SI units one such unit is.
 READ_IN = {"flutter_speed": ("kt", KNOT), "damping": ("% of critical", 0.01)}
 
 
 def sensitivity_records(case: Case, found: xarray.Dataset, of: str) -> list[dict[str, Any]]:
-    """Derivatives input by input, the largest effect of 1 % first."""
+    """Return a record for each input of a sensitivity, the largest effect of 1 % first.
+
+    Parameters
+    ----------
+    case : Case
+    found : xarray.Dataset
+        Of `Case.sensitivity`, for one boundary or mode.
+    of : str
+        A key of `READ_IN`.
+
+    Returns
+    -------
+    list of dict
+        Value, derivatives and status of each input, with units in the names.
+    """
     read_in, factor = READ_IN[of]
     numbers = case.given
     records = []

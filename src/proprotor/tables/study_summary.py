@@ -1,4 +1,4 @@
-"""A study in a few numbers."""
+"""A study in a few numbers: points that failed, doubts, the range of flutter speeds or the lowest damping."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
 
 
 def study_summary(results: xarray.Dataset) -> dict[str, Any]:
-    """What a study found, as plain data.
+    """Return the results of a study in a few numbers, as plain data.
 
     Parameters
     ----------
     results : xarray.Dataset
-        Of `proprotor.study.study.study`.
+        Of `proprotor.study`.
 
     Returns
     -------
     dict
         title; points, how many failed and why, the most frequent reason first, and how many are doubtful and why;
         reservations; of flutter speeds how many were found and are doubtful, the lowest, median and highest in m/s;
-        without them how many points are unstable, and the lowest damping.
+        without flutter speeds how many points are unstable, and the lowest damping.
     """
     reasons = Counter(str(text) for text in results.reason.values.ravel() if text)
     summary: dict[str, Any] = {

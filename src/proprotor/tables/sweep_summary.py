@@ -1,4 +1,4 @@
-"""What a sweep says at a glance: frequency, damping, where modes are unstable, which move the support."""
+"""Numbers of a sweep that tables and plots show: frequency, damping, unstable ranges, modes that move the support."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import xarray
 
-# Of the way that both roots go, and of a root: a name that passes no farther goes on.
+# Shares of the way that both roots go, and of a root: the line of a name goes on where the name passes no farther.
 _BRIDGED, _NEARLY = 2.0, 0.02
 
 
 class UnstableRange(NamedTuple):
-    """Airspeeds between which a root is unstable.
+    """A range of airspeed in which a root is unstable.
 
     Attributes
     ----------
     mode : str
-        What moves in it at the first airspeed at which it is.
+        What moves in the root at the first airspeed at which it is unstable.
     start, stop : float
         m/s, by linear interpolation of Re s between neighbouring points of the sweep.
     open_start, open_stop : bool
         Whether the root is unstable at the first, or the last, point already, so that `start` or `stop`
         is the end of the sweep and not a boundary.
     branch : str
-        The exact root.
+        Label of the exact root.
     """
 
     mode: str
@@ -42,26 +42,26 @@ class UnstableRange(NamedTuple):
 
 
 def damped_frequency(sweep: xarray.Dataset) -> Array:
-    """|Im s| (airspeed, mode) in rad/s, NaN at failed points."""
+    """Return |Im s| (airspeed, mode) in rad/s, NaN at failed points."""
     eigenvalue = sweep.eigenvalue.values
     return np.where(np.isnan(eigenvalue), np.nan, np.abs(eigenvalue.imag))
 
 
 def growth_rate(sweep: xarray.Dataset) -> Array:
-    """Re s (airspeed, mode) in rad/s, exactly zero where it is neutral: zero within the error of the root."""
+    """Return Re s (airspeed, mode) in rad/s, exactly zero where it is zero within the error of the root."""
     real = sweep.eigenvalue.values.real
     return np.where(np.abs(real) <= sweep.eigenvalue_error.values, 0.0, real)
 
 
 def damping_percent(sweep: xarray.Dataset) -> Array:
-    """Damping ratio -Re s/|s| (airspeed, mode) in percent of critical, negative where a mode is unstable."""
+    """Return the damping ratio -Re s/|s| (airspeed, mode) in percent of critical, negative where a mode is unstable."""
     return np.where(growth_rate(sweep) == 0, 0.0, 100 * sweep.damping_ratio.values)
 
 
 def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
-    """Ranges of airspeed in which a root is unstable, by mode in the order of the sweep, then by airspeed.
+    """Return the ranges of airspeed in which a root is unstable, by mode in the order of the sweep, then by airspeed.
 
-    Roots are followed, whatever their names: where a name passes from a stable root to an unstable one nothing crosses.
+    Roots are followed, whatever their names: a name that passes from a stable root to an unstable one crosses nothing.
     Boundaries are interpolated, so they are as good as the sweep is fine; failed points are passed over.
     """
     airspeed, names = sweep.airspeed.values, sweep.mode.values.tolist()
@@ -75,7 +75,7 @@ def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
 
 
 def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[int, float, float, bool, bool]]:
-    """The first unstable point of each range, where it starts and stops, and whether these are ends of the sweep."""
+    """Yield the first unstable point of each range, its start and stop, and whether these are ends of the sweep."""
     unstable = np.concatenate([[False], growth > 0, [False]])
     starts, ends = (
         np.flatnonzero(~unstable[:-1] & unstable[1:]),
@@ -89,15 +89,15 @@ def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[int, float, float,
 
 
 def _zero(airspeed: Array, growth: Array, i: int) -> float:
-    """Where the line through points i and i + 1 is zero."""
+    """Return the airspeed at which the line through points i and i + 1 is zero."""
     return float(airspeed[i] - growth[i] * (airspeed[i + 1] - airspeed[i]) / (growth[i + 1] - growth[i]))
 
 
 def leaps(sweep: xarray.Dataset) -> Array:
-    """Where a name passes to a root that lies elsewhere (points - 1, mode): a line drawn across would be no root.
+    """Return where a name passes to a root that lies elsewhere (points - 1, mode), so that a line across is no root.
 
-    Where two roots veer and exchange their motions they are near each other: from one point to the next, the name goes
-    no farther than twice as far as both roots do, or by 2 % of the root. Then the line of the name goes on.
+    Two roots that veer and exchange their motions are near each other: from one point to the next, the name goes no
+    farther than twice as far as both roots do, or than 2 % of the root. Then the line of the name goes on.
     """
     values, branch = sweep.eigenvalue.values, sweep.branch.values
     both = np.isfinite(values[:-1]) & np.isfinite(values[1:])
@@ -115,12 +115,12 @@ def leaps(sweep: xarray.Dataset) -> Array:
 
 
 def support_coordinates(sweep: xarray.Dataset) -> list[str]:
-    """Coordinates that are not the rotor's."""
+    """Return the coordinates of the support: those that are not the rotor's."""
     return [name for name in sweep.dof.values.tolist() if name not in FIXED_COORDINATES]
 
 
 def support_share(sweep: xarray.Dataset) -> Array:
-    """How much each mode (mode,) moves the support: its largest participation along the sweep, 0 to 1."""
+    """Return how much each mode (mode,) moves the support: the largest participation along the sweep, 0 to 1."""
     share = sweep.participation.sel(dof=support_coordinates(sweep)).sum("dof").values
     largest: Array = np.nanmax(share, axis=0, initial=0)
     return largest

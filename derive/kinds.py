@@ -1,0 +1,203 @@
+"""The kinds of lines in the catalogue of `derive.equations`: what each makes of a derivation.
+
+The summary of a generated function is the first line of its derivation's docstring, unless the line gives another.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from derive import airloads, function, multiblade
+from derive import kinematics as kin
+from derive.coordinates import LOAD, MOTION, SEGMENT_LOADS, SEGMENT_MOTIONS, names
+from derive.function import (
+    DimensionOf,
+    Function,
+    coordinate_dimension,
+    force_per,
+    per_time,
+    plus,
+    row_dimension,
+)
+from derive.published import CONSISTENT
+from derive.symbols import Dimension
+
+Dropped = frozenset[str]
+Derivation = Callable[..., Any]
+
+# Where AIAA-2002-1604 has the equation of each row of a blade.
+ROW_EQUATION = {
+    **dict.fromkeys(kin.HUB_TRANSLATION, "hub force, Eqs. 4-11"),
+    **dict.fromkeys(kin.HUB_ROTATION, "hub moment, Eqs. 4-11"),
+    "flap": "flap, Eqs. 12-13",
+    "lag": "lag, as Eqs. 12-13",
+    "pitch": "pitch, Eqs. 32-34",
+    "azimuth": "rotor torque, Eq. 17",
+    "gimbal_flap": "gimbal, Eqs. 1-3",
+    "gimbal_roll": "gimbal, Eqs. 1-3",
+}
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the catalogue: a function to generate, derived when it is asked for.
+
+    `drops` says that a dropped term can change the function; the derivation then takes the names of dropped terms.
+    """
+
+    name: str
+    drops: bool
+    derive: Callable[[Dropped], Function]
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of the derivation: the module generated from it, the module's title and a line for each function."""
+
+    module: str
+    title: str
+    lines: tuple[Line, ...]
+
+    def functions(self, dropped: Dropped = CONSISTENT, *, drops: bool) -> list[Function]:
+        """Derive the functions that a dropped term can change, or those that it cannot."""
+        return [
+            dataclasses.replace(line.derive(dropped), module=self.module)
+            for line in self.lines
+            if line.drops == drops
+        ]
+
+    @property
+    def changes(self) -> bool:
+        """Whether a dropped term can change any function of the module."""
+        return any(line.drops for line in self.lines)
+
+
+def _without(derivation: Derivation, drops: bool, dropped: Dropped) -> Derivation:
+    """The derivation without dropped terms, if it is one that they can change."""
+    return functools.partial(derivation, dropped=dropped) if drops else derivation
+
+
+def _summary(derivation: Derivation) -> str:
+    return (derivation.__doc__ or "").partition("\n")[0]
+
+
+def values(
+    name: str,
+    derivation: Derivation,
+    origin: str,
+    returned: Iterable[sp.Symbol] | None = None,
+    drops: bool = False,
+) -> Line:
+    """Named values: all of the derivation's steps, or those of some symbols in their order."""
+
+    def derive(dropped: Dropped) -> Function:
+        found = _without(derivation, drops, dropped)()
+        steps = list(found.items() if isinstance(found, Mapping) else found)
+        made = tuple(symbol for symbol, _ in steps)
+        wanted = made if returned is None else tuple(symbol for symbol in returned if symbol in made)
+        return Function("", name, _summary(derivation), origin, steps, values=wanted)
+
+    return Line(name, drops, derive)
+
+
+def matrix(
+    name: str,
+    derivation: Derivation,
+    origin: str,
+    rows: Iterable[str],
+    columns: Iterable[str],
+    dimension: DimensionOf,
+    equation: Mapping[str, str] | str = "",
+    drops: bool = False,
+    **more: Any,
+) -> Line:
+    """A matrix, an entry for each row and column; `equation`, by row, stands above entries in place of the origin."""
+    rows, columns = tuple(rows), tuple(columns)
+
+    def derive(dropped: Dropped) -> Function:
+        value = _without(derivation, drops, dropped)
+        found = function.entries(rows, columns, value, dimension, equation or origin)
+        parts = {"summary": _summary(derivation)} | more
+        return Function("", name, origin=origin, rows=rows, columns=columns, entries=found, **parts)
+
+    return Line(name, drops, derive)
+
+
+def column(name: str, derivation: Derivation, origin: str, rows: Iterable[str], **more: Any) -> Line:
+    """Virtual work in trim by row, one column."""
+
+    def entry(row: str, _: str) -> sp.Expr:
+        return derivation(row)
+
+    entry.__doc__ = derivation.__doc__
+    return matrix(name, entry, origin, rows, ("trim",), lambda row, _: row_dimension(row), **more)
+
+
+def blade_matrix(name: str, derivation: Derivation, order: int, drops: bool = False) -> Line:
+    """A matrix of one blade in rotating axes; `order` counts the time derivatives of the column's coordinate."""
+    rows = kin.COORDINATES
+
+    def derive(dropped: Dropped) -> Function:
+        value = _without(derivation, drops, dropped)
+        found = function.entries(rows, rows, value, force_per(order), ROW_EQUATION)
+        origin = "AIAA-2002-1604: " + "; ".join(dict.fromkeys(ROW_EQUATION[row] for row, _ in found))
+        return Function("", name, _summary(derivation), origin, rows=rows, columns=rows, entries=found)
+
+    return Line(name, drops, derive)
+
+
+def rotor_matrix(name: str, derivation: Derivation, origin: str, order: int, **more: Any) -> Line:
+    """A matrix of the rotor in the fixed frame; `order` as of a blade's."""
+    parts = {
+        "rows": multiblade.FIXED_COORDINATES,
+        "columns": multiblade.FIXED_COORDINATES,
+        "equation": "Eq. 17",
+    }
+    return matrix(name, derivation, origin, dimension=force_per(order), **parts | more)
+
+
+def loads_matrix(
+    name: str, derivation: Derivation, origin: str, columns: Iterable[str], dimension: DimensionOf
+) -> Line:
+    """Generalised loads of a segment."""
+    return matrix(name, derivation, origin, names(SEGMENT_LOADS), columns, dimension)
+
+
+def virtual_motion(rows: Iterable[str], drops: bool = False) -> Line:
+    """W of a segment, for the rows of a balance."""
+    origin = "virtual displacements of the sections, Eqs. 2-11"
+
+    def dimension(load: str, row: str) -> Dimension:
+        return plus(row_dimension(row), minus=LOAD[load].dimension)
+
+    return matrix(
+        "virtual_motion", airloads.virtual_motion, origin, names(SEGMENT_LOADS), rows, dimension, drops=drops
+    )
+
+
+def motion_matrix(
+    name: str,
+    derivation: Derivation,
+    columns: Iterable[str],
+    order: int = 0,
+    origin: str = "perturbation velocities and pitch, Eqs. 14-16",
+    drops: bool = False,
+) -> Line:
+    """U of a segment for the motions in the columns, or for their rates (`order` 1)."""
+
+    def dimension(motion: str, column: str) -> Dimension:
+        return plus(MOTION[motion].dimension, per_time(order), minus=coordinate_dimension(column))
+
+    return matrix(name, derivation, origin, names(SEGMENT_MOTIONS), columns, dimension, drops=drops)
+
+
+def product(name: str, summary: str) -> Line:
+    """What the segments of a blade add to one of its matrices."""
+    origin = "virtual work of Eqs. 12 and 32"
+    return Line(name, False, lambda _: Function("", name, summary, origin, product=airloads.products()[name]))

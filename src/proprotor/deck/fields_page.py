@@ -1,0 +1,65 @@
+"""Write the page docs/decks.md: every field of a deck, section by section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from proprotor.deck.describe import DeckField, deck_fields, plain_path
+from proprotor.deck.sections import section_places, sections_at
+
+_HEAD = """# Fields of a deck
+
+Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py` and
+`support_sections.py`.
+
+A deck is a TOML file. A number with a dimension is text with its unit, `radius = "12.5 ft"`, US and SI units as one
+likes; a plain number has none. Either may be a table that says where it comes from:
+
+    radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
+
+with a status of published, derived, recalled, calibrated or assumed. `base = "xv15"` above all sections alters another
+deck: a field given replaces the base's and its alternatives.
+
+A frequency per revolution, `"0.42/rev"`, is one of the rotor speed that is written in the same file, or in its base
+where the file gives none. Another rotor speed, by `--set`, `vary`, a study, a map, a slider or a deck that alters this
+one, leaves it its hertz: a wing does not know how fast the rotor turns. A frequency that is set in /rev is one of the
+deck's own rotor speed too.
+
+    proprotor new my.toml --from xv15                       # a commented deck that runs as it is
+    proprotor describe rotor.precone                        # one field
+    proprotor describe --schema > deck.schema.json          # for editors
+    proprotor sweep my.toml --speed 50:400:5kt --set rotor.precone="1.5 deg"
+
+An editor that knows JSON schemas for TOML (Even Better TOML, taplo) completes and checks a deck whose first line is
+`#:schema ./deck.schema.json`.
+"""
+
+
+def markdown() -> str:
+    """Return the text of docs/decks.md."""
+    return "\n".join([_HEAD, *_sections()]) + "\n"
+
+
+def _sections() -> Iterator[str]:
+    for place in section_places():
+        for kind, section in sections_at(place).items() if place else ():
+            name = ".".join(place)
+            own = [
+                field
+                for field in deck_fields()
+                if field.kind == kind and plain_path(field.path).rpartition(".")[0] == name
+            ]
+            brackets = f"[[{name}]]" if name == "support.modes" else f"[{name}]"
+            yield f"## {brackets}{f' of kind {kind}' if kind else ''}\n"
+            yield f"{' '.join((section.__doc__ or '').split())}\n"
+            yield "| field | meaning | takes | range | default | instead of |"
+            yield "|---|---|---|---|---|---|"
+            yield from map(_row, own)
+            yield ""
+
+
+def _row(field: DeckField) -> str:
+    name = field.path.rpartition(".")[2]
+    default = "**needed**" if field.required and not field.default else field.default
+    cells = (f"`{name}`", field.meaning, field.takes, field.range, default, ", ".join(field.instead_of))
+    return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"

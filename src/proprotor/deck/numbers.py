@@ -1,0 +1,47 @@
+"""The numbers of a deck by path, such as ``rotor.precone`` or ``support.modes[beam].frequency``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from proprotor.datum import PER_REV, Datum
+
+if TYPE_CHECKING:
+    from proprotor.deck.fields import Section
+    from proprotor.deck.sections import Deck
+
+
+def numbers_of(deck: Deck) -> dict[str, Datum]:
+    """Return every number of a deck by path, frequencies per revolution in rad/s."""
+    speed = deck.operation.rotor_speed.si
+    return {path: _per_second(number, speed) for path, number in _numbers(deck)}
+
+
+def own_numbers(numbers: Mapping[str, Datum], section: str) -> dict[str, Datum]:
+    """Return the numbers of a section by field, without the numbers of sections inside."""
+    start = f"{section}."
+    own = {path.removeprefix(start): number for path, number in numbers.items() if path.startswith(start)}
+    return {name: number for name, number in own.items() if "." not in name}
+
+
+def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
+    """Yield every number of a section and of the sections inside, with its path."""
+    for name in type(section).model_fields:
+        entry, here = getattr(section, name), f"{path}.{name}" if path else name
+        if isinstance(entry, Datum):
+            yield here, entry
+        elif name == "modes" and entry is not None:
+            for mode in entry:
+                yield from _numbers(mode, f"{here}[{mode.name}]")
+        elif hasattr(type(entry), "model_fields"):
+            yield from _numbers(entry, here)
+
+
+def _per_second(number: Datum, rotor_speed: float) -> Datum:
+    """Return a frequency per revolution in rad/s: n per revolution are n Ω, with the Ω of the file it is written in."""
+    if number.unit != PER_REV:
+        return number
+    own = rotor_speed if number.rotor_speed is None else number.rotor_speed
+    return replace(number, si=number.si * own, unit="rad/s", rotor_speed=own)

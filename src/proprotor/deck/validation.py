@@ -1,0 +1,75 @@
+"""Check the tables of a deck against its sections, and put every problem into one line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from proprotor.deck.sections import SECTIONS, Deck, in_the_deck
+from proprotor.deck.support_sections import SUPPORT_KINDS
+from proprotor.deck.text import plain_text
+from proprotor.errors import InputError, unknown_name
+
+# Rules in messages, by pydantic's name of an error.
+_RULES = {
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+    "dict_type": "must be a table",
+    "int_type": "must be a whole number",
+    "list_type": "must be a list",
+    "string_type": "must be text",
+    "bool_type": "must be true or false",
+    "too_short": "must not be empty",
+    "string_too_short": "must not be empty",
+    "string_pattern_mismatch": "must be letters, digits, spaces, dots, dashes and underscores",
+}
+
+
+def validate(tables: dict[str, Any]) -> Deck:
+    """Return the deck in the tables of a TOML file.
+
+    Raises
+    ------
+    InputError
+        With a line for every problem.
+    """
+    tables = plain_text(tables, _field_name)
+    try:
+        return Deck.model_validate(tables)
+    except ValidationError as error:
+        first, *others = [_input_error(problem, tables) for problem in error.errors(include_url=False)]
+        raise InputError(first.field, first.value, first.rule, others) from None
+
+
+def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
+    """Return an error of pydantic with the field's name in the deck and our rule."""
+    place, kind = problem["loc"], problem["type"]
+    field = _field_name(in_the_deck(place), tables)
+    if kind == "value_error":
+        error: InputError = problem["ctx"]["error"]
+        return error.within(field)
+    if kind == "extra_forbidden":
+        known = SECTIONS[tuple(part for part in place[:-1] if isinstance(part, str))].model_fields
+        return InputError(field, problem["input"], unknown_name(str(place[-1]), known))
+    if kind == "literal_error":
+        return InputError(field, problem["input"], f"must be {problem['ctx']['expected']}")
+    if kind in ("missing", "union_tag_not_found"):
+        return InputError(field if kind == "missing" else f"{field}.kind", None, "is missing")
+    if kind == "union_tag_invalid":
+        rule = f"must be {', '.join(map(repr, SUPPORT_KINDS))}"
+        return InputError(f"{field}.kind", problem["ctx"]["tag"], rule)
+    return InputError(field, problem["input"], _RULES.get(kind, problem["msg"]))
+
+
+def _field_name(place: tuple[str | int, ...], tables: Any) -> str:
+    """Return the name of a field, ``support.modes[beam].x`` for ``("support", "modes", 0, "x")``."""
+    text = ""
+    for part in place:
+        tables = tables[part] if not isinstance(tables, dict) or part in tables else None
+        if isinstance(part, str):
+            text += f".{part}" if text else part
+        else:
+            name = tables.get("name") if isinstance(tables, dict) else None
+            text += f"[{name if isinstance(name, str) and name else part}]"
+    return text

@@ -1,0 +1,35 @@
+"""The mass matrix of a rotor at rest, by which a support is told from the rotor that was on it."""
+
+from __future__ import annotations
+
+import numpy as np
+from proprotor_equations import FIXED_COORDINATES, inertia, multiblade, pitch
+
+from proprotor.model.quantities import of_rotor
+from proprotor.rotor.generated import evaluate
+from proprotor.rotor.motions import HUB
+from proprotor.rotor.rotor import Rotor
+from proprotor.rotor.trim import UNKNOWNS
+from proprotor.typing import Array
+
+MASS_AT_REST = (*HUB, "gimbal_1c", "gimbal_1s")  # coordinates of a rotor at rest with locked blades
+
+
+def mass_at_rest(rotor: Rotor) -> Array:
+    """Return the mass matrix of the undeflected rotor with locked blades, which no option of an analysis changes.
+
+    Parameters
+    ----------
+    rotor : Rotor
+
+    Returns
+    -------
+    array (..., 8, 8)
+        On the coordinates `MASS_AT_REST`, in kg, kg m and kg m².
+    """
+    quantities = of_rotor(rotor) | dict.fromkeys(UNKNOWNS, 0.0)
+    quantities |= evaluate(inertia.trim_integrals, quantities)._asdict()
+    blade = evaluate(inertia.mass, quantities) + evaluate(pitch.mass, quantities)
+    places = np.array([FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
+    mass: Array = evaluate(multiblade.mass, quantities, blade)[..., places[:, None], places]
+    return mass

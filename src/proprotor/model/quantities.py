@@ -1,0 +1,83 @@
+"""The numbers of a rotor, its operation and the options of a model, by the names of the derivation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from proprotor_equations import pitch
+
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.generated import evaluate
+from proprotor.rotor.operation import Operation
+from proprotor.rotor.options import Options
+from proprotor.rotor.rotor import Rotor
+from proprotor.typing import Array
+
+COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
+_AIR = ("rotor_speed", "density", "speed_of_sound")
+_ALONG_THE_BLADE = ("airfoil", "chord", "twist")
+_HINGE_INERTIAS = ("flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")
+_SOFTEST_SPRING = 1e-100  # relative to the other spring: a free hinge, without a division by zero in series
+
+
+def batch_shape(
+    rotor: Rotor, operation: Operation, airspeed: Array, drive_train: DriveTrain | None = None
+) -> tuple[int, ...]:
+    """Return the shape of all arrays among the inputs, broadcast together."""
+    inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name != "airfoil"]
+    leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
+    inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)] + leading
+    if isinstance(rotor.airfoil, Airfoil):
+        inputs += [getattr(rotor.airfoil, entry.name) for entry in fields(rotor.airfoil)]
+    inputs += [getattr(operation, name) for name in _AIR]
+    inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())
+    inputs += [] if drive_train is None else list(vars(drive_train).values())
+    return np.broadcast_shapes(np.shape(airspeed), *(np.shape(value) for value in inputs))
+
+
+def flat(value: Any, shape: tuple[int, ...]) -> Any:
+    """Return an array spread over a batch and flattened, (points,); a plain number as it is."""
+    return np.broadcast_to(value, shape).reshape(-1) if np.ndim(value) else value
+
+
+def model_quantities(
+    rotor: Rotor, operation: Operation, options: Options, airspeed: Array, shape: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return `rotor_quantities` and the numbers that the options give: couplings, drive train, section damping."""
+    given = {name: getattr(options, name) for name in COUPLINGS}
+    given |= {} if options.drive_train is None else vars(options.drive_train)
+    given = {name: flat(value, shape) for name, value in given.items() if value is not None}
+    given["section_damping"] = float(bool(options.section_damping))
+    return rotor_quantities(rotor, operation, airspeed, shape) | given
+
+
+def rotor_quantities(
+    rotor: Rotor, operation: Operation, airspeed: Array, shape: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return the quantities of rotor, operation and airspeed: numbers, or arrays flattened over the batch."""
+    given = of_rotor(rotor) | {name: getattr(operation, name) for name in _AIR}
+    softest = _SOFTEST_SPRING * np.maximum(np.maximum(rotor.flap_stiffness, rotor.lag_stiffness), 1.0)
+    given |= {name: np.maximum(given[name], softest) for name in ("flap_stiffness", "lag_stiffness")}
+    given |= {"propeller_moment": float(rotor.propeller_moment), "airspeed": airspeed}
+    return {name: flat(value, shape) for name, value in given.items()}
+
+
+def of_rotor(rotor: Rotor) -> dict[str, Any]:
+    """Return the rotor's own numbers, without what is distributed along the blade."""
+    names = [entry.name for entry in fields(rotor) if entry.name not in _ALONG_THE_BLADE]
+    return {name: getattr(rotor, name) for name in (*names, *_HINGE_INERTIAS)}
+
+
+def couplings(options: Options, quantities: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the pitch-flap and pitch-lag couplings of the airloads' pitch: as given, else in closed form.
+
+    Both are zero unless pitch="coupling".
+    """
+    if options.pitch != "coupling":
+        return dict.fromkeys(COUPLINGS, 0.0)
+    closed_form: dict[str, Any] = evaluate(pitch.couplings, quantities)._asdict()
+    return closed_form | {name: quantities[name] for name in COUPLINGS if name in quantities}

@@ -1,0 +1,134 @@
+"""A bound that shows, without following the path, that one equilibrium leads to another.
+
+With J_λ(x) the slopes at a share λ, P the inverse of their mean over a step in λ and x, and N the largest
+|P J_λ(x) - 1| in the step entry by entry, Newton's iteration with P contracts for every λ of the step where N has a
+spectral radius below one: then each λ has one equilibrium within reach, and together these equilibria are a curve that
+does not turn. The share of the airloads makes J linear in λ, so that the ends of the step hold the extremes. Where the
+blade is, its precone included, J is known at both ends; J is taken to change twice as much within reach of the path as
+between the ends, and the radius may be one half at most.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.trim import UNKNOWNS
+from proprotor.rotor.trim_balance import Balance, Slopes, State, solve
+from proprotor.typing import Array
+
+CONTRACTION = 0.5  # largest spectral radius of N
+_REACH = (
+    2.0  # change of slopes within reach of the path, in multiples of the change between the ends of a step
+)
+_WINDOWS = (1, 4, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
+_POWER_STEPS, _FLOOR = 8, 1e-9
+
+
+def contraction(
+    sprung: Array,
+    before: Slopes,
+    after: Slopes,
+    share: Array,
+    to: Array,
+    *,
+    windows: int = 1,
+    between: Slopes | None = None,
+    enough: float = CONTRACTION,
+) -> Array:
+    """Return the spectral radius (n,) of N in a step; up to `CONTRACTION` the path leads to the other end unturned.
+
+    Parameters
+    ----------
+    sprung : array (k,)
+        Which rows are flap and lag.
+    before, after : Slopes
+        At the two equilibria.
+    share, to : array (n,)
+        λ of the two equilibria.
+    windows : int
+        Parts of the step in λ in which the bound has to hold, each with a P of its own.
+    between : Slopes, optional
+        Half-way, for section models whose slopes may change there in a way that the ends do not show.
+    enough : float
+        Radius above which slopes by angles are tried as well as slopes by moments.
+    """
+
+    def radius(rows: Array, *slopes: Slopes) -> Array:
+        n, half = len(rows), (to - share)[rows] / (2 * windows)
+        middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
+        again = np.tile(np.arange(n), windows)  # all windows at once
+        moved = _moved(half[again], middles.ravel(), *(part.of(again) for part in slopes))
+        largest: Array = _radius(moved).reshape(windows, n).max(axis=0)
+        return largest
+
+    slopes = (before, after) if between is None else (before, after, between)
+    return _by_moments_or_angles(sprung, radius, *slopes, enough=enough)
+
+
+def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
+    """Return whether slopes at all of the loads are so near the expected ones that one equilibrium has both."""
+
+    def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
+        return _radius(np.abs(solve(expected.full, found.full - expected.full)))
+
+    near: Array = _by_moments_or_angles(sprung, radius, found, expected) <= CONTRACTION
+    return near
+
+
+def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
+    """Return whether points (n,) with these slopes at the start and here are at the end of the path, by the bound."""
+    smooth = isinstance(balance.sections.airfoil, Airfoil)
+    half_way = {name: (start[name] + state[name]) / 2 for name in UNKNOWNS}
+    between = None if smooth else balance.near(half_way, rows, share=0.5).slopes
+    found = np.zeros(len(rows), dtype=bool)
+    left = np.arange(len(rows))
+    for windows in _WINDOWS:
+        ends = np.zeros(len(left)), np.ones(len(left))
+        middle = None if between is None else between.of(left)
+        radius = contraction(
+            balance.sprung, before.of(left), after.of(left), *ends, windows=windows, between=middle
+        )
+        found[left] = radius <= CONTRACTION
+        left = left[~found[left]]
+        if not len(left):
+            break
+    return found
+
+
+def _by_moments_or_angles(
+    sprung: Array, radius: Callable[..., Array], *slopes: Slopes, enough: float = CONTRACTION
+) -> Array:
+    """Return the spectral radius (n,) with slopes by moments or, where smaller and needed, with slopes by angles."""
+    rows = np.arange(len(slopes[0].full))
+    found = radius(rows, *(part.by_moments(sprung) for part in slopes))
+    rows = np.flatnonzero(~(found <= enough))
+    if len(rows):
+        found[rows] = np.fmin(found[rows], radius(rows, *(part.of(rows) for part in slopes)))
+    return found
+
+
+def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
+    """Return N (n, k, k) of a window in λ, given by its half length and its middle."""
+    mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
+    change = Slopes(*((b - a) / 2 for a, b in zip(before, after, strict=True)))
+    aside = (Slopes(*(a - b for a, b in zip(part, mean, strict=True))) for part in between)
+    parts = [half[:, None, None] * mean.airloads, *(part.at(middle) for part in (change, *aside))]
+    moved = np.abs(solve(mean.at(middle), np.concatenate(parts, axis=-1)))
+    in_share, *in_place = np.split(moved, len(parts), axis=-1)
+    largest: Array = in_share + _REACH * np.maximum.reduce(in_place)
+    return largest
+
+
+def _radius(matrix: Array) -> Array:
+    """Return a bound (n,) of the spectral radius of matrices (n, k, k) without negative entries.
+
+    The bound is that of Collatz and Wielandt, after some steps of power iteration.
+    """
+    weight = np.ones((*matrix.shape[:2], 1))
+    for _ in range(_POWER_STEPS):
+        weight = matrix @ weight + _FLOOR * weight
+    bound: Array = (matrix @ weight / weight)[..., 0].max(axis=1, initial=0.0)
+    return bound

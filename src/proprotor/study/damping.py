@@ -1,0 +1,122 @@
+"""The damping of a mode of the support along the airspeeds, for many designs at once, and where it is lost."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+_OF_THE_SUPPORT = 0.1  # participation of the support from which on a mode counts as one that moves it
+
+
+def mode_damping(
+    results: xarray.Dataset, mode: str | None = None, named_to: float | None = None
+) -> xarray.DataArray:
+    """Return the damping ratio of a mode of the support, or the least of all modes that move the support.
+
+    Up to the airspeed `named_to` a mode is at each airspeed the one in which the coordinate of the support moves most:
+    where a mode of the rotor meets it, the name passes from one root to the other. From there on the root that has
+    the name at `named_to` is followed, because the rotor takes over modes that flutter.
+
+    Percentiles over the designs of a sample are ``mode_damping(results, mode).quantile([0.05, 0.5, 0.95], "design")``.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        A study with ``quantities="modes"``, or `follow_modes` of a batch of models.
+    mode : str, optional
+        A coordinate of the support, such as "chord". Without it, at each airspeed the lowest damping ratio of all
+        oscillating modes in which the support takes part with a tenth or more, whatever their names.
+    named_to : float, optional
+        m/s; the middle one of the airspeeds by default.
+
+    Returns
+    -------
+    xarray.DataArray
+        -Re s/|s| (..., airspeed), dimensionless, NaN at failed points; dimensions of the designs first.
+
+    Raises
+    ------
+    InputError
+        When the results have no modes along airspeeds, or none of this name.
+    """
+    if "airspeed" not in getattr(results.get("mode_eigenvalue"), "dims", ()):
+        raise InputError("results", None, 'must be a study of quantities="modes" along airspeeds')
+    in_order = results.transpose(..., "airspeed", "state")
+    values = in_order.mode_eigenvalue.values
+    with np.errstate(all="ignore"):
+        ratio = -values.real / np.abs(values)
+    if mode is None:
+        counts = (in_order.mode_support_share.values >= _OF_THE_SUPPORT) & (values.imag > 0)
+        least = np.where(counts, ratio, np.inf).min(axis=-1)
+        damping = np.where(np.isfinite(least), least, np.nan)
+    else:
+        damping = _of_name(in_order.mode_name.values, values, ratio, mode, _named_points(results, named_to))
+    of_points = in_order.mode_eigenvalue.isel(state=0, drop=True)
+    label = "damping ratio of " + (mode or "the modes that move the support")
+    found: xarray.DataArray = of_points.copy(data=damping).rename("damping_ratio")
+    return found.assign_attrs({"units": "1", "long_name": label})
+
+
+def _named_points(results: xarray.Dataset, named_to: float | None) -> int:
+    """Return at how many airspeeds the name tells which mode is meant."""
+    if named_to is None:
+        return results.sizes["airspeed"] // 2 + 1
+    return int((results.airspeed.values <= named_to).sum())
+
+
+def _of_name(names: Array, values: Array, ratio: Array, mode: str, named: int) -> Array:
+    """Return the damping ratio (..., airspeeds) of the state that has a name, and is followed beyond its last point.
+
+    Parameters
+    ----------
+    names, values, ratio : array (..., airspeeds, states)
+    mode : str
+    named : int
+        Number of airspeeds at which the name tells; a design that failed at all of them has the name of its first
+        good one.
+    """
+    has_name = (names == mode) & (values.imag >= 0)
+    if not has_name.any():
+        known = sorted(set(names[names != ""].tolist()))
+        raise InputError("mode", mode, unknown_name(mode, known, "mode"))
+    works, airspeeds = has_name.any(axis=-1), np.arange(names.shape[-2])
+    early = works & (airspeeds < named)
+    last = np.where(early.any(axis=-1), (early * airspeeds).max(axis=-1), works.argmax(axis=-1))[..., None]
+    places = has_name.argmax(axis=-1)
+    places = np.where(airspeeds > last, np.take_along_axis(places, last, -1), places)
+    found = np.take_along_axis(ratio, places[..., None], -1)[..., 0]
+    return np.where(works | (airspeeds > last), found, np.nan)
+
+
+def first_boundary(airspeed: ArrayLike, damping: ArrayLike) -> Array:
+    """Return the lowest airspeed at which damping falls through zero, by linear interpolation between airspeeds.
+
+    Parameters
+    ----------
+    airspeed : array (airspeeds,)
+        Rising, in any unit.
+    damping : array (..., airspeeds)
+        Such as `mode_damping`, dimensionless.
+
+    Returns
+    -------
+    array (...)
+        In the unit of the airspeed: infinite where damping does not fall through zero, the first airspeed where it is
+        negative there already.
+    """
+    airspeed, damping = np.asarray(airspeed, dtype=float), np.asarray(damping)
+    falls = (damping[..., :-1] > 0) & (damping[..., 1:] <= 0)
+    first = falls.argmax(axis=-1)
+    above, below = (np.take_along_axis(damping, (first + step)[..., None], -1)[..., 0] for step in (0, 1))
+    with np.errstate(all="ignore"):
+        place = airspeed[first] + above / (above - below) * (airspeed[first + 1] - airspeed[first])
+    found = np.where(falls.any(axis=-1), place, np.inf)
+    return np.where(damping[..., 0] < 0, airspeed[0], found)

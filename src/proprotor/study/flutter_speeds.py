@@ -1,0 +1,127 @@
+"""The flutter speed of each design of a batch: the lowest airspeed of a range at which a mode becomes unstable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from proprotor.model.first_order import held_coordinates
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.crossings import Brackets, Crossing, Search
+from proprotor.stability.matching import Spectrum
+from proprotor.stability.mode_names import moving
+from proprotor.stability.modes import coordinate_shares
+from proprotor.study.variables import ALWAYS, STABLE, UNSTABLE
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    from proprotor.study.batch import Batch
+
+_Models = Callable[
+    [Array, Array], LinearModel
+]  # rows of a batch, and an airspeed for each, to the models there
+
+
+def put_flutter_speeds(
+    found: dict[str, Array], batch: Batch, rows: Array, models: _Models, states: int, tolerance: float
+) -> None:
+    """Put the variables of the quantity "flutter" of some designs in their places.
+
+    Parameters
+    ----------
+    found : dict of array
+        The variables of the batch, with the reasons of designs that cannot be.
+    batch : Batch
+    rows : array of int
+        The designs to search.
+    models : callable
+    states : int
+        Of the model; 0 where they are not known.
+    tolerance : float
+        On a flutter speed, m/s.
+    """
+    speeds = batch.shape[1]
+    search = Search(
+        models,
+        np.repeat(rows, speeds),
+        np.tile(np.asarray(batch.speeds, dtype=float), len(rows)),
+        onset_only=True,
+        forgiving=True,
+        states=states or None,
+    )
+    for name in ALWAYS:
+        found[name][rows] = getattr(search.scanned, name).reshape(len(rows), speeds)
+    found["flutter_note"][:] = _notes(found["reason"], batch, search)
+    if search.scanned.points is None:
+        return
+    brackets = Brackets(search, tolerance)
+    first = _lowest(brackets.close())
+    for place, why in brackets.lost.items():
+        if brackets.line[place] not in first:
+            found["flutter_note"][brackets.line[place]] = f"the search for its boundary failed: {why}"
+    _put_least_damping(found, search)
+    if first:
+        _put_onsets(found, first, models)
+
+
+def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: _Models) -> None:
+    """Put the lowest onset of each design that has one in its place, with what moves there."""
+    rows, onsets = np.array(list(first)), list(first.values())
+    model = models(rows, np.array([one.position for one in onsets]))
+    spectra = (np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right"))
+    values, right, left = Spectrum(*spectra).all_modes
+    every, state = np.arange(len(rows)), np.array([one.state for one in onsets])
+    held = held_coordinates(model, values.shape[-1])
+    shares = coordinate_shares(held, len(model.dofs), left, right)[every, :, state]
+    found["flutter_speed"][rows] = [one.position for one in onsets]
+    found["flutter_frequency"][rows] = [abs(one.value.imag) for one in onsets]
+    found["flutter_mode"][rows] = moving(model, values, left, right).names[every, state]
+    found["flutter_coordinate"][rows] = np.array(model.dofs, dtype=object)[shares.argmax(axis=-1)]
+    found["flutter_warning"][rows] = model.trim.warning
+    stable = found["flutter_note"][rows] != UNSTABLE
+    found["flutter_note"][rows[stable]] = ""
+
+
+def _notes(reason: Array, batch: Batch, search: Search) -> Array:
+    """Return a sentence on each design before any boundary is known."""
+    note = np.full(len(reason), "", dtype=object)
+    works, unstable = np.zeros(len(reason), dtype=bool), np.zeros(len(reason), dtype=bool)
+    if search.scanned.points is not None:
+        points = search.first_points
+        order = np.lexsort((points.position, points.line))
+        lines, place = np.unique(points.line[order], return_index=True)
+        first = order[place]
+        works[lines], unstable[lines] = True, (points.growth[first] > points.error[first]).any(axis=1)
+    for row, why in enumerate(reason):
+        if not works[row]:
+            note[row] = why[0] or "no airspeed could be analysed"
+        else:
+            note[row] = UNSTABLE if unstable[row] else STABLE + _beyond(batch.speeds, why)
+    return note
+
+
+def _beyond(airspeed: Array, reason: Array) -> str:
+    """Return which failed airspeeds leave open whether a design is stable."""
+    failed = np.flatnonzero(reason != "")
+    if not len(failed):
+        return ""
+    return f"; {len(failed)} airspeeds failed, at {airspeed[failed[0]]:.6g} m/s: {reason[failed[0]]}"
+
+
+def _lowest(found: list[Crossing]) -> dict[int, Crossing]:
+    """Return the lowest onset of each design that has one."""
+    return {one.line: one for one in sorted(found, key=lambda one: one.position, reverse=True)}
+
+
+def _put_least_damping(found: dict[str, Array], search: Search) -> None:
+    """Put the lowest damping ratio of each design at the airspeeds of the range in its place."""
+    scanned = search.scanned.points
+    assert scanned is not None  # of a search with points
+    values, size = scanned.spectrum.values, np.abs(scanned.spectrum.values)
+    with np.errstate(all="ignore"):
+        ratio = np.where(size > scanned.error, -values.real / size, np.inf).min(axis=1)
+    least = np.full(len(found["flutter_note"]), np.inf)
+    np.minimum.at(least, scanned.line, ratio)
+    found["flutter_least_damping"][:] = np.where(np.isfinite(least), least, np.nan)

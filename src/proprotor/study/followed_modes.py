@@ -1,0 +1,132 @@
+"""Modes of many designs, each followed along the airspeeds of its own design, all designs at once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from proprotor_equations import FIXED_COORDINATES
+
+from proprotor.errors import InputError
+from proprotor.model import stamp
+from proprotor.model.first_order import held_coordinates
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.matching import NOT_TOLD, Spectrum, link
+from proprotor.stability.mode_names import moving
+from proprotor.stability.modes import coordinate_shares, decomposition
+from proprotor.study.roots import by_frequency
+from proprotor.study.variables import dataset_of
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def follow_modes(model: LinearModel) -> xarray.Dataset:
+    """Return the modes of many designs, followed along the airspeeds: what a study has of ``quantities="modes"``.
+
+    For models that no study makes, such as those with options that are arrays over the airspeeds.
+
+    Parameters
+    ----------
+    model : LinearModel
+        A batch (designs, airspeeds), at airspeeds that rise along the second axis and are the same for all designs.
+
+    Returns
+    -------
+    xarray.Dataset
+        mode_eigenvalue (design, airspeed, state) in rad/s and its name, share, quality and support share, as
+        `proprotor.study` returns them; reason and warning (design, airspeed).
+
+    Raises
+    ------
+    InputError
+        When the batch has another number of axes, or designs have different airspeeds.
+    """
+    if model.airspeed.ndim != 2:
+        given = f"array of shape {model.airspeed.shape}"
+        raise InputError("airspeed", given, "must be a batch of designs by airspeeds")
+    if np.ptp(model.airspeed, axis=0).any():
+        raise InputError("airspeed", None, "must be the same for all designs")
+    found = modes_along(model, decomposition(model))
+    found |= {"reason": model.trim.reason, "warning": doubted(model.trim.warning, found["mode_quality"])}
+    coordinates = {
+        "design": np.arange(len(model.airspeed)),
+        "airspeed": ("airspeed", model.airspeed[0], {"units": "m/s"}),
+    }
+    return dataset_of(found, {"design": len(model.airspeed)}, coordinates, stamp.of_model(model))
+
+
+def modes_along(model: LinearModel, spectrum: Spectrum) -> dict[str, Array]:
+    """Return the variables of the quantity "modes" for a batch of designs and airspeeds.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Points (designs, airspeeds).
+    spectrum : Spectrum
+        Eigenvalues and vectors of the model.
+    """
+    modes = spectrum.all_modes
+    places, quality, first = _follow(spectrum)
+    followed = np.take_along_axis(modes.values, places, -1)
+    moves = moving(model, modes.values, modes.left, modes.right)
+    shares = coordinate_shares(held_coordinates(model), len(model.dofs), modes.left, modes.right)
+    support = [place for place, name in enumerate(model.dofs) if name not in FIXED_COORDINATES]
+    designs = np.arange(len(places))
+    main = np.take_along_axis(
+        np.nan_to_num(shares[designs, first]).argmax(axis=-2), places[designs, first], -1
+    )
+    none = np.isnan(followed[designs, first])
+    return {
+        "mode_eigenvalue": followed,
+        "mode_quality": np.where(np.isnan(followed), np.nan, quality),
+        "mode_name": np.take_along_axis(moves.names, places, -1),
+        "mode_share": np.take_along_axis(moves.share, places, -1),
+        "mode_support_share": np.take_along_axis(shares[..., support, :].sum(axis=-2), places, -1),
+        "mode_coordinate": np.where(none, "", np.array(model.dofs, dtype=object)[main]),
+    }
+
+
+def _follow(spectrum: Spectrum) -> tuple[Array, Array, Array]:
+    """Follow the states of each design over its failed points.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        Of points (designs, speeds).
+
+    Returns
+    -------
+    places : array (designs, speeds, states) of int
+        Where each followed state is at each airspeed; states by their frequency at the design's first good airspeed.
+    quality : array (designs, speeds, states)
+        Trust in the step from the good airspeed before, see `proprotor.stability.matching.link`: NaN at the first good
+        airspeed and at failed points.
+    first : array (designs,) of int
+        Place of the first good airspeed, -1 where there is none.
+    """
+    designs, speeds, states = spectrum.values.shape
+    good = spectrum.works
+    points = np.flatnonzero(good)
+    same_design = np.diff(points // speeds) == 0
+    before, after = points[:-1][same_design], points[1:][same_design]
+    flat = Spectrum(*(array.reshape(designs * speeds, *array.shape[2:]) for array in spectrum[:2]))
+    steps = link(flat, before, after)
+    places = by_frequency(spectrum.values).reshape(-1, states)
+    quality = np.full(places.shape, np.nan)
+    for speed in range(1, speeds):
+        rows = np.flatnonzero(after % speeds == speed)
+        here = places[before[rows]]
+        places[after[rows]] = np.take_along_axis(steps.successor[rows], here, -1)
+        quality[after[rows]] = np.take_along_axis(steps.quality[rows], here, -1)
+    first = np.where(good.any(axis=1), good.argmax(axis=1), -1)
+    return places.reshape(designs, speeds, states), quality.reshape(designs, speeds, states), first
+
+
+def doubted(warning: Array, quality: Array) -> Array:
+    """Return warnings (designs, speeds) with one more at points to which a step of no quality leads."""
+    joined = np.array(warning, dtype=object)
+    lost = (quality <= 0).any(axis=-1)
+    joined[lost] = [f"{text}; {NOT_TOLD}" if text else NOT_TOLD for text in joined[lost]]
+    return joined

@@ -1,0 +1,223 @@
+"""What is asked of a study, read and checked: designs and airspeeds in SI, and the analysis that each batch gets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from proprotor_equations import FIXED_COORDINATES
+
+from proprotor.errors import InputError, unknown_name
+from proprotor.files.fingerprint import fingerprint
+from proprotor.model import stamp
+from proprotor.rotor.motions import HUB, ROTOR_SPEED
+from proprotor.rotor.options import parse_options
+from proprotor.study.batch import Analysis, Batch
+from proprotor.study.designs import AIRSPEED, Designs, Plan
+from proprotor.study.sampling import as_plan
+from proprotor.study.variables import (
+    ALONG_AIRSPEEDS,
+    QUANTITIES,
+    bytes_of,
+    dataset_of,
+    shape_of,
+    variables,
+)
+from proprotor.typing import Array
+from proprotor.units import in_metres_per_second
+
+if TYPE_CHECKING:
+    import xarray
+
+    from proprotor.case import Case
+
+_SHAFT = "drive_train.shaft_stiffness"
+_MOST_TRIED = 25  # airspeeds, to see the coordinates of the model
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What is asked of a study.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        Of each batch.
+    designs : Designs
+    airspeed : array (speeds,) or None
+        m/s, of every design; None where airspeed is among the inputs.
+    scalar_airspeed : bool
+        Whether one airspeed was given as a number, so that the results have no axis of airspeeds.
+    """
+
+    analysis: Analysis
+    designs: Designs
+    airspeed: Array | None
+    scalar_airspeed: bool
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of designs and of airspeeds."""
+        return len(self.designs), 1 if self.airspeed is None else len(self.airspeed)
+
+    @property
+    def identity(self) -> dict[str, str]:
+        """Fingerprints of everything that the results depend on."""
+        from importlib.metadata import version
+
+        analysis = self.analysis
+        parts = {
+            "case": analysis.case,
+            "inputs": [self.designs.values, self.designs.axes],
+            "airspeeds": self.airspeed,
+            "quantities": analysis.quantities,
+            "options": dict(analysis.options),
+            "tolerance": analysis.tolerance,
+            "code": analysis.code,
+            "versions": [
+                version(package) for package in ("proprotor", "numpy", "scipy", "pystran", "fluids")
+            ],
+        }
+        return {name: fingerprint(part, name) for name, part in parts.items()}
+
+    @property
+    def size(self) -> float:
+        """Bytes of all results at most, before the coordinates are known."""
+        dofs = _most_coordinates(self.analysis.case, self.analysis.options)
+        return float(
+            sum(
+                math.prod(shape_of(one, self.shape, 2 * dofs, dofs)) * bytes_of(one)
+                for one in variables(self.analysis.quantities).values()
+            )
+        )
+
+    def batch(self, block: tuple[slice, slice]) -> Batch:
+        """Return the designs and airspeeds of a block."""
+        return Batch(self.designs.values, self.airspeed).some(*block)
+
+    def with_coordinates(self) -> Request:
+        """Return the same request with the coordinates of the model, for which a few points are analysed."""
+        case, options = self.analysis.case, self.analysis.options
+        tried = self.designs.values[AIRSPEED] if self.airspeed is None else self.airspeed
+        dofs = _coordinates(case, tried, options)
+        held = _a_shaft_holds(case, self.designs, options)
+        states = 2 * len(dofs) - (ROTOR_SPEED in dofs and not held)
+        return replace(self, analysis=replace(self.analysis, dofs=dofs, states=states))
+
+    def dataset(self, found: Mapping[str, Array]) -> xarray.Dataset:
+        """Return variables of all designs and airspeeds as a dataset over the inputs and airspeeds."""
+        analysis = self.analysis
+        coordinates: dict[str, Any] = dict(self.designs.coordinates)
+        over_speeds = self.airspeed is not None and not self.scalar_airspeed
+        if self.airspeed is not None:
+            speeds = self.airspeed if over_speeds else self.airspeed[0]
+            coordinates[AIRSPEED] = ((AIRSPEED,) * over_speeds, speeds, {"units": "m/s"})
+        if "vectors" in analysis.quantities:
+            coordinates["dof"] = list(analysis.dofs)
+        axes = dict(zip(self.designs.axes, self.designs.shape, strict=True))
+        attributes = stamp.of_case(analysis.case, analysis.options) | self.designs.attributes
+        return dataset_of(found, axes, coordinates, attributes, over_speeds)
+
+
+def requested(
+    case: Case,
+    inputs: Plan | Mapping[str, Any],
+    airspeed: Any,
+    quantities: str | Sequence[str],
+    tolerance: Any,
+    options: Mapping[str, Any],
+    code: str,
+) -> Request:
+    """Return what is asked of a study, from the arguments of `proprotor.study`.
+
+    Raises
+    ------
+    InputError
+        For an unknown input, quantity or option, a value with a wrong unit, or airspeeds that the quantities refuse.
+    """
+    quantities = _known_quantities(quantities)
+    parse_options(case.model_options(options))
+    plan = as_plan(inputs)
+    from proprotor.deck.vary import design_inputs
+
+    deck = design_inputs(case) if set(plan.inputs) - {AIRSPEED} else {}
+    designs = plan.resolve(deck)
+    own = AIRSPEED in plan.inputs
+    if own == (airspeed is not None):
+        raise InputError(AIRSPEED, airspeed, "must be given, either for all designs or among the inputs")
+    speeds = None if own else in_metres_per_second(airspeed)
+    if speeds is not None and (speeds.ndim > 1 or not speeds.size):
+        raise InputError(AIRSPEED, f"array of shape {speeds.shape}", "must be a speed or a list of speeds")
+    for name in ALONG_AIRSPEEDS:
+        if name in quantities:
+            _check_range(speeds, name)
+    analysis = Analysis(case, quantities, options, code=code)
+    if tolerance is not None:
+        analysis = replace(analysis, tolerance=_above_zero("tolerance", tolerance))
+    line = None if speeds is None else np.atleast_1d(speeds)
+    return Request(analysis, designs, line, speeds is not None and not speeds.ndim)
+
+
+def _known_quantities(quantities: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the quantities in their own order, each once."""
+    chosen = (quantities,) if isinstance(quantities, str) else tuple(quantities)
+    for name in chosen:
+        if name not in QUANTITIES:
+            raise InputError("quantities", name, unknown_name(str(name), QUANTITIES, "quantity"))
+    if not chosen:
+        raise InputError("quantities", None, f"must be of {', '.join(QUANTITIES)}")
+    return tuple(name for name in QUANTITIES if name in chosen)
+
+
+def _check_range(speeds: Array | None, quantity: str) -> None:
+    if speeds is None or speeds.ndim != 1 or speeds.size < 2 or not np.all(np.diff(speeds) > 0):
+        given = "among the inputs" if speeds is None else np.array2string(speeds, threshold=4)
+        raise InputError(AIRSPEED, given, f'must be a range of increasing speeds for quantities="{quantity}"')
+
+
+def _above_zero(name: str, value: Any) -> float:
+    if not isinstance(value, int | float) or not value > 0:
+        raise InputError(name, value, "must be a number above zero")
+    return float(value)
+
+
+# Coordinates of the model -------------------------------------------------------------------------
+
+
+def _a_shaft_holds(case: Case, designs: Designs, options: Mapping[str, Any]) -> bool:
+    """Return whether a shaft holds the azimuth of any design, which then has one eigenvalue more than others."""
+    train = case.model_options(options).get("drive_train")
+    stiffness = 0.0 if train is None else train.shaft_stiffness
+    if "drive_train" not in options:
+        stiffness = designs.values.get(_SHAFT, stiffness)
+    return bool(np.any(np.nan_to_num(stiffness) > 0))
+
+
+def _most_coordinates(case: Case, options: Mapping[str, Any]) -> int:
+    """Return the number of coordinates of a model of the case with everything free."""
+    blades = 3 * (int(np.max(case.rotor.n_blades)) - 3) if options.get("reactionless") else 0
+    return len(case.support.names) + len(FIXED_COORDINATES) - len(HUB) + blades
+
+
+def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the coordinates of the case's model.
+
+    Raises
+    ------
+    InputError
+        When options hold arrays, which would make many models of one point.
+    """
+    few = speeds[np.unique(np.linspace(0, len(speeds) - 1, _MOST_TRIED).astype(int))]
+    few = np.roll(few, -(len(few) // 2))  # the middle is the likeliest to have a trim
+    for tried in (few[:1], few):
+        model = case.linearize(tried, **options)
+        if model.trim.converged.any():
+            break
+    if model.M.shape[:-2] != tried.shape:
+        raise InputError(
+            "options", ", ".join(options), "must not hold arrays: vary the case's inputs instead"
+        )
+    return model.dofs

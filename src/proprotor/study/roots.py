@@ -1,0 +1,77 @@
+"""Eigenvalues of the points of a batch, the vectors of the modes, and the least stable mode."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from proprotor.model.first_order import held_coordinates
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.matching import Spectrum
+from proprotor.stability.modes import coordinate_motion
+from proprotor.stability.root_error import error_near_zero
+from proprotor.typing import Array
+
+_BLOCK = 64  # points whose vectors stay in the cache
+
+
+def by_frequency(values: Array) -> Array:
+    """Return the order (..., states) by |Im s|, the root above the real axis first; NaN last."""
+    return np.lexsort((values.real, values.imag < 0, np.abs(values.imag)), axis=-1)
+
+
+def ordered(values: Array) -> Array:
+    """Return eigenvalues (..., states) by frequency, NaN last and at failed points."""
+    return np.take_along_axis(values, by_frequency(values), -1)
+
+
+def vectors(model: LinearModel, spectrum: Spectrum) -> Array:
+    """Return the motion of the coordinates (..., n, states) by frequency, the largest component of a mode 1."""
+    values, right = spectrum.values, spectrum.right
+    n, held, states = len(model.dofs), held_coordinates(model), values.shape[-1]
+    flat, columns = values.reshape(-1, states), right.reshape(-1, states, states)
+    found = np.empty((len(flat), n, states), dtype=complex)
+    for start in range(0, len(flat), _BLOCK):
+        rows = slice(start, start + _BLOCK)
+        shapes = coordinate_motion(held, n, flat[rows], columns[rows])
+        shapes = np.where(np.isnan(flat[rows])[:, None, :], np.nan, shapes)
+        order = by_frequency(flat[rows])
+        found[rows] = _largest_one(np.take_along_axis(shapes, order[:, None, :], -1))
+    return found.reshape(*values.shape[:-1], n, states)
+
+
+def _largest_one(shapes: Array) -> Array:
+    """Divide columns by their largest component."""
+    size = np.nan_to_num(shapes.real**2 + shapes.imag**2)
+    with np.errstate(all="ignore"):
+        scaled: Array = shapes / np.take_along_axis(shapes, size.argmax(axis=-2)[..., None, :], -2)
+    return scaled
+
+
+def least_stable(model: LinearModel, values: Array) -> dict[str, Array]:
+    """Return the largest growth of each point, and the damping and frequency of the mode damped least.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Points (...).
+    values : array (..., states)
+        All eigenvalues, rad/s.
+
+    Notes
+    -----
+
+    A root at zero within its error does not count, and the growth of one that is neutral is zero.
+    """
+    error = error_near_zero(model, values)
+    size = np.abs(values)
+    counts = size > error
+    with np.errstate(all="ignore"):
+        ratio = np.where(counts, -values.real / size, np.inf)
+    place = ratio.argmin(axis=-1)[..., None]
+    failed = np.isnan(values).all(axis=-1)
+    growth = np.where(counts, np.where(np.abs(values.real) <= error, 0.0, values.real), -np.inf).max(axis=-1)
+    return {
+        "growth_rate": np.where(failed, np.nan, growth),
+        "damping_ratio": np.where(failed, np.nan, np.take_along_axis(ratio, place, -1)[..., 0]),
+        "frequency": np.where(failed, np.nan, np.abs(np.take_along_axis(values.imag, place, -1)[..., 0])),
+    }

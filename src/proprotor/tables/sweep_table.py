@@ -1,0 +1,230 @@
+"""A sweep as a table: lines for a terminal, records for JSON and CSV, and sentences on what the table shows."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor import units
+from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked
+from proprotor.stability.mode_names import DOUBTFUL
+from proprotor.tables.csv_text import csv_of
+from proprotor.tables.sweep_summary import (
+    UnstableRange,
+    damped_frequency,
+    damping_percent,
+    growth_rate,
+    support_coordinates,
+    support_share,
+    unstable_ranges,
+)
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+    from rich.text import Text
+
+    from proprotor.case import Case
+
+CONVENTION = (
+    "Frequency |Im s| per revolution (/rev); damping -Re s/|s| in percent of critical (%), "
+    "negative and marked * where a mode is unstable."
+)
+_SPEED_WIDTH = 7
+_MODE_WIDTH = 14
+
+
+def heading(case: Case) -> str:
+    """Return the title of a case and its rotor speed, as they stand above its tables."""
+    return f"{case.title or case.name}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
+
+
+@dataclass(frozen=True, eq=False)
+class SweepTable:
+    """The numbers of a sweep in the units that people read.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        Of `Case.sweep`.
+    rotor_speed : float
+        rad/s, for frequencies per revolution.
+    unit : str
+        Unit of airspeeds, such as "kt".
+
+    Raises
+    ------
+    InputError
+        When the unit is not one of speed.
+    """
+
+    sweep: xarray.Dataset
+    rotor_speed: float
+    unit: str = "kt"
+
+    @cached_property
+    def airspeed(self) -> Array:
+        """Airspeed (airspeed,) in the unit, free of the rounding of conversion."""
+        factor = units.factor_to_si(self.unit, self.unit, "m/s")
+        return np.array([float(f"{v:.10g}") for v in self.sweep.airspeed.values / factor])
+
+    @cached_property
+    def frequency(self) -> Array:
+        """Frequency (airspeed, mode) per revolution."""
+        return damped_frequency(self.sweep) / self.rotor_speed
+
+    @cached_property
+    def damping(self) -> Array:
+        """Damping (airspeed, mode) in percent of critical."""
+        return damping_percent(self.sweep)
+
+    @cached_property
+    def unstable(self) -> Array:
+        """Whether a mode is unstable (airspeed, mode)."""
+        grows: Array = growth_rate(self.sweep) > 0
+        return grows
+
+    @cached_property
+    def failed(self) -> Array:
+        """Whether a point could not be analysed (airspeed,)."""
+        failed: Array = self.sweep.reason.values != ""
+        return failed
+
+    def lines(self, width: int = 80, all_modes: bool = False) -> Iterator[Text]:
+        """Yield the lines of one or more tables no wider than `width`, a row for each airspeed."""
+        from rich.text import Text  # here, because rich takes long to import
+
+        fit = max(1, (width - _SPEED_WIDTH - 1) // _MODE_WIDTH)
+        shown = range(len(self.sweep.mode)) if all_modes else self._of_interest(fit)
+        for start in range(0, max(1, len(shown)), fit):
+            yield from self._table(shown[start : start + fit])
+        left_out = [str(name) for i, name in enumerate(self.sweep.mode.values) if i not in shown]
+        if left_out and not self.failed.all():
+            more = f"{len(left_out)} more modes (--all-modes): {', '.join(left_out)}."
+            yield from map(Text, (*textwrap.wrap(more, width), ""))
+
+    def doubts(self) -> list[str]:
+        """Return a sentence on each warning of single airspeeds, whose rows have a question mark."""
+        return list(footnotes(doubts_along(self.airspeed, self.sweep.warning.values), self.unit))
+
+    def mixed(self) -> str:
+        """Return a sentence on modes whose names say little at some airspeeds; empty without such modes."""
+        with np.errstate(invalid="ignore"):
+            low = self.sweep.share.values < DOUBTFUL
+        mixed = []
+        for place in np.flatnonzero(low.any(axis=0)):
+            speeds = self.airspeed[low[:, place]]
+            mixed.append(f"{self.sweep.mode.values[place]} {self._range(np.sort(speeds))}")
+        if not mixed:
+            return ""
+        return f"Mixed, less than a third of the mode is what its name says: {', '.join(mixed)}."
+
+    def _range(self, speeds: Array) -> str:
+        ends = f"{speeds[0]:g} {self.unit}", f"{speeds[-1]:g} {self.unit}"
+        return f"at {ends[0]}" if len(speeds) == 1 else f"from {ends[0]} to {ends[1]}"
+
+    def _of_interest(self, count: int) -> list[int]:
+        """Return unstable modes, the support's, and those that move the support most, in the order of the sweep."""
+        if self.failed.all():
+            return []
+        unstable = self.unstable.any(axis=0)
+        of_support = np.isin(self.sweep.mode.values, support_coordinates(self.sweep))
+        by_interest = np.lexsort([-support_share(self.sweep), ~of_support, ~unstable])
+        return sorted(by_interest[: max(count, np.sum(unstable | of_support))].tolist())
+
+    def _table(self, modes: Sequence[int]) -> Iterator[Text]:
+        from rich.text import Text
+
+        names = [textwrap.wrap(str(self.sweep.mode.values[i]), _MODE_WIDTH - 2) for i in modes]
+        for row in range(max(map(len, names), default=0)):
+            cells = (name[row] if row < len(name) else "" for name in names)
+            yield Text(
+                " " * (_SPEED_WIDTH + 1) + "".join(f"{cell:>{_MODE_WIDTH - 1}} " for cell in cells), "bold"
+            )
+        yield Text(f"{self.unit:>{_SPEED_WIDTH}} " + f"{'/rev':>6}{'%':>7} " * len(modes), "dim")
+        for point in range(len(self.airspeed)):
+            yield self._row(point, modes)
+        yield Text("")
+
+    def _row(self, point: int, modes: Sequence[int]) -> Text:
+        from rich.text import Text
+
+        row = Text(f"{self.airspeed[point]:>{_SPEED_WIDTH}g}")
+        if self.failed[point]:
+            return row.append(f"  {self.sweep.reason.values[point]}", "yellow")
+        row.append(marked("", self.sweep.warning.values[point]) or " ", "yellow")
+        for mode in modes:
+            frequency, damping = self.frequency[point, mode], self.damping[point, mode]
+            mark, style = ("*", "bold red") if self.unstable[point, mode] else (" ", "")
+            row.append(f"{frequency:>6.3f}{damping:>7.2f}{mark}", style)
+        return row
+
+    def verdict(self) -> list[str]:
+        """Return a sentence on each range of airspeed in which a mode is unstable, or one that says that none is."""
+        if self.failed.all():
+            return ["No airspeed could be analysed."]
+        ranges = sorted(unstable_ranges(self.sweep), key=lambda found: found.start)
+        return [self._sentence(found) for found in ranges] or [
+            "No mode is unstable at the airspeeds analysed."
+        ]
+
+    def _sentence(self, found: UnstableRange) -> str:
+        along = self.sweep.airspeed.values, self.sweep.warning.values
+        start, stop = (
+            marked(self._rounded(at), doubtful_near(*along, at)) for at in (found.start, found.stop)
+        )
+        since = f"from about {start} (interpolated)"
+        if found.open_start:
+            since = f"at {self.airspeed[~self.failed][0]:g} {self.unit}, the lowest airspeed analysed"
+        until = "" if found.open_stop else f", stable again from about {stop} (interpolated)"
+        return f"{found.mode}: unstable {since}{until}"
+
+    def _rounded(self, speed: float) -> str:
+        """Return a speed with its unit, to three digits and at least to whole units."""
+        value = speed / units.factor_to_si(self.unit, self.unit, "m/s")
+        digits = 0 if value == 0 else max(0, 2 - math.floor(math.log10(value)))
+        return f"{value:.{digits}f} {self.unit}"
+
+    def records(self) -> Iterator[dict[str, Any]]:
+        """Yield a record for each airspeed and mode, with units in the names; None at failed points.
+
+        Where every airspeed failed there is no mode, and each airspeed has one record without mode.
+        """
+        eigenvalue, modes = self.sweep.eigenvalue.values, len(self.sweep.mode)
+        columns = {
+            "mode": np.broadcast_to(self.sweep.mode.values, eigenvalue.shape),
+            "share of its motion": self.sweep.share.values,
+            "branch": self.sweep.branch.values,
+            "frequency (per rev)": self.frequency,
+            "damping (% of critical)": self.damping,
+            "Re s (rad/s)": eigenvalue.real,
+            "Im s (rad/s)": eigenvalue.imag,
+        }
+        for i in range(len(self.airspeed)):
+            for j in range(modes) if modes else [None]:
+                of_mode = {name: None if j is None else _plain(part[i, j]) for name, part in columns.items()}
+                yield {
+                    f"airspeed ({self.unit})": self.airspeed[i].item(),
+                    "airspeed (m/s)": self.sweep.airspeed.values[i].item(),
+                    **of_mode,
+                    "warning": str(self.sweep.warning.values[i]),
+                    "failure": str(self.sweep.reason.values[i]),
+                }
+
+    def csv(self) -> bytes:
+        """Return `records` as CSV in UTF-8, see `proprotor.tables.csv_text`; empty cells at failed points."""
+        records = list(self.records())
+        return csv_of(records, list(records[0]), self.sweep.attrs)
+
+
+def _plain(entry: Any) -> float | str | None:
+    """Return a number or a text of a record; None for what is not finite or empty."""
+    if isinstance(entry, str):
+        return str(entry) or None
+    return float(entry) if np.isfinite(entry) else None
