@@ -8,7 +8,8 @@ import proprotor as pp
 from proprotor import sampling
 from proprotor.model.first_order import state_matrix
 from proprotor.stability.boundaries import boundaries, find_crossings
-from proprotor.stability.crossings import Brackets, Search
+from proprotor.stability.brackets import Brackets
+from proprotor.stability.crossings import Search
 from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.study.study import study
 from proprotor.study.variables import STABLE, UNSTABLE

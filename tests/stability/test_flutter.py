@@ -7,10 +7,10 @@ from scipy.optimize import brentq
 import proprotor as pp
 from proprotor.model.first_order import state_matrix
 from proprotor.stability.boundaries import boundaries, find_crossings
-from proprotor.stability.crossings import growth
 from proprotor.stability.cubic import hermite, hermite_extrema, hermite_root
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.parameter_lines import ParameterLine
+from proprotor.stability.root_error import growth
 from tests.known_systems import along
 
 KNOT = 1852 / 3600

@@ -19,9 +19,11 @@ Modes along a line of points
     sweep                   the dataset of a line: modes by name, with the branch of each
 
 Boundaries: where damping passes a level
-    crossings               points and steps of many lines searched for crossings, each found by Newton's method
-    steps, root_pairs       how often a root, or one of two that meet, crosses within a step
-    screening, cubic        steps by eigenvalues alone; cubics over a step
+    points                  points of many lines solved at once, with the growth of each root and its derivative
+    steps, screening        steps between points, by vectors or by eigenvalues alone
+    parting, root_pairs     where a step is parted; two roots that meet within a step
+    cubic                   cubics over a step
+    crossings, brackets     the search for steps with crossings; each crossing found by Newton's method
     boundary, boundaries    records of boundaries; the search along a line of a case
     flutter                 the flutter point: the lowest onset
     flutter_messages        records and sentences for people
@@ -38,8 +40,9 @@ from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries, find_crossings, scan_speeds
 from proprotor.stability.boundary import Boundary, Crossings, Failed
 from proprotor.stability.boundary_lines import BoundaryLine, boundary_lines
+from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.branches import BranchLabels, NamedStates, branch_labels, by_branch, named_at
-from proprotor.stability.crossings import Brackets, Crossing, Search
+from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.flutter import FlutterPoint, flutter_point
 from proprotor.stability.following import Branches, follow

@@ -18,13 +18,15 @@ from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.doubts import doubts_along
 from proprotor.stability.boundary import NOWHERE, Boundary, Crossings, Failed, LeastDamping
+from proprotor.stability.brackets import JUMPS, Brackets, Crossing, each_once
 from proprotor.stability.branches import name_states
-from proprotor.stability.crossings import JUMPS, Brackets, Crossing, Points, Search, Solved, each_once
+from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import defect
 from proprotor.stability.following import Branches
 from proprotor.stability.matching import Spectrum, Steps
 from proprotor.stability.mode_names import Moving, moving
 from proprotor.stability.parameter_lines import ParameterLine, approach_to, line_of_case, tip_speed
+from proprotor.stability.points import Points, Solved
 from proprotor.typing import Array
 
 if TYPE_CHECKING:

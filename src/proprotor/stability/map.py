@@ -19,7 +19,8 @@ from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
 from proprotor.needs import check_memory
-from proprotor.stability.crossings import Brackets, Search
+from proprotor.stability.brackets import Brackets
+from proprotor.stability.crossings import Search
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.stability.root_error import growth, growth_error, roots
 from proprotor.typing import Array

@@ -21,7 +21,6 @@ from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.options_of_result import options_of
 from proprotor.stability.boundary import Boundary
-from proprotor.stability.crossings import growth_rate
 from proprotor.stability.eigenvalue_derivatives import (
     STEP,
     defect,
@@ -33,6 +32,7 @@ from proprotor.stability.flutter import flutter_point
 from proprotor.stability.matching import Modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.named_modes import named_modes
+from proprotor.stability.points import growth_rate
 from proprotor.stability.root_error import refined
 from proprotor.typing import Array
 
