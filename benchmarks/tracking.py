@@ -23,7 +23,7 @@ from rich.table import Table
 import proprotor as pp
 from proprotor.model.first_order import state_matrix
 from proprotor.stability.following import Branches, follow
-from proprotor.stability.matching import chain, link
+from proprotor.stability.matching import chain, match_modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.units import KNOT
@@ -113,13 +113,13 @@ def cost(console: Console) -> None:
     model = case.linearize(speeds)
     matrix, spectrum = state_matrix(model), decomposition(model)
     ends = np.arange(POINTS - 1), np.arange(1, POINTS)
-    steps = link(spectrum, *ends)
+    steps = match_modes(spectrum, *ends)
     parts = {
         "numpy.linalg.eig alone": lambda: np.linalg.eig(matrix),
         "matrices of the equations of motion": lambda: in_batches(case, speeds),
         "state matrices": lambda: state_matrix(model),
         "eigenvalues and right vectors": lambda: decomposition(model),
-        "likeness, assignment, quality": lambda: link(spectrum, *ends),
+        "likeness, assignment, quality": lambda: match_modes(spectrum, *ends),
         "chain": lambda: chain(steps.successor, np.arange(matrix.shape[-1])),
         "left vectors of all modes": lambda: spectrum.all_modes,
     }

@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 import proprotor as pp
 from proprotor.rotor.motions import motions, name_list
 from proprotor.stability.following import follow
-from proprotor.stability.matching import POOR, link
+from proprotor.stability.matching import POOR, match_modes
 from proprotor.stability.mode_names import _assign_names
 from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import ParameterLine
@@ -165,7 +165,7 @@ def test_steps_are_the_best_assignments():
     """The short way by the best of each row is the assignment scipy finds on the whole matrix."""
     case = pp.load_case("xv15")
     spectrum = decomposition(case.linearize(np.linspace(60, 200, 40)))
-    steps, left = link(spectrum, np.arange(39), np.arange(1, 40)), np.linalg.inv(spectrum.right)
+    steps, left = match_modes(spectrum, np.arange(39), np.arange(1, 40)), np.linalg.inv(spectrum.right)
     for step in range(39):
         forward = np.abs(left[step] @ spectrum.right[step + 1])
         backward = np.abs(left[step + 1] @ spectrum.right[step]).T

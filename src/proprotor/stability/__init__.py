@@ -48,7 +48,7 @@ from proprotor.stability.flutter import FlutterPoint, flutter_point
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.map import stability_map
-from proprotor.stability.matching import NOT_TOLD, Spectrum, link
+from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import (
     Eigensystem,
@@ -102,7 +102,7 @@ __all__ = [
     "flutter_point",
     "follow",
     "frequency_response",
-    "link",
+    "match_modes",
     "mode_columns",
     "modes",
     "moving",

@@ -23,7 +23,7 @@ from proprotor.stability.branches import name_states
 from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import defect
 from proprotor.stability.following import Branches
-from proprotor.stability.matching import Spectrum, Steps
+from proprotor.stability.matching import Matches, Spectrum
 from proprotor.stability.mode_names import Moving, moving
 from proprotor.stability.parameter_lines import ParameterLine, approach_to, line_of_case, tip_speed
 from proprotor.stability.points import Points, Solved
@@ -203,7 +203,7 @@ def _branches(search: Search, positions: Array) -> Branches:
     return Branches(
         spectrum,
         place[order],
-        Steps(search.steps.successor, search.steps.quality),
+        Matches(search.steps.successor, search.steps.quality),
         np.concatenate([positions, points.position[between]]),
     )
 

@@ -12,7 +12,7 @@ from proprotor.model.first_order import some_points
 from proprotor.model.options_of_result import options_of
 from proprotor.rotor.motions import name_list
 from proprotor.stability.branches import names_of
-from proprotor.stability.matching import Spectrum, conjugate, link
+from proprotor.stability.matching import Spectrum, conjugate, match_modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.typing import Array
@@ -120,7 +120,7 @@ def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice
     before, works = np.arange(len(state) - 1), spectrum.works & known
     good = before[works[:-1] & works[1:]]
     same = np.zeros(len(before), dtype=bool)
-    after = link(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
+    after = match_modes(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
     same[good] = (after == state[good + 1]) | (after == conjugate(spectrum.values)[good + 1, state[good + 1]])
     jumps = np.flatnonzero(~same) + 1
     for start, stop in zip((0, *jumps), (*jumps, len(state)), strict=True):

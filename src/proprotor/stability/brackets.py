@@ -12,7 +12,7 @@ import numpy as np
 
 from proprotor.stability.crossings import Search
 from proprotor.stability.cubic import hermite_root
-from proprotor.stability.matching import POOR, Spectrum, link
+from proprotor.stability.matching import POOR, Spectrum, match_modes
 from proprotor.stability.points import Points
 from proprotor.typing import Array
 
@@ -149,7 +149,7 @@ class Brackets:
         quality = np.empty((2, len(active)))
         for end, found in enumerate(self.ends):
             start = found.at(active)
-            step = link(start.joined(spectrum), rows, len(active) + rows)
+            step = match_modes(start.joined(spectrum), rows, len(active) + rows)
             own = self.place[end, active]
             places[end], quality[end] = step.successor[rows, own], step.quality[rows, own]
             alike[end] = (start.values[rows, own].imag == 0) == (spectrum.values[rows, places[end]].imag == 0)

@@ -9,7 +9,7 @@ import numpy as np
 
 from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
-from proprotor.stability.matching import POOR, Spectrum, Steps, chain, keep_upper, link
+from proprotor.stability.matching import POOR, Matches, Spectrum, chain, keep_upper, match_modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.typing import Array
@@ -28,7 +28,7 @@ class Branches:
         Of the points of the line, then of points between them; NaN at failed points.
     points : array (k,) of int
         Places of the points in the spectrum, in the order along the line; failed points are left out.
-    steps : Steps
+    steps : Matches
         From each point to the next.
     positions : array
         Of the points of the spectrum; NaN where positions are not known.
@@ -36,7 +36,7 @@ class Branches:
 
     spectrum: Spectrum
     points: Array
-    steps: Steps
+    steps: Matches
     positions: Array
 
     @cached_property
@@ -76,16 +76,16 @@ class Branches:
         points = np.insert(self.points, after + 1, np.arange(first, len(spectrum.values)))
         successor, quality = (np.insert(part, after, part[after], axis=0) for part in self.steps)
         parted = np.flatnonzero((points[:-1] >= first) | (points[1:] >= first))
-        successor[parted], quality[parted] = link(spectrum, points[parted], points[parted + 1])
+        successor[parted], quality[parted] = match_modes(spectrum, points[parted], points[parted + 1])
         return Branches(
-            spectrum, points, Steps(successor, quality), np.concatenate([self.positions, positions])
+            spectrum, points, Matches(successor, quality), np.concatenate([self.positions, positions])
         )
 
 
 def _branches_of(spectrum: Spectrum, positions: Array) -> Branches:
     """Return the branches through points in their order; failed points are passed over."""
     good = np.flatnonzero(spectrum.works)
-    return Branches(spectrum, good, link(spectrum, good[:-1], good[1:]), positions)
+    return Branches(spectrum, good, match_modes(spectrum, good[:-1], good[1:]), positions)
 
 
 def follow(model: LinearModel, line: ParameterLine | None = None, held: list[int] | None = None) -> Branches:

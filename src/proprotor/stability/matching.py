@@ -21,22 +21,20 @@ import numpy as np
 from proprotor.typing import Array
 
 _BLOCK = 64  # steps whose matrices stay in the cache
-_COUPLED = (
-    1e-6  # likeness of different modes below which it is rounding, and they pass each other as strangers
-)
+_COUPLED = 1e-6  # likeness of different modes; below it is rounding, and the modes pass each other uncoupled
 NOT_TOLD = "the step to here does not tell which root is which"
 POOR = 0.5  # quality of a step below which it is divided
 
 
-class Steps(NamedTuple):
-    """Pairs of neighbouring points.
+class Matches(NamedTuple):
+    """Which mode of a point is which at a later point, for some pairs of points.
 
     Attributes
     ----------
     successor : array (steps, states) of int
-        Place at the later point of each state of the earlier one.
+        Place at the later point of each state of the earlier point.
     quality : array (steps, states)
-        Trust in the step of each state, 0 to 1: see `link`.
+        Trust in the step of each state, 0 to 1: see `match_modes`.
     """
 
     successor: Array
@@ -135,8 +133,8 @@ def _inverse(matrices: Array) -> Array:
         return np.linalg.pinv(matrices)
 
 
-def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
-    """Successors of all states from points `before` (steps,) to points `after` (steps,).
+def match_modes(spectrum: Spectrum, before: Array, after: Array) -> Matches:
+    """Match the states of points `before` (steps,) with those of points `after` (steps,).
 
     The quality of a step is the likeness of a state to its successor, less the largest of
 
@@ -152,7 +150,7 @@ def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
     where the next point has it, and from there on it has an eigenvalue.
     """
     if spectrum.shapes is not None:
-        return _link_in_common(spectrum, spectrum.shapes, before, after)
+        return _match_in_common(spectrum, spectrum.shapes, before, after)
     states = spectrum.values.shape[-1]
     successor = np.full((len(before), states), -1)
     quality = np.empty((len(before), states))
@@ -162,13 +160,13 @@ def link(spectrum: Spectrum, before: Array, after: Array) -> Steps:
         steps = np.flatnonzero(alike & (pairs[before] == count))
         for start in range(0, len(steps), _BLOCK):
             rows = _as_slice(steps[start : start + _BLOCK])
-            successor[rows], quality[rows] = _link_block(spectrum, before[rows], after[rows], int(count))
+            successor[rows], quality[rows] = _match_block(spectrum, before[rows], after[rows], int(count))
     for step in np.flatnonzero(successor[:, 0] < 0):
-        successor[step], quality[step] = _link_alone(spectrum.at(before[step]), spectrum.at(after[step]))
-    return Steps(successor, quality)
+        successor[step], quality[step] = _match_alone(spectrum.at(before[step]), spectrum.at(after[step]))
+    return Matches(successor, quality)
 
 
-def _link_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Array) -> Steps:
+def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Array) -> Matches:
     """Match modes of points whose coordinates have different shapes, in the coordinates of the earlier point."""
     turn = np.linalg.pinv(shapes[before]) @ shapes[after]
     states, count = spectrum.values.shape[-1], turn.shape[-1]
@@ -181,7 +179,7 @@ def _link_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Arr
         right[:, places] = turn @ right[:, places]
     first, last = spectrum.at(before), Spectrum(spectrum.values[after], right)
     rows = np.arange(len(before))
-    return link(Spectrum(first.values, first.right).joined(last), rows, len(rows) + rows)
+    return match_modes(Spectrum(first.values, first.right).joined(last), rows, len(rows) + rows)
 
 
 class _Packed(NamedTuple):
@@ -215,7 +213,7 @@ class _Packed(NamedTuple):
         return _Packed(*(part[points] for part in self))
 
 
-def _link_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> tuple[Array, Array]:
+def _match_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> tuple[Array, Array]:
     """Match modes of points with one number of pairs; -1 where the best candidates are not all different."""
     n = len(before)
     if np.array_equal(after, before + 1) and isinstance(_as_slice(before), slice):
@@ -307,7 +305,7 @@ def _index(mixing: Array, apart: Array, later: Array) -> Array:
     return np.where(np.isnan(index), 0.0, index)
 
 
-def _link_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
+def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     """Return successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from proprotor.stability.cubic import hermite
-from proprotor.stability.matching import POOR, Spectrum, link
+from proprotor.stability.matching import POOR, Spectrum, match_modes
 from proprotor.stability.points import Points
 from proprotor.typing import Array
 
@@ -19,9 +19,9 @@ class Steps:
     """Pairs of neighbouring points of one line.
 
     before, after (steps,) of int : the points; successor (steps, states) of int, quality (steps, states) : see
-    `proprotor.stability.matching.link`, NaN where the quality is not known yet; wrong (steps, states) : the error of
-    the cubic as seen when a longer step was parted into this one, NaN for a first step; depth (steps,) : number of
-    partings; open (steps,) : whether the step is still to be looked at.
+    `proprotor.stability.matching.match_modes`, NaN where the quality is not known yet; wrong (steps, states) : the
+    error of the cubic as seen when a longer step was parted into this one, NaN for a first step; depth (steps,) :
+    number of partings; open (steps,) : whether the step is still to be looked at.
     """
 
     before: Array
@@ -83,7 +83,7 @@ class Steps:
 
 def first_steps(spectrum: Spectrum, before: Array, after: Array) -> Steps:
     """Return steps from points to the points that follow."""
-    linked = link(spectrum, before, after)
+    linked = match_modes(spectrum, before, after)
     nothing = np.full(linked.quality.shape, np.nan)
     count = len(before)
     return Steps(before, after, *linked, nothing, np.zeros(count, dtype=int), np.ones(count, dtype=bool))
@@ -92,7 +92,7 @@ def first_steps(spectrum: Spectrum, before: Array, after: Array) -> Steps:
 def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:
     """Return the steps with some of them, `rows`, parted at the points from `first` on."""
     old, new = steps.at(rows), np.arange(first, first + len(rows))
-    halves = [link(points.spectrum, *ends) for ends in ((old.before, new), (new, old.after))]
+    halves = [match_modes(points.spectrum, *ends) for ends in ((old.before, new), (new, old.after))]
     start, end = points.position[old.before], points.position[old.after]
     share = ((points.position[new] - start) / (end - start))[:, None]
     seen = np.take_along_axis(points.growth[new], halves[0].successor, 1)
