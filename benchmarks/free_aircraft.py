@@ -13,13 +13,13 @@ import numpy as np
 import scipy.linalg
 
 import proprotor as pp
-from proprotor.support.beam_wing import Pylon, Wing, beam_structure, rigid_motion, wing_elements
+from proprotor.support.beam_wing import beam_structure, rigid_motion, wing_elements
 
 POUND, SLUG_FOOT2 = 0.45359237, 1.3558179483314
 SYMMETRIC = (0, 2, 4)  # x, z and alpha_y of the mount
 
 
-def modes(wing: Wing, pylon: Pylon, rotor_mass: float, fuselage: np.ndarray) -> np.ndarray:
+def modes(wing: pp.Wing, pylon: pp.Pylon, rotor_mass: float, fuselage: np.ndarray) -> np.ndarray:
     """The lowest elastic frequencies in Hz with a body (3, 3) of half the fuselage on x, z, alpha_y of the mount."""
     structure = beam_structure(wing, pylon)
     n = len(structure.names)
@@ -45,12 +45,12 @@ def half_fuselage(weight: float, pitch_inertia: float, behind: float) -> np.ndar
     return (motion.T @ body @ motion)[np.ix_(SYMMETRIC, SYMMETRIC)]
 
 
-def of_deck(case: pp.Case) -> tuple[Wing, Pylon, float]:
+def of_deck(case: pp.Case) -> tuple[pp.Wing, pp.Pylon, float]:
     """Wing, pylon and rotor mass as the deck gives them, on the downstop."""
     given = {path.removeprefix("support."): number.si for path, number in case.given.items()}
     wing, pylon = (
         kind(**{entry.name: given[entry.name] for entry in fields(kind) if entry.name in given})
-        for kind in (Wing, Pylon)
+        for kind in (pp.Wing, pp.Pylon)
     )
     return wing, pylon, given["rotor_mass"]
 

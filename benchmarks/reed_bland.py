@@ -19,10 +19,8 @@ from scipy.optimize import brentq
 from scipy.special import hankel2
 
 import proprotor as pp
-from proprotor.model.mount import mount
-from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
-from proprotor.model.structural_damping import NeutralDamping, neutral_damping
-from proprotor.support.normal_modes import NormalModes, two_axis_pivot
+from proprotor.model.rigid_propeller import whirl_derivatives
+from proprotor.model.structural_damping import NeutralDamping
 
 FT = 0.3048
 SLUG = 0.45359237 * 9.80665 / FT
@@ -43,7 +41,7 @@ ADVANCE_RATIOS = np.array(
     [1.78, 2.29, 2.90, 3.67, 4.20]
 )  # J = V/(nD) of the windmilling propeller at these angles
 DERIVATIVE_ANGLES = (34.0, 58.0)  # deg, between which the derivatives are linear
-DERIVATIVES = WhirlDerivatives(
+DERIVATIVES = pp.WhirlDerivatives(
     z_theta=(-0.381, -0.545),
     z_psi=(0.082, 0.091),
     z_r=(-0.231, -0.154),
@@ -70,10 +68,10 @@ QUASI_STEADY = {
 }
 
 
-def reported_derivatives(advance_ratio: ArrayLike) -> WhirlDerivatives:
+def reported_derivatives(advance_ratio: ArrayLike) -> pp.WhirlDerivatives:
     """The report's derivatives at the blade angle that goes with an advance ratio."""
     angle = np.interp(advance_ratio, ADVANCE_RATIOS, BLADE_ANGLES)
-    return WhirlDerivatives(*(np.interp(angle, DERIVATIVE_ANGLES, ends) for ends in DERIVATIVES))
+    return pp.WhirlDerivatives(*(np.interp(angle, DERIVATIVE_ANGLES, ends) for ends in DERIVATIVES))
 
 
 def rotor_speed(advance_ratio: ArrayLike) -> NDArray:
@@ -81,9 +79,11 @@ def rotor_speed(advance_ratio: ArrayLike) -> NDArray:
     return np.pi * AIRSPEED / (np.asarray(advance_ratio) * RADIUS)
 
 
-def propeller(advance_ratio: ArrayLike, derivatives: WhirlDerivatives, mass: float = 200.0) -> pp.LinearModel:
+def propeller(
+    advance_ratio: ArrayLike, derivatives: pp.WhirlDerivatives, mass: float = 200.0
+) -> pp.LinearModel:
     """The report's propeller as a rigid body; the pivot's inertias include its mass, so any will do."""
-    return rigid_propeller(
+    return pp.rigid_propeller(
         AIRSPEED,
         derivatives,
         radius=RADIUS,
@@ -95,18 +95,18 @@ def propeller(advance_ratio: ArrayLike, derivatives: WhirlDerivatives, mass: flo
     )
 
 
-def pivot(stiffness_ratio: float, structural_damping: float = 0.0, frequency: float = 1.0) -> NormalModes:
+def pivot(stiffness_ratio: float, structural_damping: float = 0.0, frequency: float = 1.0) -> pp.NormalModes:
     """The report's mount by S_ψ/S_θ; viscous dampers gS/ω stand for structural damping at one frequency."""
     stiffness = PIVOT_INERTIA * PITCH_FREQUENCY**2 * np.array([1.0, stiffness_ratio])
     damping = structural_damping * stiffness / frequency
     inertia = (PIVOT_INERTIA, PIVOT_INERTIA)
-    return two_axis_pivot(PIVOT_DISTANCE, inertia, stiffness, damping, includes_rotor="rigid")
+    return pp.two_axis_pivot(PIVOT_DISTANCE, inertia, stiffness, damping, includes_rotor="rigid")
 
 
 def neutral(rotor_alone: pp.LinearModel, stiffness_ratio: float) -> NeutralDamping:
     """Structural dampings at neutral stability of a propeller or rotor on the report's mount."""
     support = pivot(stiffness_ratio)
-    return neutral_damping(mount(rotor_alone, support), support.stiffness)
+    return pp.neutral_damping(pp.mount(rotor_alone, support), support.stiffness)
 
 
 def whirl(shape: NDArray) -> NDArray:
@@ -148,7 +148,7 @@ def rotor_on_hub(rotor: pp.Rotor, advance_ratio: ArrayLike, **options) -> pp.Lin
 
 def rotor_derivatives(
     rotor: pp.Rotor, advance_ratio: ArrayLike, lift: ArrayLike = 1.0, **options
-) -> WhirlDerivatives:
+) -> pp.WhirlDerivatives:
     """Whirl derivatives of the rotor's airloads, quasi-steady or with a `lift` as in `lagging`."""
     still = rotor_on_hub(rotor, advance_ratio, airloads="none")
     moving = lagging(rotor, advance_ratio, lift, **options)

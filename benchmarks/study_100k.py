@@ -25,8 +25,6 @@ from rich.console import Console
 
 import proprotor as pp
 from benchmarks.study import plan
-from proprotor.exchange.netcdf import load_results, save_results
-from proprotor.study.study import study
 
 DESIGNS = 100_000
 MB = 1 / 1024  # of the kilobytes in which Linux tells memory
@@ -35,9 +33,9 @@ MB = 1 / 1024  # of the kilobytes in which Linux tells memory
 def run(designs: int, folder: str, result: str) -> None:
     """The study with a checkpoint, into a file; prints time and the largest memory of it and of a worker."""
     start = time.perf_counter()
-    found = study(pp.load_case("xv15"), plan(designs), workers=2, checkpoint=folder, progress=False)
+    found = pp.study(pp.load_case("xv15"), plan(designs), workers=2, checkpoint=folder, progress=False)
     analysed = time.perf_counter() - start
-    save_results(found, result)
+    pp.save_results(found, result)
     saved = time.perf_counter() - start - analysed
     from proprotor.study.workers import end_workers
 
@@ -102,7 +100,7 @@ def main() -> None:
         again = started(designs, place / "killed", place / "killed.nc")
         console.print(f"gone on: {again.communicate()[0].strip()}")
         untouched = kept.items() <= modified(place / "killed").items()
-        same = bits(load_results(place / "whole.nc")) == bits(load_results(place / "killed.nc"))
+        same = bits(pp.load_results(place / "whole.nc")) == bits(pp.load_results(place / "killed.nc"))
         console.print(f"no batch computed twice: {untouched}; every bit as without interruption: {same}")
         megabytes = sum(os.path.getsize(path) for path in (place / "whole").iterdir()) / 1024**2
         console.print(
@@ -110,7 +108,7 @@ def main() -> None:
         )
         if not (same and untouched):
             sys.exit("the study that was killed differs")
-        values = load_results(place / "whole.nc").eigenvalue.values
+        values = pp.load_results(place / "whole.nc").eigenvalue.values
         console.print(f"largest real part of all {np.nanmax(values.real):.3g} 1/s")
 
 

@@ -1,4 +1,4 @@
-"""Write docs/validation.md and its figures: the paper's figures, its claims, and what doubtful inputs leave of them.
+"""Write docs/validation.md and its figures: figures and claims of the paper, with bands of the doubtful inputs.
 
 python -m benchmarks.validation
 """
@@ -85,11 +85,11 @@ _HEAD = """# Validation against AIAA-2002-1604
 Written by `python -m benchmarks.validation`, numbers, verdicts and figures included; `make figures` makes the
 figures alone. Damping is in percent of critical, frequency per revolution, speed in knots.
 
-What the inputs are decides what may be concluded. The rotor of the XV-15 is published; its wing is recalled or assumed,
-and two inputs are calibrated to the paper ([xv15.md](xv15.md)). Of the two 1/5-scale models only the rotor of one is
-published, so their boundaries are no prediction. Bands are Latin hypercubes of 300 designs over every input that
-was not published, each within a [stated range](#ranges); they are judgements, not measured scatter. The paper's test
-data are not at hand as numbers; the published flutter speeds are.
+The inputs decide what may be concluded. The rotor of the XV-15 is published; its wing is recalled or assumed, and two
+inputs are calibrated to the paper ([xv15.md](xv15.md)). Of the two 1/5-scale models only the rotor of one is published,
+so their boundaries are no prediction. Bands are Latin hypercubes of 300 designs over every input that was not
+published, each within a [stated range](#ranges); the ranges are judgements, not measured scatter. Designs that cannot
+be are left out. The paper's test data are not at hand as numbers; the published flutter speeds are.
 """
 
 
@@ -104,10 +104,11 @@ def _boundary_section(rows: list[Row]) -> Iterator[str]:
     low, high = min(XV15_FLUTTER.values()), max(XV15_FLUTTER.values())
     yield "## Boundary of the XV-15 semispan wing"
     yield ""
-    yield f"The lowest speed at which a mode that moves the wing is neutral. Published: {low:.0f} to {high:.0f} kt:"
+    yield "The lowest speed at which a mode that moves the wing (participation of the wing a tenth or more) becomes"
+    yield f"unstable. Published: {low:.0f} to {high:.0f} kt:"
     yield "; ".join(f"{speed:.0f} ({source})" for source, speed in XV15_FLUTTER.items()) + "."
-    yield "Sections turn without damping, as in the paper, but where a row says that they have it. Pitch equations with"
-    yield "section damping are what `proprotor flutter xv15` has by default."
+    yield "Sections turn without damping, as in the paper, unless a row says otherwise. Pitch equations with section"
+    yield "damping are the default of `proprotor flutter xv15`."
     yield ""
     head = (
         "mass integrals",
@@ -160,14 +161,14 @@ def _boundary_words(rows: list[Row]) -> Iterator[str]:
 
 
 def _early_words(early: list[Row], high: float) -> Iterator[str]:
-    """Say which models have designs that are unstable at published speeds, from where on, and how much."""
+    """Yield which models have designs that are unstable at published speeds, from which speeds on, and how much."""
     if not early:
         yield f"  {high:.0f} kt."
         return
     speeds = np.concatenate([row.band.speeds_below(high) for row in early])
     models = " and ".join(dict.fromkeys(row.pitch for row in early))
     worst = -min(row.band.least_damping(high) for row in early)
-    yield f"  {high:.0f} kt, all of them with {models}: pitch modes of soft controls, where they meet torsion,"
+    yield f"  {high:.0f} kt, all with {models}: pitch modes of soft controls, where they meet torsion,"
     yield f"  unstable from {speeds.min():.0f} to {speeds.max():.0f} kt on by {worst:.1f} % of critical at most."
     yield "  The damping of turning sections keeps them stable."
 
@@ -178,9 +179,9 @@ def _figures_section() -> Iterator[str]:
     yield "Axes are the paper's, extended below zero damping, and upwards where a curve needs it. Each figure has its"
     yield "numbers beside it as CSV. The model of the paper's figures has couplings in place of the pitch equations"
     yield "and no damping of turning sections (`section_damping=False`)."
-    yield "In the lower half of the airspeeds a wing mode is the one with most of the wing's motion: where a rotor mode"
-    yield "meets it, as the low-frequency lag mode does chord bending at 130 kt, the line passes from one branch to the"
-    yield "other."
+    yield "In the lower half of the airspeeds a wing mode is the mode that moves the wing's coordinate most: where a"
+    yield "rotor mode meets the wing mode, as the low-frequency lag mode meets chord bending at 130 kt, the line passes"
+    yield "from one root to the other. In the upper half the line follows the root that has the name in the middle."
     yield ""
     for title, numbers in _GROUPS.items():
         yield f"### {title}"
@@ -203,7 +204,7 @@ def _claims_section(claims: list[Claim]) -> Iterator[str]:
 def _models_section(analyses: Analyses) -> Iterator[str]:
     yield "## Boundaries of the two models"
     yield ""
-    yield "With wings scaled from the XV-15: what such a rotor does on such a wing, not what the tests found. Off"
+    yield "The wings are scaled from the XV-15: the table shows such a rotor on such a wing, not the tests. Off"
     yield "downstop and at higher rotor speed the wing is less stable."
     yield ""
     decks = ("v22-fifth-scale", "wrats-742-off", "wrats-888-off", "wrats-770-on", "wrats-888-on")

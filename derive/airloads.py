@@ -32,6 +32,7 @@ from derive.coordinates import (
     SEGMENT_LOADS,
     SEGMENT_MOTIONS,
 )
+from derive.expansion import Along, Expansion, MovingPoint, Vector, add, dot, spin
 from derive.polynomials import (
     SEGMENT_ANGLES,
     SINE_AND_COSINE,
@@ -109,12 +110,6 @@ def _on_segment(expression: sp.Expr) -> sp.Expr:
     return expression.subs(arms).subs({s.coning: flap * s.coning, s.lag: lag * s.lag})
 
 
-Vector = list[PolyElement]
-# Value, first and second derivatives at trim by the coordinates they are taken along; () is the value.
-Along = tuple[str, ...]
-Taylor = dict[Along, Vector]
-
-
 class SegmentKinematics:
     """A straight segment: its line and axes, and how both move with the blade's coordinates.
 
@@ -128,49 +123,20 @@ class SegmentKinematics:
         geometry = [*anchor, flap_arm_at_center, s.flap_hinge_offset, s.lag_hinge_offset, s.radial_station]
         operation = [s.rotor_speed, s.airspeed, s.pitch, s.pitch_gimbal_coupling]
         operation += [s.pitch_flap_coupling, s.pitch_lag_coupling]
-        loads = [MOMENTS[load, 0] for load in LOADS]
-        self.ring = PolynomialRing([*trig, *steps, *geometry, *operation, *loads])
-        turn = [self._taylor(kin.BLADE_TO_ROTATING[i, :]) for i in range(3)]
-        axes = [self._taylor(self._named(column)) for column in self._to_second_order(kin.blade_axes())]
-        self.axes = dict(zip(SECTION_AXES, (_turned(turn, axis) for axis in axes), strict=True))
-        self.about_hub = _turned(turn, self._taylor(self._named(self._line())))
-        hub = self._taylor(kin.HUB)
-        self.position = {
-            key: _add(self.about_hub.get(key, []), hub.get(key, [])) for key in {*self.about_hub, *hub}
+        self.ring = PolynomialRing(
+            [*trig, *steps, *geometry, *operation],
+            "`geometry` or `operation` of `SegmentKinematics` in derive/airloads.py",
+        )
+        self.point = MovingPoint(self.ring, self._named(self._line()))
+        axes = self._named(kin.at_trim(kin.blade_axes()) + kin.change(kin.blade_axes()))
+        self.axes = {
+            axis: Expansion.of(self.ring, axes[:, place]).turned(self.point.turn)
+            for place, axis in enumerate(SECTION_AXES)
         }
         _, to_yoke = kin.pitch_angles(dropped)
-        self.pitch_to_yoke = self._taylor_of_one(to_yoke)
-        self.pitch_in_air = self._taylor_of_one(to_yoke + elastic_coupling())
+        self.pitch_to_yoke = Expansion.of(self.ring, sp.Matrix([to_yoke]))
+        self.pitch_in_air = Expansion.of(self.ring, sp.Matrix([to_yoke + elastic_coupling()]))
         self.zero = self.ring.ring.zero
-
-    def _taylor(self, vector: sp.Matrix) -> Taylor:
-        """Value, first and second derivatives at trim of a vector that is polynomial in the perturbations."""
-        perturbations = list(kin.q.values())
-        names = {symbol: name for name, symbol in zip(kin.COORDINATES, perturbations, strict=True)}
-        parts: Taylor = {}
-        for place, component in enumerate(vector):
-            for powers, coefficient in sp.Poly(component, *perturbations).terms():
-                if sum(powers) > 2:
-                    continue
-                key = tuple(names[x] for x, n in zip(perturbations, powers, strict=True) for _ in range(n))
-                factor = 2 if any(n == 2 for n in powers) else 1
-                values = parts.setdefault(key, [self.ring(0)] * len(vector))
-                values[place] = self.ring(coefficient * factor)
-                parts[key[::-1]] = values
-        return parts
-
-    def _taylor_of_one(self, scalar: sp.Expr) -> dict[Along, PolyElement]:
-        return {key: value[0] for key, value in self._taylor(sp.Matrix([scalar])).items()}
-
-    @staticmethod
-    def _to_second_order(axes: sp.Matrix) -> list[sp.Matrix]:
-        """Columns as polynomials in the hinge angles."""
-        expansion = kin.at_trim(axes)
-        for a in ("flap", "lag"):
-            expansion += kin.q[a] * kin.at_trim(sp.diff(axes, kin.q[a]))
-            for b in ("flap", "lag"):
-                expansion += kin.q[a] * kin.q[b] * kin.at_trim(sp.diff(axes, kin.q[a], kin.q[b])) / 2
-        return [expansion[:, place] for place in range(3)]
 
     @staticmethod
     def _line() -> sp.Matrix:
@@ -190,70 +156,57 @@ class SegmentKinematics:
         on_segment = on_segment.subs({flap**2: flap, lag**2: lag})
         return name_trigonometry(on_segment, SEGMENT_ANGLES)
 
-    def _derivative(self, taylor: Taylor, *along: str) -> Vector:
-        return taylor.get(along, [self.zero] * 3)
-
-    def virtual_displacement(self, row: str, *along: str) -> Vector:
-        """As `kinematics.virtual_displacements`: hub rotation turns about fixed axes through the hub point."""
-        if row in kin.HUB_ROTATION:
-            return _cross(self._fixed_axis(row), self._derivative(self.about_hub, *along))
-        return self._derivative(self.position, row, *along)
-
     def virtual_rotation(self, row: str, *along: str) -> Vector:
         """Rotation of the section as a vector, and its derivative; rotation by pitch not included."""
         if row in kin.HUB_ROTATION:
-            return [self.zero] * 3 if along else self._fixed_axis(row)
+            return [self.zero] * 3 if along else self.point.fixed_axis(row)
         # E,i E^T is skew; its derivative is E,ij E^T + E,i E,j^T.
         parts: list[tuple[Along, Along]] = [((row, *along), ())] + ([((row,), along)] if along else [])
         total = [[self.zero] * 3 for _ in range(3)]
         for turned, still in parts:
             for axis in self.axes.values():
-                left, right = self._derivative(axis, *turned), self._derivative(axis, *still)
+                left, right = axis.along(*turned), axis.along(*still)
                 total = [[total[i][j] + left[i] * right[j] for j in range(3)] for i in range(3)]
         return [total[2][1], total[0][2], total[1][0]]
 
-    def _fixed_axis(self, row: str) -> Vector:
-        return self.ring.vector((kin.I_AXIS, kin.J_AXIS, kin.K_AXIS)[kin.HUB_ROTATION.index(row)])
-
     def air_velocity(self, *along: str) -> Vector:
         """Inertial velocity of a point at rest in the rotating axes, and its derivative."""
-        spun = _spin(self._derivative(self.position, *along), self.ring(s.rotor_speed))
-        return (
-            spun if along else [a + self.ring(b) for a, b in zip(spun, s.airspeed * kin.K_AXIS, strict=True)]
-        )
+        rate = self.ring(s.rotor_speed)
+        spun = [rate * component for component in spin(self.point.position.along(*along))]
+        return spun if along else add(spun, self.ring.vector(s.airspeed * kin.K_AXIS))
 
     def velocity(self, axis: str, *along: str) -> PolyElement:
         """Velocity of the air along a section axis; along a coordinate the point moves and the axis turns."""
-        total = _dot(self._derivative(self.axes[axis]), self.air_velocity(*along))
+        total = dot(self.axes[axis].along(), self.air_velocity(*along))
         if along:
-            total += _dot(self._derivative(self.axes[axis], *along), self.air_velocity())
+            total += dot(self.axes[axis].along(*along), self.air_velocity())
         return SENSE[axis] * total
 
     def rate_velocity(self, axis: str, name: str) -> PolyElement:
         """Velocity of the air along a section axis per rate of a coordinate."""
-        return SENSE[axis] * _dot(self._derivative(self.axes[axis]), self._derivative(self.position, name))
+        return SENSE[axis] * dot(self.axes[axis].along(), self.point.position.along(name))
 
     def spin(self, *along: str) -> PolyElement:
         """Rotation of the section about d at rest in the rotating axes, and its derivative."""
-        return self.ring(s.rotor_speed) * self._derivative(self.axes["d"], *along)[2]
+        return self.ring(s.rotor_speed) * self.axes["d"].along(*along)[2]
 
     def pitch_change(self, *along: str) -> PolyElement:
         """Change of the section's pitch in the airloads, where a coupling may stand for the pitch equation."""
-        return self.pitch_in_air.get(along, self.zero)
+        return self.pitch_in_air.along(*along)[0]
 
     def work_displacement(self, axis: str, row: str, *along: str) -> PolyElement:
         """Virtual displacement of a row along a section axis, and its derivative."""
-        total = _dot(self._derivative(self.axes[axis]), self.virtual_displacement(row, *along))
+        total = dot(self.axes[axis].along(), self.point.virtual_displacement(row, *along))
         if along:
-            total += _dot(self._derivative(self.axes[axis], *along), self.virtual_displacement(row))
+            total += dot(self.axes[axis].along(*along), self.point.virtual_displacement(row))
         return total
 
     def work_rotation(self, row: str, *along: str) -> PolyElement:
         """Rotation of the section about d: with hub, yoke and hinges, and by pitch; and its derivative."""
-        total = _dot(self._derivative(self.axes["d"]), self.virtual_rotation(row, *along))
+        total = dot(self.axes["d"].along(), self.virtual_rotation(row, *along))
         if along:
-            total += _dot(self._derivative(self.axes["d"], *along), self.virtual_rotation(row))
-        return total + self.pitch_to_yoke.get((row, *along), self.zero)
+            total += dot(self.axes["d"].along(*along), self.virtual_rotation(row))
+        return total + self.pitch_to_yoke.along(row, *along)[0]
 
 
 @functools.cache
@@ -329,7 +282,7 @@ def gust_motion(motion: str, gust: str, dropped: frozenset[str] = CONSISTENT) ->
     if not axis or MOTION[motion].power:
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
-    component = kinematics.axes[axis][()][BLADE_GUSTS.index(COORDINATE[gust])]
+    component = kinematics.axes[axis].along()[BLADE_GUSTS.index(COORDINATE[gust])]
     return _power(kinematics, -SENSE[axis] * component, 0)
 
 
@@ -404,7 +357,8 @@ def _line_and_arm() -> list[tuple[sp.Symbol, sp.Expr]]:
     r = s.radial_station
     ring = PolynomialRing(
         [symbol for pair in SEGMENT_ANGLES.values() for symbol in pair]
-        + [flap, lag, r, s.flap_hinge_offset, s.lag_hinge_offset]
+        + [flap, lag, r, s.flap_hinge_offset, s.lag_hinge_offset],
+        "`_line_and_arm` of derive/airloads.py",
     )
 
     def linear(expression: sp.Expr) -> list[sp.Expr]:
@@ -416,34 +370,3 @@ def _line_and_arm() -> list[tuple[sp.Symbol, sp.Expr]]:
         for symbol, component in zip(anchor, kin.at_trim(kin.blade_line()), strict=True)
     ]
     return [*steps, (flap_arm_at_center, linear(kin.deflected_flap_arm())[0])]
-
-
-def _turned(turn: list[Taylor], vector: Taylor) -> Taylor:
-    """Taylor coefficients of the product of a matrix, given by rows, and a vector."""
-    product: Taylor = {}
-    keys = {key for taylor in (*turn, vector) for key in taylor}
-    for key in keys | {a + b for a in keys for b in keys if len(a) + len(b) <= 2}:
-        ways: list[tuple[Along, Along]] = [(key, ()), ((), key)] if key else [((), ())]
-        if len(key) == 2:
-            ways += [(key[:1], key[1:]), (key[1:], key[:1])]
-        product[key] = [
-            sum(_dot(row[a], vector[b]) for a, b in ways if a in row and b in vector) for row in turn
-        ]
-    return product
-
-
-def _add(a: Vector, b: Vector) -> Vector:
-    return [x + y for x, y in zip(a, b, strict=True)] if a and b else a or b
-
-
-def _dot(a: Vector, b: Vector) -> PolyElement:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def _spin(vector: Vector, rate: PolyElement) -> Vector:
-    """rate k x vector."""
-    return [-rate * vector[1], rate * vector[0], 0 * vector[2]]

@@ -104,6 +104,8 @@ SWASHPLATE = (
     *(Coordinate(f"cyclic_1{part}", "rad", "pitch", 1, part) for part in "cs"),
 )
 
+INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
+
 # A straight segment of the blade between its hinges, in section axes.
 SECTION_AXES = ("x", "n", "d")
 SEGMENT_LOADS = (
@@ -133,4 +135,27 @@ def by_name(*lists: Iterable[Record]) -> dict[str, Record]:
 COORDINATE = by_name(
     BLADE, FIXED, REACTIONLESS_PAIR, DIFFERENTIAL, BLADE_GUSTS, FIXED_GUSTS, SWASHPLATE
 )  # a name that two lists have is the same motion in both
+# Motions in pairs that a quarter turn of the rotor carries into each other, each with the other.
+PARTNER = {
+    one.name: other.name
+    for motions in (FIXED, REACTIONLESS_PAIR, FIXED_GUSTS, SWASHPLATE)
+    for one in motions
+    for other in motions
+    if one != other and one.harmonic and (one.angle, one.harmonic) == (other.angle, other.harmonic)
+}
+# Turns of the whole blade by shaft and gimbal, each with the turn of the hub that moves the blade alike.
+SAME_TURN = {"azimuth": "turn_k", "gimbal_flap": "turn_i", "gimbal_roll": "turn_j"}
 LOAD, MOTION = by_name(SEGMENT_LOADS), by_name(SEGMENT_MOTIONS)
+
+# The lists that the generated module has, with what each is.
+LISTS = {
+    "BLADE": "Coordinates of one blade in rotating axes, in the order of its matrices.",
+    "FIXED": "Coordinates of the rotor in the fixed frame, Eq. 17 of AIAA-2002-1604.",
+    "REACTIONLESS_PAIR": "Motions of the blades of a harmonic n, 2 to below N/2, that do not reach the hub.",
+    "DIFFERENTIAL": "Motions of neighbouring blades against each other, for even N.",
+    "BLADE_GUSTS": "Gusts along a blade's axes.",
+    "FIXED_GUSTS": "Gusts in the fixed frame.",
+    "SWASHPLATE": "Motions of the swashplate.",
+    "SEGMENT_LOADS": "Generalised loads of a segment, rows of L and W.",
+    "SEGMENT_MOTIONS": "Motions along a segment, columns of L and rows of U.",
+}

@@ -5,33 +5,35 @@ Expressions are printed here, by one printer; the templates only lay them out; t
 
 from __future__ import annotations
 
+import dataclasses
 import difflib
 import hashlib
+import itertools
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import jinja2
 import sympy as sp
 from sympy.printing.numpy import NumPyPrinter
 
-from derive import kinematics as kin
-from derive import multiblade
-from derive.coordinates import FIXED_GUSTS
-from derive.coordinates import names as names_of
+from derive import coordinates, multiblade
+from derive.coordinates import PARTNER, SAME_TURN
 from derive.equations import REDUCED_MODULES, STEPS, consistent_functions, reduced_functions
 from derive.files import write_whole
 from derive.function import Function
 from derive.published import DROPPED_TERMS
+from derive.rotor import OF_SEGMENTS, OPTIONAL, Assembly, Call
 from derive.symbols import QUANTITIES
 
 ROOT = Path(__file__).resolve().parent.parent
 TEMPLATES = ROOT / "templates"
 GENERATED = ROOT / "generated" / "proprotor_equations"
 
+Place = tuple[str, str]  # row and column of an entry
 Progress = Callable[[str], None]  # takes a line for each step
 
 
@@ -85,38 +87,72 @@ def argument_lines(function: Function) -> list[dict[str, str]]:
     return lines
 
 
+# An entry of more operations than this refers to its mirror image, if it is equal or opposite to it.
+_SHORT = 2
+
+
 def printed_entries(function: Function) -> list[dict[str, str]]:
-    """Assignments of a matrix; an entry equal or opposite to an earlier one refers to it."""
-    first: dict[sp.Expr, str] = {}
+    """Assignments of a matrix; every entry shows its formula but a long one that mirrors an earlier entry."""
     lines, equation = [], None
-    for (row, column), entry in function.entries.items():
-        place = f"matrix[..., {row.upper()}, {column.upper()}]"
-        value = sp.expand(entry.value)
-        if value in first and not value.is_Symbol:
-            code = first[value]
-        elif -value in first and not value.is_Symbol:
-            code = f"-{first[-value]}"
-        else:
-            code = print_code(entry.value)
-            first[value] = place
-        lines.append(
-            {"place": place, "code": code, "equation": entry.equation if entry.equation != equation else ""}
-        )
+    for place, entry in function.entries.items():
+        told = entry.equation if entry.equation != equation else ""
+        code = _mirrored(function, place) or print_code(entry.value)
+        lines.append({"place": _printed_place(function, place), "code": code, "equation": told})
         equation = entry.equation
     return lines
 
 
+def _printed_place(function: Function, place: Place) -> str:
+    row, column = place
+    return f"matrix[..., {function.row_prefix}{row.upper()}, {column.upper()}]"
+
+
+def _mirrored(function: Function, place: Place) -> str:
+    """The earlier entry that a long one mirrors, with its sign; empty where there is none."""
+    mirror, sign = _mirror(function, place)
+    return "" if mirror is None else f"{'-' * (sign < 0)}{_printed_place(function, mirror)}"
+
+
+def _mirror(function: Function, place: Place) -> tuple[Place | None, int]:
+    value = function.entries[place].value
+    if sp.count_ops(value) <= _SHORT:
+        return None, 1
+    places = list(function.entries)
+    earlier = places[: places.index(place)]
+    for other in _images(place):
+        if other in earlier:
+            for sign in (1, -1):
+                if sp.expand(value - sign * function.entries[other].value) == 0:
+                    return other, sign
+    return None, 1
+
+
+def _images(place: Place) -> Iterator[Place]:
+    """Places that mirror one: transposed, turned by a quarter of the rotor, or of another turn of the blade like it."""
+    row, column = place
+    for left, right in itertools.product(
+        (row, SAME_TURN.get(row, row)), (column, SAME_TURN.get(column, column))
+    ):
+        yield left, right
+        yield right, left
+    if row in PARTNER and column in PARTNER:
+        yield PARTNER[row], PARTNER[column]
+        yield PARTNER[column], PARTNER[row]
+
+
 def operations(function: Function) -> int:
-    """Arithmetic operations per point, equal entries counted once."""
-    distinct = {sp.expand(entry.value) for entry in function.entries.values()}
-    expressions = [value for _, value in function.steps] + [
-        value for value in distinct if -value not in distinct
-    ]
+    """Arithmetic operations per point, as printed."""
+    expressions = [value for _, value in function.steps]
+    for place, entry in function.entries.items():
+        if _mirror(function, place)[0] is None:
+            expressions.append(entry.value)
     return int(sum(sp.count_ops(expression) for expression in expressions))
 
 
 def describe(function: Function) -> dict[str, Any]:
     """Everything the template needs, printed."""
+    if isinstance(function, Assembly):
+        return _describe_assembly(function)
     return {
         "name": function.name,
         "summary": function.summary,
@@ -127,7 +163,7 @@ def describe(function: Function) -> dict[str, Any]:
             {"name": str(v), "unit": QUANTITIES[v].unit or "-", "meaning": QUANTITIES[v].meaning}
             for v in function.values
         ],
-        "tuple_name": "".join(part.capitalize() for part in function.name.split("_")),
+        "tuple_name": _tuple_name(function.name),
         "rows": function.rows,
         "columns": function.columns,
         "entries": printed_entries(function),
@@ -137,11 +173,93 @@ def describe(function: Function) -> dict[str, Any]:
     }
 
 
+def _tuple_name(function: str) -> str:
+    return "".join(part.capitalize() for part in function.split("_"))
+
+
+def _describe_assembly(assembly: Assembly) -> dict[str, Any]:
+    """The same of a function that calls others."""
+    arguments = [
+        {
+            "name": symbol.name,
+            "unit": QUANTITIES[symbol].unit or "-",
+            "meaning": QUANTITIES[symbol].meaning + ", (..., segments)" * (symbol in OF_SEGMENTS),
+            "optional": symbol in OPTIONAL,
+        }
+        for symbol in assembly.arguments
+    ]
+    along = [symbol.name for symbol in assembly.arguments if symbol not in OF_SEGMENTS]
+    last = assembly.lines[-1].terms[0]
+    returned = assembly if assembly.results else cast(Call, last).function
+    return {
+        "name": assembly.name,
+        "summary": assembly.summary,
+        "origin": assembly.origin,
+        "arguments": arguments,
+        "blade_matrices": assembly.blade_matrices,
+        "chooses_equations": assembly.chooses_equations,
+        "along": along if assembly.segments else [],
+        "lines": _printed_lines(assembly),
+        "results": list(assembly.results.items()),
+        "returns": _tuple_name(returned.name),
+        "tuple_name": _tuple_name(assembly.name),
+    }
+
+
+def _printed_lines(assembly: Assembly) -> list[dict[str, str]]:
+    """Each line as an assignment; what it gives is known by its name, or by the names of its fields."""
+    known: dict[str, str] = {}
+    lines = []
+    for line in assembly.lines:
+        terms = [_printed_call(term, known) if isinstance(term, Call) else str(term) for term in line.terms]
+        lines.append({"name": line.result, "code": " + ".join(terms)})
+        fields = [name for term in line.terms if isinstance(term, Call) for name in term.results]
+        known |= {name: f"{line.result}.{name}" for name in fields} or {line.result: line.result}
+    return lines
+
+
+def _printed_call(call: Call, known: Mapping[str, str]) -> str:
+    """A call by keywords, from what is known or the arguments of the same names."""
+    function = call.function
+    if isinstance(function, Assembly):
+        place = ""
+    else:
+        place = f"equations.{function.module}." if call.drops else f"_{function.module}."
+    given = [known.get(name, name) for name in function.blade_matrices]
+    given += [f"{symbol.name}={known.get(symbol.name, symbol.name)}" for symbol in function.arguments]
+    if isinstance(function, Assembly) and function.chooses_equations:
+        given.append("equations=equations")
+    return f"{place}{function.name}({', '.join(given)})"
+
+
+def coordinate_lists() -> list[dict[str, Any]]:
+    """The records of `derive.coordinates`, list by list."""
+    return [
+        {
+            "name": name,
+            "meaning": meaning,
+            "records": [
+                {"kind": type(record).__name__, "fields": _fields(record)}
+                for record in getattr(coordinates, name)
+            ],
+        }
+        for name, meaning in coordinates.LISTS.items()
+    ]
+
+
+def _fields(record: coordinates.Named) -> list[tuple[str, Any]]:
+    """Fields of a record, name first and unit last."""
+    fields = dataclasses.asdict(record)
+    unit = fields.pop("unit")
+    return [*fields.items(), ("unit", unit)]
+
+
 def index_groups(functions: list[Function]) -> list[dict[str, str | int]]:
     """Row and column names of a module's matrices as index constants, one group per list of names."""
     groups: dict[tuple[str, ...], None] = {}
     for function in functions:
-        groups |= dict.fromkeys(names for names in (function.rows, function.columns) if names)
+        rows = tuple(f"{function.row_prefix}{row}" for row in function.rows)
+        groups |= dict.fromkeys(names for names in (rows, function.columns) if names)
     if any(function.blade_matrices for function in functions):
         for indices in (multiblade.BLADE_INDEX, multiblade.GUST_INDEX):
             groups[tuple(symbol.name for symbol in indices.values())] = None
@@ -189,18 +307,24 @@ def _environment() -> jinja2.Environment:
     )
 
 
-def render_module(functions: list[Function], title: str) -> str:
+def render_module(functions: list[Function], title: str, template: str = "module.py.jinja") -> str:
     """Text of one generated module, formatted; dimensions are checked on the way."""
     for function in functions:
         function.check_dimensions()
+    calls = [call for function in functions if isinstance(function, Assembly) for call in function.calls]
     text = (
         _environment()
-        .get_template("module.py.jinja")
+        .get_template(template)
         .render(
             title=title,
             functions=[describe(function) for function in functions],
             indices=index_groups(functions),
-            operations=sum(operations(function) for function in functions),
+            **({} if calls else {"operations": sum(operations(function) for function in functions)}),
+            records=coordinate_lists(),
+            modules=list(
+                dict.fromkeys(call.function.module for call in calls if call.function.module != "rotor")
+            ),
+            choices=REDUCED_MODULES,
             **_header(),
         )
     )
@@ -214,7 +338,7 @@ def _header() -> dict[str, str]:
 def render() -> Iterator[tuple[str, str]]:
     """File name and text of every generated module, one step of the derivation after another."""
     for module, step in STEPS.items():
-        yield f"{module}.py", render_module(consistent_functions(module), step.title)
+        yield f"{module}.py", render_module(consistent_functions(module), step.title, step.template)
     for module in REDUCED_MODULES:
         title = f"{STEPS[module].title}, as published"
         yield f"published/{module}.py", render_module(reduced_functions(module), title)
@@ -223,9 +347,6 @@ def render() -> Iterator[tuple[str, str]]:
         .get_template("package.py.jinja")
         .render(
             modules=list(STEPS),
-            blade_coordinates=kin.COORDINATES,
-            fixed_coordinates=multiblade.FIXED_COORDINATES,
-            fixed_gusts=names_of(FIXED_GUSTS),
             **_header(),
         )
     )

@@ -18,87 +18,92 @@ from derive import (
     lift_slope,
     multiblade,
     pitch,
+    rotor,
     section,
     trim,
 )
 from derive import kinematics as kin
-from derive.coordinates import BLADE_GUSTS, DIFFERENTIAL, FIXED_GUSTS, LOAD, MOTION, REACTIONLESS_PAIR, names
-from derive.coordinates import SEGMENT_MOTIONS as MOTIONS
-from derive.function import Function, force_per, plus
+from derive.coordinates import (
+    BLADE_GUSTS,
+    DIFFERENTIAL,
+    FIXED_GUSTS,
+    REACTIONLESS_PAIR,
+    SEGMENT_MOTIONS,
+    SWASHPLATE,
+    names,
+)
+from derive.function import Function
 from derive.kinds import (
     ROW_EQUATION,
     Dropped,
-    Line,
     Step,
+    assembly,
     blade_matrix,
     column,
     loads_matrix,
-    matrix,
     motion_matrix,
     product,
+    reactionless_matrix,
     rotor_matrix,
+    transform_matrix,
+    trim_velocity,
     values,
     virtual_motion,
+    work_matrix,
 )
-from derive.published import PUBLISHED
+from derive.published import CONSISTENT, PUBLISHED
+from derive.rotor import Call
 
+# Where the equations stand, besides the paper's own rows.
 PAPER = "AIAA-2002-1604"
+HINGES = f"{PAPER}, nomenclature: integrals over the blade outboard of each hinge"
+FREQUENCIES = f"{PAPER}, nomenclature: flap and lag frequency"
 REFERENCE_LINE = "the blade's reference line with precone, coning and lag, Eq. 2"
+STRIP = "strip theory on a straight segment"
 STRIP_THEORY = "quasi-steady strip theory, as NASA TN D-7677"
-CLOSED_FORM = (
+CLOSED = (
     "u_T = Omega r and u_P = V, constant chord, no compressibility, as NASA TN D-7677; valid down to V = 0"
 )
+MOVING_AIR = "perturbation velocities, Eqs. 14-15, of moving air"
+VELOCITIES = "perturbation velocities and pitch, Eqs. 14-16"
+STEADY_LOADS = "steady loads on the moving blade"
+BEYOND = f"{STEADY_LOADS}, beyond Eqs. 14-16"
 STEADY = f"{PAPER}, Eqs. 12 and 32, steady part"
+SLOPE = f"{PAPER}, Eqs. 12 and 32, differentiated"
+BLADE_AXES = (
+    f"{PAPER}, Eqs. 7-9: hub motion and gimbal tilt along the blade's axes, angles as multiblade sums"
+)
 SUM = f"{PAPER}, Eqs. 7-9 and 17: sum over N blades"
 ANY_SUM = f"{SUM}, any N of at least 3"
+CYCLIC = "separate cyclic and collective flap frequencies, as NASA TN D-7677"
 ENGINE = "energies of engine and shaft on the azimuth of Eq. 17"
+WORK = f"{PAPER}, virtual work of Eqs. 12 and 32"
+OF_BLADE = f"{PAPER}, Eqs. 4-16 and 32-34"
+OF_ROTOR = f"{PAPER}, Eqs. 4-17 and 32-34"
 
-BLADE, LOADS = kin.COORDINATES, section.SECTION_LOADS.values()
-M, MC, MCK = ("mass",), ("mass", "damping"), ("mass", "damping", "stiffness")
-
-
-def _reactionless(kind: str, order: int, pair: bool) -> Line:
-    """A matrix of motions of the blades that do not reach the hub."""
-    told = "motions of a harmonic whose sum over the blades vanishes"
-    if not pair:
-        told = "motion of neighbouring blades against each other, even N"
-    coordinates = names(REACTIONLESS_PAIR if pair else DIFFERENTIAL)
-    return matrix(
-        f"{'reactionless' if pair else 'differential'}_{kind}",
-        functools.partial(multiblade.reactionless, kind),
-        "multiblade coordinates beyond Eq. 17, for more than three blades",
-        coordinates,
-        coordinates,
-        force_per(order),
-        "blade angles beyond Eq. 17",
-        summary=f"{kind.capitalize()} matrix of the {told}.",
-        blade_matrices=MCK[: 3 - order],
-    )
+BLADE, ROWS, UNKNOWNS = kin.COORDINATES, trim.STEADY_ROWS, trim.UNKNOWNS
+LOADS, STIFFNESS = section.SECTION_LOADS.values(), flap_lag_springs.STIFFNESS.values()
+MOMENTS, MOTIONS = airloads.MOMENTS.values(), names(SEGMENT_MOTIONS)
+M, MC, MCK, GUSTS = ("mass",), ("mass", "damping"), ("mass", "damping", "stiffness"), ("gusts",)
 
 
+def _called(name: str) -> Call:
+    """Look up a function of the list below by module and name, for another function to call."""
+    module, function = name.split(".")
+    return Call(_consistent(module, function), STEPS[module].line(function).drops)
+
+
+COORDINATES = (transform_matrix("transform", multiblade.transform, BLADE_AXES),)
 INERTIA = (
-    values(
-        "dependent_inertias",
-        inertia.dependent_inertias,
-        f"{PAPER}, nomenclature: integrals over the blade outboard of each hinge",
-    ),
+    values("dependent_inertias", inertia.dependent_inertias, HINGES),
     values("trim_integrals", inertia.trim_integrals, REFERENCE_LINE, drops=True),
     blade_matrix("mass", inertia.mass, 2, drops=True),
     blade_matrix("gyroscopic", inertia.gyroscopic, 1, drops=True),
     blade_matrix("centrifugal_stiffness", inertia.centrifugal_stiffness, 0, drops=True),
 )
 SPRINGS = (
-    values(
-        "effective_stiffness",
-        flap_lag_springs.effective_stiffness,
-        f"{PAPER}, Eqs. 18-31",
-        flap_lag_springs.STIFFNESS.values(),
-    ),
-    values(
-        "stiffness_of_frequencies",
-        flap_lag_springs.stiffness_of_frequencies,
-        f"{PAPER}, nomenclature: flap and lag frequency",
-    ),
+    values("effective_stiffness", flap_lag_springs.effective_stiffness, f"{PAPER}, Eqs. 18-31", STIFFNESS),
+    values("stiffness_of_frequencies", flap_lag_springs.stiffness_of_frequencies, FREQUENCIES),
     blade_matrix("stiffness", flap_lag_springs.stiffness, 0, drops=True),
 )
 PITCH = (
@@ -115,20 +120,8 @@ SECTION = (
     values("steady_forces", section.steady_forces, STRIP_THEORY, LOADS),
 )
 AIRLOADS = (
-    loads_matrix(
-        "load_derivatives",
-        section.load_derivative,
-        "strip theory on a straight segment, as NASA TN D-7677",
-        names(MOTIONS),
-        lambda load, motion: plus(LOAD[load].dimension, minus=MOTION[motion].dimension),
-    ),
-    loads_matrix(
-        "steady_loads",
-        airloads.steady_load,
-        "strip theory on a straight segment",
-        ("trim",),
-        lambda load, _: LOAD[load].dimension,
-    ),
+    loads_matrix("load_derivatives", section.load_derivative, f"{STRIP}, as NASA TN D-7677", MOTIONS),
+    loads_matrix("steady_loads", airloads.steady_load, STRIP, ("trim",)),
     product("damping", "Airload damping of one blade in rotating axes, C = - sum W^T L U."),
     product("stiffness", "Airload stiffness of one blade in rotating axes, K = - sum W^T L U - G."),
     product(
@@ -136,88 +129,54 @@ AIRLOADS = (
     ),
     product("steady_work", "Virtual work of the steady airloads of one blade, one column."),
     values("segment_geometry", airloads.segment_geometry, REFERENCE_LINE, drops=True),
-    matrix(
-        "trim_velocity",
-        airloads.trim_velocity,
-        "u_T and u_P of Eqs. 14-15 at trim",
-        (motion.name for motion in MOTIONS if motion.argument != "theta"),
-        ("trim",),
-        lambda motion, _: MOTION[motion].dimension,
-        drops=True,
-    ),
+    trim_velocity(drops=True),
     virtual_motion(BLADE, drops=True),
-    motion_matrix("rate_motion", airloads.rate_motion, BLADE, 1, drops=True),
-    motion_matrix("displacement_motion", airloads.displacement_motion, BLADE, drops=True),
-    motion_matrix(
-        "gust_motion",
-        airloads.gust_motion,
-        names(BLADE_GUSTS),
-        origin="perturbation velocities, Eqs. 14-15, of moving air",
-        drops=True,
-    ),
-    matrix(
-        "geometric_stiffness",
-        airloads.geometric_stiffness,
-        "steady loads on the moving blade, beyond Eqs. 14-16",
-        BLADE,
-        BLADE,
-        force_per(0),
-        drops=True,
-    ),
+    motion_matrix("rate_motion", airloads.rate_motion, VELOCITIES, BLADE, 1, drops=True),
+    motion_matrix("displacement_motion", airloads.displacement_motion, VELOCITIES, BLADE, drops=True),
+    motion_matrix("gust_motion", airloads.gust_motion, MOVING_AIR, names(BLADE_GUSTS), drops=True),
+    work_matrix("geometric_stiffness", airloads.geometric_stiffness, BEYOND, BLADE, BLADE, drops=True),
 )
-LIFT_SLOPE = (values("load_moments", lift_slope.load_moments, CLOSED_FORM, airloads.MOMENTS.values()),)
+LIFT_SLOPE = (values("load_moments", lift_slope.load_moments, CLOSED, MOMENTS),)
 TRIM = (
-    column("residual", trim.residual, STEADY, trim.STEADY_ROWS, equation=ROW_EQUATION),
-    column("precone_load", trim.precone_load, STEADY, trim.HINGED, equation=ROW_EQUATION),
-    matrix(
-        "jacobian",
-        trim.jacobian,
-        f"{PAPER}, Eqs. 12 and 32, differentiated",
-        trim.STEADY_ROWS,
-        trim.UNKNOWNS,
-        force_per(0),
-        ROW_EQUATION,
-    ),
-    virtual_motion(trim.STEADY_ROWS),
-    motion_matrix("displacement_motion", trim.displacement_motion, trim.UNKNOWNS),
-    matrix(
-        "geometric_stiffness",
-        trim.geometric_stiffness,
-        "steady loads on the moving blade",
-        trim.STEADY_ROWS,
-        trim.UNKNOWNS,
-        force_per(0),
-    ),
+    column("residual", trim.residual, STEADY, ROWS, ROW_EQUATION),
+    column("precone_load", trim.precone_load, STEADY, trim.HINGED, ROW_EQUATION),
+    work_matrix("jacobian", trim.jacobian, SLOPE, ROWS, UNKNOWNS, ROW_EQUATION),
+    virtual_motion(ROWS),
+    motion_matrix("displacement_motion", trim.displacement_motion, VELOCITIES, UNKNOWNS),
+    work_matrix("geometric_stiffness", trim.geometric_stiffness, STEADY_LOADS, ROWS, UNKNOWNS),
 )
 MULTIBLADE = (
     rotor_matrix("mass", multiblade.mass, ANY_SUM, 2, blade_matrices=M),
     rotor_matrix("damping", multiblade.damping, ANY_SUM, 1, blade_matrices=MC),
     rotor_matrix("stiffness", multiblade.stiffness, ANY_SUM, 0, blade_matrices=MCK),
+    rotor_matrix("swashplate_loads", multiblade.swashplate_loads, SUM, 0, columns=names(SWASHPLATE)),
     rotor_matrix(
-        "gust_loads", multiblade.gust_loads, SUM, 0, columns=names(FIXED_GUSTS), blade_matrices=("gusts",)
+        "gust_loads", multiblade.gust_loads, SUM, 0, columns=names(FIXED_GUSTS), blade_matrices=GUSTS
     ),
-    _reactionless("mass", 2, pair=True),
-    _reactionless("damping", 1, pair=True),
-    _reactionless("stiffness", 0, pair=True),
-    _reactionless("mass", 2, pair=False),
-    _reactionless("damping", 1, pair=False),
-    _reactionless("stiffness", 0, pair=False),
-    rotor_matrix(
-        "cyclic_restraint",
-        multiblade.cyclic_restraint,
-        "separate cyclic and collective flap frequencies, as NASA TN D-7677",
-        0,
-    ),
+    reactionless_matrix("reactionless_mass", "mass", 2, REACTIONLESS_PAIR),
+    reactionless_matrix("reactionless_damping", "damping", 1, REACTIONLESS_PAIR),
+    reactionless_matrix("reactionless_stiffness", "stiffness", 0, REACTIONLESS_PAIR),
+    reactionless_matrix("differential_mass", "mass", 2, DIFFERENTIAL),
+    reactionless_matrix("differential_damping", "damping", 1, DIFFERENTIAL),
+    reactionless_matrix("differential_stiffness", "stiffness", 0, DIFFERENTIAL),
+    rotor_matrix("cyclic_restraint", multiblade.cyclic_restraint, CYCLIC, 0),
 )
 DRIVE_TRAIN = (
     rotor_matrix("mass", drive_train.mass, ENGINE, 2),
     rotor_matrix("damping", drive_train.damping, ENGINE, 1),
     rotor_matrix("stiffness", drive_train.stiffness, ENGINE, 0),
 )
+ROTOR = (
+    assembly("blade_airloads", rotor.BLADE_AIRLOADS, WORK, _called),
+    assembly("blade_matrices", rotor.BLADE_MATRICES, OF_BLADE, _called),
+    assembly("fixed_frame", rotor.FIXED_FRAME, f"{PAPER}, Eqs. 7-9 and 17", _called),
+    assembly("matrices", rotor.MATRICES, OF_ROTOR, _called),
+)
 
 STEPS = {
     step.module: step
     for step in (
+        Step("coordinates", "Coordinates, loads and motions", COORDINATES, "coordinates.py.jinja"),
         Step("inertia", "Inertia of one blade in rotating axes", INERTIA),
         Step("flap_lag_springs", "Flap-lag springs of one blade, which turn with its pitch", SPRINGS),
         Step("pitch", "Blade pitch, control system, dampers and gimbal restraint", PITCH),
@@ -227,6 +186,7 @@ STEPS = {
         Step("trim", "Trim balance of one blade", TRIM),
         Step("multiblade", "From one blade to N blades in the fixed frame", MULTIBLADE),
         Step("drive_train", "Engine and shaft on the rotor's azimuth", DRIVE_TRAIN),
+        Step("rotor", "A whole rotor in one call", ROTOR, "rotor.py.jinja"),
     )
 }
 """Every step by the name of its module."""
@@ -235,19 +195,19 @@ REDUCED_MODULES = tuple(module for module, step in STEPS.items() if step.changes
 
 
 @functools.cache
-def _consistent(module: str) -> tuple[Function, ...]:
-    return tuple(STEPS[module].functions(drops=True))
+def _consistent(module: str, name: str) -> Function:
+    step = STEPS[module]
+    return step.derived(step.line(name), CONSISTENT)
 
 
 def consistent_functions(module: str) -> list[Function]:
-    """All functions of a module, with every first-order term."""
-    return [*STEPS[module].functions(drops=False), *_consistent(module)]
+    """Return all functions of a module, with every first-order term."""
+    return [_consistent(module, line.name) for line in STEPS[module].lines]
 
 
 def reduced_functions(module: str, dropped: Dropped = PUBLISHED) -> list[Function]:
-    """The functions that dropped terms can change, without those terms, under the consistent signatures."""
-    signatures = {function.name: tuple(function.arguments) for function in _consistent(module)}
+    """Return the functions that dropped terms can change, without these terms but with the consistent signatures."""
     return [
-        dataclasses.replace(function, signature=signatures[function.name])
-        for function in STEPS[module].functions(dropped, drops=True)
+        dataclasses.replace(function, signature=tuple(_consistent(module, function.name).arguments))
+        for function in STEPS[module].changing(dropped)
     ]

@@ -13,7 +13,7 @@ import sympy as sp
 
 from derive import multiblade
 from derive.coordinates import COORDINATE
-from derive.symbols import NUMBER, QUANTITIES, Dimension, MissingError
+from derive.symbols import NUMBER, QUANTITIES, Dimension, MissingError, how_to_declare
 
 FORCE: Dimension = (1, 1, -2)
 MOMENT: Dimension = (1, 2, -2)
@@ -94,8 +94,8 @@ def undeclared(symbol: sp.Symbol, where: str) -> MissingError:
     if any(symbol.name == f"q_{name}" for name in COORDINATE):
         remedy = "it is a coordinate's perturbation: take the expression at trim, `at_trim` of derive/kinematics.py"
     else:
-        remedy = f'declare it in derive/symbols.py: {symbol} = quantity("{symbol}", notation, unit, meaning)'
-    return MissingError(f"{where} uses the symbol {symbol}, which is no argument; {remedy}")
+        remedy = how_to_declare(symbol)
+    return MissingError(f"{where} uses the symbol {symbol}, which is no argument: {remedy}")
 
 
 def _quantity_dimension(symbol: sp.Symbol, where: str) -> Dimension:

@@ -19,6 +19,7 @@ from sympy.polys.rings import PolyElement
 
 from derive import kinematics as kin
 from derive import symbols as s
+from derive.expansion import MovingPoint, Vector, dot, spin
 from derive.polynomials import (
     SINE_AND_COSINE,
     WHOLE_BLADE_ANGLES,
@@ -119,6 +120,13 @@ def integrate_mass(integrand: sp.Expr, integrals: Integrals) -> sp.Expr:
     arms = sorted({arm for product in integrals for arm in product}, key=lambda arm: arm.name)
     by_powers = {tuple(product.count(arm) for arm in arms): value for product, value in integrals.items()}
     terms = sp.Poly(integrand, *arms).terms() if integrand != 0 else []
+    for powers, _ in terms:
+        if powers not in by_powers:
+            product = sp.prod(arm**power for arm, power in zip(arms, powers, strict=True))
+            raise s.MissingError(
+                f"no integral of the mass times {product}: declare it as a quantity and add it to `TRIM_INTEGRALS`, and"
+                " to the integrals that it is made of, in derive/inertia.py"
+            )
     return sum((coefficient * by_powers[powers] for powers, coefficient in terms), sp.Integer(0))
 
 
@@ -199,29 +207,13 @@ _DROPPED_ACCELERATIONS = {
 }
 
 
-class BladeMotion:
-    """Virtual displacements and derivatives of the position, at trim."""
-
-    def __init__(self) -> None:
-        trig = [symbol for pair in WHOLE_BLADE_ANGLES.values() for symbol in pair]
-        self.ring = PolynomialRing([*trig, *ARMS, *TRIM_INTEGRALS.values()])
-        position = kin.position()
-        rows = kin.virtual_displacements(position)
-        self.position = self._at_trim(position)
-        self.derivative = {name: self._at_trim(d) for name, d in kin.gradient(position).items()}
-        self.virtual = {name: self._at_trim(w) for name, w in rows.items()}
-        self.virtual_change = {
-            (i, j): self._at_trim(sp.diff(w, kin.q[j])) for i, w in rows.items() for j in kin.COORDINATES
-        }
-
-    def _at_trim(self, vector: sp.Matrix) -> list[PolyElement]:
-        named = name_trigonometry(kin.at_trim(vector), WHOLE_BLADE_ANGLES)
-        return self.ring.vector(named.subs(kin.chordwise_arm, kin.lag_arm * sin_lag))
-
-
 @functools.cache
-def blade_motion() -> BladeMotion:
-    return BladeMotion()
+def blade_motion() -> MovingPoint:
+    """A point mass of the whole blade, by its arms."""
+    trig = [symbol for pair in WHOLE_BLADE_ANGLES.values() for symbol in pair]
+    ring = PolynomialRing([*trig, *ARMS], "`ARMS` and the integrals of derive/inertia.py")
+    line = name_trigonometry(kin.deflected_line(), WHOLE_BLADE_ANGLES)
+    return MovingPoint(ring, line.subs(kin.chordwise_arm, kin.lag_arm * sin_lag))
 
 
 class BladeInertia:
@@ -237,8 +229,11 @@ class BladeInertia:
             integral = integral.subs({sin_lag: 0, cos_lag: 1})
         return first_order(integral) if "finite_trim_angles" in self.dropped else integral
 
-    def _kept(self, matrix: str, column: str, acceleration: list[PolyElement]) -> list[PolyElement]:
-        """The acceleration without the components of dropped terms."""
+    def acceleration(self, matrix: str, column: str, spins: int) -> Vector:
+        """The motion along a coordinate, k x it or k x (k x it), without the components of dropped terms."""
+        acceleration = self.motion.position.along(column)
+        for _ in range(spins):
+            acceleration = spin(acceleration)
         gone = {
             component
             for term, (matrices, columns, components) in _DROPPED_ACCELERATIONS.items()
@@ -253,28 +248,29 @@ class BladeInertia:
     def mass(self, i: str, j: str) -> sp.Expr:
         if self._is_dropped(i):
             return sp.Integer(0)
-        return self._integral(_dot(self.motion.virtual[i], self._kept("mass", j, self.motion.derivative[j])))
+        return self._integral(dot(self.motion.virtual_displacement(i), self.acceleration("mass", j, 0)))
 
     def gyroscopic(self, i: str, j: str) -> sp.Expr:
         if self._is_dropped(i):
             return sp.Integer(0)
-        coriolis = self._kept("gyroscopic", j, _spin(self.motion.derivative[j]))
-        return 2 * s.rotor_speed * self._integral(_dot(self.motion.virtual[i], coriolis))
+        coriolis = self.acceleration("gyroscopic", j, 1)
+        return 2 * s.rotor_speed * self._integral(dot(self.motion.virtual_displacement(i), coriolis))
 
     def centrifugal(self, i: str, j: str) -> sp.Expr:
         if self._is_dropped(i, j):
             return sp.Integer(0)
-        moved = _dot(
-            self.motion.virtual[i], self._kept("centrifugal", j, _spin(_spin(self.motion.derivative[j])))
-        )
-        turned = _dot(self.motion.virtual_change[i, j], _spin(_spin(self.motion.position)))
+        moved = dot(self.motion.virtual_displacement(i), self.acceleration("centrifugal", j, 2))
+        turned = dot(self.motion.virtual_displacement(i, j), self._steady_acceleration)
         return s.rotor_speed**2 * self._integral(moved + turned)
 
     def steady(self, i: str) -> sp.Expr:
         """Virtual work of the steady inertia forces, row i."""
-        return s.rotor_speed**2 * self._integral(
-            _dot(self.motion.virtual[i], _spin(_spin(self.motion.position)))
-        )
+        work = dot(self.motion.virtual_displacement(i), self._steady_acceleration)
+        return s.rotor_speed**2 * self._integral(work)
+
+    @property
+    def _steady_acceleration(self) -> Vector:
+        return spin(spin(self.motion.position.along()))
 
 
 def mass(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
@@ -290,12 +286,3 @@ def gyroscopic(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
 def centrifugal_stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Centrifugal stiffness of one blade in rotating axes."""
     return BladeInertia(dropped).centrifugal(i, j)
-
-
-def _dot(a: list[PolyElement], b: list[PolyElement]) -> PolyElement:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _spin(vector: list[PolyElement]) -> list[PolyElement]:
-    """k x vector."""
-    return [-vector[1], vector[0], 0 * vector[2]]

@@ -15,7 +15,15 @@ import sympy as sp
 
 from derive import airloads, function, multiblade
 from derive import kinematics as kin
-from derive.coordinates import LOAD, MOTION, SEGMENT_LOADS, SEGMENT_MOTIONS, names
+from derive.coordinates import (
+    LOAD,
+    MOTION,
+    REACTIONLESS_PAIR,
+    SEGMENT_LOADS,
+    SEGMENT_MOTIONS,
+    Coordinate,
+    names,
+)
 from derive.function import (
     DimensionOf,
     Function,
@@ -25,8 +33,8 @@ from derive.function import (
     plus,
     row_dimension,
 )
-from derive.published import CONSISTENT
-from derive.symbols import Dimension
+from derive.rotor import Assembly, Call, Recipe, made
+from derive.symbols import NUMBER, Dimension
 
 Dropped = frozenset[str]
 Derivation = Callable[..., Any]
@@ -63,14 +71,17 @@ class Step:
     module: str
     title: str
     lines: tuple[Line, ...]
+    template: str = "module.py.jinja"
 
-    def functions(self, dropped: Dropped = CONSISTENT, *, drops: bool) -> list[Function]:
-        """Derive the functions that a dropped term can change, or those that it cannot."""
-        return [
-            dataclasses.replace(line.derive(dropped), module=self.module)
-            for line in self.lines
-            if line.drops == drops
-        ]
+    def line(self, name: str) -> Line:
+        return next(line for line in self.lines if line.name == name)
+
+    def derived(self, line: Line, dropped: Dropped) -> Function:
+        return dataclasses.replace(line.derive(dropped), module=self.module)
+
+    def changing(self, dropped: Dropped) -> list[Function]:
+        """Derive the functions that a dropped term can change."""
+        return [self.derived(line, dropped) for line in self.lines if line.drops]
 
     @property
     def changes(self) -> bool:
@@ -79,7 +90,7 @@ class Step:
 
 
 def _without(derivation: Derivation, drops: bool, dropped: Dropped) -> Derivation:
-    """The derivation without dropped terms, if it is one that they can change."""
+    """Return the derivation without dropped terms, if dropped terms can change it."""
     return functools.partial(derivation, dropped=dropped) if drops else derivation
 
 
@@ -94,7 +105,7 @@ def values(
     returned: Iterable[sp.Symbol] | None = None,
     drops: bool = False,
 ) -> Line:
-    """Named values: all of the derivation's steps, or those of some symbols in their order."""
+    """Make a function of named values: all steps of the derivation, or the steps of some symbols, in that order."""
 
     def derive(dropped: Dropped) -> Function:
         found = _without(derivation, drops, dropped)()
@@ -117,7 +128,7 @@ def matrix(
     drops: bool = False,
     **more: Any,
 ) -> Line:
-    """A matrix, an entry for each row and column; `equation`, by row, stands above entries in place of the origin."""
+    """Make a matrix, an entry for each row and column; `equation`, by row, replaces the origin above the entries."""
     rows, columns = tuple(rows), tuple(columns)
 
     def derive(dropped: Dropped) -> Function:
@@ -129,18 +140,20 @@ def matrix(
     return Line(name, drops, derive)
 
 
-def column(name: str, derivation: Derivation, origin: str, rows: Iterable[str], **more: Any) -> Line:
-    """Virtual work in trim by row, one column."""
+def column(
+    name: str, derivation: Derivation, origin: str, rows: Iterable[str], equation: Mapping[str, str]
+) -> Line:
+    """Make one column: the virtual work in trim by row."""
 
     def entry(row: str, _: str) -> sp.Expr:
         return derivation(row)
 
     entry.__doc__ = derivation.__doc__
-    return matrix(name, entry, origin, rows, ("trim",), lambda row, _: row_dimension(row), **more)
+    return matrix(name, entry, origin, rows, ("trim",), lambda row, _: row_dimension(row), equation)
 
 
 def blade_matrix(name: str, derivation: Derivation, order: int, drops: bool = False) -> Line:
-    """A matrix of one blade in rotating axes; `order` counts the time derivatives of the column's coordinate."""
+    """Make a matrix of one blade in rotating axes; `order` counts the time derivatives of the column's coordinate."""
     rows = kin.COORDINATES
 
     def derive(dropped: Dropped) -> Function:
@@ -153,7 +166,7 @@ def blade_matrix(name: str, derivation: Derivation, order: int, drops: bool = Fa
 
 
 def rotor_matrix(name: str, derivation: Derivation, origin: str, order: int, **more: Any) -> Line:
-    """A matrix of the rotor in the fixed frame; `order` as of a blade's."""
+    """Make a matrix of the rotor in the fixed frame; `order` counts the time derivatives of the column's coordinate."""
     parts = {
         "rows": multiblade.FIXED_COORDINATES,
         "columns": multiblade.FIXED_COORDINATES,
@@ -162,15 +175,17 @@ def rotor_matrix(name: str, derivation: Derivation, origin: str, order: int, **m
     return matrix(name, derivation, origin, dimension=force_per(order), **parts | more)
 
 
-def loads_matrix(
-    name: str, derivation: Derivation, origin: str, columns: Iterable[str], dimension: DimensionOf
-) -> Line:
-    """Generalised loads of a segment."""
+def loads_matrix(name: str, derivation: Derivation, origin: str, columns: Iterable[str]) -> Line:
+    """Make the generalised loads of a segment: steady loads, or loads per unit of the segment's motions."""
+
+    def dimension(load: str, column: str) -> Dimension:
+        return plus(LOAD[load].dimension, minus=MOTION[column].dimension if column in MOTION else NUMBER)
+
     return matrix(name, derivation, origin, names(SEGMENT_LOADS), columns, dimension)
 
 
 def virtual_motion(rows: Iterable[str], drops: bool = False) -> Line:
-    """W of a segment, for the rows of a balance."""
+    """Make W of a segment, for the rows of a balance."""
     origin = "virtual displacements of the sections, Eqs. 2-11"
 
     def dimension(load: str, row: str) -> Dimension:
@@ -181,15 +196,29 @@ def virtual_motion(rows: Iterable[str], drops: bool = False) -> Line:
     )
 
 
+def trim_velocity(drops: bool = False) -> Line:
+    """Make the velocity of the air along a segment in trim."""
+    motions = names(motion for motion in SEGMENT_MOTIONS if motion.argument != "theta")
+    return matrix(
+        "trim_velocity",
+        airloads.trim_velocity,
+        "u_T and u_P of Eqs. 14-15 at trim",
+        motions,
+        ("trim",),
+        lambda motion, _: MOTION[motion].dimension,
+        drops=drops,
+    )
+
+
 def motion_matrix(
     name: str,
     derivation: Derivation,
+    origin: str,
     columns: Iterable[str],
     order: int = 0,
-    origin: str = "perturbation velocities and pitch, Eqs. 14-16",
     drops: bool = False,
 ) -> Line:
-    """U of a segment for the motions in the columns, or for their rates (`order` 1)."""
+    """Make U of a segment for the motions in the columns, or for the rates of these motions (`order` 1)."""
 
     def dimension(motion: str, column: str) -> Dimension:
         return plus(MOTION[motion].dimension, per_time(order), minus=coordinate_dimension(column))
@@ -197,7 +226,69 @@ def motion_matrix(
     return matrix(name, derivation, origin, names(SEGMENT_MOTIONS), columns, dimension, drops=drops)
 
 
+def work_matrix(
+    name: str,
+    derivation: Derivation,
+    origin: str,
+    rows: Iterable[str],
+    columns: Iterable[str],
+    equation: Mapping[str, str] | str = "",
+    drops: bool = False,
+) -> Line:
+    """Make the change of the rows' virtual work with the coordinates of the columns."""
+    return matrix(name, derivation, origin, rows, columns, force_per(0), equation, drops)
+
+
 def product(name: str, summary: str) -> Line:
-    """What the segments of a blade add to one of its matrices."""
+    """Make the sum over the segments of a blade that gives one of the blade's matrices."""
     origin = "virtual work of Eqs. 12 and 32"
     return Line(name, False, lambda _: Function("", name, summary, origin, product=airloads.products()[name]))
+
+
+def reactionless_matrix(name: str, kind: str, order: int, motions: tuple[Coordinate, ...]) -> Line:
+    """Make a matrix of motions of the blades that do not reach the hub."""
+    told = "motion of neighbouring blades against each other, even N"
+    if motions == REACTIONLESS_PAIR:
+        told = "motions of a harmonic whose sum over the blades vanishes"
+    return matrix(
+        name,
+        functools.partial(multiblade.reactionless, kind),
+        "multiblade coordinates beyond Eq. 17, for more than three blades",
+        names(motions),
+        names(motions),
+        force_per(order),
+        "blade angles beyond Eq. 17",
+        summary=f"{kind.capitalize()} matrix of the {told}.",
+        blade_matrices=("mass", "damping", "stiffness")[: 3 - order],
+    )
+
+
+def assembly(name: str, recipe: Recipe, origin: str, find: Callable[[str], Call]) -> Line:
+    """Make a function that calls other functions of the catalogue; `find` looks them up by module and name."""
+
+    def derive(_: Dropped) -> Function:
+        return Assembly(
+            "",
+            name,
+            recipe.summary,
+            origin,
+            blade_matrices=recipe.blade_matrices,
+            lines=made(recipe.lines, find),
+            results=recipe.results,
+            segments=recipe.segments,
+        )
+
+    return Line(name, False, derive)
+
+
+def transform_matrix(name: str, derivation: Derivation, origin: str) -> Line:
+    """Make the coordinates of a blade from the coordinates of the rotor."""
+    return matrix(
+        name,
+        derivation,
+        origin,
+        kin.COORDINATES,
+        multiblade.FIXED_COORDINATES,
+        lambda row, column: plus(coordinate_dimension(row), minus=coordinate_dimension(column)),
+        row_prefix="BLADE_",
+    )

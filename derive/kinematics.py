@@ -7,13 +7,12 @@ its azimuth; `derive.multiblade` turns the components into the fixed frame and s
     p = hub + R_h R_y { (r - rho_beta) d1 + rho_beta d2 + rho_zeta [(cos zeta - 1) d2 + sin zeta i] }
 
 Along the blade only the arms r - rho_beta, rho_beta and rho_zeta vary. The mass and the airloads need p and its first
-and second derivatives at trim; written in the arms of the deflected blade these are short (`deflected_line`).
+and second derivatives at trim (`derive.expansion`); in the arms of the deflected blade these are short.
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable
 
 import sympy as sp
 
@@ -24,8 +23,18 @@ COORDINATES = names(BLADE)
 HUB_TRANSLATION = names(c for c in BLADE if c.angle == "hub")
 HUB_ROTATION = names(c for c in BLADE if c.angle == "turn")
 
+
+class _Perturbations(dict[str, sp.Symbol]):
+    """Symbols by the names of coordinates; tells what to do about a name that is none."""
+
+    def __missing__(self, name: str) -> sp.Symbol:
+        raise s.MissingError(
+            f"{name} is no coordinate of the blade: add it to `BLADE` of derive/coordinates.py"
+        )
+
+
 # Perturbations from trim; trim coning and lag are the values of flap and lag about which they are taken.
-q = {name: sp.Symbol(f"q_{name}", real=True) for name in COORDINATES}
+q = _Perturbations((name, sp.Symbol(f"q_{name}", real=True)) for name in COORDINATES)
 
 I_AXIS = sp.Matrix([1, 0, 0])
 J_AXIS = sp.Matrix([0, 1, 0])
@@ -98,14 +107,19 @@ def blade_line() -> sp.Matrix:
 
 def deflected_line() -> sp.Matrix:
     """`blade_line` to second order about trim, in the arms of the deflected blade."""
-    line = blade_line()
     at_trim_by_arm = {outboard_arm: flap_arm + (1 - sp.cos(s.lag)) * lag_arm}
-    expansion = sp.Matrix([chordwise_arm, radial_arm, axial_arm])
-    for a in ("flap", "lag"):
-        expansion += q[a] * at_trim(sp.diff(line, q[a]))
-        for b in ("flap", "lag"):
-            expansion += q[a] * q[b] * at_trim(sp.diff(line, q[a], q[b])) / 2
+    expansion = sp.Matrix([chordwise_arm, radial_arm, axial_arm]) + change(blade_line())
     return expansion.subs(at_trim_by_arm).expand()
+
+
+def change(vector: sp.Matrix) -> sp.Matrix:
+    """What flap and lag from trim make of a vector, to second order."""
+    total = sp.zeros(*vector.shape)
+    for a in ("flap", "lag"):
+        total += q[a] * at_trim(sp.diff(vector, q[a]))
+        for b in ("flap", "lag"):
+            total += q[a] * q[b] * at_trim(sp.diff(vector, q[a], q[b])) / 2
+    return total
 
 
 def trim_arms() -> dict[sp.Symbol, sp.Expr]:
@@ -119,11 +133,6 @@ def deflected_flap_arm() -> sp.Expr:
     """The flap arm of the deflected blade in the arms of the undeflected one: lag brings the tip inboard."""
     normal = at_trim(sp.diff(blade_line(), q["flap"]))
     return sp.simplify(normal.dot(sp.diff(flapped(s.precone + s.coning), s.coning)))
-
-
-def position() -> sp.Matrix:
-    """p in rotating axes, to second order in the perturbations."""
-    return HUB + BLADE_TO_ROTATING * deflected_line()
 
 
 def blade_axes() -> sp.Matrix:
@@ -155,21 +164,3 @@ def pitch_angles(dropped: frozenset[str] = frozenset()) -> tuple[sp.Expr, sp.Exp
 def at_trim(expression: sp.Basic) -> sp.Basic:
     """The value with every perturbation at zero."""
     return expression.xreplace(dict.fromkeys(q.values(), sp.Integer(0)))
-
-
-def gradient(vector: sp.Basic, names: Iterable[str] = COORDINATES) -> dict[str, sp.Matrix]:
-    """Derivative of a scalar or vector along each coordinate, not yet taken at trim."""
-    return {name: sp.diff(vector, q[name]) for name in names}
-
-
-def virtual_displacements(vector: sp.Matrix) -> dict[str, sp.Matrix]:
-    """Displacement of a point per unit of each row's virtual motion.
-
-    A row is the generalised force of its coordinate, but for hub rotation: those rows are moment resultants about the
-    displaced hub point, so their virtual motion is a turn about fixed axes and not a change of exponential coordinates.
-    """
-    rows = gradient(vector)
-    about_hub = vector - HUB
-    for name, axis in zip(HUB_ROTATION, (I_AXIS, J_AXIS, K_AXIS), strict=True):
-        rows[name] = axis.cross(about_hub)
-    return rows

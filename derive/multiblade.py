@@ -83,7 +83,7 @@ def blade_coordinates() -> sp.Matrix:
 
 
 def transform(row: str, column: str) -> sp.Expr:
-    """Entry of T."""
+    """T: coordinates of the blade at azimuth psi per unit of the rotor's in the fixed frame."""
     return _columns(0)[column].get(row, sp.Integer(0))
 
 
@@ -165,10 +165,10 @@ def gust_loads(row: str, column: str) -> sp.Expr:
 
 
 def swashplate_loads(row: str, column: str) -> sp.Expr:
-    """Loads of N blades on a row per unit of swashplate motion, held in the fixed frame.
+    """Loads on the rotor's coordinates per unit of swashplate motion, on the right of the equations of motion.
 
-    Each blade's control system and pitch damper pull at its pitch towards the swashplate's; rates of the swashplate are
-    left out.
+    Each blade's control system and pitch damper pull at its pitch towards the swashplate's, which is held in the fixed
+    frame; rates of the swashplate are left out.
     """
     asked = wave(next(motion for motion in SWASHPLATE if motion.name == column))
     products = (

@@ -58,14 +58,22 @@ def temporaries(angles: Angles) -> list[tuple[sp.Symbol, sp.Expr]]:
 
 
 class PolynomialRing:
-    """Polynomials over the rationals in a fixed, sorted set of symbols."""
+    """Polynomials over the rationals in a fixed, sorted set of symbols.
 
-    def __init__(self, generators: Iterable[sp.Symbol]):
+    `listed` says where the symbols are listed, for whoever uses another one.
+    """
+
+    def __init__(self, generators: Iterable[sp.Symbol], listed: str):
+        self.listed = listed
         self.generators = sorted(generators, key=lambda symbol: symbol.name)
         self.ring = PolyRing(self.generators, sp.QQ, sp.polys.orderings.lex)
 
     def __call__(self, expression: sp.Expr | int) -> PolyElement:
-        return self.ring.from_expr(sp.sympify(expression).expand())
+        expanded = sp.sympify(expression).expand()
+        for symbol in sorted(expanded.free_symbols - set(self.generators), key=str):
+            remedy = f"add it to {self.listed}" if symbol in s.QUANTITIES else s.how_to_declare(symbol)
+            raise s.MissingError(f"no polynomial here knows the symbol {symbol}: {remedy}")
+        return self.ring.from_expr(expanded)
 
     def vector(self, components: Iterable[sp.Expr]) -> list[PolyElement]:
         return [self(component) for component in components]

@@ -2,7 +2,7 @@
 
 A symbol's SymPy name is the keyword argument of the generated functions, so an expression that reaches the
 printer needs no renaming. The notation (LaTeX) is for people; the unit gives the dimension that
-`derive.equations` checks every term of every entry against.
+`derive.function` checks every term of every entry against.
 """
 
 from __future__ import annotations
@@ -51,6 +51,11 @@ class Quantity:
 
 
 QUANTITIES: dict[sp.Symbol, Quantity] = {}
+
+
+def how_to_declare(symbol: sp.Symbol) -> str:
+    """What to do about a symbol that is no quantity."""
+    return f'declare it in derive/symbols.py, {symbol} = quantity("{symbol}", notation, unit, meaning)'
 
 
 def quantity(name: str, latex: str, unit: str, meaning: str) -> sp.Symbol:

@@ -1,4 +1,4 @@
-"""Which figure of AIAA-2002-1604 shows what, with the paper's axes."""
+"""The figures of AIAA-2002-1604, each with the paper's axes and the variants of the model that it compares."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ from proprotor.units import KNOT
 _DAMPING = "Modal damping"
 _UNDAMPED = "Sections turn without damping, as in the paper (section_damping=False)."
 _PERCENT = "% of critical"
-_BELOW_ZERO = -2.0  # of the damping axes, where the paper's begin at zero
+_BELOW_ZERO = -2.0  # lower end of the damping axes; the paper's begin at zero
 _TITLES = {"beam": "wing vertical bending", "chord": "wing chordwise bending", "torsion": "wing torsion"}
 _WRATS_AXES = ((60.0, 180.0), 8.0)
 _XV15_RANGE = (0.0, 500.0)
 
 
 class _Damping(NamedTuple):
-    """A figure of the damping of one mode."""
+    """A figure of the damping of one mode: its variants with their labels, and the paper's axes."""
 
     what: str
     deck: str
     mode: str
     x_limits: tuple[float, float]
     highest: float
-    curves: dict[str, str]  # variants and their labels
+    curves: dict[str, str]
     with_band: bool = False
 
 
@@ -88,7 +88,7 @@ _DAMPING_FIGURES = {
 
 
 def make_figure(number: int, analyses: Analyses) -> Content:
-    """Analyse what a figure shows.
+    """Return the content of a figure, analysed.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def make_figure(number: int, analyses: Analyses) -> Content:
 
 
 def check_number(number: int) -> None:
-    """Raise an `InputError` with the known numbers, when the paper has no analytical figure of this one."""
+    """Raise an `InputError` with the known numbers when the paper has no analytical figure of a number."""
     if number not in NUMBERS:
         known = ", ".join(map(str, NUMBERS))
         raise InputError("figure", number, f"is no analytical figure of AIAA-2002-1604; they are {known}")

@@ -1,4 +1,4 @@
-"""What a figure shows: curves, a band, marks and reservations, before anything is drawn."""
+"""The content of a figure before the figure is drawn: curves, a band, marks and reservations."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Curve:
     Attributes
     ----------
     name : str
-        For the column of the CSV file.
+        Name of the column in the CSV file.
     airspeed, values : array (points,)
         In kt, and in the unit of the figure; NaN where a point failed.
     label : str
-        For the legend; the name where it is empty.
+        Text of the legend; the name where the label is empty.
     """
 
     name: str
@@ -36,7 +36,7 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class BandCurves:
-    """Percentiles of a sample: low, median, high (points,), and what the sample is."""
+    """Percentiles of a sample over airspeeds in kt: low, median, high (points,), with a label for the legend."""
 
     airspeed: Array
     low: Array
@@ -47,7 +47,7 @@ class BandCurves:
 
 @dataclass(frozen=True)
 class Mark:
-    """Airspeeds in kt read in a source: a band from the lowest to the highest, and a line at each."""
+    """Airspeeds in kt of a source, drawn as a band from the lowest to the highest and a line at each."""
 
     airspeeds: tuple[float, ...]
     label: str
@@ -55,25 +55,25 @@ class Mark:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Content:
-    """All of one figure.
+    """The content of one figure.
 
     Attributes
     ----------
     number : int
-        In AIAA-2002-1604.
+        Number of the figure in AIAA-2002-1604.
     title : str
     quantity, unit : str
-        Of the vertical axis; the unit of a plain number is "1".
+        Quantity and unit of the vertical axis; the unit of a plain number is "1".
     x_limits, y_limits : (float, float)
-        Axes of the paper, downwards extended where a damping falls below zero.
+        Axes of the paper, extended downwards where a damping falls below zero.
     curves : tuple of Curve
-        The first one is the model as the paper's figures have it.
+        The first curve is the model of the paper's figures.
     band : BandCurves, optional
     marks : tuple of Mark
     points : tuple of (airspeed, value, label)
-        Single points with a meaning of their own.
+        Single points of the figure.
     notes : tuple of str
-        What the figure rests on.
+        Sentences on what the figure rests on.
     assumed : bool
         Whether any input was assumed.
     """
@@ -93,9 +93,9 @@ class Content:
 
 
 def csv_of(content: Content) -> bytes:
-    """The curves as CSV in UTF-8: a row for each airspeed, units in the heads, cells empty where there is nothing.
+    """Return the curves as CSV in UTF-8: a row for each airspeed, units in the heads, empty cells for missing values.
 
-    What the figure shows and rests on stands above in lines that begin with #.
+    Lines that begin with # stand above the table and say what the figure shows and rests on.
     """
     columns = {curve.name: (curve.airspeed, curve.values) for curve in content.curves}
     if band := content.band:

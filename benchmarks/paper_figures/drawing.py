@@ -1,4 +1,4 @@
-"""Figures drawn to be read in print and without colour vision."""
+"""Draw figures that can be read in print and without colour vision."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Okabe and Ito's colours, less the yellow, with a dash pattern each.
+# Okabe and Ito's colours without yellow, each with a dash pattern.
 _STYLES: tuple[dict[str, Any], ...] = (
     {"color": "#000000", "linestyle": "-", "linewidth": 2.2},
     {"color": "#D55E00", "linestyle": "--", "linewidth": 1.8},
@@ -29,12 +29,12 @@ _LEGEND_COLUMNS, _NOTE_COLUMNS = 92, 128  # characters
 
 
 def draw(content: Content) -> Figure:
-    """The figure: axes, a legend below them, and below that what it rests on.
+    """Return the figure: axes, a legend below the axes, and below the legend the notes.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Not registered with pyplot; `save` writes it.
+        Not registered with pyplot; `save` writes the figure.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # here: slow to import
     from matplotlib.figure import Figure
@@ -124,7 +124,7 @@ def draw_intervals(
     file: IO[bytes],
     dpi: int = 150,
 ) -> None:
-    """Intervals side by side as a PNG file: name, nominal value, 5, 50 and 95 % of each, and published values."""
+    """Draw intervals side by side into a PNG file: name, nominal, 5, 50 and 95 % of each, and published values."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

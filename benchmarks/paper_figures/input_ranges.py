@@ -1,8 +1,8 @@
-"""How far the doubtful inputs of the bundled decks may be off, each with a reason.
+"""Ranges of the doubtful inputs of the bundled decks, each with a reason.
 
-Ranges are judgements of what an input could be, not scatter of measurements. Inputs that were published are taken as
-they are; so are derived ones whose effect on the XV-15's boundary is below half a knot (offset of the flap hinge,
-blade mass and first moment: `python -m benchmarks.xv15_inputs`).
+Ranges are judgements of what an input could be, not scatter of measurements. Published inputs have no range; neither
+have derived inputs whose effect on the XV-15's boundary is below half a knot (offset of the flap hinge, blade mass and
+first moment: `python -m benchmarks.xv15_inputs`).
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def _one(
     )
 
 
-# The slope is in the swing of the mast too: y = -h s, so h and s multiply there.
+# The end slope also swings the mast: y = -h s, so the factors of h and s multiply in y.
 _GEOMETRY = (
     InputRange(
         name="mast height h",

@@ -1,11 +1,11 @@
-"""Numbers of other sources that stand in the figures, and where they were read."""
+"""Numbers of other sources that the figures show, and where the numbers were read."""
 
 from __future__ import annotations
 
 import numpy as np
 
+import proprotor as pp
 from benchmarks.paper_figures.content import Mark
-from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.units import KNOT
 
 XV15_FLUTTER = {
@@ -26,7 +26,7 @@ LAG_AIRSPEEDS = (50.0, 400.0)
 LAG_FREQUENCIES = (1.8, 1.2)
 CONING_FREQUENCY = 1.85
 CYCLIC_FLAP_FREQUENCY = 1.0355
-PAPER_FREQUENCIES = BladeFrequencies(
+PAPER_FREQUENCIES = pp.BladeFrequencies(
     flap=CONING_FREQUENCY, lag=LAG_FREQUENCIES, against="airspeed", at=np.array(LAG_AIRSPEEDS) * KNOT
 )
 PITCH_LAG_COUPLING = -0.3  # near the boundary, AIAA-2002-1604 on Fig. 21

@@ -113,15 +113,33 @@ def _with_speeds_of_the_wing(
 ) -> xarray.Dataset:
     """Return results whose flutter speeds are those of the first mode that moves the wing.
 
-    A study finds the first onset of any mode. Where that is a mode of the rotor, all boundaries of the design are
-    looked for.
+    A study finds the first onset of any mode. Where that is a mode of the rotor, the boundaries beyond are looked for.
     """
     speed, note = found.flutter_speed.copy(deep=True), found.flutter_note.copy(deep=True)
+    least = mode_damping(found).values
+    at_start = least[:, 0] < 0
     of_rotor = np.isfinite(speed) & ~found.flutter_coordinate.isin(case.support.names)
     inputs = [str(path) for path in found.coords if path not in found.dims]
-    for place in np.flatnonzero(of_rotor | (note == UNSTABLE)):
+    for place in np.flatnonzero(of_rotor & ~at_start):
         design = case.vary({path: float(found[path][place]) for path in inputs})
-        wing = WingModes(design, found.airspeed.values, options)
-        speed[place] = wing.first_speed * KNOT if np.isfinite(wing.first_speed) else np.nan
-        note[place] = UNSTABLE if wing.unstable_at_start else "" if np.isfinite(speed[place]) else STABLE
-    return found.assign(flutter_speed=speed.where(note != UNSTABLE), flutter_note=note)
+        speed[place] = _first_onset(design, found.airspeed.values, options, float(speed[place]), least[place])
+    of_wing = np.where(np.isfinite(speed), "", STABLE)
+    note = note.where(~of_rotor & (note != UNSTABLE), of_wing)
+    return found.assign(flutter_speed=speed.where(~at_start), flutter_note=note.where(~at_start, UNSTABLE))
+
+
+def _first_onset(
+    design: pp.Case, airspeeds: Array, options: Mapping[str, Any], lowest: float, least_damping: Array
+) -> float:
+    """Return the airspeed in m/s at which a mode that moves the wing becomes unstable; NaN without one.
+
+    No mode becomes unstable below `lowest`. The least damping (airspeeds,) of modes that move the wing says up to which
+    airspeed a search finds a boundary; only without one the rest is searched too.
+    """
+    start = max(int(np.searchsorted(airspeeds, lowest)) - 1, 0)
+    ends = [int(end) for end in np.flatnonzero(least_damping <= 0) if end > start][:1]
+    for end in (*ends, len(airspeeds) - 1):
+        onset = WingModes(design, airspeeds[start : end + 1], options).first_onset
+        if onset is not None:
+            return onset.position
+    return np.nan

@@ -12,9 +12,9 @@ import xarray
 
 import proprotor as pp
 from proprotor.model.linear_model import LinearModel
-from proprotor.stability.branches import by_branch
 from proprotor.stability.boundaries import find_crossings
 from proprotor.stability.boundary import Boundary, Crossings
+from proprotor.stability.branches import by_branch
 from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.stability.sweep import sweep
 from proprotor.typing import Array
@@ -91,8 +91,13 @@ class WingModes:
         """The lowest airspeed in kt at which a mode that moves the wing becomes unstable; infinite without one."""
         if self.unstable_at_start:
             return self._lowest
+        return self.first_onset.position / KNOT if self.first_onset else np.inf
+
+    @property
+    def first_onset(self) -> Boundary | None:
+        """The lowest boundary beyond which a mode that moves the wing is unstable."""
         onsets = (boundary for boundary in self.crossings.boundaries if boundary.onset)
-        return min((one.position / KNOT for one in onsets if self._moves_the_wing(one)), default=np.inf)
+        return next((boundary for boundary in onsets if self._moves_the_wing(boundary)), None)
 
     @cached_property
     def _line(self) -> ParameterLine:

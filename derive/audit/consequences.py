@@ -125,7 +125,7 @@ class _Asking(frozenset[str]):
 def _terms_of(module: str) -> frozenset[str]:
     """Return the dropped terms that the derivation of a module asks for."""
     dropped = _Asking()
-    STEPS[module].functions(dropped, drops=True)
+    STEPS[module].changing(dropped)
     return frozenset(dropped.asked)
 
 

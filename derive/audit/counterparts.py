@@ -19,6 +19,7 @@ from derive import symbols as s
 from derive.audit.printed import notation as n
 from derive.audit.printed.kinematics import VECTORS
 from derive.audit.printed.notation import AZIMUTH, FIXED_NAMES, TIME
+from derive.expansion import spin
 from derive.polynomials import SEGMENT_ANGLES, WHOLE_BLADE_ANGLES, temporaries
 from derive.published import CONSISTENT
 
@@ -147,23 +148,17 @@ def _trim_arms() -> dict[sp.Symbol, sp.Expr]:
 def _acceleration_terms(name: str, dropped: frozenset[str]) -> tuple[sp.Matrix, ...]:
     """What a coordinate's displacement, rate and acceleration contribute to the acceleration in rotating axes."""
     blade, omega = _inertia(dropped), s.rotor_speed
-    moved = blade.motion.derivative[name]
-    spun = _spin(moved)
-    kinds = (("centrifugal", _spin(spun), omega**2), ("gyroscopic", spun, 2 * omega), ("mass", moved, 1))
+    kinds = (("centrifugal", 2, omega**2), ("gyroscopic", 1, 2 * omega), ("mass", 0, 1))
     return tuple(
-        factor * sp.Matrix([_in_arms(part) for part in blade._kept(kind, name, vector)])
-        for kind, vector, factor in kinds
+        factor * sp.Matrix([_in_arms(part) for part in blade.acceleration(kind, name, spins)])
+        for kind, spins, factor in kinds
     )
-
-
-def _spin(vector: list[Any]) -> list[Any]:
-    return [-vector[1], vector[0], 0 * vector[2]]
 
 
 @functools.cache
 def _steady_acceleration() -> sp.Matrix:
-    position = inertia.blade_motion().position
-    return s.rotor_speed**2 * sp.Matrix([_in_arms(part) for part in _spin(_spin(position))])
+    steady = spin(spin(inertia.blade_motion().position.along()))
+    return s.rotor_speed**2 * sp.Matrix([_in_arms(part) for part in steady])
 
 
 def _acceleration(coordinates: Iterable[str], dropped: frozenset[str]) -> sp.Matrix:

@@ -23,7 +23,9 @@ from proprotor_equations import inertia
 from scipy.integrate import quad
 
 from derive import __main__ as command_line
-from derive import emit, equations, multiblade
+from derive import airloads, emit, equations, multiblade
+from derive import inertia as blade_inertia
+from derive import kinematics as kin
 from derive import symbols as s
 from derive.function import (
     FORCE,
@@ -33,8 +35,10 @@ from derive.function import (
     Function,
     coordinate_dimension,
     dimension_of,
+    entries,
     row_dimension,
 )
+from derive.symbols import MissingError
 from tests.rotors import between, mass_distributions, zero_or
 
 HASH_SEEDS = (0, 1)
@@ -46,9 +50,9 @@ from derive import emit
 
 functions, render_module = [], emit.render_module
 
-def recorded(module_functions, title):
+def recorded(module_functions, title, *template):
     functions.extend(module_functions)
-    return render_module(module_functions, title)
+    return render_module(module_functions, title, *template)
 
 emit.render_module = recorded
 files = emit.derive_files(progress=lambda line: None)
@@ -207,6 +211,64 @@ def test_a_symbol_that_is_no_quantity_is_refused(blade_matrices):
 def test_a_step_with_a_symbol_that_is_no_quantity_is_refused():
     with pytest.raises(ValueError, match="stray"):
         emit.describe(a_function(s.coning, steps=[(s.coning, STRAY)]))
+
+
+def test_the_error_names_the_symbol_and_the_file_to_declare_it_in():
+    told = (
+        'test.entry uses the symbol stray, .*: declare it in derive/symbols.py, stray = quantity\\("stray", '
+    )
+    with pytest.raises(MissingError, match=told):
+        emit.describe(a_function(s.flap_stiffness * STRAY))
+    with pytest.raises(MissingError, match=told.replace("test.entry", r"test.entry: \('flap', 'flap'\)")):
+        a_function(s.flap_stiffness * STRAY).check_dimensions()
+    with pytest.raises(MissingError, match="stray = quantity"):
+        a_function(s.coning, steps=[(STRAY, s.coning)]).check_dimensions()
+
+
+def test_a_perturbation_that_is_left_over_is_told_apart():
+    with pytest.raises(
+        MissingError, match=r"q_flap, .*: it is a coordinate's perturbation: .*derive/kinematics.py"
+    ):
+        emit.describe(a_function(s.flap_stiffness * kin.q["flap"]))
+
+
+@pytest.mark.parametrize(
+    ("symbol", "remedy"),
+    [
+        (STRAY, "stray: declare it in derive/symbols.py"),
+        (s.chord, "chord: add it to `geometry` or `operation` of `SegmentKinematics` in derive/airloads.py"),
+    ],
+)
+def test_a_motion_of_a_section_with_another_symbol_says_where_it_is_listed(symbol, remedy):
+    with pytest.raises(MissingError, match=remedy):
+        airloads.segment_kinematics().ring(s.airspeed * symbol)
+
+
+def test_a_motion_of_the_mass_with_another_arm_says_where_it_is_listed():
+    with pytest.raises(MissingError, match=r"chord: add it to `ARMS` .* derive/inertia.py"):
+        blade_inertia.blade_motion().ring(kin.flap_arm * s.chord)
+    with pytest.raises(
+        MissingError, match=r"no integral of the mass times flap_arm\*\*3: .*derive/inertia.py"
+    ):
+        blade_inertia.integrate_mass(kin.flap_arm**3, blade_inertia.TRIM_INTEGRALS)
+
+
+def test_a_name_that_is_no_coordinate_says_where_these_are_listed():
+    with pytest.raises(MissingError, match=r"sweep is no coordinate of the blade: .*derive/coordinates.py"):
+        kin.q["sweep"]
+    with pytest.raises(MissingError, match=r"sweep is no coordinate: .*derive/coordinates.py, with its unit"):
+        row_dimension("sweep")
+    with pytest.raises(MissingError, match=r"the row sweep: add it to `ROW_EQUATION` of derive/kinds.py"):
+        entries(["sweep"], ["flap"], lambda row, column: sp.Integer(1), lambda *_: MOMENT, {"flap": "Eq. 0"})
+
+
+def test_a_coordinate_that_no_coordinate_of_the_rotor_moves_is_told(monkeypatch):
+    monkeypatch.setattr(kin, "COORDINATES", (*kin.COORDINATES, "sweep"))
+    told = (
+        "moves sweep of the blade: add it to `FIXED` of derive/coordinates.py and to `blade_coordinates` of"
+    )
+    with pytest.raises(MissingError, match=told):
+        multiblade.blade_coordinates.__wrapped__()
 
 
 def test_a_quantity_is_declared_once():

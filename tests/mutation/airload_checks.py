@@ -17,7 +17,7 @@ from tests.mutation.sections import POLYNOMIAL, section_derivatives
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import blades, clock, inertia_rows
 
-_BEYOND_FLAP, _BEYOND_LAG = np.array([0.0, 1.0, 1.0]), np.array([0.0, 0.0, 1.0])  # the three segments
+BEYOND_FLAP, BEYOND_LAG = np.array([0.0, 1.0, 1.0]), np.array([0.0, 0.0, 1.0])  # the three segments
 _MOTIONS = ("virtual_motion", "rate_motion", "displacement_motion", "geometric_stiffness", "gust_motion")
 _PRODUCTS = ("damping", "stiffness", "gust_loads")
 _OF_MOTION = {"rate_motion": ("damping",), "gust_motion": ("gust_loads",), "virtual_motion": _PRODUCTS}
@@ -64,8 +64,8 @@ def _geometry(point: Point) -> dict[str, NDArray]:
     (x, y, z, flap_arm), _ = np.transpose(_on_lines(point, line), (0, 2, 1))
     angles = {
         "precone": np.full(3, rotor.precone),
-        "cone": rotor.precone + _BEYOND_FLAP * point.state["coning"],
-        "lag": _BEYOND_LAG * lag,
+        "cone": rotor.precone + BEYOND_FLAP * point.state["coning"],
+        "lag": BEYOND_LAG * lag,
     }
     waves = {f"{f.__name__}_{name}": f(angle) for name, angle in angles.items() for f in (np.cos, np.sin)}
     anchor = {"anchor_i": -y, "anchor_j": x, "anchor_k": z}  # at no azimuth i is −J and j is I
@@ -84,7 +84,7 @@ def _velocity(point: Point) -> NDArray:
     return np.column_stack([center[:, :3], growth[:, :3], center[:, 3]])
 
 
-def _moments(point: Point) -> dict[str, NDArray]:
+def moments(point: Point) -> dict[str, NDArray]:
     """Radial moments of the section loads in trim, (segments,), by the names of the derivation."""
     r, weight, segment = one_blade.stations(point)
     inside = (segment == np.arange(3)[:, None]) * weight
@@ -98,8 +98,8 @@ def _moments(point: Point) -> dict[str, NDArray]:
 def _quantities(published: bool) -> Quantities:
     """Of the segments, (points, segments)."""
     whole = {name: value[:, None] for name, value in blade_quantities().items()}
-    whole |= {"beyond_flap_hinge": _BEYOND_FLAP[None], "beyond_lag_hinge": _BEYOND_LAG[None]}
-    return whole | stacked(_geometry(p) | _moments(p) for p in _flown(published))
+    whole |= {"beyond_flap_hinge": BEYOND_FLAP[None], "beyond_lag_hinge": BEYOND_LAG[None]}
+    return whole | stacked(_geometry(p) | moments(p) for p in _flown(published))
 
 
 def _module(published: bool) -> str:

@@ -39,7 +39,7 @@ class Check:
         try:
             with np.errstate(all="ignore"):
                 return max(self._of(name, value) for name, value in self.actual().items())
-        except (ArithmeticError, ValueError, TypeError):
+        except (ArithmeticError, AttributeError, ValueError, TypeError):
             return np.inf
 
     def _of(self, name: str, value: Any) -> float:
@@ -56,11 +56,15 @@ def values_check(
     quantities: Mapping[str, Any],
     expected: Mapping[str, Any],
     natural: Mapping[str, Any] | None = None,
+    *blade: NDArray,
 ) -> Check:
-    """A check of a function of named values; without other sizes each is its own."""
+    """A check of a function of named values; without other sizes each is its own.
+
+    `blade` has the matrices of a blade, if the function takes any.
+    """
 
     def actual() -> dict[str, Any]:
-        values = call(sees, quantities)._asdict()
+        values = call(sees, quantities, *blade)._asdict()
         return {name: values[name] for name in expected}
 
     return Check(sees, told, actual, expected, expected if natural is None else natural)
@@ -77,8 +81,11 @@ def matrix_check(
 
 
 def call(names: Names, quantities: Mapping[str, Any], *matrices: NDArray) -> Any:
-    """Result of the function that stands in the module now, its arguments by the names of their quantities."""
-    given = {name: quantities[name] for name in _arguments(names)}
+    """Result of the function that stands in the module now, its arguments by the names of their quantities.
+
+    Arguments that no quantity has are left to their defaults.
+    """
+    given = {name: quantities[name] for name in _arguments(names) if name in quantities}
     return getattr(generated_modules()[names[0]], names[1])(*matrices, **given)
 
 

@@ -26,6 +26,8 @@ held to comes from elsewhere:
 | trim | steady loads on the same blade, at a state that nothing balances, and their derivatives |
 | multiblade | sums over 3 to 8 blades, as numbers, of blade matrices at random: no zeros, no symmetry |
 | drive train | energies of engine and shaft |
+| coordinates | components along a blade's axes, and waves, as numbers |
+| rotor | one blade of the nonlinear rotor in the air, and sums over 3 to 5 such blades, as numbers |
 | published | the same nonlinear rotor without what `derive/published.py` says the paper leaves out, stated once more |
 
 Inputs come from the same sources, with one exception: the arrays of a segment that the airloads are products of (its
@@ -33,7 +35,7 @@ motions, virtual motions and load derivatives) are seen by the products, and whi
 generated.
 
 That the published equations are the paper's is not asked here: `docs/audit.md` compares them with the print. How the
-functions are put together is not asked either: the oracle tests of whole models do that.
+engine uses the functions is not asked either: the oracle tests of whole models do that.
 """
 
 

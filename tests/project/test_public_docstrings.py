@@ -38,7 +38,7 @@ from proprotor.stability.map import stability_map
 from proprotor.stability.modes import modes
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case
-from proprotor.study import first_boundary, follow_modes, mode_damping
+from proprotor.study import mode_damping
 
 # All functions and classes of these are public, and of others those that are named.
 MODULES: tuple[ModuleType, ...] = (
@@ -54,9 +54,8 @@ MODULES: tuple[ModuleType, ...] = (
     sampling,
     state_space,
 )
-OTHERS = (attribution, vary, modes, Options, sensitivity, stability_map, sweep_case, Trim)
+OTHERS = (attribution, vary, mode_damping, modes, Options, sensitivity, stability_map, sweep_case, Trim)
 OTHERS += (Boundary, Crossings, Failed)
-OTHERS += (first_boundary, follow_modes, mode_damping)
 OTHERS += tuple(entry for entry in map(vars(sampling).get, sampling.__all__) if inspect.isclass(entry))
 # What says that a number has no dimension, or which it has.
 DIMENSION = re.compile(

@@ -7,7 +7,7 @@ import xarray as xr
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.study import first_boundary, follow_modes, mode_damping, study
+from proprotor.study import mode_damping, study
 
 KNOT = 1852 / 3600
 SPEEDS = np.array([10.0, 20.0, 30.0, 40.0, 50.0])
@@ -71,11 +71,6 @@ def test_what_has_no_damping_is_refused():
         mode_damping(EXCHANGE.drop_vars("mode_eigenvalue"))
 
 
-def test_a_boundary_is_where_damping_first_falls_through_zero():
-    lines = [[2.0, 1.0, -1.0, 1.0], [1.0, 1.0, 1.0, 1.0], [-1.0, 1.0, 1.0, -1.0], [1.0, 0.5, 0.0, 0.0]]
-    np.testing.assert_allclose(first_boundary([0, 1, 2, 3], lines), [1.5, np.inf, 0.0, 2.0])
-
-
 @pytest.mark.parametrize("deck", ["v22-fifth-scale", "wrats-888-off"])
 def test_modes_that_keep_their_names_are_those_of_the_sweep(deck):
     case, speeds = pp.load_case(deck), np.arange(80, 181, 5) * KNOT
@@ -85,24 +80,6 @@ def test_modes_that_keep_their_names_are_those_of_the_sweep(deck):
         np.testing.assert_allclose(
             mode_damping(found, name)[0], modes.damping_ratio.sel(mode=name), rtol=1e-6, atol=1e-9
         )
-
-
-def test_modes_of_models_are_those_of_a_study():
-    case, speeds = pp.load_case("xv15"), np.array([100, 200, 300, 400, 600]) * KNOT
-    precone = np.deg2rad([1.0, 2.5])
-    found = study(case, {"rotor.precone": precone}, speeds, "modes", workers=1, pitch="coupling")
-    model = case.vary({"rotor.precone": precone[:, None]}).linearize(speeds, pitch="coupling")
-    followed = follow_modes(model).rename(design="rotor.precone")
-    assert (followed.reason[:, -1] != "").all() and (followed.reason[:, :-1] == "").all()
-    for name, values in followed.data_vars.items():
-        if values.dtype == object:
-            assert (values.values == found[name].values).all(), name
-        else:
-            np.testing.assert_allclose(values.values, found[name].values, rtol=1e-9, atol=1e-12, err_msg=name)
-    with pytest.raises(InputError, match="designs by airspeeds"):
-        follow_modes(case.linearize(speeds))
-    with pytest.raises(InputError, match="same for all designs"):
-        follow_modes(case.linearize(np.array([[100.0, 110.0], [100.0, 120.0]])))
 
 
 def test_the_share_of_the_support_is_that_of_left_times_right_vectors():

@@ -59,13 +59,17 @@ def test_a_factor_multiplies_what_its_input_varies_alone():
             sampling.latin_hypercube({"mast": sampling.Relative(0, 1, logarithmic=True)}, 4),
             "limits above zero",
         ),
-        (sampling.grid({("mast", "swing"): [0.8, 1.2]}), "only in a sample"),
-        (sampling.points({("mast", "swing"): [0.8, 1.2]}), "only in a sample"),
     ],
 )
 def test_what_cannot_vary_so_is_refused(plan, message):
     with pytest.raises(InputError, match=message):
         plan.resolve(KNOWN)
+
+
+@pytest.mark.parametrize("plan", [sampling.grid, sampling.points])
+def test_inputs_of_a_grid_or_list_do_not_vary_together(plan):
+    with pytest.raises(InputError, match=r"^mast, swing = .*only in a sample"):
+        plan({("mast", "swing"): [0.8, 1.2]})
 
 
 def test_a_study_varies_inputs_together():

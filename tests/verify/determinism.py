@@ -13,7 +13,9 @@ Environments are made once, in `.venv-verify`, for what is found: Pythons on the
 from __future__ import annotations
 
 import argparse
+import contextlib
 import difflib
+import importlib
 import inspect
 import json
 import os
@@ -21,13 +23,13 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import tomllib
 import venv
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
@@ -47,6 +49,7 @@ _DERIVE = (
 _MATRIX = re.compile(r"^    (\w+) : .*\(\.\.\., (segments, )?(\d+), (\d+)\)", re.MULTILINE)
 
 Files = dict[str, str]
+Functions = dict[str, dict[str, Callable]]  # by path of the module, and by name
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -169,31 +172,53 @@ def compared(one: Files, other: Files) -> tuple[int, float, str]:
     The difference of an entry f is relative to the largest of |f| and |x ∂f/∂x|, x any argument: where terms cancel,
     rounding the arguments alone moves f by as much, and no order of the terms can do better.
     """
+    if set(one) != set(other):
+        return 0, np.inf, min(set(one) ^ set(other))
+    with _imported(one, "accepted_equations") as first, _imported(other, "derived_equations") as second:
+        return _compared(first, second)
+
+
+def _compared(one: Functions, other: Functions) -> tuple[int, float, str]:
     count, worst, where = 0, 0.0, "none"
     for path in one:
-        first, second = _functions(one[path], path), _functions(other[path], path)
-        if list(first) != list(second):
+        if list(one[path]) != list(other[path]):
             return count, np.inf, path
-        for name, function in first.items():
+        for name, function in one[path].items():
             count += 1
             for seed in range(3):
                 arguments = random_arguments(function, seed)
-                found = _difference(function, second[name], arguments)
+                found = _difference(function, other[path][name], arguments)
                 if found > worst:
                     worst, where = found, f"{path.removesuffix('.py')}.{name}"
     return count, worst, where
 
 
-def _functions(text: str, path: str) -> dict:
-    """The public functions of a module, made in memory."""
-    module = ModuleType(path)
+@contextlib.contextmanager
+def _imported(files: Files, package: str) -> Iterator[Functions]:
+    """The public functions of each module by its path, imported as a package of another name."""
+    with tempfile.TemporaryDirectory() as folder:
+        for path, text in files.items():
+            place = Path(folder, package, path)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(text, encoding="utf-8")
+        sys.path.insert(0, folder)
+        try:
+            yield {path: _functions(package, path) for path in files}
+        finally:
+            sys.path.remove(folder)
+            for name in [name for name in sys.modules if name.partition(".")[0] == package]:
+                del sys.modules[name]
+
+
+def _functions(package: str, path: str) -> dict[str, Callable]:
+    """The public functions of a module."""
     if path.endswith("__init__.py"):
         return {}
-    exec(compile(text, path, "exec"), vars(module))
+    name = ".".join((package, *Path(path).with_suffix("").parts))
     return {
-        name: entry
-        for name, entry in vars(module).items()
-        if inspect.isfunction(entry) and entry.__module__ == path and not name.startswith("_")
+        function: entry
+        for function, entry in vars(importlib.import_module(name)).items()
+        if inspect.isfunction(entry) and entry.__module__ == name and not function.startswith("_")
     }
 
 
@@ -205,6 +230,8 @@ def random_arguments(function, seed: int) -> dict[str, np.ndarray]:
     }
     found = {}
     for name in inspect.signature(function).parameters:
+        if name == "equations":  # the modules of its own package
+            continue
         rng = np.random.default_rng([seed, zlib.crc32(name.encode())])
         found[name] = rng.uniform(0.2, 0.9, shapes.get(name, ()))
     return found

@@ -23,6 +23,7 @@ NEEDED_OF_SOURCE = (
     "generated/proprotor_equations/multiblade.py",
     "src/proprotor/deck/decks/xv15.toml",
     "tests/derive/test_closed_forms.py",
+    "benchmarks/paper_figures/command.py",
 )
 NEEDED_OF_WHEEL = (
     "proprotor/deck/decks/xv15.toml",
@@ -30,6 +31,7 @@ NEEDED_OF_WHEEL = (
     "proprotor_equations/__init__.py",
     "proprotor_equations/published/__init__.py",
 )
+ONLY_IN_A_CLONE = ("figures", "audit")  # once commands of the package
 LOCAL = (".venv", ".git/", ".ci", "__pycache__", ".hypothesis")  # what belongs to one machine
 
 
@@ -68,6 +70,7 @@ def test_the_wheel_has_both_packages_and_nothing_else(built):
     assert set(NEEDED_OF_WHEEL) <= set(names)
     tops = {name.partition("/")[0] for name in names}
     assert {top for top in tops if not top.endswith(".dist-info")} == {"proprotor", "proprotor_equations"}
+    assert not [name for name in names if any(part in name for part in ONLY_IN_A_CLONE)]
 
 
 def run(python, folder, *arguments):

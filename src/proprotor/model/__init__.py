@@ -38,7 +38,7 @@ from proprotor.model.options_of_result import check_options, options_of
 from proprotor.model.provenance import doubtful_inputs, reservations
 from proprotor.model.quantities import COUPLINGS, batch_shape, couplings, model_quantities, rotor_quantities
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
-from proprotor.model.rotor_model import airload_matrices, in_closed_form, rotor_model
+from proprotor.model.rotor_model import in_closed_form, rotor_model
 from proprotor.model.rotor_share import rotor_share, settled, spring_warnings, without_rotors
 from proprotor.model.several_rotors import MountedRotor, mount_rotors
 from proprotor.model.structural_damping import NeutralDamping, neutral_damping
@@ -52,7 +52,6 @@ __all__ = [
     "MountedRotor",
     "NeutralDamping",
     "WhirlDerivatives",
-    "airload_matrices",
     "batch_shape",
     "check_options",
     "couplings",

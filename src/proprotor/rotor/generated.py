@@ -49,6 +49,13 @@ def keywords(function: Callable[..., Any]) -> tuple[str, ...]:
     return tuple(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
 
 
+@cache
+def _optional(function: Callable[..., Any]) -> frozenset[str]:
+    """Return the names of the quantities that a generated function can do without."""
+    parameters = inspect.signature(function).parameters.values()
+    return frozenset(p.name for p in parameters if p.default is not inspect.Parameter.empty)
+
+
 def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matrices: Any) -> Any:
     """Return the result of a generated function, whose keyword arguments are looked up among quantities by name.
 
@@ -59,4 +66,6 @@ def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matri
     KeyError
         When a quantity that the function needs is missing.
     """
-    return function(*matrices, **{name: quantities[name] for name in keywords(function)})
+    optional = _optional(function)
+    names = (name for name in keywords(function) if name in quantities or name not in optional)
+    return function(*matrices, **{name: quantities[name] for name in names})

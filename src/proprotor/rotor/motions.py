@@ -8,10 +8,11 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from proprotor_equations import FIXED_COORDINATES
+from proprotor_equations.coordinates import DIFFERENTIAL, FIXED, REACTIONLESS_PAIR, Coordinate
 
 from proprotor.errors import InputError, unprintable
 
-HUB = FIXED_COORDINATES[:6]
+HUB = tuple(coordinate.name for coordinate in FIXED if coordinate.angle in ("hub", "turn"))
 ROTOR_SPEED = "azimuth"  # the model has the rate of this coordinate: nothing holds the rotor's azimuth
 _COLLECTIVE = {"flap": "coning"}
 _AZIMUTH = "rotor speed"
@@ -33,11 +34,19 @@ class Motion(NamedTuple):
     places: tuple[int, ...]
 
 
-def reactionless_coordinates(n_blades: int) -> tuple[str, ...]:
+def reactionless_coordinates(n_blades: int) -> list[Coordinate]:
     """Return the blade motions beyond Eq. 17: harmonics 2 to below N/2, for even N also neighbours in opposition."""
-    angles = ("flap", "lag", "pitch")
-    pairs = [f"{angle}_{n}{part}" for n in range(2, (n_blades + 1) // 2) for angle in angles for part in "cs"]
-    return tuple(pairs + [f"{angle}_d" for angle in angles] * (n_blades % 2 == 0))
+    pairs = [
+        motion._replace(name=f"{motion.angle}_{harmonic}{motion.part}", harmonic=harmonic)
+        for harmonic in reactionless_harmonics(n_blades)
+        for motion in REACTIONLESS_PAIR
+    ]
+    return pairs + list(DIFFERENTIAL) * (n_blades % 2 == 0)
+
+
+def reactionless_harmonics(n_blades: int) -> range:
+    """Return the harmonics of the reactionless pairs of coordinates, 2 to below N/2."""
+    return range(2, (n_blades + 1) // 2)
 
 
 def motions(dofs: tuple[str, ...]) -> list[Motion]:
@@ -125,5 +134,6 @@ def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
 @lru_cache(maxsize=1)
 def _names_of_rotors() -> frozenset[str]:
     """Return the coordinates and modes of rotors with any number of blades, each harmonic written as 2."""
-    dofs = (*FIXED_COORDINATES[len(HUB) :], *reactionless_coordinates(6))
+    reactionless = (coordinate.name for coordinate in reactionless_coordinates(6))
+    dofs = (*FIXED_COORDINATES[len(HUB) :], *reactionless)
     return frozenset(re.sub(r"\d+", "2", name) for name in (*dofs, *name_list(dofs)))

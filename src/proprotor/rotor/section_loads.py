@@ -22,7 +22,7 @@ _Quantities = Mapping[str, Any]
 # Numbers in an array of section loads, points times stations: a core's cache holds a dozen such arrays.
 _BLOCK = 12000
 _OUTBOARD = 0.5  # of the radius: outboard of it angle of attack and Mach number matter to the loads
-_LOAD_MOMENTS = tuple(
+LOAD_MOMENTS = tuple(
     f"{load}_{power}"
     for load in (*section.Forces._fields, *section.PitchingMoment._fields)
     for power in range(POWERS)
@@ -200,7 +200,7 @@ def load_moments(
     found = {
         f"{name}_{power}": moment[..., power] for name, moment in moments.items() for power in range(POWERS)
     }
-    return dict.fromkeys(_LOAD_MOMENTS, 0.0) | found
+    return dict.fromkeys(LOAD_MOMENTS, 0.0) | found
 
 
 @functools.cache
@@ -283,4 +283,4 @@ def closed_form_moments(sections: BladeSections, segments: _Quantities) -> dict[
         "outer_edge": edges[..., 1],
     }
     moments: dict[str, Any] = evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()
-    return dict.fromkeys(_LOAD_MOMENTS, 0.0) | moments
+    return dict.fromkeys(LOAD_MOMENTS, 0.0) | moments

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_train, multiblade, pitch
+from proprotor_equations import rotor as whole_rotor
 
 from proprotor.errors import InputError
 from proprotor.model.linear_model import LinearModel
@@ -19,7 +20,7 @@ from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mount import mount
 from proprotor.model.options_of_result import check_options
 from proprotor.model.quantities import COUPLINGS, batch_shape, couplings, model_quantities
-from proprotor.model.rotor_model import airload_matrices, in_closed_form
+from proprotor.model.rotor_model import in_closed_form
 from proprotor.model.rotor_share import without_rotors
 from proprotor.model.stamp import of_model
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
@@ -231,8 +232,8 @@ def _moments(
 
 def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
     """Return airload damping and stiffness of one blade."""
-    coupled = dict(segments) | {name: np.asarray(quantities[name])[..., None] for name in COUPLINGS}
-    damping, stiffness, _ = airload_matrices(coupled, choice.equation_set.airloads)
+    given = {**segments, **quantities, "equations": choice.equation_set}
+    damping, stiffness, _ = evaluate(whole_rotor.blade_airloads, given)
     return damping, stiffness
 
 

@@ -8,9 +8,9 @@ study               `study`: from a case and a plan to a dataset, on all cores o
 sampling            plans: grids, lists, Latin hypercubes, Sobol and Saltelli samples
 input_ranges        what an input may be: values, or a distribution of values, read into SI
 designs             a plan, and the designs that it gives with the numbers of a deck
-request             what is asked of a study, read and checked
+request             the request that a study answers: its arguments, read and checked
 division            how many points a batch has, so that all batches at work fit into memory
-variables           the quantities of a study and their variables, as arrays and as a dataset
+variables           the quantities of a study, their variables, and the arrays that hold these
 batch               the analysis of one batch, with a reason for each design or point that fails
 roots               eigenvalues of a batch, vectors, the least stable mode
 followed_modes      modes of a batch, followed along the airspeeds of each design
@@ -21,24 +21,23 @@ checkpoint          finished batches in a folder, from which a study that was ki
 source_code         a fingerprint of the code that computes
 progress            the progress bar
 uncertainty         percentiles and Sobol indices of a result over a sample
-damping             damping of a mode of the support along the airspeeds, and where it falls through zero
+damping             damping of a mode of the support along the airspeeds
 ==================  ====================================================================================
 
 May import the engine, `deck`, `stability` and `case`.
 """
 
 from proprotor.study import sampling
-from proprotor.study.damping import first_boundary, mode_damping
-from proprotor.study.followed_modes import follow_modes
+from proprotor.study.damping import mode_damping
 from proprotor.study.study import study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
-from proprotor.study.variables import DEFAULT_QUANTITIES
+from proprotor.study.variables import DEFAULT_QUANTITIES, STABLE, UNSTABLE
 
 __all__ = [
     "DEFAULT_QUANTITIES",
+    "STABLE",
+    "UNSTABLE",
     "distribution",
-    "first_boundary",
-    "follow_modes",
     "mode_damping",
     "sampling",
     "share_below",

@@ -97,7 +97,7 @@ class Analysis:
     code: str = ""
 
     def __call__(self, batch: Batch) -> dict[str, Array]:
-        """Return all variables of a batch: (designs, speeds, …) those of points, (designs, …) those of designs.
+        """Return all variables of a batch: (designs, speeds, …) if points have them, (designs, …) if designs have them.
 
         Raises
         ------
@@ -127,12 +127,10 @@ class Analysis:
 
     def _find_at_points(self, found: dict[str, Array], batch: Batch) -> None:
         rows, columns = (np.arange(size) for size in batch.shape)
-        try:
-            _put(found, rows, columns, self._points(batch))
-        except _BAD_INPUT:
+        if self._put(found, batch, rows, columns):
             refused = self._refusals(batch)
             found["reason"][:] = refused[:, None]
-            self._fill(found, batch, np.flatnonzero(refused == ""), columns)
+            self._put_parts(found, batch, np.flatnonzero(refused == ""), columns)
 
     def _refusals(self, batch: Batch) -> Array:
         """Return why each design cannot be, empty where it can.
@@ -160,41 +158,32 @@ class Analysis:
             error = plain
         return " ".join(str(error).split("\n"))
 
-    def _fill(self, found: dict[str, Array], batch: Batch, rows: Array, columns: Array) -> None:
-        """Analyse designs and airspeeds at once; where that fails, halve them until what is wrong stands alone."""
-        if not len(rows) or not len(columns):
-            return
-        part = batch.some(rows, columns)
+    def _put(self, found: dict[str, Array], batch: Batch, rows: Array, columns: Array) -> Exception | None:
+        """Put the variables of some designs and airspeeds in their places, or return why they cannot be analysed."""
         try:
-            points = self._points(part)
+            points = self._points(batch.some(rows, columns))
         except _BAD_INPUT as error:
-            if len(rows) > 1:
-                for half in np.array_split(rows, 2):
-                    self._fill(found, batch, half, columns)
-            elif len(columns) > 1:
-                self._fill_but_refused(found, batch, rows, columns, error)
-            else:
-                found["reason"][np.ix_(rows, columns)] = self._reason(part, error)
+            return error
+        for name in found.keys() & points.keys():
+            found[name][np.ix_(rows, columns) if VARIABLE[name].on == POINT else rows] = points[name]
+        return None
+
+    def _put_parts(self, found: dict[str, Array], batch: Batch, rows: Array, columns: Array) -> None:
+        """Analyse designs and airspeeds at once; if that fails, halve them until each bad design or point is alone."""
+        if not len(rows) or not len(columns) or not (error := self._put(found, batch, rows, columns)):
             return
-        _put(found, rows, columns, points)
-
-    def _fill_but_refused(
-        self, found: dict[str, Array], batch: Batch, row: Array, columns: Array, error: Exception
-    ) -> None:
-        """Analyse one design at each refused airspeed alone, and at all others at once."""
-        alone = np.array([self._is_refused(batch.some(row, [column])) for column in columns])
-        if not alone.any():
+        if len(rows) > 1:
+            for half in np.array_split(rows, 2):
+                self._put_parts(found, batch, half, columns)
+            return
+        errors = [self._put(found, batch, rows, columns[[place]]) for place in range(len(columns))]
+        bad = np.array([one is not None for one in errors])
+        if not bad.any():
             raise error
-        for column in columns[alone]:
-            self._fill(found, batch, row, np.array([column]))
-        self._fill(found, batch, row, columns[~alone])
-
-    def _is_refused(self, point: Batch) -> bool:
-        try:
-            self._points(point)
-        except _BAD_INPUT:
-            return True
-        return False
+        for column, one in zip(columns, errors, strict=True):
+            if one:
+                found["reason"][rows, column] = self._reason(batch.some(rows, [column]), one)
+        self._put_parts(found, batch, rows, columns[~bad])
 
     def _varied(self, numbers: Mapping[str, Array]) -> Case:
         return self.case.vary(numbers) if numbers else self.case
@@ -217,7 +206,7 @@ class Analysis:
         return found
 
     def _roots(self, model: LinearModel) -> dict[str, Array]:
-        """Return the eigenvalues, and of vectors and modes what is asked for."""
+        """Return the eigenvalues, and the variables of vectors and modes if they are among the quantities."""
         if not {"modes", "vectors"} & set(self.quantities):
             needed = {"eigenvalue", "least_stable"} & set(self.quantities)
             return {"eigenvalue": ordered(eigenvalues(model))} if needed else {}
@@ -236,9 +225,3 @@ class Analysis:
             return found
         missing: Any = "" if found.dtype == object else np.nan
         return np.pad(found, [*[(0, 0)] * (found.ndim - 1), (0, more)], constant_values=missing)
-
-
-def _put(found: dict[str, Array], rows: Array, columns: Array, points: dict[str, Array]) -> None:
-    """Put the variables of some designs and airspeeds in their places."""
-    for name in found.keys() & points.keys():
-        found[name][np.ix_(rows, columns) if VARIABLE[name].on == POINT else rows] = points[name]

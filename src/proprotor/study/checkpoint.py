@@ -65,7 +65,7 @@ class Checkpoint:
         Raises
         ------
         InputError
-            When the folder holds another study, is held by one that is running, or cannot be used.
+            When the folder holds another study, is in use by a running study, or cannot be used.
         """
         with self._hold():
             division = self._begun(identity, division)

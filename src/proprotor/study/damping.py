@@ -1,11 +1,10 @@
-"""The damping of a mode of the support along the airspeeds, for many designs at once, and where it is lost."""
+"""The damping of a mode of the support along the airspeeds, for all designs of a study."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, unknown_name
 from proprotor.typing import Array
@@ -13,7 +12,7 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import xarray
 
-_OF_THE_SUPPORT = 0.1  # participation of the support from which on a mode counts as one that moves it
+_LEAST_SHARE = 0.1  # participation of the support in a mode that counts as moving the support
 
 
 def mode_damping(
@@ -30,7 +29,7 @@ def mode_damping(
     Parameters
     ----------
     results : xarray.Dataset
-        A study with ``quantities="modes"``, or `follow_modes` of a batch of models.
+        A study with ``quantities="modes"``.
     mode : str, optional
         A coordinate of the support, such as "chord". Without it, at each airspeed the lowest damping ratio of all
         oscillating modes in which the support takes part with a tenth or more, whatever their names.
@@ -54,7 +53,7 @@ def mode_damping(
     with np.errstate(all="ignore"):
         ratio = -values.real / np.abs(values)
     if mode is None:
-        counts = (in_order.mode_support_share.values >= _OF_THE_SUPPORT) & (values.imag > 0)
+        counts = (in_order.mode_support_share.values >= _LEAST_SHARE) & (values.imag > 0)
         least = np.where(counts, ratio, np.inf).min(axis=-1)
         damping = np.where(np.isfinite(least), least, np.nan)
     else:
@@ -94,29 +93,3 @@ def _of_name(names: Array, values: Array, ratio: Array, mode: str, named: int) -
     places = np.where(airspeeds > last, np.take_along_axis(places, last, -1), places)
     found = np.take_along_axis(ratio, places[..., None], -1)[..., 0]
     return np.where(works | (airspeeds > last), found, np.nan)
-
-
-def first_boundary(airspeed: ArrayLike, damping: ArrayLike) -> Array:
-    """Return the lowest airspeed at which damping falls through zero, by linear interpolation between airspeeds.
-
-    Parameters
-    ----------
-    airspeed : array (airspeeds,)
-        Rising, in any unit.
-    damping : array (..., airspeeds)
-        Such as `mode_damping`, dimensionless.
-
-    Returns
-    -------
-    array (...)
-        In the unit of the airspeed: infinite where damping does not fall through zero, the first airspeed where it is
-        negative there already.
-    """
-    airspeed, damping = np.asarray(airspeed, dtype=float), np.asarray(damping)
-    falls = (damping[..., :-1] > 0) & (damping[..., 1:] <= 0)
-    first = falls.argmax(axis=-1)
-    above, below = (np.take_along_axis(damping, (first + step)[..., None], -1)[..., 0] for step in (0, 1))
-    with np.errstate(all="ignore"):
-        place = airspeed[first] + above / (above - below) * (airspeed[first + 1] - airspeed[first])
-    found = np.where(falls.any(axis=-1), place, np.inf)
-    return np.where(damping[..., 0] < 0, airspeed[0], found)

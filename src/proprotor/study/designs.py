@@ -39,7 +39,7 @@ class Designs:
         Values of each input along its own axis of a grid, SI; ``{"design": 0, 1, 2, …}`` for lists and samples.
     units : dict of str
     sample : dict
-        How a sample was drawn: method, size, seed and what is needed to analyse it; empty for grids and lists.
+        How a sample was drawn: method, size, seed and inputs; empty for grids and lists.
     """
 
     values: dict[str, Array]
@@ -80,12 +80,12 @@ class Plan:
     lay_out : callable
         Designs from the values that were read, and from the numbers of the deck by path.
     read : callable
-        A value in SI from an input's path, what was given, and the number of the deck.
+        A value in SI from an input's label, what was given, and the number of the deck.
     """
 
     inputs: Mapping[Any, Any]
     lay_out: Callable[[dict[Any, Any], Mapping[str, Datum]], Designs]
-    read: Callable[[Any, Any, Datum], Any]
+    read: Callable[[str, Any, Datum], Any]
 
     def resolve(self, known: Mapping[str, Datum]) -> Designs:
         """Return the designs in SI.
@@ -103,18 +103,21 @@ class Plan:
         ------
         InputError
             For an unknown path, with the nearest one, a value of another dimension, lists of unequal lengths, or a
-            factor on what is no number of the deck.
+            factor on an input that has no number in the deck.
         """
         known = {**known, AIRSPEED: _SPEED}
         for path in paths_of(self.inputs):
             if path not in known:
                 raise InputError(path, None, unknown_name(path, known, "input"))
-        read = {name: self.read(name, given, _number(name, known)) for name, given in self.inputs.items()}
+        read = {
+            name: self.read(label_of(name), given, _number(name, known))
+            for name, given in self.inputs.items()
+        }
         return self.lay_out(read, known)
 
 
 def paths_of(inputs: Mapping[Any, Any]) -> list[str]:
-    """Return every deck path of inputs, those that vary together one by one."""
+    """Return every deck path of inputs, also each path of inputs that vary together."""
     return [path for name in inputs for path in ([name] if isinstance(name, str) else name)]
 
 

@@ -2,59 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES
 
-from proprotor.errors import InputError
-from proprotor.model import stamp
 from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
 from proprotor.stability.mode_names import moving
-from proprotor.stability.modes import coordinate_shares, decomposition
+from proprotor.stability.modes import coordinate_shares
 from proprotor.study.roots import by_frequency
-from proprotor.study.variables import dataset_of
 from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-
-
-def follow_modes(model: LinearModel) -> xarray.Dataset:
-    """Return the modes of many designs, followed along the airspeeds: what a study has of ``quantities="modes"``.
-
-    For models that no study makes, such as those with options that are arrays over the airspeeds.
-
-    Parameters
-    ----------
-    model : LinearModel
-        A batch (designs, airspeeds), at airspeeds that rise along the second axis and are the same for all designs.
-
-    Returns
-    -------
-    xarray.Dataset
-        mode_eigenvalue (design, airspeed, state) in rad/s and its name, share, quality and support share, as
-        `proprotor.study` returns them; reason and warning (design, airspeed).
-
-    Raises
-    ------
-    InputError
-        When the batch has another number of axes, or designs have different airspeeds.
-    """
-    if model.airspeed.ndim != 2:
-        given = f"array of shape {model.airspeed.shape}"
-        raise InputError("airspeed", given, "must be a batch of designs by airspeeds")
-    if np.ptp(model.airspeed, axis=0).any():
-        raise InputError("airspeed", None, "must be the same for all designs")
-    found = modes_along(model, decomposition(model))
-    found |= {"reason": model.trim.reason, "warning": doubted(model.trim.warning, found["mode_quality"])}
-    coordinates = {
-        "design": np.arange(len(model.airspeed)),
-        "airspeed": ("airspeed", model.airspeed[0], {"units": "m/s"}),
-    }
-    return dataset_of(found, {"design": len(model.airspeed)}, coordinates, stamp.of_model(model))
 
 
 def modes_along(model: LinearModel, spectrum: Spectrum) -> dict[str, Array]:

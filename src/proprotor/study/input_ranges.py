@@ -139,7 +139,7 @@ def read_distribution(name: str, given: Any, known: Datum) -> Any:
     Raises
     ------
     InputError
-        For something that is no distribution, limits in the wrong order, or factors on a number that the deck has not.
+        For an object that is no distribution, limits in the wrong order, or factors on a number that the deck has not.
     """
     if isinstance(given, Relative):
         return _relative(name, given, known)

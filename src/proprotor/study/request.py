@@ -1,4 +1,4 @@
-"""What is asked of a study, read and checked: designs and airspeeds in SI, and the analysis that each batch gets."""
+"""The request that a study answers: designs and airspeeds in SI, read and checked, and the analysis of each batch."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from proprotor.study.designs import AIRSPEED, Designs, Plan
 from proprotor.study.sampling import as_plan
 from proprotor.study.variables import (
     ALONG_AIRSPEEDS,
+    POINT,
     QUANTITIES,
     bytes_of,
-    dataset_of,
     shape_of,
     variables,
 )
@@ -40,7 +40,7 @@ _MOST_TRIED = 25  # airspeeds, to see the coordinates of the model
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """What is asked of a study.
+    """The request that a study answers.
 
     Parameters
     ----------
@@ -109,17 +109,26 @@ class Request:
 
     def dataset(self, found: Mapping[str, Array]) -> xarray.Dataset:
         """Return variables of all designs and airspeeds as a dataset over the inputs and airspeeds."""
-        analysis = self.analysis
-        coordinates: dict[str, Any] = dict(self.designs.coordinates)
+        import xarray  # here, because it takes long to import
+
+        analysis, axes = self.analysis, tuple(self.designs.axes)
         over_speeds = self.airspeed is not None and not self.scalar_airspeed
+        data = {}
+        for name, one in variables(analysis.quantities).items():
+            array, along = found[name], over_speeds and one.on == POINT
+            if name == "missing" and not (array != "").any():
+                continue
+            shape = (*self.designs.shape, *self.shape[1:] * along, *array.shape[1 + (one.on == POINT) :])
+            attributes = {"long_name": one.meaning} | ({"units": one.units} if one.units else {})
+            data[name] = ((*axes, *[AIRSPEED] * along, *one.dims), array.reshape(shape), attributes)
+        coordinates: dict[str, Any] = dict(self.designs.coordinates)
         if self.airspeed is not None:
             speeds = self.airspeed if over_speeds else self.airspeed[0]
             coordinates[AIRSPEED] = ((AIRSPEED,) * over_speeds, speeds, {"units": "m/s"})
         if "vectors" in analysis.quantities:
             coordinates["dof"] = list(analysis.dofs)
-        axes = dict(zip(self.designs.axes, self.designs.shape, strict=True))
-        attributes = stamp.of_case(analysis.case, analysis.options) | self.designs.attributes
-        return dataset_of(found, axes, coordinates, attributes, over_speeds)
+        own = stamp.of_case(analysis.case, analysis.options) | self.designs.attributes
+        return xarray.Dataset(data, coordinates, own)
 
 
 def requested(
@@ -131,7 +140,7 @@ def requested(
     options: Mapping[str, Any],
     code: str,
 ) -> Request:
-    """Return what is asked of a study, from the arguments of `proprotor.study`.
+    """Return the request that the arguments of `proprotor.study` make.
 
     Raises
     ------

@@ -59,8 +59,7 @@ def least_stable(model: LinearModel, values: Array) -> dict[str, Array]:
 
     Notes
     -----
-
-    A root at zero within its error does not count, and the growth of one that is neutral is zero.
+    A root at zero within its error does not count, and the growth of a neutral root is zero.
     """
     error = error_near_zero(model, values)
     size = np.abs(values)

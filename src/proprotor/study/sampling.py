@@ -6,6 +6,7 @@ A plan says how inputs vary, in any unit; with the numbers of a deck it becomes 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,7 @@ def grid(inputs: Mapping[str, Any]) -> Plan:
     -------
     Plan
     """
-    return Plan(dict(inputs), outer_product, _read_values)
+    return _plan_of_values(inputs, outer_product)
 
 
 def points(inputs: Mapping[str, Any]) -> Plan:
@@ -78,7 +79,7 @@ def points(inputs: Mapping[str, Any]) -> Plan:
     -------
     Plan
     """
-    return Plan(dict(inputs), side_by_side, _read_values)
+    return _plan_of_values(inputs, side_by_side)
 
 
 def latin_hypercube(inputs: Mapping[Any, Any], size: int, seed: int = 0) -> Plan:
@@ -98,7 +99,7 @@ def latin_hypercube(inputs: Mapping[Any, Any], size: int, seed: int = 0) -> Plan
     -------
     Plan
     """
-    return _sampled("latin hypercube", inputs, size, seed, _draw_latin_hypercube)
+    return _sampled("latin hypercube", inputs, size, seed, partial(_draw, "LatinHypercube"))
 
 
 def sobol(inputs: Mapping[Any, Any], size: int, seed: int = 0) -> Plan:
@@ -122,7 +123,7 @@ def sobol(inputs: Mapping[Any, Any], size: int, seed: int = 0) -> Plan:
         When the size is no power of two, without which the sequence loses its balance.
     """
     _check_power_of_two(size)
-    return _sampled("sobol", inputs, size, seed, _draw_sobol)
+    return _sampled("sobol", inputs, size, seed, partial(_draw, "Sobol"))
 
 
 def saltelli(inputs: Mapping[Any, Any], size: int, seed: int = 0, second_order: bool = False) -> Plan:
@@ -177,14 +178,12 @@ def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
     )
 
 
-def _read_values(name: Any, given: Any, known: Datum) -> Array:
-    if not isinstance(name, str):
-        raise InputError(label_of(name), given, "must be one input: several vary together only in a sample")
-    return read_values(name, given, known)
-
-
-def _read_distribution(name: Any, given: Any, known: Datum) -> Any:
-    return read_distribution(label_of(name), given, known)
+def _plan_of_values(inputs: Mapping[str, Any], lay_out: Callable[..., Designs]) -> Plan:
+    for name, given in inputs.items():
+        if not isinstance(name, str):
+            rule = "must be one input: several vary together only in a sample"
+            raise InputError(label_of(name), given, rule)
+    return Plan(dict(inputs), lay_out, read_values)
 
 
 # Samples ------------------------------------------------------------------------------------------
@@ -212,20 +211,14 @@ def _sampled(
         }
         return drawn(read, known, shares, sample | extra)
 
-    return Plan(dict(inputs), lay_out, _read_distribution)
+    return Plan(dict(inputs), lay_out, read_distribution)
 
 
-def _draw_latin_hypercube(inputs: int, size: int, seed: int) -> Array:
+def _draw(engine: str, inputs: int, size: int, seed: int) -> Array:
+    """Return shares (size, inputs) drawn by an engine of scipy.stats.qmc."""
     from scipy.stats import qmc
 
-    shares: Array = qmc.LatinHypercube(inputs, rng=seed).random(size)
-    return shares
-
-
-def _draw_sobol(inputs: int, size: int, seed: int) -> Array:
-    from scipy.stats import qmc
-
-    shares: Array = qmc.Sobol(inputs, rng=seed).random(size)
+    shares: Array = getattr(qmc, engine)(inputs, rng=seed).random(size)
     return shares
 
 

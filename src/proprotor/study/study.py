@@ -111,7 +111,7 @@ def _found(
     client: Client | None,
     progress: bool | None,
 ) -> dict[str, Array]:
-    """Return the variables of all designs: those of batches that were kept, and of those that are analysed now."""
+    """Return the variables of all designs, from batches that were kept and batches that are analysed now."""
     analysis = request.analysis
     found = blank(analysis.quantities, request.shape, analysis.states, len(analysis.dofs))
     todo = dict(enumerate(blocks))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -163,46 +163,55 @@ def sobol_indices(
     """
     need("SALib", "of", "Sobol indices", "study")
     import xarray
-    from SALib.analyze import sobol as salib_sobol
 
     sample = _saltelli_of(results)
     check_count("resamples", resamples)
     size = 24.0 * resamples * results.sizes.get("design", 0)  # places, and two values at each
     check_memory("resamples", resamples, size, "the bootstrap")
-    names, second_order = sample["inputs"], sample["second_order"]
-    block = len(names) * (2 if second_order else 1) + 2
-    values, above, below = _one_a_design(results, of)
-    values = values.reshape(-1, block)
-    whole = np.asarray(np.isfinite(values).all(axis=1))
-    _check_left_out(of, whole, int(above.sum() + below.sum()))
-    values = values[whole]
-    if np.ptp(values) == 0:
-        raise InputError(
-            of, float(values.flat[0]), "is the same for every design: there is no variance to share out"
-        )
-    problem = {"num_vars": len(names), "names": names, "bounds": [[0, 1]] * len(names)}
-    found = salib_sobol.analyze(
-        problem,
-        values.reshape(-1),
-        calc_second_order=second_order,
-        num_resamples=resamples,
-        conf_level=confidence,
-        seed=sample["seed"] + 1,  # SALib takes 0 for none
-    )
+    values, whole = _base_samples(results, of, sample)
+    found = _analysed(values[whole], sample, num_resamples=resamples, conf_level=confidence)
+    warnings, names = _warnings(results, of), sample["inputs"]
     table: dict[str, Any] = {
         "first": ("input", found["S1"]),
         "first_half_interval": ("input", found["S1_conf"]),
         "total": ("input", found["ST"]),
         "total_half_interval": ("input", found["ST_conf"]),
         "left_out": ((), int((~whole).sum()), {"long_name": "base samples with a design that has no value"}),
+        "doubtful": ((), int((warnings != "").sum()), {"long_name": "designs whose result is doubtful"}),
     }
-    warnings = _warnings(results, of)
-    table["doubtful"] = (), int((warnings != "").sum()), {"long_name": "designs whose result is doubtful"}
-    if second_order:
+    coordinates = {"input": names}
+    if sample["second_order"]:
         table["second"] = (("input", "other_input"), _both_ways(found["S2"]))
-    coordinates = {"input": names} | ({"other_input": names} if second_order else {})
+        coordinates["other_input"] = names
     attributes = _attributes(results, of, warnings) | {"confidence": confidence}
     return xarray.Dataset(table, coordinates, attributes)
+
+
+def _base_samples(results: xarray.Dataset, of: str, sample: Mapping[str, Any]) -> tuple[Array, Array]:
+    """Return the values of base samples (samples, designs), and which samples have a value of every design."""
+    values, above, below = _one_a_design(results, of)
+    values = values.reshape(-1, len(sample["inputs"]) * (2 if sample["second_order"] else 1) + 2)
+    whole = np.asarray(np.isfinite(values).all(axis=1))
+    _check_left_out(of, whole, int(above.sum() + below.sum()))
+    if np.ptp(values[whole]) == 0:
+        rule = "is the same for every design: there is no variance to share out"
+        raise InputError(of, float(values[whole].flat[0]), rule)
+    return values, whole
+
+
+def _analysed(values: Array, sample: Mapping[str, Any], **bootstrap: Any) -> Mapping[str, Array]:
+    """Return SALib's indices from the values of whole base samples (samples, designs)."""
+    from SALib.analyze import sobol as salib_sobol
+
+    names = sample["inputs"]
+    found: Mapping[str, Array] = salib_sobol.analyze(
+        {"num_vars": len(names), "names": names, "bounds": [[0, 1]] * len(names)},
+        values.reshape(-1),
+        calc_second_order=sample["second_order"],
+        seed=sample["seed"] + 1,  # SALib takes 0 for none
+        **bootstrap,
+    )
+    return found
 
 
 def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array]:

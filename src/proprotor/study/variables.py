@@ -1,17 +1,12 @@
-"""The variables of a study's results: which quantities there are, and the arrays and the dataset that hold them."""
+"""The quantities of a study, their variables, and the arrays that hold these."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from proprotor.study.designs import AIRSPEED
 from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
 
 QUANTITIES = ("eigenvalue", "least_stable", "trim", "flutter", "vectors", "modes")
 ALONG_AIRSPEEDS = ("flutter", "modes")  # need all airspeeds of a design at once
@@ -23,85 +18,80 @@ POINT, _DESIGN = "point", "design"
 
 
 class _Variable(NamedTuple):
-    """A variable of the results: whether each point or each design has it, further dimensions, type, unit, meaning."""
+    """A variable of the results: whether each point or each design has it, meaning, unit, further dimensions, type."""
 
     on: str
-    dims: tuple[str, ...]
-    dtype: Any
-    units: str
     meaning: str
+    units: str = "1"
+    dims: tuple[str, ...] = ()
+    dtype: Any = float
+
+
+def _text(on: str, meaning: str, *dims: str) -> _Variable:
+    """Return a variable of texts, which have no unit."""
+    return _Variable(on, meaning, "", dims, str)
 
 
 VARIABLES: dict[str, dict[str, _Variable]] = {
     "eigenvalue": {
-        "eigenvalue": _Variable(POINT, ("state",), complex, "rad/s", "all eigenvalues, by frequency |Im s|"),
+        "eigenvalue": _Variable(POINT, "all eigenvalues, by frequency |Im s|", "rad/s", ("state",), complex),
     },
     "least_stable": {
-        "growth_rate": _Variable(POINT, (), float, "1/s", "largest real part of all eigenvalues"),
-        "damping_ratio": _Variable(
-            POINT, (), float, "1", "-Re s/|s| of the mode with the lowest damping ratio"
-        ),
-        "frequency": _Variable(POINT, (), float, "rad/s", "|Im s| of the mode with the lowest damping ratio"),
+        "growth_rate": _Variable(POINT, "largest real part of all eigenvalues", "1/s"),
+        "damping_ratio": _Variable(POINT, "-Re s/|s| of the mode with the lowest damping ratio"),
+        "frequency": _Variable(POINT, "|Im s| of the mode with the lowest damping ratio", "rad/s"),
     },
     "trim": {
-        "collective": _Variable(POINT, (), float, "rad", "pitch at 0.75 R without the elastic pitch"),
-        "coning": _Variable(POINT, (), float, "rad", "trim flap angle beyond the precone"),
-        "lag": _Variable(POINT, (), float, "rad", "trim lag angle"),
-        "elastic_pitch": _Variable(POINT, (), float, "rad", "trim elastic pitch"),
-        "thrust": _Variable(POINT, (), float, "N", "thrust of the airloads on the rotor"),
-        "torque": _Variable(
-            POINT,
-            (),
-            float,
-            "N*m",
-            "torque of the airloads on the rotor, positive where it speeds the rotor up",
-        ),
+        "collective": _Variable(POINT, "pitch at 0.75 R without the elastic pitch", "rad"),
+        "coning": _Variable(POINT, "trim flap angle beyond the precone", "rad"),
+        "lag": _Variable(POINT, "trim lag angle", "rad"),
+        "elastic_pitch": _Variable(POINT, "trim elastic pitch", "rad"),
+        "thrust": _Variable(POINT, "thrust of the airloads on the rotor", "N"),
+        "torque": _Variable(POINT, "torque of the airloads, positive where it speeds the rotor up", "N*m"),
     },
     "flutter": {
         "flutter_speed": _Variable(
-            _DESIGN, (), float, "m/s", "lowest airspeed of the range at which a mode becomes unstable"
+            _DESIGN, "lowest airspeed of the range at which a mode becomes unstable", "m/s"
         ),
         "flutter_frequency": _Variable(
-            _DESIGN, (), float, "rad/s", "|Im s| of the mode that becomes unstable; 0: divergence"
+            _DESIGN, "|Im s| of the mode that becomes unstable; 0: divergence", "rad/s"
         ),
-        "flutter_mode": _Variable(_DESIGN, (), str, "", "what moves in that mode at that airspeed"),
-        "flutter_coordinate": _Variable(_DESIGN, (), str, "", "coordinate that takes most part in that mode"),
-        "flutter_warning": _Variable(_DESIGN, (), str, "", "what makes the flutter speed doubtful"),
-        "flutter_note": _Variable(
-            _DESIGN, (), str, "", "why there is no flutter speed, or that it is not the first instability"
+        "flutter_mode": _text(_DESIGN, "what moves in that mode at that airspeed"),
+        "flutter_coordinate": _text(_DESIGN, "coordinate that takes most part in that mode"),
+        "flutter_warning": _text(_DESIGN, "what makes the flutter speed doubtful"),
+        "flutter_note": _text(
+            _DESIGN, "why there is no flutter speed, or that it is not the first instability"
         ),
         "flutter_least_damping": _Variable(
-            _DESIGN, (), float, "1", "lowest -Re s/|s| of all modes at the airspeeds of the range"
+            _DESIGN, "lowest -Re s/|s| of all modes at the airspeeds of the range"
         ),
     },
     "vectors": {
         "vector": _Variable(
-            POINT, ("dof", "state"), complex, "", "motion of the coordinates; largest component 1"
+            POINT, "motion of the coordinates; largest component 1", "", ("dof", "state"), complex
         ),
     },
     "modes": {
         "mode_eigenvalue": _Variable(
-            POINT, ("state",), complex, "rad/s", "eigenvalues, followed along the airspeeds"
+            POINT, "eigenvalues, followed along the airspeeds", "rad/s", ("state",), complex
         ),
         "mode_quality": _Variable(
-            POINT, ("state",), float, "1", "trust in the step from the airspeed before, 0 to 1"
+            POINT, "trust in the step from the airspeed before, 0 to 1", dims=("state",)
         ),
-        "mode_name": _Variable(POINT, ("state",), str, "", "what moves in the mode at the point"),
+        "mode_name": _text(POINT, "what moves in the mode at the point", "state"),
         "mode_share": _Variable(
-            POINT, ("state",), float, "1", "participation of the motion that the mode is named after, 0 to 1"
+            POINT, "participation of the motion that the mode is named after, 0 to 1", dims=("state",)
         ),
         "mode_support_share": _Variable(
-            POINT, ("state",), float, "1", "participation of the coordinates of the support, 0 to 1"
+            POINT, "participation of the coordinates of the support, 0 to 1", dims=("state",)
         ),
-        "mode_coordinate": _Variable(
-            _DESIGN, ("state",), str, "", "coordinate that takes most part at the first airspeed"
-        ),
+        "mode_coordinate": _text(_DESIGN, "coordinate that takes most part at the first airspeed", "state"),
     },
 }
 ALWAYS = {
-    "reason": _Variable(POINT, (), str, "", "why a point failed"),
-    "warning": _Variable(POINT, (), str, "", "what makes a point doubtful"),
-    "missing": _Variable(POINT, (), str, "", "why a point has fewer eigenvalues than others"),
+    "reason": _text(POINT, "why a point failed"),
+    "warning": _text(POINT, "what makes a point doubtful"),
+    "missing": _text(POINT, "why a point has fewer eigenvalues than others"),
 }
 
 VARIABLE = {name: one for some in (*VARIABLES.values(), ALWAYS) for name, one in some.items()}
@@ -146,38 +136,3 @@ def bytes_of(variable: _Variable) -> int:
 def _nothing(variable: _Variable) -> tuple[Any, Any]:
     """Return what stands for a number or text that is not found, and its type."""
     return ("", object) if variable.dtype is str else (np.nan, variable.dtype)
-
-
-def dataset_of(
-    found: Mapping[str, Array],
-    axes: Mapping[str, int],
-    coordinates: Mapping[str, Any],
-    attributes: Mapping[str, Any],
-    over_airspeeds: bool = True,
-) -> xarray.Dataset:
-    """Return arrays of variables as a dataset.
-
-    Parameters
-    ----------
-    found : mapping of array
-        By variable: (designs, airspeeds, …) of points, (designs, …) of designs.
-    axes : mapping of int
-        Name and length of each axis of the designs.
-    coordinates, attributes : mapping
-        Of the dataset.
-    over_airspeeds : bool
-        Whether there is an axis of airspeeds.
-    """
-    import xarray  # here, because it takes long to import
-
-    data = {}
-    for name, array in found.items():
-        if name == "missing" and not (array != "").any():
-            continue
-        one = VARIABLE[name]
-        along = over_airspeeds and one.on == POINT
-        tail = array.shape[1 + (one.on == POINT) :]
-        dims = (*axes, *[AIRSPEED] * along, *one.dims)
-        own = {"long_name": one.meaning} | ({"units": one.units} if one.units else {})
-        data[name] = (dims, array.reshape(*axes.values(), *array.shape[1:2] * along, *tail), own)
-    return xarray.Dataset(data, dict(coordinates), dict(attributes))

@@ -27,7 +27,7 @@ def send(stream: IO[bytes], message: Any) -> None:
 
 
 def receive(stream: IO[bytes]) -> Any:
-    """Read one message.
+    """Return the next message.
 
     Raises
     ------

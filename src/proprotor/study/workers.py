@@ -223,7 +223,8 @@ class _Processes:
                         self.found.put((number, worker.ask(batch)))
                         break
                     except EOFError:
-                        self._drop(worker)
+                        if worker is not None:
+                            self._release(worker)
                         worker = None
                         if self.stopped:
                             return
@@ -234,9 +235,7 @@ class _Processes:
             self.found.put(error)
         finally:
             if worker is not None:
-                with self.lock:
-                    self.at_work.remove(worker)
-                _give_back(worker) if worker.lives and not self.stopped else worker.end()
+                self._release(worker, keep=worker.lives and not self.stopped)
             self.found.put(None)
 
     def _begin(self) -> Worker:
@@ -246,16 +245,15 @@ class _Processes:
         try:
             worker.ask(self.analysis)
         except BaseException:
-            self._drop(worker)
+            self._release(worker)
             raise
         return worker
 
-    def _drop(self, worker: Worker | None) -> None:
-        if worker is not None:
-            with self.lock:
-                if worker in self.at_work:
-                    self.at_work.remove(worker)
-            worker.end()
+    def _release(self, worker: Worker, keep: bool = False) -> None:
+        """Take a worker off the study: keep it for the next study, or end it."""
+        with self.lock:
+            self.at_work.remove(worker)
+        _give_back(worker) if keep else worker.end()
 
 
 # A cluster ----------------------------------------------------------------------------------------

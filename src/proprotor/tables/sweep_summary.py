@@ -115,7 +115,7 @@ def leaps(sweep: xarray.Dataset) -> Array:
 
 
 def support_coordinates(sweep: xarray.Dataset) -> list[str]:
-    """Return the coordinates of the support: those that are not the rotor's."""
+    """Return the coordinates of the support, which are all but the rotor's."""
     return [name for name in sweep.dof.values.tolist() if name not in FIXED_COORDINATES]
 
 

@@ -130,7 +130,7 @@ class SweepTable:
         return f"at {ends[0]}" if len(speeds) == 1 else f"from {ends[0]} to {ends[1]}"
 
     def _of_interest(self, count: int) -> list[int]:
-        """Return unstable modes, the support's, and those that move the support most, in the order of the sweep."""
+        """Return unstable modes, the support's modes and other modes that move it most, in the order of the sweep."""
         if self.failed.all():
             return []
         unstable = self.unstable.any(axis=0)
@@ -166,7 +166,7 @@ class SweepTable:
         return row
 
     def verdict(self) -> list[str]:
-        """Return a sentence on each range of airspeed in which a mode is unstable, or one that says that none is."""
+        """Return a sentence on each range of airspeed in which a mode is unstable, or that no mode is unstable."""
         if self.failed.all():
             return ["No airspeed could be analysed."]
         ranges = sorted(unstable_ranges(self.sweep), key=lambda found: found.start)
@@ -224,7 +224,7 @@ class SweepTable:
 
 
 def _plain(entry: Any) -> float | str | None:
-    """Return a number or a text of a record; None for what is not finite or empty."""
+    """Return a number or a text of a record; None for an empty text or a number that is not finite."""
     if isinstance(entry, str):
         return str(entry) or None
     return float(entry) if np.isfinite(entry) else None
