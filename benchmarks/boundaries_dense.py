@@ -26,7 +26,7 @@ from rich.console import Console
 
 import proprotor as pp
 from proprotor.model.first_order import held_coordinates
-from proprotor.stability.flutter import scan_speeds
+from proprotor.stability.boundaries import scan_speeds
 from proprotor.units import KNOT
 
 COARSE, FINE = 0.2, 0.002  # kt

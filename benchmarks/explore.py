@@ -23,7 +23,7 @@ from proprotor.explore.curves import curves, ends
 from proprotor.explore.inputs import first_inputs, slider_input
 from proprotor.explore.page import ExplorePage, messages, readout
 from proprotor.rotor.options import CHOICES, default_choice
-from proprotor.stability.flutter import scan_speeds
+from proprotor.stability.boundaries import scan_speeds
 from proprotor.units import KNOT
 
 _POINTS = 60

@@ -23,9 +23,10 @@ from benchmarks.study import INPUTS
 from proprotor import sampling
 from proprotor.deck.vary import design_inputs
 from proprotor.model.first_order import state_matrix
-from proprotor.stability.flutter import find_crossings, flutter_point
-from proprotor.stability.following import Line
+from proprotor.stability.boundaries import find_crossings
+from proprotor.stability.flutter import flutter_point
 from proprotor.stability.modes import decomposition
+from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.stability.sensitivity import at_boundary
 from proprotor.study.study import study
 from proprotor.units import KNOT
@@ -59,7 +60,7 @@ def one_bracket(console: Console, case: pp.Case) -> None:
     centre = 373.0
     for width in (5, 10, 20, 40):
         ends = (centre + width * line) * KNOT
-        found = find_crossings(Line(ends, lambda speed: case.linearize(speed)))
+        found = find_crossings(ParameterLine(ends, lambda speed: case.linearize(speed)))
         boundary = next(b for b in found.boundaries if b.onset)
         beyond = found.eigen_solves - len(ends)
         console.print(

@@ -22,9 +22,10 @@ from rich.table import Table
 
 import proprotor as pp
 from proprotor.model.first_order import state_matrix
-from proprotor.stability.following import Line, Path, follow, path_of
-from proprotor.stability.matching import chain, left_vectors, link
+from proprotor.stability.following import Branches, follow
+from proprotor.stability.matching import chain, match_modes
 from proprotor.stability.modes import decomposition
+from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.units import KNOT
 
 COARSE, FINE, LESS_FINE, FINEST = 5.0, 0.1, 0.5, 0.002  # kt
@@ -62,18 +63,18 @@ def random_designs(count: int) -> list[pp.Case]:
     return [case.vary(dict(zip(VARIED, row, strict=True))) for row in values]
 
 
-def values_of(path: Path, points: int) -> NDArray:
+def values_of(branches: Branches, points: int) -> NDArray:
     """Followed eigenvalues (points, states) of the line."""
-    return np.take_along_axis(path.spectrum.values[:points], path.order(points), 1)
+    return np.take_along_axis(branches.spectrum.values[:points], branches.order(points), 1)
 
 
 def judged(case: pp.Case, step: float) -> tuple[int, int, int, int]:
     """Eigen-solves, double assignments, steps that differ from the judge's, and those of them in which it is right."""
     coarse = np.arange(50, 400.1, COARSE) * KNOT
-    path = follow(case.linearize(coarse), Line(coarse, case.linearize))
-    works = path.points[path.points < len(coarse)]
-    twice = sum(len(set(row)) < len(row) for row in path.places.tolist())
-    found = values_of(path, len(coarse))
+    branches = follow(case.linearize(coarse), ParameterLine(coarse, case.linearize))
+    works = branches.points[branches.points < len(coarse)]
+    twice = sum(len(set(row)) < len(row) for row in branches.places.tolist())
+    found = values_of(branches, len(coarse))
     differing = wrong = 0
     for first, last in pairwise(works):
         if last > first + 1:  # a failed point between
@@ -82,13 +83,13 @@ def judged(case: pp.Case, step: float) -> tuple[int, int, int, int]:
         if not _agree(case, coarse[[first, last]], ends, round(COARSE / step)):
             differing += 1
             wrong += not _agree(case, coarse[[first, last]], ends, round(COARSE / FINEST))
-    return len(path.points), twice, differing, wrong
+    return len(branches.points), twice, differing, wrong
 
 
 def _agree(case: pp.Case, span: NDArray, ends: NDArray, steps: int) -> bool:
     """Whether states followed in many steps from one end of a span arrive where they are said to."""
     line = np.linspace(*span, steps + 1)
-    every = values_of(path_of(decomposition(case.linearize(line))), len(line))
+    every = values_of(follow(case.linearize(line)), len(line))
     start = np.abs(ends[0][:, None] - every[0]).argmin(axis=1)
     arrived = every[-1][start]
     # Two roots of a pair that has parted may be told in either order, and two that have joined above or below.
@@ -112,15 +113,15 @@ def cost(console: Console) -> None:
     model = case.linearize(speeds)
     matrix, spectrum = state_matrix(model), decomposition(model)
     ends = np.arange(POINTS - 1), np.arange(1, POINTS)
-    steps = link(spectrum, *ends)
+    steps = match_modes(spectrum, *ends)
     parts = {
         "numpy.linalg.eig alone": lambda: np.linalg.eig(matrix),
         "matrices of the equations of motion": lambda: in_batches(case, speeds),
         "state matrices": lambda: state_matrix(model),
         "eigenvalues and right vectors": lambda: decomposition(model),
-        "likeness, assignment, quality": lambda: link(spectrum, *ends),
+        "likeness, assignment, quality": lambda: match_modes(spectrum, *ends),
         "chain": lambda: chain(steps.successor, np.arange(matrix.shape[-1])),
-        "left vectors of all modes": lambda: left_vectors(*spectrum),
+        "left vectors of all modes": lambda: spectrum.all_modes,
     }
     rounds = []
     for _ in range(5):

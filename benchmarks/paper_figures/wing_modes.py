@@ -12,9 +12,10 @@ import xarray
 
 import proprotor as pp
 from proprotor.model.linear_model import LinearModel
+from proprotor.stability.boundaries import find_crossings
+from proprotor.stability.boundary import Boundary, Crossings
 from proprotor.stability.branches import by_branch
-from proprotor.stability.flutter import Boundary, Crossings, find_crossings
-from proprotor.stability.following import Line
+from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.stability.sweep import sweep
 from proprotor.typing import Array
 from proprotor.units import KNOT
@@ -99,8 +100,8 @@ class WingModes:
         return next((boundary for boundary in onsets if self._moves_the_wing(boundary)), None)
 
     @cached_property
-    def _line(self) -> Line:
-        return Line(self.airspeeds, self._linearize)
+    def _line(self) -> ParameterLine:
+        return ParameterLine(self.airspeeds, self._linearize)
 
     def _linearize(self, airspeed: Array) -> LinearModel:
         given = {name: value(airspeed) if callable(value) else value for name, value in self.options.items()}

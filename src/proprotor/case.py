@@ -10,7 +10,8 @@ from proprotor.deck.file import list_cases
 from proprotor.deck.vary import vary
 from proprotor.model.configuration import Configuration
 from proprotor.stability.attribution import attribution
-from proprotor.stability.flutter import boundaries, flutter_point
+from proprotor.stability.boundaries import boundaries
+from proprotor.stability.flutter import flutter_point
 from proprotor.stability.map import stability_map
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case

@@ -16,7 +16,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 import proprotor as pp
 from proprotor.explore.analysis import live_modes
-from proprotor.stability.flutter import scan_speeds
+from proprotor.stability.boundaries import scan_speeds
 from tests.explore_server import serving
 
 CHROMIUM, DRIVER = (

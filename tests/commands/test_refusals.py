@@ -20,7 +20,7 @@ from proprotor.model.several_rotors import MountedRotor, mount_rotors
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.motions import HUB
 from proprotor.stability import flutter
-from proprotor.stability.following import Line
+from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.stability.sweep import sweep
 from proprotor.study.uncertainty import share_below
 from proprotor.support.modal_reduction import lowest_modes
@@ -103,7 +103,7 @@ def test_boundaries_of_many_designs_are_not_one_line():
 
 def test_a_line_that_came_without_its_models_has_none():
     told(
-        lambda: Line(np.array([100.0])).models(np.array([101.0])),
+        lambda: ParameterLine(np.array([100.0])).models(np.array([101.0])),
         "line",
         "airspeed",
         "must come with a function",

@@ -30,6 +30,7 @@ from proprotor.plots.animation import title_of
 from proprotor.rotor.options import CHOICES, Options, parse_options
 from proprotor.stability import flutter
 from proprotor.stability.attribution import attribution
+from proprotor.stability.boundaries import boundaries, scan_speeds
 from proprotor.stability.boundary_lines import boundary_lines
 from proprotor.stability.map import stability_map
 from proprotor.stability.origins import model_parts
@@ -58,7 +59,7 @@ RESULTS = {
     "Case.sensitivity": lambda case, **o: case.sensitivity("damping", ["rotor.precone"], airspeed=AT, **o),
     "Case.attribution": lambda case, **o: case.attribution(AT, **o),
     "Case.stability_map": lambda case, **o: case.stability_map(MAP, **o),
-    "flutter.boundaries": lambda case, **o: flutter.boundaries(case, SPEEDS, **o),
+    "boundaries.boundaries": lambda case, **o: boundaries(case, SPEEDS, **o),
     "flutter.flutter_point": lambda case, **o: flutter.flutter_point(case, SPEEDS, **o),
     "sweep_case": lambda case, **o: sweep_case(case, [180.0], {"rotor.precone": [0.02, 0.03]}, **o),
     "sensitivity": lambda case, **o: sensitivity(
@@ -110,7 +111,7 @@ def expected(case, **options):
 def public():
     named = {name: getattr(pp, name) for name in pp.__all__}
     named |= {f"Case.{name}": entry for name, entry in inspect.getmembers(Case) if name[0] != "_"}
-    for module in (flutter, mode_motion, inspect.getmodule(boundary_lines)):
+    for module in (flutter, mode_motion, *map(inspect.getmodule, (boundaries, boundary_lines))):
         own = {
             name: entry
             for name, entry in vars(module).items()
@@ -410,7 +411,7 @@ def test_boundaries_are_as_doubtful_as_the_airspeeds_they_lie_at():
     assert point.warning and len({bool(boundary.warning) for boundary in point.boundaries}) == 2
     for boundary in point.boundaries:
         assert boundary.warning == DOUBTFUL.linearize(boundary.position, **UNDAMPED).trim.warning
-    scan = DOUBTFUL.linearize(flutter.scan_speeds(DOUBTFUL), **UNDAMPED)
+    scan = DOUBTFUL.linearize(scan_speeds(DOUBTFUL), **UNDAMPED)
     for doubt in point.doubts:
         told = np.array([doubt.text in text for text in scan.trim.warning])
         assert (doubt.low, doubt.high) == tuple(scan.airspeed[told][[0, -1]])

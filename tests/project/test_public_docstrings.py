@@ -7,6 +7,7 @@ classes of the modules listed below, and of all those classes the public methods
 import dataclasses
 import inspect
 import re
+import sys
 import typing
 from collections import ChainMap
 from collections.abc import Callable, Iterator
@@ -27,8 +28,12 @@ from proprotor.model import state_space
 from proprotor.plots import animation, mode_motion
 from proprotor.rotor.options import Options
 from proprotor.rotor.trim import Trim
-from proprotor.stability import boundary_lines, flutter, frequency_response
+from proprotor.stability import flutter
 from proprotor.stability.attribution import attribution
+from proprotor.stability.boundaries import boundaries
+from proprotor.stability.boundary import Boundary, Crossings, Failed
+from proprotor.stability.boundary_lines import boundary_lines
+from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.map import stability_map
 from proprotor.stability.modes import modes
 from proprotor.stability.sensitivity import sensitivity
@@ -38,9 +43,10 @@ from proprotor.study import mode_damping
 # All functions and classes of these are public, and of others those that are named.
 MODULES: tuple[ModuleType, ...] = (
     animation,
-    boundary_lines,
+    sys.modules[boundaries.__module__],
+    sys.modules[boundary_lines.__module__],
     flutter,
-    frequency_response,
+    sys.modules[frequency_response.__module__],
     matlab_file,
     mode_motion,
     openmdao,
@@ -49,6 +55,7 @@ MODULES: tuple[ModuleType, ...] = (
     state_space,
 )
 OTHERS = (attribution, vary, mode_damping, modes, Options, sensitivity, stability_map, sweep_case, Trim)
+OTHERS += (Boundary, Crossings, Failed)
 OTHERS += tuple(entry for entry in map(vars(sampling).get, sampling.__all__) if inspect.isclass(entry))
 # What says that a number has no dimension, or which it has.
 DIMENSION = re.compile(
@@ -281,10 +288,10 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "rotor_model": lambda case, **more: pp.rotor_model(case.rotor, case.operation, 150.0, **more),
     "study": lambda case, **more: pp.study(case, {"rotor.precone": [0.01]}, 150.0, **more),
     "attribution.attribution": lambda case, **more: attribution(case, 150.0, **more),
-    "boundary_lines.boundary_lines": lambda case, **more: boundary_lines.boundary_lines(
+    "boundary_lines.boundary_lines": lambda case, **more: boundary_lines(
         case, case.stability_map(AXES, airloads="none"), **more
     ),
-    "flutter.boundaries": lambda case, **more: flutter.boundaries(case, SPEEDS, **more),
+    "boundaries.boundaries": lambda case, **more: boundaries(case, SPEEDS, **more),
     "flutter.flutter_point": lambda case, **more: flutter.flutter_point(case, SPEEDS, **more),
     "mode_motion.mode_motion": lambda case, **more: mode_motion.mode_motion(case, 150.0, "beam", **more),
     "sensitivity.sensitivity": lambda case, **more: sensitivity(case, airspeed=SPEEDS, **more),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.stability.boundary_summary import verdict
+from proprotor.stability.flutter_messages import verdict
 
 CASE = pp.load_case("xv15")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.stability.attribution import attribution, contributions
+from proprotor.stability.attribution import _contributions, attribution
 from proprotor.stability.modes import decomposition
 from proprotor.stability.origins import Part, model_parts
 from tests.known_systems import linear_model
@@ -68,7 +68,7 @@ def test_contributions_sum_to_nothing(case, options):
     """Every term grown alike moves no eigenvalue."""
     model = case.linearize(150.0, **options)
     modes = decomposition(model).all_modes
-    found = contributions(model, model_parts(case, model, **options), modes)
+    found = _contributions(model, model_parts(case, model, **options), modes)
     assert np.abs(found.sum(axis=0)).max() < SUM * np.abs(found).sum(axis=0).max()
 
 
@@ -94,7 +94,7 @@ def test_an_oscillator():
         "spring": Part(zero, zero, model.K),
     }
     spectrum = decomposition(model).all_modes
-    found = contributions(model, parts, spectrum)
+    found = _contributions(model, parts, spectrum)
     value = spectrum.values
     slope = 4 * value + 0.6
     np.testing.assert_allclose(found, [-2 * value**2 / slope, -0.6 * value / slope, -50 / slope], rtol=1e-12)
@@ -104,7 +104,7 @@ def test_a_contribution_is_the_derivative_by_the_size_of_its_terms(case):
     """The modes with one part grown by a small step, both ways."""
     model = case.linearize(180.0)
     parts, spectrum = model_parts(case, model), decomposition(model).all_modes
-    found = contributions(model, parts, spectrum)
+    found = _contributions(model, parts, spectrum)
     step = 1e-4
     for place, name in enumerate(parts):
         values = []

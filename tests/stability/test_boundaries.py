@@ -7,9 +7,10 @@ from scipy.optimize import brentq
 import proprotor as pp
 from proprotor import sampling
 from proprotor.model.first_order import state_matrix
-from proprotor.stability.crossings import Brackets, Search
-from proprotor.stability.flutter import boundaries, find_crossings
-from proprotor.stability.following import Line
+from proprotor.stability.boundaries import boundaries, find_crossings
+from proprotor.stability.brackets import Brackets
+from proprotor.stability.crossings import Search
+from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.study.study import study
 from proprotor.study.variables import STABLE, UNSTABLE
 from tests.known_systems import along, roots
@@ -32,7 +33,9 @@ def case():
 
 
 def crossings(matrices, positions, **options):
-    return find_crossings(Line(np.asarray(positions, dtype=float), along(matrices), "p", "1"), **options)
+    return find_crossings(
+        ParameterLine(np.asarray(positions, dtype=float), along(matrices), "p", "1"), **options
+    )
 
 
 def told(found):

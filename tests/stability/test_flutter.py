@@ -6,17 +6,20 @@ from scipy.optimize import brentq
 
 import proprotor as pp
 from proprotor.model.first_order import state_matrix
-from proprotor.stability.crossings import growth
+from proprotor.stability.boundaries import boundaries, find_crossings
 from proprotor.stability.cubic import hermite, hermite_extrema, hermite_root
-from proprotor.stability.flutter import boundaries, find_crossings, flutter_point
-from proprotor.stability.following import Line
+from proprotor.stability.flutter import flutter_point
+from proprotor.stability.parameter_lines import ParameterLine
+from proprotor.stability.root_error import growth
 from tests.known_systems import along
 
 KNOT = 1852 / 3600
 
 
 def crossings(matrices, positions, **options):
-    return find_crossings(Line(np.asarray(positions, dtype=float), along(matrices), "p", "1"), **options)
+    return find_crossings(
+        ParameterLine(np.asarray(positions, dtype=float), along(matrices), "p", "1"), **options
+    )
 
 
 def oscillator(damping, stiffness=lambda x: 100.0 + 0 * x):

@@ -9,7 +9,7 @@ from proprotor.model.first_order import state_matrix
 from proprotor.stability.eigenvalue_derivatives import defect
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.modes import decomposition
-from proprotor.stability.sensitivity import NEARLY_DEFECTIVE, damping_rate, input_rates, sensitivity
+from proprotor.stability.sensitivity import _NEARLY_DEFECTIVE, _input_rates, damping_rate, sensitivity
 from tests.known_systems import linear_model
 
 KNOT = 1852 / 3600
@@ -79,7 +79,7 @@ def test_an_oscillator():
     value = mode.values[0]
     slope = 2 * given["m"] * value + given["c"]
     expected = [-(value**2) / slope, -value / slope, -1 / slope]
-    np.testing.assert_allclose(input_rates(linearize, given, model, mode)[:, 0], expected, rtol=1e-13)
+    np.testing.assert_allclose(_input_rates(linearize, given, model, mode)[:, 0], expected, rtol=1e-13)
 
 
 def test_the_change_of_a_damping_ratio():
@@ -221,8 +221,8 @@ def test_a_nearly_defective_root_is_flagged():
         ).max()
 
     assert worst(0.0) == pytest.approx(1, abs=0.02)
-    assert worst(double * (1 + 1e-4)) > NEARLY_DEFECTIVE
-    assert worst(3 * double) < NEARLY_DEFECTIVE
+    assert worst(double * (1 + 1e-4)) > _NEARLY_DEFECTIVE
+    assert worst(3 * double) < _NEARLY_DEFECTIVE
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 
 import proprotor as pp
 from proprotor.stability.boundary_lines import boundary_lines
-from proprotor.stability.map import Edges, _lines, largest_growth, stability_map
+from proprotor.stability.map import _Edges, _largest_growth, _lines, stability_map
 from tests.known_systems import linear_model
 
 KNOT = 1852 / 3600
@@ -68,7 +68,7 @@ def test_a_circle_is_one_closed_line():
                 first.append((row, column))
                 last.append(other)
                 crossing.append(a + share * (b - a))
-    places = _lines(Edges(*(np.array(part) for part in (first, last, crossing, crossing))), largest)
+    places = _lines(_Edges(*(np.array(part) for part in (first, last, crossing, crossing))), largest)
     assert len(places) == len(first) + 1 and places[0] == places[-1]
     line = np.array(crossing)[places]
     np.testing.assert_allclose((line**2).sum(axis=1), 1)
@@ -83,7 +83,7 @@ def test_at_a_saddle_the_boundary_parts_what_the_middle_keeps_apart(height):
     crossings = {((0, 0), (0, 1)): (0.0, -1.0), ((0, 0), (1, 0)): (-1.0, 0.0),
                  ((0, 1), (1, 1)): (1.0, 0.0), ((1, 0), (1, 1)): (0.0, 1.0)}  # fmt: skip
     points = np.array(list(crossings.values()))
-    edges = Edges(*(np.array(part) for part in zip(*crossings, strict=True)), points, points[:, 0])
+    edges = _Edges(*(np.array(part) for part in zip(*crossings, strict=True)), points, points[:, 0])
     places = _lines(edges, largest)
     parts = np.split(places, np.flatnonzero(places < 0))
     middles = sorted(tuple(points[part[part >= 0]].mean(axis=0)) for part in parts)
@@ -94,7 +94,7 @@ def test_at_a_saddle_the_boundary_parts_what_the_middle_keeps_apart(height):
 def test_the_level_shifts_the_growth():
     """ζ = 0.02: growth at a level of 0.05 is that of the missing damping."""
     model = linear_model(np.eye(1)[None], 0.4 * np.eye(1)[None], 100 * np.eye(1)[None])
-    found, value = largest_growth(model, 0.05)
+    found, value = _largest_growth(model, 0.05)
     assert found == pytest.approx([10 * (0.05 - 0.02)]) and abs(value[0]) == pytest.approx(10)
 
 
@@ -125,3 +125,12 @@ def test_the_lines_of_a_damping_level_are_named_after_the_modes_that_have_it():
         found = modes.sel(mode=line.mode)
         assert found.damping_ratio.item() == pytest.approx(level, rel=1e-6)
         assert found.frequency.item() == pytest.approx(line.frequency[middle], rel=1e-6)
+
+
+def test_a_line_ends_at_the_last_edge_before_a_failed_point():
+    """Growth changes sign between the second and the third column; the second point of the first row has failed."""
+    largest = np.tile([-2.0, -1.0, 1.0], (3, 1))
+    largest[0, 1] = np.nan
+    first, last = np.array([[1, 1], [2, 1]]), np.array([[1, 2], [2, 2]])
+    edges = _Edges(first, last, first.astype(float), first[:, 0].astype(float))
+    assert _lines(edges, largest).tolist() == [0, 1]

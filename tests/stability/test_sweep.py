@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 
 import proprotor as pp
 from proprotor.rotor.trim import Trim
-from proprotor.stability.modes import Eigensystem, eigensystem
-from proprotor.stability.sweep import sweep, track
+from proprotor.stability.following import _branches_of, follow
+from proprotor.stability.matching import Spectrum
+from proprotor.stability.modes import decomposition, eigensystem
+from proprotor.stability.sweep import sweep
 from tests.rotors import SPEED_OF_SOUND
 
 many = settings(max_examples=100, derandomize=True, deadline=None, phases=[Phase.generate])
@@ -160,9 +162,13 @@ LINE = np.linspace(0.0, 1.0, 11)
 
 
 def tracked(model):
-    """Eigenvalues in the places that tracking gives them, (points, states)."""
-    values = eigensystem(model).values
-    return np.take_along_axis(values, track(eigensystem(model)), 1)
+    """Followed eigenvalues (points, states)."""
+    return values_of(follow(model))
+
+
+def values_of(branches):
+    """Eigenvalues of branches (points, states)."""
+    return np.take_along_axis(branches.spectrum.values[branches.points], branches.places, 1)
 
 
 def upper(values):
@@ -217,30 +223,29 @@ def test_a_veering_that_falls_between_two_points_is_a_crossing():
 @many
 @given(st.integers(0, 10**6))
 def test_order_and_scale_of_the_eigenvectors_do_not_matter(seed):
-    """States shuffled and scaled at every point are put back."""
+    """Pairs shuffled and scaled at every point are put back."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(2, 6))
     frequency = rng.uniform(5, 15, n) + np.linspace(0, 1, 21)[:, None] * rng.uniform(-4, 4, n)
     ratio = np.broadcast_to(rng.uniform(-0.05, 0.2, n), frequency.shape)
-    ordered = eigensystem(system(*oscillators(frequency, ratio), dofs=[f"q{i}" for i in range(n)]))
-    shuffled = shuffle(ordered, rng)
-    order = track(shuffled)
-    expected = np.take_along_axis(ordered.values, track(ordered), 1)
-    found = np.take_along_axis(shuffled.values, order, 1)
+    ordered = decomposition(system(*oscillators(frequency, ratio), dofs=[f"q{i}" for i in range(n)]))
+    expected = values_of(_branches_of(ordered, np.arange(21.0)))
+    found = values_of(_branches_of(shuffle(ordered, rng), np.arange(21.0)))
     columns = [np.abs(expected[0] - value).argmin() for value in found[0]]
+    assert sorted(columns) == list(range(2 * n))
     assert np.array_equal(found, expected[:, columns])
 
 
-def shuffle(system, rng):
-    """The same eigensystem with states in any order and vectors of any length and phase."""
-    points, states = system.values.shape
-    order = np.array([rng.permutation(states) for _ in range(points)])
-    factor = rng.uniform(0.1, 10, (points, states)) * np.exp(1j * rng.uniform(0, 6, (points, states)))
-    return Eigensystem(
-        np.take_along_axis(system.values, order, 1),
-        np.take_along_axis(system.right, order[:, None, :], 2) * factor[:, None, :],
-        np.take_along_axis(system.left, order[:, :, None], 1) / factor[:, :, None],
-        np.take_along_axis(system.displacement, order[:, None, :], 2) * factor[:, None, :],
+def shuffle(spectrum, rng):
+    """The same spectrum with its pairs in any order and vectors of any length and phase."""
+    points, states = spectrum.values.shape
+    pairs = np.array([rng.permutation(states // 2) for _ in range(points)])
+    order = np.stack([2 * pairs, 2 * pairs + 1], axis=-1).reshape(points, states)
+    factor = rng.uniform(0.1, 10, pairs.shape) * np.exp(1j * rng.uniform(0, 6, pairs.shape))
+    factor = np.stack([factor, factor.conj()], axis=-1).reshape(points, 1, states)
+    return Spectrum(
+        np.take_along_axis(spectrum.values, order, 1),
+        np.take_along_axis(spectrum.right, order[:, None, :], 2) * factor,
     )
 
 

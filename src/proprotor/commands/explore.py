@@ -62,7 +62,7 @@ def explore(
     """
     import numpy as np
 
-    from proprotor.stability.flutter import scan_speeds
+    from proprotor.stability.boundaries import scan_speeds
     from proprotor.units import speeds
 
     need("bokeh", "explore", "the page", "explore")

@@ -24,12 +24,11 @@ from proprotor.commands.arguments import (
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubt_at, marked
-from proprotor.stability.boundary_summary import (
+from proprotor.stability.flutter_messages import (
     COLUMNS,
     boundary_record,
     failed_records,
-    failed_told,
-    mechanism_told,
+    mechanism_message,
     modes_beyond,
     verdict,
 )
@@ -88,7 +87,7 @@ def flutter(
         found = loaded.flutter_point(airspeeds, level=damping, **options)
     records = [boundary_record(boundary, loaded) for boundary in found.boundaries]
     if csv:
-        rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
+        rows = [record | {"mechanism": mechanism_message(record["mechanism"])} for record in records]
         output.write_csv(csv, csv_of(rows, COLUMNS, found.stamp))
     if as_json:
         head = output.about(loaded, options, settings_of(settings))
@@ -136,7 +135,7 @@ def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None
     factor = factor_to_si(unit, unit, "m/s")
     if not math.isfinite(found.searched[0]):
         output.console().print("No airspeed could be analysed.", style="bold")
-        for line in failed_told(found, unit, factor):
+        for line in (stretch.message(unit, factor) for stretch in found.failed):
             output.console().print(line)
         return
     if found.boundaries:
@@ -156,5 +155,5 @@ def _row(record: dict[str, Any], factor: float) -> tuple[str, ...]:
         record["mode"],
         record["kind"],
         "begins" if record["onset"] else "ends",
-        mechanism_told(record["mechanism"]),
+        mechanism_message(record["mechanism"]),
     )

@@ -21,7 +21,7 @@ from proprotor.commands.arguments import (
 )
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
-from proprotor.stability.boundary_summary import boundary_record, failed_records
+from proprotor.stability.flutter_messages import boundary_record, failed_records
 
 if TYPE_CHECKING:
     from proprotor.case import Case

@@ -34,8 +34,9 @@ except ImportError as missing:
 
 from proprotor.case import Case, load_case
 from proprotor.errors import InputError, unknown_name
+from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
-from proprotor.stability.flutter import Boundary, flutter_point
+from proprotor.stability.flutter import flutter_point
 from proprotor.stability.modes import decomposition
 from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
 from proprotor.units import in_metres_per_second

@@ -10,12 +10,12 @@ import numpy as np
 
 from proprotor.model.first_order import some_points
 from proprotor.model.linear_model import LinearModel
-from proprotor.rotor.motions import name_list
-from proprotor.stability.branches import Named, branches
-from proprotor.stability.following import Line, Path, follow
+from proprotor.stability.branches import NamedStates, branch_labels, named_at
+from proprotor.stability.following import Branches, follow
 from proprotor.stability.mode_names import moving
+from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.root_error import error_near_zero
-from proprotor.stability.sweep import ANCHORS, mode_columns, names_at, tip_speed
+from proprotor.stability.sweep import mode_columns
 from proprotor.tables.sweep_summary import UnstableRange, leaps, unstable_ranges
 from proprotor.typing import Array
 
@@ -97,9 +97,10 @@ def live_modes(
     positions = np.union1d(airspeeds, within)
     shown = np.searchsorted(positions, airspeeds)
     model = varied.linearize(positions, **options)
-    path = follow(model, Line(positions, _between(model)))
-    followed = branches(path, _named(model, path, within), len(positions))
-    roots, right, left = path.spectrum.at(shown).all_modes
+    line = ParameterLine(positions, _between(model), model=model)
+    branches = follow(model, line)
+    followed = branch_labels(branches, _named(branches, line, within), len(positions))
+    roots, right, left = branches.spectrum.at(shown).all_modes
     columns, names = mode_columns(moving(some_points(model, shown), roots, left, right), roots)
     places = np.maximum(columns, 0)
     found = np.where(columns >= 0, np.take_along_axis(roots, places, 1), np.nan)
@@ -129,16 +130,11 @@ def _between(model: LinearModel) -> Any:
     return linearize
 
 
-def _named(model: LinearModel, path: Path, anchors: Array) -> Named:
-    """Labels of branches at the first anchor that has a trim, or else at the first point that has."""
-    known = name_list(model.dofs)
-    if not len(path.points):
-        return Named(0, known, np.empty(0, dtype=int), np.empty(0), "", 0)
-    at = path.positions[path.points]
+def _named(branches: Branches, line: ParameterLine, anchors: Array) -> NamedStates:
+    """Name the states at the first anchor that has a trim, or else at the first point that has one."""
+    at = branches.positions[branches.points]
     places = [int(np.flatnonzero(at == anchor)[0]) for anchor in anchors if anchor in at]
-    place = places[0] if places else 0
-    names = names_at(model, path.spectrum, int(path.points[place]))
-    return Named(place, known, names, np.ones(len(names)), f"airspeed {at[place]:.6g} m/s", 0)
+    return named_at(branches, line, places[0] if places else 0)
 
 
 def _as_sweep(

@@ -10,7 +10,8 @@ import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.rotor.trim import Trim
-from proprotor.stability.flutter import FlutterPoint, flutter_point, scan_speeds
+from proprotor.stability.boundaries import scan_speeds
+from proprotor.stability.flutter import FlutterPoint, flutter_point
 from proprotor.typing import Array
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from proprotor.model.provenance import doubtful_inputs, reservations
 from proprotor.report import pictures
 from proprotor.report.analyses import Findings
 from proprotor.report.document import Document, Section, Table, Text
-from proprotor.stability.boundary_summary import boundary_record, mechanism_told, verdict
+from proprotor.stability.flutter_messages import boundary_record, mechanism_message, verdict
 from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records
 from proprotor.tables.sweep_table import SweepTable, heading
 from proprotor.typing import Array
@@ -170,7 +170,7 @@ def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterat
                 boundary.mode,
                 boundary.kind,
                 "begins" if boundary.onset else "ends",
-                mechanism_told(dict(boundary.mechanism)),
+                mechanism_message(boundary.mechanism),
             )
         )
     yield Table("Boundaries by airspeed", columns, tuple(rows), frozenset(columns[:4]))

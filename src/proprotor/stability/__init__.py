@@ -1,1 +1,118 @@
-"""Stability."""
+"""Stability: from the equations of motion of a case to modes, their names, and the boundaries of stability.
+
+In come linear models (`proprotor.model`), or a case that linearises itself at airspeeds and other inputs. Out go
+datasets of modes, maps and derivatives, and records of boundaries. The room may import what lies above it: the ground,
+`rotor`, `support`, `model` and `deck`.
+
+Modes of one point, or of a batch of points
+    modes                   eigenvalues and vectors, participation, the dataset of a model's modes
+    root_error              roots as exact as the matrices allow, and their error: what "neutral" means
+    mode_names              what moves in a mode, and how it whirls
+    named_modes             modes of a case at one airspeed, by name
+    frequency_response      response of loads and motions to gusts and swashplate
+
+Modes along a line of points
+    parameter_lines         lines of airspeeds or of another input, and the approach from the anchor
+    matching                which mode at one point is which at the next
+    following               branches: roots followed along a line, steps divided where needed
+    branches                labels of branches
+    sweep                   the dataset of a line: modes by name, with the branch of each
+
+Boundaries: where damping passes a level
+    points                  points of many lines solved at once, with the growth of each root and its derivative
+    steps, screening        steps between points, by vectors or by eigenvalues alone
+    parting, root_pairs     where a step is parted; two roots that meet within a step
+    cubic                   cubics over a step
+    crossings, brackets     the search for steps with crossings; each crossing found by Newton's method
+    boundary, boundaries    records of boundaries; the search along a line of a case
+    flutter                 the flutter point: the lowest onset
+    flutter_messages        records and sentences for people
+    map, boundary_lines     the plane of two inputs; its boundary by mode
+
+What a mode comes from and depends on
+    eigenvalue_derivatives  change of eigenvalues with the matrices
+    sensitivity             derivatives of eigenvalues, damping and flutter speed by inputs
+    origins, attribution    matrices by physical origin; what drives and damps a mode
+"""
+
+from proprotor.stability import flutter_messages
+from proprotor.stability.attribution import attribution
+from proprotor.stability.boundaries import boundaries, find_crossings, scan_speeds
+from proprotor.stability.boundary import Boundary, Crossings, Failed
+from proprotor.stability.boundary_lines import BoundaryLine, boundary_lines
+from proprotor.stability.brackets import Brackets, Crossing
+from proprotor.stability.branches import BranchLabels, NamedStates, branch_labels, by_branch, named_at
+from proprotor.stability.crossings import Search
+from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
+from proprotor.stability.flutter import FlutterPoint, flutter_point
+from proprotor.stability.following import Branches, follow
+from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.map import stability_map
+from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
+from proprotor.stability.mode_names import DOUBTFUL, moving
+from proprotor.stability.modes import (
+    Eigensystem,
+    coordinate_motion,
+    coordinate_shares,
+    decomposition,
+    eigensystem,
+    eigenvalues,
+    modes,
+    participation,
+)
+from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
+from proprotor.stability.root_error import error_near_zero
+from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
+from proprotor.stability.sweep import mode_columns, sweep, sweep_case
+
+__all__ = [
+    "ANCHORS",
+    "DOUBTFUL",
+    "NOT_TOLD",
+    "Boundary",
+    "BoundaryLine",
+    "Brackets",
+    "BranchLabels",
+    "Branches",
+    "Crossing",
+    "Crossings",
+    "Eigensystem",
+    "Failed",
+    "FlutterPoint",
+    "NamedStates",
+    "ParameterLine",
+    "Search",
+    "Spectrum",
+    "at_boundary",
+    "attribution",
+    "boundaries",
+    "boundary_lines",
+    "branch_labels",
+    "by_branch",
+    "coordinate_motion",
+    "coordinate_shares",
+    "damping_rate",
+    "decomposition",
+    "eigensystem",
+    "eigenvalue_change",
+    "eigenvalues",
+    "error_near_zero",
+    "find_crossings",
+    "flutter_messages",
+    "flutter_point",
+    "follow",
+    "frequency_response",
+    "match_modes",
+    "mode_columns",
+    "modes",
+    "moving",
+    "named_at",
+    "participation",
+    "scan_speeds",
+    "sensitivity",
+    "stability_map",
+    "sweep",
+    "sweep_case",
+    "tip_speed",
+    "with_changes",
+]

@@ -4,8 +4,8 @@ If all terms of one origin grew by a small part ε, an eigenvalue would move by 
 
     λ_g = -yᴴ(λ² M_g + λ C_g + K_g) x / yᴴ(2λM + C) x ,
 
-which is what is told here for each origin g, with trim, mode and all other terms held. Where Re λ_g is positive the
-origin drives the mode. Terms of all origins that grow alike move nothing: the sum of λ_g is zero.
+which is computed here for each origin g, with trim, mode and all other terms held. Where Re λ_g is positive the
+origin drives the mode. If the terms of all origins grow alike nothing moves: the sum of λ_g is zero.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
 
-def contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
-    """λ_g of each part and mode (..., parts, modes), rad/s; the sum over parts that make up the model is zero."""
+def _contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
+    """Return λ_g of each part and mode (..., parts, modes), rad/s; the sum over all parts of a model is zero."""
     return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
 
 
 def attribution(
     case: Configuration, airspeed: Any, mode: str | None = None, **options: Any
 ) -> xarray.Dataset:
-    """What drives and what damps the modes of a case at one airspeed.
+    """Return what drives and what damps the modes of a case at one airspeed.
 
     Parameters
     ----------
@@ -58,11 +58,11 @@ def attribution(
     Raises
     ------
     InputError
-        For an airspeed that is not one, or that cannot be analysed, and an unknown mode.
+        For a value that is no single airspeed, an airspeed that cannot be analysed, and an unknown mode.
     """
     found = named_modes(case, airspeed, mode, options)
     parts = model_parts(case, found.model, **options)
-    changes = contributions(found.model, parts, found.modes)
+    changes = _contributions(found.model, parts, found.modes)
     data = _dataset(found.names, list(parts), found.modes.values, changes)
     data["warning"] = (), str(found.model.trim.warning), {"long_name": "what makes the numbers doubtful"}
     return data.assign_attrs(stamp.of_model(found.model) | {"airspeed": found.speed})

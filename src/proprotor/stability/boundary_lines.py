@@ -1,4 +1,4 @@
-"""The lines of a stability map, parted where another mode takes over, each named after the mode that is neutral."""
+"""The lines of a stability map, divided where another mode takes over, each named after the mode that is neutral."""
 
 from __future__ import annotations
 
@@ -7,21 +7,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError
+from proprotor.model.first_order import some_points
 from proprotor.model.options_of_result import options_of
 from proprotor.rotor.motions import name_list
-from proprotor.stability.map import AIRSPEED
-from proprotor.stability.matching import Spectrum, conjugate, link
+from proprotor.stability.branches import names_of
+from proprotor.stability.matching import Spectrum, conjugate, match_modes
 from proprotor.stability.modes import decomposition
-from proprotor.stability.sweep import names_at
+from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray
 
     from proprotor.model.configuration import Configuration
-    from proprotor.model.linear_model import LinearModel
 
 
 class BoundaryLine(NamedTuple):
@@ -30,11 +29,11 @@ class BoundaryLine(NamedTuple):
     Parameters
     ----------
     mode : str
-        What moves in it at the middle of the line.
+        What moves in the mode at the middle of the line.
     x, y : array (vertices,)
-        In SI, as the axes of the map.
+        Vertices in SI, as the axes of the map.
     frequency : array (vertices,)
-        Of the mode, rad/s.
+        Frequency of the mode, rad/s.
     warning : array of str
         (vertices,): what makes a vertex doubtful; empty where nothing does.
     """
@@ -49,11 +48,11 @@ class BoundaryLine(NamedTuple):
 def boundary_lines(
     case: Configuration, found: xarray.Dataset, *, airspeed: Any = None, **options: Any
 ) -> list[BoundaryLine]:
-    """The lines of a stability map by mode.
+    """Return the lines of a stability map by mode.
 
-    The root that is neutral at a vertex is followed to the next by its vectors; its name is looked for at the middle of
-    each line.
-    Where one mode takes over from another, the step from the last vertex of the one belongs to the other.
+    The root that is neutral at a vertex is followed to the next by its vectors; its name is taken from the middle of
+    each line. Where one mode takes over from another, the step from the last vertex of the first mode belongs to the
+    second.
 
     Parameters
     ----------
@@ -61,10 +60,10 @@ def boundary_lines(
     found : xarray.Dataset
         Of `Case.stability_map`.
     airspeed : float in m/s, text such as "300 kt", or pint quantity, optional
-        That of the map, which need not be repeated.
+        The airspeed of the map, which need not be repeated.
     **options
-        Those of the map, see `proprotor.rotor.options.Options`. The map has its own, which need not be repeated but where
-        they hold functions.
+        The options of the map, see `proprotor.rotor.options.Options`, which need not be repeated unless they hold
+        functions.
 
     Returns
     -------
@@ -76,18 +75,20 @@ def boundary_lines(
         For an unknown option, and another option, airspeed or case than the map's.
     """
     options = options_of(found.attrs, case, options)
-    airspeed = _airspeed_of(found, airspeed)
+    speed = _airspeed_of(found, airspeed)
+    own = {} if speed is None else {AIRSPEED: speed}
     names = [str(name) for name in found.axis.values]
     roots, warning = found.boundary_eigenvalue.values, found.boundary_warning.values
     lines = []
     for places in _parted(found.boundary.values):
         vertices, frequency = found.boundary.values[places], np.abs(roots[places].imag)
-        model = _model_at(case, names, vertices, airspeed, options)
+        model = models_at(case, own | dict(zip(names, vertices.T, strict=True)), options)
         spectrum = decomposition(model)
         state = _nearest_state(spectrum, roots[places])
         for part in _same_mode(spectrum, state, np.isfinite(roots[places])):
             middle = (part.start + part.stop) // 2
-            mode = name_list(model.dofs)[names_at(model, spectrum, middle)[state[middle]]]
+            moved = names_of(some_points(model, [middle]), spectrum.at([middle]))[state[middle]]
+            mode = name_list(model.dofs)[moved]
             drawn = slice(max(part.start - 1, 0), part.stop)
             x, y = vertices[drawn].T
             lines.append(BoundaryLine(mode, x, y, frequency[drawn], warning[places][drawn]))
@@ -95,7 +96,7 @@ def boundary_lines(
 
 
 def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
-    """The airspeed of a map in m/s; None where it is one of its axes."""
+    """Return the airspeed of a map in m/s; None where the airspeed is one of its axes."""
     from proprotor.units import in_metres_per_second
 
     own = found.attrs.get(AIRSPEED)
@@ -106,7 +107,7 @@ def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
 
 
 def _parted(boundary: Array) -> Iterator[Array]:
-    """Places (vertices,) of each line of a boundary in which NaN parts them."""
+    """Yield places (vertices,) of each line of a boundary in which NaN stands between lines."""
     good: Array = np.asarray(np.isfinite(boundary).all(axis=1))
     for part in np.split(np.arange(len(boundary)), np.flatnonzero(~good)):
         chosen = part[good[part]]
@@ -114,21 +115,12 @@ def _parted(boundary: Array) -> Iterator[Array]:
             yield chosen
 
 
-def _model_at(
-    case: Configuration, names: list[str], points: Array, airspeed: float | None, options: dict[str, Any]
-) -> LinearModel:
-    """Models at points (k, 2) of the plane."""
-    given: dict[str, Any] = dict(zip(names, points.T, strict=True))
-    speed = given.pop(AIRSPEED, airspeed)
-    return vary_case(case, given).linearize(speed, **options)
-
-
 def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice]:
-    """Stretches of vertices along which the root that is neutral at one is that which is neutral at the next."""
+    """Yield stretches of vertices along which the same root is neutral."""
     before, works = np.arange(len(state) - 1), spectrum.works & known
     good = before[works[:-1] & works[1:]]
     same = np.zeros(len(before), dtype=bool)
-    after = link(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
+    after = match_modes(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
     same[good] = (after == state[good + 1]) | (after == conjugate(spectrum.values)[good + 1, state[good + 1]])
     jumps = np.flatnonzero(~same) + 1
     for start, stop in zip((0, *jumps), (*jumps, len(state)), strict=True):
@@ -136,7 +128,7 @@ def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice
 
 
 def _nearest_state(spectrum: Spectrum, roots: Array) -> Array:
-    """Which state of each point has its root (k,)."""
+    """Return which state of each point is the root (k,) of the point."""
     apart = np.abs(spectrum.values - roots[:, None])
     state: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=1)
     return state

@@ -1,10 +1,10 @@
-"""Branches: exact roots followed along a path, each labelled after what moves in it at the anchor.
+"""Labels of branches: exact roots followed along a line, each labelled after what moves in it at the anchor.
 
 A label belongs to a root and not to a motion: where two roots veer, each keeps its label though they exchange their
-motions. It is the same in any range and for any step, as long as each step tells which root is which; `trust` says
-how far that holds. A pair that parts into two real roots does not tell which of them it becomes: both have its label,
-the one that decays faster as the second root. A pair in which roots of two labels have joined has the first of them in
-the order of the coordinates.
+motions. A label is the same in any range and for any step, as long as each step tells which root is which; `trust` says
+how far that holds. A pair that parts into two real roots does not tell which of the two it becomes: both have the label
+of the pair, the one that decays faster as the second root. A pair in which roots of two labels have joined has the
+label that comes first in the order of the coordinates.
 """
 
 from __future__ import annotations
@@ -13,29 +13,34 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from proprotor.rotor.motions import SECOND
-from proprotor.stability.following import Path
-from proprotor.stability.matching import NOT_TOLD, POOR, conjugate
+from proprotor.model.first_order import held_coordinates, some_points
+from proprotor.model.linear_model import LinearModel
+from proprotor.rotor.motions import SECOND, name_list
+from proprotor.stability.following import Branches, follow
+from proprotor.stability.matching import NOT_TOLD, POOR, Spectrum, conjugate, match_modes
+from proprotor.stability.mode_names import moving
+from proprotor.stability.modes import with_azimuth
+from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray
 
 
-class Named(NamedTuple):
-    """What the states of one point of a path are called, in the order of its spectrum.
+class NamedStates(NamedTuple):
+    """Names of the states of one point of some branches, in the order of the point's spectrum.
 
-    point : place of the point in the path; known : all names of the model; place (states,) : which of them each state
-    has; trust (states,) : in the steps from the anchor to the point; told : where names were given; eigen_solves : what
-    that took beyond the path's own.
+    point : place of the point among those of the branches; known : all names of the model; place (states,) : place of
+    each state's name in `known`; trust (states,) : in the steps from the anchor to the point; where : position at which
+    names were given, as text; eigen_solves : what that took beyond the points of the branches.
     """
 
     point: int
     known: list[str]
     place: Array
     trust: Array
-    told: str
-    eigen_solves: int
+    where: str
+    eigen_solves: int = 0
 
     @property
     def names(self) -> list[str]:
@@ -43,8 +48,8 @@ class Named(NamedTuple):
         return [self.known[place] for place in self.place]
 
 
-class Branches(NamedTuple):
-    """Branches at the points of a line.
+class BranchLabels(NamedTuple):
+    """Labels of branches at the points of a line.
 
     Attributes
     ----------
@@ -62,31 +67,91 @@ class Branches(NamedTuple):
     doubt: Array
 
 
-def branches(path: Path, named: Named, points: int) -> Branches:
-    """Labels of all states at the first points of a path's spectrum, those of its line."""
-    states = path.spectrum.values.shape[1]
+# Names ---------------------------------------------------------------------------------------------------------------
+
+
+def name_states(branches: Branches, line: ParameterLine, approach: ParameterLine | None) -> NamedStates:
+    """Name the states of one point of some branches of a line.
+
+    With an approach that can be followed from end to end: at the point that is nearest to the end of the approach, by
+    the names that the states have at the anchor. Without one: at the first point of the line that works, by what moves
+    there.
+    """
+    if approach is not None and len(branches.points):
+        named = _named_by_approach(branches, approach)
+        if named is not None:
+            return named
+    own = np.flatnonzero(branches.points < len(line.positions))  # points of the line, and none between
+    return named_at(branches, line, int(own[0]) if len(own) else 0)
+
+
+def named_at(branches: Branches, line: ParameterLine, place: int) -> NamedStates:
+    """Name the states of a point of some branches by what moves there."""
+    if not len(branches.points):
+        return NamedStates(place, [], np.empty(0, dtype=int), np.empty(0), "")
+    point = int(branches.points[place])
+    position = np.asarray(line.positions)[[point]]
+    model = line.models(position) if line.model is None else some_points(line.model, [point])
+    where = f"{line.name} {float(position[0]):.6g} {line.units}"
+    names = names_of(model, branches.spectrum.at([point]))
+    return NamedStates(place, name_list(model.dofs), names, np.ones(len(names)), where)
+
+
+def names_of(model: LinearModel, spectrum: Spectrum) -> Array:
+    """Return what moves in each state (states,) of a model of one point, by its place in `name_list`."""
+    values, right, left = spectrum.all_modes
+    place: Array = moving(model, values, left, right).place[0]
+    return place
+
+
+def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStates | None:
+    """Name states by those of the anchor; None where the approach cannot be followed from end to end."""
+    near = approach.models()
+    n, states = len(near.dofs), branches.spectrum.values.shape[1]
+    # A shaft may hold the azimuth on one of the two lines only.
+    held = held_coordinates(near, max(states, n + len(held_coordinates(near))))
+    leg, last = follow(near, approach, held), len(approach.positions) - 1
+    if not len(leg.points) or [leg.points[0], leg.points[-1]] != [0, last]:
+        return None
+    nearest = int(np.argmin(np.abs(branches.positions[branches.points] - approach.end)))
+    here = branches.spectrum.at([int(branches.points[nearest])])
+    at_anchor = names_of(some_points(near, [0]), leg.spectrum.at([0]))[leg.places[0]]
+    ends = leg.spectrum.at([last]).joined(with_azimuth(here, near.dofs, n + len(held)))
+    arrived = match_modes(ends, np.array([0]), np.array([1])).successor[0][leg.places[-1]]
+    place, trust = np.empty_like(at_anchor), np.empty(len(at_anchor))
+    place[arrived], trust[arrived] = at_anchor, leg.quality.min(axis=0, initial=1)
+    where = f"{approach.name} {approach.positions[0]:.6g} {approach.units}"
+    return NamedStates(nearest, name_list(near.dofs), place[:states], trust[:states], where, len(leg.points))
+
+
+# Labels --------------------------------------------------------------------------------------------------------------
+
+
+def branch_labels(branches: Branches, named: NamedStates, points: int) -> BranchLabels:
+    """Return the labels of all states at the first points of the spectrum of some branches, those of their line."""
+    states = branches.spectrum.values.shape[1]
     label = np.full((points, states), "", dtype=object)
     trust = np.full((points, states), np.nan)
-    doubt = np.full(points, "", dtype=object)
-    rows = np.flatnonzero(path.points < points)
+    rows = np.flatnonzero(branches.points < points)
     if not len(rows):
-        return Branches(label, trust, doubt)
-    own = path.points[rows]
-    values = path.spectrum.values[own]
-    start = path.places[named.point]  # of the followed states, where they have their names
+        return BranchLabels(label, trust, np.full(points, "", dtype=object))
+    own = branches.points[rows]
+    values = branches.spectrum.values[own]
+    start = branches.places[named.point]  # places of the branches at the point where they have their names
     kept = np.empty((len(rows), states), dtype=int)
-    np.put_along_axis(kept, path.places[rows], np.broadcast_to(named.place[start], kept.shape), 1)
+    np.put_along_axis(kept, branches.places[rows], np.broadcast_to(named.place[start], kept.shape), 1)
     kept = np.minimum(kept, np.take_along_axis(kept, conjugate(values), 1))
     label[own] = _as_text(kept, values, named.known)
     ways = np.empty((len(rows), states))
-    np.put_along_axis(ways, path.places[rows], _from_anchor(path, named.point, named.trust[start])[rows], 1)
+    np.put_along_axis(
+        ways, branches.places[rows], _from_anchor(branches, named.point, named.trust[start])[rows], 1
+    )
     trust[own] = np.minimum(ways, np.take_along_axis(ways, conjugate(values), 1))
-    _tell(doubt, path, label, points)
-    return Branches(label, trust, doubt)
+    return BranchLabels(label, trust, _doubts(branches, label, points))
 
 
 def _as_text(kept: Array, values: Array, known: list[str]) -> Array:
-    """Labels by name; of two states that are modes and have one label, the one that decays faster is the second."""
+    """Return labels by name; of two modes of a point with one label, the one that decays faster is the second root."""
     text = np.array(known, dtype=object)[kept]
     is_mode = values.imag >= 0
     for name in range(len(known)):
@@ -99,27 +164,32 @@ def _as_text(kept: Array, values: Array, known: list[str]) -> Array:
     return text
 
 
-def _from_anchor(path: Path, point: int, start: Array) -> Array:
-    """Least quality (k, states) of the steps between a point of the path, with its own, and each other one."""
-    trust = np.ones((len(path.points), len(start)))
+def _from_anchor(branches: Branches, point: int, start: Array) -> Array:
+    """Return the least quality (k, states) of the steps between a point of the branches and each other one.
+
+    `start` (states,) is the trust in the point itself.
+    """
+    trust = np.ones((len(branches.points), len(start)))
     trust[point] = start
-    trust[point + 1 :], trust[:point] = path.quality[point:], path.quality[:point]
+    trust[point + 1 :], trust[:point] = branches.quality[point:], branches.quality[:point]
     trust[point:] = np.minimum.accumulate(trust[point:], axis=0)
     trust[: point + 1] = np.minimum.accumulate(trust[point::-1], axis=0)[::-1]
     return trust
 
 
-def _tell(doubt: Array, path: Path, label: Array, points: int) -> None:
-    """Name the branches that the step to a point does not tell apart."""
+def _doubts(branches: Branches, label: Array, points: int) -> Array:
+    """Return the sentence (points,) that names the branches which the step to a point does not tell apart."""
+    doubt = np.full(points, "", dtype=object)
     by_place = np.empty((points, label.shape[1]))
-    np.put_along_axis(by_place, path.order(points), path.trust(points), 1)
+    np.put_along_axis(by_place, branches.order(points), branches.trust(points), 1)
     for point in np.flatnonzero((by_place < POOR).any(axis=1) & (label != "").all(axis=1)):
         names = dict.fromkeys(label[point, by_place[point] < POOR])
         doubt[point] = f"{NOT_TOLD}: {', '.join(names)}"
+    return doubt
 
 
 def by_branch(sweep: xarray.Dataset) -> xarray.Dataset:
-    """A sweep with an exact root, in place of a motion, in each place.
+    """Return a sweep by exact roots in place of motions.
 
     Parameters
     ----------
@@ -130,7 +200,7 @@ def by_branch(sweep: xarray.Dataset) -> xarray.Dataset:
     -------
     xarray.Dataset
         The same numbers with the dimension ``branch`` in place of ``mode``; name (..., branch), what moves in a root at
-        a point. NaN where a root is not there: a second root is only where a pair has parted.
+        a point. NaN where a root does not exist: a second root exists only where a pair has parted.
     """
     import xarray  # here, because it takes long to import
 

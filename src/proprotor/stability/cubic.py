@@ -8,7 +8,7 @@ from proprotor.typing import Array
 
 
 def hermite(t: Array, ends: Array) -> Array:
-    """The cubic with values and slopes `ends` (4, ...): at 0, at 1, slope at 0 and at 1 per unit of t."""
+    """Return the cubic at t with `ends` (4, ...): value at 0, value at 1, slope at 0 and slope at 1 per unit of t."""
     value0, value1, slope0, slope1 = ends
     rise = value1 - value0
     a, b = slope0 - rise, rise - slope1
@@ -17,7 +17,7 @@ def hermite(t: Array, ends: Array) -> Array:
 
 
 def hermite_slope(t: Array, ends: Array) -> Array:
-    """Its slope per unit of t."""
+    """Return the slope of the cubic per unit of t."""
     value0, value1, slope0, slope1 = ends
     rise = value1 - value0
     slope: Array = slope0 + t * (6 * rise - 4 * slope0 - 2 * slope1 + 3 * t * (slope0 + slope1 - 2 * rise))
@@ -25,7 +25,7 @@ def hermite_slope(t: Array, ends: Array) -> Array:
 
 
 def hermite_extrema(ends: Array) -> Array:
-    """Where the cubics (4, m) have extrema within (0, 1): (m, 2), NaN where they have none."""
+    """Return where cubics (4, m) have extrema within (0, 1): (m, 2), NaN for an extremum that does not exist."""
     value0, value1, slope0, slope1 = ends
     rise = value1 - value0
     c3, c2, c1 = slope0 + slope1 - 2 * rise, 3 * rise - 2 * slope0 - slope1, slope0
@@ -37,7 +37,7 @@ def hermite_extrema(ends: Array) -> Array:
 
 
 def hermite_root(ends: Array) -> Array:
-    """A root in (0, 1) of cubics (4, m) with values of opposite sign at the ends, by bisection and then secants."""
+    """Return a root in (0, 1) of cubics (4, m) with values of opposite sign at the ends, by bisection."""
     low, high = np.zeros(ends.shape[1]), np.ones(ends.shape[1])
     rising = ends[1] > ends[0]
     for _ in range(52):

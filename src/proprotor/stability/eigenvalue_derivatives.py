@@ -23,16 +23,17 @@ STEP = 1e-30  # its square vanishes beside any number of the model
 
 
 def matrix_derivatives(model: LinearModel) -> tuple[Array, Array, Array]:
-    """M', C', K' (..., n, n) of a model evaluated `STEP` away in the imaginary direction."""
+    """Return M', C', K' (..., n, n) of a model evaluated `STEP` away in the imaginary direction."""
     return tuple(np.imag(getattr(model, name)) / STEP for name in "MCK")
 
 
 def with_changes(
     linearize: Callable[[Array], LinearModel], positions: Array
 ) -> tuple[LinearModel, tuple[Array, Array, Array]]:
-    """Models at positions (k,) and how M, C and K change with the position.
+    """Return models at positions (k,), and how M, C and K change with the position.
 
-    By a complex step; where complex positions are refused, as by finite elements, by extrapolated differences.
+    The changes come from a complex step; where complex positions are refused, as by finite elements, from extrapolated
+    differences.
     """
     try:
         model = linearize(positions + 1j * STEP)
@@ -42,7 +43,7 @@ def with_changes(
 
 
 def differences(linearize: Callable[[Array], LinearModel], positions: Array) -> tuple[Array, Array, Array]:
-    """M', C', K' by central differences of two steps, extrapolated."""
+    """Return M', C', K' by central differences of two steps, extrapolated."""
     by_step = []
     for share in (_DIFFERENCE, _DIFFERENCE / 2):
         step = share * np.where(positions == 0, 1.0, np.abs(positions))
@@ -54,7 +55,7 @@ def differences(linearize: Callable[[Array], LinearModel], positions: Array) -> 
 
 
 def second_order_left(model: LinearModel, left: Array) -> Array:
-    """yᴴ / yᴴ(2λM + C)x (..., modes, n) of left vectors in rows of the state space (..., modes, states)."""
+    """Return yᴴ / yᴴ(2λM + C)x (..., modes, n) of left vectors in rows of the state space (..., modes, states)."""
     rates = left[..., -len(model.dofs) :]
     mass = np.swapaxes(np.real(model.M), -1, -2)
     return np.swapaxes(np.linalg.solve(mass, np.swapaxes(rates, -1, -2)), -1, -2)
@@ -66,16 +67,16 @@ def eigenvalue_change(
     modes: Modes,
     left_rows: Array | None = None,
 ) -> Array:
-    """First-order change (..., modes) of eigenvalues by changes of M, C and K (..., n, n).
+    """Return the first-order change (..., modes) of eigenvalues by changes of M, C and K (..., n, n).
 
     Parameters
     ----------
     model : LinearModel
-        Whose M and coordinates the vectors belong to; its leading axes and those of the changes broadcast.
+        The model that has the vectors; its leading axes and those of the changes broadcast.
     changes : three arrays (..., n, n)
     modes : Modes
     left_rows : array (..., modes, n), optional
-        Of `second_order_left`, where it is known.
+        The result of `second_order_left`, where it is known.
     """
     values, right, left = modes
     n, held = len(model.dofs), held_coordinates(model, right.shape[-2])
@@ -91,7 +92,7 @@ def eigenvalue_change(
 
 
 def _pull(stiffness: Array, rate: Array, values: Array) -> Array:
-    """Load (..., n, modes) of a change of stiffness (..., n) on a coordinate that has a rate alone."""
+    """Return the load (..., n, modes) of a change of stiffness (..., n) on a coordinate that has a rate alone."""
     with np.errstate(all="ignore"):
         motion = rate / np.where(values == 0, np.nan, values)
     column = stiffness[..., None]
@@ -99,7 +100,7 @@ def _pull(stiffness: Array, rate: Array, values: Array) -> Array:
 
 
 def real_times(matrices: Array, vectors: Array) -> Array:
-    """Real matrices times complex columns, in real numbers: half the work."""
+    """Multiply real matrices by complex columns in real numbers, which is half the work."""
     count = vectors.shape[-1]
     parts = matrices @ np.concatenate([vectors.real, vectors.imag], axis=-1)
     product: Array = parts[..., :count] + 1j * parts[..., count:]
@@ -107,9 +108,9 @@ def real_times(matrices: Array, vectors: Array) -> Array:
 
 
 def defect(modes: Modes) -> Array:
-    """How nearly defective modes are (..., modes): the sum of |l_k r_k| over the states, free of units, 1 at best.
+    """Return how nearly defective modes are (..., modes): Σ |l_k r_k| over the states, dimensionless, 1 at best.
 
-    It grows without bound where two modes fall into one and derivatives cease to exist.
+    The sum grows without bound where two modes fall into one and derivatives cease to exist.
     """
     sums: Array = np.abs(np.swapaxes(modes.left, -1, -2) * modes.right).sum(axis=-2)
     return sums

@@ -31,28 +31,28 @@ def frequency_response(
     inputs: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
 ) -> xarray.Dataset:
-    """Steady response to an input of one frequency: output = response × input, both e^{iωt}.
+    """Return the steady response to an input of one frequency: output = response × input, both e^{iωt}.
 
     The same as `StateSpace.to_control` gives to python-control, for whole batches and with names and units. Where the
-    model is unstable no steady state is ever reached; `stable` tells.
+    model is unstable no steady state is ever reached: see `stable`.
 
     Parameters
     ----------
     model : LinearModel
         Leading axes of a batch are kept.
     frequency : array (frequencies,) in rad/s, text such as "3 Hz" or "1:5:0.1 Hz", or pint quantity
-        Of the excitation; not negative.
+        Frequencies of the excitation; not negative.
     inputs, outputs : sequence of str, optional
-        Names as `StateSpace` has them; all by default.
+        Names of inputs and outputs of `StateSpace`; all by default.
 
     Returns
     -------
     xarray.Dataset
         response (..., frequency, output, input), complex, in the output's unit per unit of the input; magnitude and
-        phase (rad) of it; stable (...), whether every mode is damped; warning and reason (...) of points that are
-        doubtful, and of those that failed. Attributes: the case and its options (`proprotor.model.stamp`). Coordinates:
-        frequency, output_unit, input_unit, airspeed. NaN where a point failed, or where a frequency is that of an
-        undamped mode.
+        phase (rad) of the response; stable (...), whether every mode is damped; warning and reason (...) of points that
+        are doubtful, and of those that failed. Attributes: the case and its options (`proprotor.model.stamp`).
+        Coordinates: frequency, output_unit, input_unit, airspeed. NaN where a point failed, or where a frequency is
+        that of an undamped mode.
 
     Raises
     ------
@@ -66,9 +66,9 @@ def frequency_response(
     space = model.to_state_space()
     columns, rows = _places(inputs, space.inputs, "inputs"), _places(outputs, space.outputs, "outputs")
     count = space.A[..., 0, 0].size * omega.size
-    told = f"{omega.size} frequencies"
+    asked = f"{omega.size} frequencies"
     size = _BYTES_PER_ENTRY * count * len(rows) * len(columns)
-    check_memory("frequency", told, size, "the response", "take fewer, or fewer inputs and outputs")
+    check_memory("frequency", asked, size, "the response", "take fewer, or fewer inputs and outputs")
     response = _response(space, omega, rows, columns)
     leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
     leading = ("airspeed",) if len(leading) == 1 else leading
@@ -117,7 +117,7 @@ def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> 
 
 
 def _response(space: StateSpace, omega: Array, rows: list[int], columns: list[int]) -> Array:
-    """C (iω - A)⁻¹ B + D (..., frequencies, rows, columns)."""
+    """Return C (iω - A)⁻¹ B + D (..., frequencies, rows, columns)."""
     leading = space.A.shape[:-2]
     count = int(np.prod(leading, dtype=int))
     a, b, c, d = (
@@ -137,7 +137,7 @@ def _response(space: StateSpace, omega: Array, rows: list[int], columns: list[in
 
 
 def _of_alike(a: Array, b: Array, c: Array, d: Array, omega: Array) -> Array:
-    """The same (points, frequencies, rows, columns) for points with the same states."""
+    """Return C (iω - A)⁻¹ B + D (points, frequencies, rows, columns) of points with the same states."""
     found = np.empty((len(a), len(omega), *d.shape[1:]), dtype=complex)
     step = max(1, _BLOCK // max(len(a), 1))
     for start in range(0, len(omega), step):
@@ -148,7 +148,7 @@ def _of_alike(a: Array, b: Array, c: Array, d: Array, omega: Array) -> Array:
 
 
 def _alike(systems: Array) -> Iterator[tuple[Array, Array]]:
-    """Points (k,) of matrices (points, states, states) that have the same states, and these; failed ones left out."""
+    """Yield points (k,) of matrices (points, states, states) with the same states, and the states; no failed points."""
     present = np.isfinite(np.diagonal(systems, axis1=-2, axis2=-1))
     kinds, kind = np.unique(present, axis=0, return_inverse=True)
     for place, states in enumerate(kinds):
@@ -161,7 +161,7 @@ def _alike(systems: Array) -> Iterator[tuple[Array, Array]]:
 
 
 def _solved(matrices: Array, loads: Array) -> Array:
-    """Solutions (points, frequencies, states, columns); NaN where there is none."""
+    """Return solutions (points, frequencies, states, columns); NaN where a matrix is singular."""
     loads = np.broadcast_to(loads, (*matrices.shape[:-1], loads.shape[-1]))
     try:
         return np.linalg.solve(matrices, loads)
@@ -176,14 +176,14 @@ def _solved(matrices: Array, loads: Array) -> Array:
 
 
 def _stable(model: LinearModel) -> NDArray[np.bool_]:
-    """Whether every root decays, by more than its error."""
+    """Return at which points (...) every root decays, by more than its error."""
     values, error = roots(model)
     decays = (values.real < -error) | np.isnan(values)  # a state that a point does not have
     return np.asarray(decays.all(axis=-1) & np.isfinite(values).any(axis=-1))
 
 
 def _unit_of(output: str) -> str:
-    """SI unit of an output by its name."""
+    """Return the SI unit of an output by its name."""
     name, _, kind = output.partition(" ")
     if name in LOADS:
         return "N" if name.startswith("force") else "N*m"

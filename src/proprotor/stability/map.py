@@ -1,26 +1,27 @@
-"""Where in the plane of two inputs a case is stable, and the line between.
+"""Where in the plane of two inputs a case is stable, and the boundary between stable and unstable points.
 
 A grid of points is evaluated as one batch. Where one of two neighbours of the grid is stable and the other is not, the
-first onset on the way from the stable one is found as any boundary is (`proprotor.stability.crossings`), all edges at once;
-marching squares joins them into lines. Two crossings on one edge, between neighbours that are both stable or both not,
-are finer than the grid.
+first onset on the way from the stable one is found as any boundary is (`proprotor.stability.crossings`), all edges at
+once; contourpy joins these crossings into lines. Two crossings on one edge, between neighbours that are both stable or
+both not, are finer than the grid.
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.deck.vary import vary as vary_case
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
 from proprotor.needs import check_memory
-from proprotor.stability.crossings import Brackets, Search
+from proprotor.stability.brackets import Brackets
+from proprotor.stability.crossings import Search
+from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.stability.root_error import growth, growth_error, roots
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
@@ -30,17 +31,18 @@ if TYPE_CHECKING:
 
     from proprotor.model.configuration import Configuration
 
-AIRSPEED = "airspeed"
 _AT_ONCE = 4096  # points of one batch
+_OFF_ZERO = 1e-6  # of the largest growth: no corner is nearer to zero while lines are joined
 _BYTES_PER_POINT = 100.0  # of the grid: where it is, what was found there, and the line between
 
-Plane = Callable[[Array, Array], LinearModel]  # x and y (k,) to the models there
-Point = tuple[int, int]  # row and column in the grid
-Edge = tuple[Point, Point]
+_Plane = Callable[[Array, Array], LinearModel]  # x and y (k,) to the models there
 
 
-class Edges(NamedTuple):
-    """Edges of the grid that the boundary crosses: places of both ends and the crossing, (k, 2) each; its root (k,)."""
+class _Edges(NamedTuple):
+    """Edges of the grid that the boundary crosses.
+
+    first, last : row and column of both ends (k, 2); crossing (k, 2), in SI; eigenvalue (k,), the root at the crossing.
+    """
 
     first: Array
     last: Array
@@ -48,8 +50,8 @@ class Edges(NamedTuple):
     eigenvalue: Array
 
 
-def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
-    """Largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points.
+def _largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
+    """Return the largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points.
 
     The growth of a root that is neutral within its error is zero.
     """
@@ -69,7 +71,7 @@ def stability_map(
     level: float = 0.0,
     **options: Any,
 ) -> xarray.Dataset:
-    """Stability of a case over two inputs.
+    """Return the stability of a case over two inputs.
 
     Parameters
     ----------
@@ -88,10 +90,11 @@ def stability_map(
     -------
     xarray.Dataset
         growth (y, x), the largest Re λ + ζ0 |λ| of all modes, 1/s, positive where a mode is beyond the level; frequency
-        of that mode, rad/s; reason of points that failed, warning of those that are doubtful. boundary (vertex, axis):
-        the line between, in lines parted by NaN; boundary_eigenvalue (vertex,), the root that crosses there, rad/s;
-        boundary_warning (vertex,), what makes it doubtful there. Attributes: level, airspeed in m/s where it is given,
-        eigen_solves, and the case and its options (`proprotor.model.stamp`).
+        of the mode that grows most, rad/s; reason of points that failed, warning of points that are doubtful. boundary
+        (vertex, axis): the boundary between stable and unstable points, NaN between its lines; boundary_eigenvalue
+        (vertex,), the root that crosses at a vertex, rad/s; boundary_warning (vertex,), what makes a vertex doubtful.
+        Attributes: level, airspeed in m/s where it is given, eigen_solves, and the case and its options
+        (`proprotor.model.stamp`).
 
     Raises
     ------
@@ -99,8 +102,6 @@ def stability_map(
         For axes that are not two, values that do not rise, an unknown input, an airspeed that is missing, or a grid
         that does not fit into memory.
     """
-    from proprotor.deck.vary import design_inputs
-
     names, values = _axes(case, axes)
     plane = _plane(case, names, airspeed, options)
     x, y = values
@@ -137,9 +138,9 @@ def stability_map(
 
 
 def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[Array, Array]]:
+    """Return the names and the values, in SI, of both axes."""
     if len(axes) != 2:
         raise InputError("axes", ", ".join(axes), "must be two inputs")
-    from proprotor.deck.vary import design_inputs
     from proprotor.units import values_in_si
 
     known = design_inputs(case)
@@ -158,27 +159,25 @@ def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str
     return (x, y), (along_x, along_y)
 
 
-def _plane(case: Configuration, names: tuple[str, str], airspeed: Any, options: Mapping[str, Any]) -> Plane:
+def _plane(case: Configuration, names: tuple[str, str], airspeed: Any, options: Mapping[str, Any]) -> _Plane:
+    """Return the function that linearises the case at points of the plane."""
     if AIRSPEED not in names and airspeed is None:
         raise InputError("airspeed", None, "must be given, or be one of the axes")
     if AIRSPEED in names and airspeed is not None:
         raise InputError("airspeed", airspeed, "is one of the axes already")
 
-    def linearize(x: Array, y: Array) -> LinearModel:
-        given = dict(zip(names, (x, y), strict=True))
-        speed = given.pop(AIRSPEED, airspeed)
-        return vary_case(case, given).linearize(speed, **options)
-
-    return linearize
+    own = {} if AIRSPEED in names else {AIRSPEED: airspeed}
+    return lambda x, y: models_at(case, own | dict(zip(names, (x, y), strict=True)), options)
 
 
-def _evaluated(plane: Plane, x: Array, y: Array, level: float) -> tuple[Array, Array, Array, Array]:
+def _evaluated(plane: _Plane, x: Array, y: Array, level: float) -> tuple[Array, Array, Array, Array]:
+    """Return growth and eigenvalue of the mode that grows most at points (k,), with reason and warning."""
     model = plane(x, y)
-    return *largest_growth(model, level), model.trim.reason, model.trim.warning
+    return *_largest_growth(model, level), model.trim.reason, model.trim.warning
 
 
-def _warnings_at(plane: Plane, vertices: Array) -> Array:
-    """What makes each vertex (vertices, 2) doubtful; nothing between two lines."""
+def _warnings_at(plane: _Plane, vertices: Array) -> Array:
+    """Return what makes each vertex (vertices, 2) doubtful; nothing between two lines."""
     warnings = np.full(len(vertices), "", dtype=object)
     there = np.flatnonzero(np.isfinite(vertices).all(axis=1))
     for start in range(0, len(there), _AT_ONCE):
@@ -187,8 +186,8 @@ def _warnings_at(plane: Plane, vertices: Array) -> Array:
     return warnings.astype(str)
 
 
-def _crossings(plane: Plane, x: Array, y: Array, largest: Array, level: float) -> tuple[Edges, int]:
-    """The boundary on the edges of the grid: the first onset on the way from the stable end, on all of them at once."""
+def _crossings(plane: _Plane, x: Array, y: Array, largest: Array, level: float) -> tuple[_Edges, int]:
+    """Find the first onset on each edge of the grid on the way from its stable end, and count eigen-solves."""
     unstable = largest > 0
     good = np.isfinite(largest)
     along_x = np.argwhere((unstable[:, 1:] != unstable[:, :-1]) & good[:, 1:] & good[:, :-1])
@@ -204,13 +203,13 @@ def _crossings(plane: Plane, x: Array, y: Array, largest: Array, level: float) -
         some = slice(begin, begin + _AT_ONCE // 2)
         share[some], value[some], count = _onsets(plane, start[some], end[some], level)
         solves += count
-    return Edges(first, last, start + share[:, None] * (end - start), value), solves
+    return _Edges(first, last, start + share[:, None] * (end - start), value), solves
 
 
-def _onsets(plane: Plane, start: Array, end: Array, level: float) -> tuple[Array, Array, int]:
-    """First onset on the straight way from each start to its end, as a share of it, the root there, and eigen-solves.
+def _onsets(plane: _Plane, start: Array, end: Array, level: float) -> tuple[Array, Array, int]:
+    """Return the first onset on the straight way from each start to its end, its root, and the number of eigen-solves.
 
-    Where a point on the way cannot be analysed, the middle of what holds the onset.
+    The onset is a share of the way. Where a point on the way cannot be analysed, it is the middle of the bracket.
     """
 
     def models(edge: Array, share: Array) -> LinearModel:
@@ -236,53 +235,34 @@ def _onsets(plane: Plane, start: Array, end: Array, level: float) -> tuple[Array
     return np.where(np.isfinite(share), share, 0.5), value, int(search.solves.sum() + brackets.solves.sum())
 
 
-def _lines(edges: Edges, largest: Array) -> Array:
-    """Places (vertices,) of crossings in the order of the lines they form, parted by -1."""
-    place = {
-        (tuple(first), tuple(last)): number
-        for number, (first, last) in enumerate(zip(edges.first.tolist(), edges.last.tolist(), strict=True))
-    }
-    neighbours: dict[int, list[int]] = defaultdict(list)
-    for row, column in np.ndindex(largest.shape[0] - 1, largest.shape[1] - 1):
-        for one, other in _in_cell(place, row, column, largest):
-            neighbours[one].append(other)
-            neighbours[other].append(one)
-    ordered: list[int] = []
-    left = set(neighbours)
-    while left:
-        ends = [number for number in left if len(neighbours[number]) == 1]
-        line = _walk(min(ends or left), neighbours, left)
-        ordered += [*line, -1]
-    return np.array(ordered[:-1], dtype=int)
+def _lines(edges: _Edges, largest: Array) -> Array:
+    """Return places (vertices,) of crossings in the order of the lines that they form, parted by -1.
+
+    At a saddle the mean of the four corners tells which crossings are joined.
+    """
+    from contourpy import contour_generator  # here, because few need it
+
+    if not len(edges.first):
+        return np.empty(0, dtype=int)
+    # A corner at zero would put a vertex on two edges at once.
+    least = _OFF_ZERO * np.nanmax(np.abs(largest))
+    height = np.where(largest > 0, np.maximum(largest, least), np.minimum(largest, -least))
+    drawn = contour_generator(z=np.ma.masked_invalid(height), corner_mask=True).lines(0.0)
+    place = {tuple(twice): number for number, twice in enumerate((edges.first + edges.last).tolist())}
+    lines = []
+    for vertices in drawn:
+        # Beside a failed corner a line ends on a diagonal, which is none of the edges.
+        line = [place[twice] for twice in _twice_middle(np.asarray(vertices)) if twice in place]
+        if len(line) > 1:
+            lines.append(line if line[0] < line[-1] else line[::-1])
+    return np.array([number for line in sorted(lines) for number in (*line, -1)][:-1], dtype=int)
 
 
-def _walk(start: int, neighbours: Mapping[int, list[int]], left: set[int]) -> list[int]:
-    """Vertices from one end of a line to the other; a closed line ends where it began."""
-    line, here = [start], start
-    left.discard(start)
-    while ahead := [number for number in neighbours[here] if number in left]:
-        here = ahead[0]
-        line.append(here)
-        left.discard(here)
-    if len(line) > 2 and start in neighbours[here]:
-        line.append(start)
-    return line
-
-
-def _in_cell(place: Mapping[Edge, int], row: int, column: int, largest: Array) -> list[tuple[int, int]]:
-    """Pairs of crossings that the boundary joins within one cell; two pairs at a saddle, by the mean of its corners."""
-    a, b, c, d = (row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)
-    sides = ((a, b), (b, c), (d, c), (a, d))
-    found = [place[edge] for edge in sides if edge in place]
-    if len(found) == 2:
-        return [(found[0], found[1])]
-    if len(found) < 4:
-        return []
-    first, second, third, fourth = found
-    centre = np.mean([largest[corner] for corner in (a, b, c, d)]) > 0
-    if centre == (largest[a] > 0):  # a and c are joined: the boundary cuts off b and d
-        return [(first, second), (third, fourth)]
-    return [(first, fourth), (second, third)]
+def _twice_middle(vertices: Array) -> list[tuple[int, int]]:
+    """Return twice the row and column of the middle of the edge on which each vertex (k, 2), of x and y, lies."""
+    on_grid = np.round(vertices)
+    twice = np.where(np.abs(vertices - on_grid) < _OFF_ZERO / 10, 2 * on_grid, 2 * np.floor(vertices) + 1)
+    return [(int(row), int(column)) for column, row in twice]
 
 
 def _dataset(
@@ -290,8 +270,9 @@ def _dataset(
     values: tuple[Array, Array],
     largest: Array,
     value: Array,
-    edges: Edges,
+    edges: _Edges,
 ) -> xarray.Dataset:
+    """Return the dataset of a map from what was found at its points and on its edges."""
     import xarray  # here, because it takes long to import
 
     line = _lines(edges, largest)

@@ -1,12 +1,12 @@
-"""Names of modes: what moves in them at a point, told by participation and by the way cyclic motion whirls.
+"""Names of modes: what moves in a mode at a point, by participation and by the way cyclic motion whirls.
 
-A model has as many names as modes: one for each coordinate of the support, for coning and the collective motion of
-each other blade angle, for the rotor speed, and two for the cyclic motion of each blade angle and of the gimbal,
-regressive and progressive. At each point the modes get them by the assignment with the largest sum of participations,
-one name to one mode. That is a function of the point alone: of the eigenvalues and vectors there, and of nothing that
-lies before, behind or beside it. Where two branches veer and exchange their motions, the names pass from one to the
-other where both have moved as far as they will go on: where the sum of participations is the same for either.
-Which branch is which is another question, answered by following roots: `proprotor.stability.branches`.
+A model has as many names as modes: one for each coordinate of the support, for coning and the collective motion of each
+other blade angle, for the rotor speed, and two for the cyclic motion of each blade angle and of the gimbal, regressive
+and progressive. At each point the modes get them by the assignment with the largest sum of participations, one name to
+one mode. The names depend on the eigenvalues and vectors of the point alone, and on no other point. Where two branches
+veer and exchange their motions, the names pass from one branch to the other half-way: where the sum of participations
+is the same for either assignment. Which branch is which is another question, answered by following roots:
+`proprotor.stability.branches`.
 
 The share that a mode has in its own name says how much the name is worth: near 1 nothing else moves, below one third
 something else may move more.
@@ -68,23 +68,24 @@ class Moving(NamedTuple):
 
     @property
     def share(self) -> Array:
-        """How much of each state (..., states) is the motion that it is named after, 0 to 1."""
+        """Participation (..., states) of the motion that each state is named after, 0 to 1."""
         rows = np.maximum(self.place, 0)[..., None, :]
         share: Array = np.take_along_axis(self.shares, rows, -2)[..., 0, :]
         return share
 
 
 def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Moving:
-    """What moves in each mode of each point: a function of the point alone.
+    """Return what moves in each mode of each point: a function of the point alone.
 
     Parameters
     ----------
     model : LinearModel
-        Of these points (...).
+        Its points (...) are those of the eigenvalues.
     values : array (..., states)
         All eigenvalues, rad/s, each pair side by side.
     left, right : array (..., states, states)
-        Left vectors in rows, right ones in columns, left @ right = 1: `proprotor.stability.matching.Spectrum.all_modes`.
+        Left vectors in rows, right ones in columns, left @ right = 1, as from
+        `proprotor.stability.matching.Spectrum.all_modes`.
     """
     known = name_list(model.dofs)
     place, exists = np.full(values.shape, -1), np.isfinite(values)
@@ -92,19 +93,19 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
     # A state that a point does not have, though others do, stands as a root at zero while names are given.
     roots = np.where(exists, values, 0)
     if good.all():  # the usual case, without copies
-        shares = name_shares(model, left, right)
+        shares = _name_shares(model, left, right)
     else:
         shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
         if good.any():
             some = some_points(model, good)
-            shares[good] = name_shares(some, left[good], right[good])
+            shares[good] = _name_shares(some, left[good], right[good])
     held = held_coordinates(model, values.shape[-1])
-    place[good] = assign_names(model.dofs, held, shares[good], roots[good])
+    place[good] = _assign_names(model.dofs, held, shares[good], roots[good])
     return Moving(known, place, shares)
 
 
-def whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:
-    """Participation of what whirls against and with the rotor in each state, two arrays (..., states).
+def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:
+    """Return the participation of whirl against and with the rotor in each state, two arrays (..., states).
 
     Parameters
     ----------
@@ -125,23 +126,23 @@ def whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> 
 
 
 def _states(place: int, held: list[int]) -> list[int]:
-    """States of a coordinate: its displacement, unless it has none, and its rate."""
+    """Return the places of the states of a coordinate: its displacement, where this is a state, and its rate."""
     rate = len(held) + place
     return [held.index(place), rate] if place in held else [rate]
 
 
 def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array:
-    """Sense of whirl in the fixed frame (..., modes): 1 with the rotor, -1 against it.
+    """Return the sense of whirl in the fixed frame (..., modes): 1 with the rotor, -1 against the rotor.
 
-    Of the blades' and the gimbal's cyclic motion, by participation. Of a mode in which they take no part, as all modes
-    of a propeller on a pivot: of the way the shaft's axis goes round, or where that does not tilt, the hub's centre.
-    NaN for real roots, and where nothing goes round.
+    The cyclic motion of blades and gimbal counts, by participation. In a mode without cyclic motion, as in all modes of
+    a propeller on a pivot, the motion of the shaft's axis counts, and where the axis does not tilt, that of the hub's
+    centre. NaN for real roots, and where nothing goes round.
     """
     held = held_coordinates(model, right.shape[-2])
     against, with_rotor = np.zeros(values.shape), np.zeros(values.shape)
     for motion in motions(model.dofs):
         if len(motion.places) == 2:
-            shares = whirl_shares(motion, held, left, right)
+            shares = _whirl_shares(motion, held, left, right)
             against, with_rotor = against + shares[0], with_rotor + shares[1]
     of_hub = _hub_whirl(model, values, right)
     still = against + with_rotor < _STILL
@@ -154,7 +155,7 @@ def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array
 
 
 def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, Array]:
-    """Squares of what goes round against and with the rotor of the shaft's axis, or of the hub (..., modes)."""
+    """Return the squares of motion against and with the rotor (..., modes) of the shaft's axis, or of the hub."""
     n = len(model.dofs)
     shape = coordinate_motion(held_coordinates(model, right.shape[-2]), n, values, right)
     if model.hub is not None:
@@ -172,8 +173,8 @@ def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, 
     return against, with_rotor
 
 
-def name_shares(model: LinearModel, left: Array, right: Array) -> Array:
-    """Share of each name in each state (..., names, states); sums to 1 over the names.
+def _name_shares(model: LinearModel, left: Array, right: Array) -> Array:
+    """Return the share of each name in each state (..., names, states); it sums to 1 over the names.
 
     Parameters
     ----------
@@ -188,7 +189,7 @@ def name_shares(model: LinearModel, left: Array, right: Array) -> Array:
             places = _states(motion.places[0], held)
             columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
             continue
-        whole = sum(whirl_shares(motion, held, left, right))
+        whole = sum(_whirl_shares(motion, held, left, right))
         progressive = _progressive_part(model, motion, held, left, right)
         columns += [whole * (1 - progressive), whole * progressive]
     sums = np.stack(columns, axis=-2)
@@ -199,7 +200,7 @@ def name_shares(model: LinearModel, left: Array, right: Array) -> Array:
 def _progressive_part(
     model: LinearModel, motion: Motion, held: list[int], left: Array, right: Array
 ) -> Array:
-    """How much of a cyclic motion is the progressive one of its two uncoupled modes, in each state (..., states).
+    """Return the part of a cyclic motion that is its uncoupled progressive mode, in each state (..., states).
 
     Alone, z = β_1c + i β_1s has the roots s_p and s_r. Its displacement and rate are the sums z = p + r and
     ż = s_p p + s_r r of both modes, so that p = (ż - s_r z) / (s_p - s_r) and r = (s_p z - ż) / (s_p - s_r); the
@@ -219,9 +220,9 @@ def _progressive_part(
 
 
 def _uncoupled_roots(model: LinearModel, motion: Motion) -> tuple[Array, Array]:
-    """Roots (...) of a cyclic motion with all else held, alike in all directions: that of the progressive mode first.
+    """Return the two roots (...) of a cyclic motion with all else held, averaged over directions; progressive first.
 
-    In the rotating frame they are σ ± iν. Seen from the fixed frame the rotor's speed is added to both.
+    In the rotating frame the roots are σ ± iν. Seen from the fixed frame the rotor's speed is added to both.
     """
     c, s = motion.places
     mass, damping, stiffness = (
@@ -235,19 +236,19 @@ def _uncoupled_roots(model: LinearModel, motion: Motion) -> tuple[Array, Array]:
     return np.where(ahead, both[0], both[1]), np.where(ahead, both[1], both[0])
 
 
-def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> Array:
-    """The name of each state (points, states), by its place in `name_list`; both states of a pair have the same one.
+def _assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> Array:
+    """Return the name of each state (points, states), by its place in `name_list`; a pair has one name.
 
-    The assignment with the largest sum of shares. Where the best names of all states go together, that is it. Of
-    assignments that are equally good, as for a propeller on a pivot that is alike in all directions, the one in which
-    frequencies rise in the order of the names: the choice must not be left to rounding.
+    The assignment with the largest sum of shares is taken. Where the best names of all states are different, these are
+    that assignment. Of assignments that are equally good, as for a propeller on a pivot that is alike in all
+    directions, the one is taken in which frequencies rise in the order of the names, so that rounding does not decide.
 
     Parameters
     ----------
     dofs : tuple of str
     held : list of int
     shares : array (points, names, states)
-        Of `name_shares`.
+        Of `_name_shares`.
     values : array (points, states)
         Eigenvalues, each pair side by side.
     """
@@ -263,7 +264,7 @@ def assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: 
 
 
 def _by_rank(values: Array, names: int) -> Array:
-    """Products (points, states, names) of the ranks of frequencies and of names, 0 to 1: largest where both rise."""
+    """Return products (points, states, names) of the ranks of frequencies and of names, 0 to 1."""
     order = np.lexsort((values.real, np.abs(values.imag)), axis=-1)
     rank = np.empty(values.shape)
     np.put_along_axis(rank, order, np.broadcast_to(np.linspace(0, 1, values.shape[-1]), values.shape), -1)
@@ -271,12 +272,12 @@ def _by_rank(values: Array, names: int) -> Array:
 
 
 def _assigned(gain: Array, slots: Array, values: Array) -> Array:
-    """The best assignment (states,) of one point in which no pair is torn."""
+    """Return the best assignment (states,) of one point that gives both states of a pair one name."""
     upper, real = np.flatnonzero(values.imag > 0), np.flatnonzero(values.imag == 0)
     given: Array = slots[_best(gain[:, slots])]
     if (given[upper] == given[upper + 1]).all():
         return given
-    # Two real roots that want different names would tear a pair. Which names are left to the real roots is tried.
+    # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
     counts = np.bincount(slots)
     whole, half = np.flatnonzero(counts == 2), np.flatnonzero(counts == 1)
     largest = -np.inf
@@ -292,7 +293,7 @@ def _assigned(gain: Array, slots: Array, values: Array) -> Array:
 
 
 def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
-    """The name of each of as many places as there are states: two for each mode, one for a rate alone."""
+    """Return the names in as many places as a model has states: each mode's name twice, that of a rate alone once."""
     slots, count = [], 0
     for motion in motions(dofs):
         for _ in motion.names:
@@ -303,7 +304,7 @@ def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
 
 
 def _best(gain: Array) -> Array:
-    """The column of each row in the assignment with the largest sum."""
+    """Return the column of each row in the assignment with the largest sum."""
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
     columns: Array = linear_sum_assignment(gain, maximize=True)[1]

@@ -2,8 +2,8 @@
 
 Signs: s = -ζω ± iω√(1 - ζ²), damping ratio ζ = -Re s / |s|, so a negative ratio is an instability. The rotor's
 azimuth has no stiffness unless a shaft gives it one, and enters as a rate: n coordinates have 2n - 1 states.
-In a batch in which a shaft holds the azimuth at some points only, each point has the states that it has alone; arrays
-have room for 2n, and where a point has one fewer its last eigenvalue is NaN.
+In a batch in which a shaft holds the azimuth at some points only, each point has the same states as outside the batch;
+arrays have room for 2n, and where a point has one state fewer its last eigenvalue is NaN.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.stability.following import Line
+    from proprotor.stability.parameter_lines import ParameterLine
 
 
 class Eigensystem(NamedTuple):
@@ -51,17 +51,17 @@ class Eigensystem(NamedTuple):
 
 
 def eigensystem(model: LinearModel) -> Eigensystem:
-    """All eigenvalues and vectors; eigenvalues of a point in no particular order, each pair side by side."""
+    """Return all eigenvalues and vectors; eigenvalues of a point in no particular order, each pair side by side."""
     spectrum, held = decomposition(model), held_coordinates(model)
     values, right, left = spectrum.all_modes
     return Eigensystem(values, right, left, coordinate_motion(held, len(model.dofs), values, right))
 
 
 def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum:
-    """Eigenvalues and right vectors in the state space; of a complex model, those of its real part.
+    """Return eigenvalues and right vectors in the state space; of a complex model, those of its real part.
 
     The eigenvalue of a state that a point does not have is NaN, and stands last. States are those of the batch, or with
-    `held` those of another one with the same coordinates.
+    `held`, places of coordinates whose displacement is a state, those of another batch with the same coordinates.
     """
     model = _real(model)
     states = len(held_coordinates(model) if held is None else held) + len(model.dofs)
@@ -79,7 +79,7 @@ def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum
 
 
 def eigenvalues(model: LinearModel) -> Array:
-    """The eigenvalues (..., states) alone, in no particular order; NaN as `decomposition` has it."""
+    """Return the eigenvalues (..., states) alone, in no particular order; NaN where `decomposition` has NaN."""
     states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
     values = np.full((*shape, states), complex(np.nan, np.nan))
     for points, part in _alike(_real(model)):
@@ -89,7 +89,7 @@ def eigenvalues(model: LinearModel) -> Array:
 
 
 def _alike(model: LinearModel) -> Iterator[tuple[Array | EllipsisType, LinearModel]]:
-    """Points that have modes, in parts with the same states: where they are, and the model there."""
+    """Yield points that have modes, in parts with the same states: places of the points, and their model."""
     good, free = have_modes(model), lack_azimuth(model)
     if good.all() and not free.any():
         yield ..., model
@@ -100,10 +100,10 @@ def _alike(model: LinearModel) -> Iterator[tuple[Array | EllipsisType, LinearMod
 
 
 def with_azimuth(spectrum: Spectrum, dofs: tuple[str, ...], states: int) -> Spectrum:
-    """States of points at which nothing holds the azimuth among those, one more, of points where a shaft does.
+    """Return states of points where nothing holds the azimuth among the states, one more, of points with a shaft.
 
-    The azimuth moves by its rate over the eigenvalue. The state more has no eigenvalue, as the azimuth alone moves
-    nothing else: with a vanishing shaft stiffness it is what the root at zero comes to.
+    The azimuth moves by its rate over the eigenvalue. The additional state has no eigenvalue, as the azimuth alone
+    moves nothing else: the root at zero tends to this state as the shaft stiffness vanishes.
     """
     values, right, shapes = spectrum
     if values.shape[-1] == states:
@@ -130,7 +130,7 @@ def _real(model: LinearModel) -> LinearModel:
 
 
 def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:
-    """Motion (..., n, modes) of the coordinates: that of a rate alone is the rate divided by the eigenvalue."""
+    """Return the motion (..., n, modes) of the coordinates; that of a mere rate is the rate over the eigenvalue."""
     shapes = right[..., -n:, :].copy()
     shapes[..., held, :] = right[..., : len(held), :]
     rates = [place for place in range(n) if place not in held]
@@ -140,15 +140,16 @@ def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> A
 
 
 def participation(model: LinearModel, system: Eigensystem) -> Array:
-    """Share of each coordinate in each mode (..., n, states), from left times right vector; sums to 1.
+    """Return the share of each coordinate in each mode (..., n, states), from left times right vector; it sums to 1.
 
-    Free of units and of how vectors are scaled, unlike the largest component of a mode that mixes lengths and angles.
+    The share depends neither on units nor on the scale of vectors, unlike the largest component of a mode that mixes
+    lengths and angles.
     """
     return coordinate_shares(held_coordinates(model), len(model.dofs), system.left, system.right)
 
 
 def coordinate_shares(held: list[int], n: int, left: Array, right: Array) -> Array:
-    """Shares (..., n, modes) as `participation`, of left vectors in rows and right ones in columns."""
+    """Return shares (..., n, modes) as `participation`, of left vectors in rows and right ones in columns."""
     products = np.swapaxes(left, -1, -2) * right
     products = np.sqrt(products.real**2 + products.imag**2)
     sums = products[..., -n:, :].copy()
@@ -158,7 +159,7 @@ def coordinate_shares(held: list[int], n: int, left: Array, right: Array) -> Arr
 
 
 def modes(model: LinearModel) -> xarray.Dataset:
-    """Modes with frequency at or above zero, by frequency.
+    """Return modes with frequency at or above zero, by frequency.
 
     Parameters
     ----------
@@ -168,12 +169,12 @@ def modes(model: LinearModel) -> xarray.Dataset:
     Returns
     -------
     xarray.Dataset
-        eigenvalue (rad/s), eigenvalue_error (rad/s, the bound on its rounding error, `proprotor.stability.root_error`), frequency
-        (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio (NaN for a root at zero within its error), shape
-        (complex, largest component 1), dominant (name of the coordinate with the largest participation), name (what
-        moves, see `proprotor.stability.mode_names`) and share (how much of the mode that is, 0 to 1); dimensions (..., mode) and
-        dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end in NaN; where a batch has
-        points with fewer eigenvalues than others, missing tells why.
+        eigenvalue (rad/s), eigenvalue_error (rad/s, the bound on its rounding error, `proprotor.stability.root_error`),
+        frequency (|Im s|, rad/s), natural_frequency (|s|, rad/s), damping_ratio (NaN for a root at zero within its
+        error), shape (complex, largest component 1), dominant (name of the coordinate with the largest participation),
+        name (what moves, see `proprotor.stability.mode_names`) and share (how much of the mode is that motion, 0 to 1);
+        dimensions (..., mode) and dof. A real root is a mode of its own, with frequency 0. Points with fewer modes end
+        in NaN; where a batch has points with fewer eigenvalues than others, missing gives the reason.
 
     Raises
     ------
@@ -206,9 +207,14 @@ def modes(model: LinearModel) -> xarray.Dataset:
 
 
 def mode_dataset(
-    model: LinearModel, values: Array, error: Array, shapes: Array, shares: Array, line: Line | None = None
+    model: LinearModel,
+    values: Array,
+    error: Array,
+    shapes: Array,
+    shares: Array,
+    line: ParameterLine | None = None,
 ) -> xarray.Dataset:
-    """The dataset of `modes` from eigenvalues and their errors (..., mode), motions and participations (..., n, mode).
+    """Return the dataset of `modes` from eigenvalues and errors (..., mode), motions and participations (..., n, mode).
 
     A root at zero within its error has no damping ratio.
     """

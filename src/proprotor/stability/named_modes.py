@@ -19,10 +19,11 @@ if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
 
-class NamedModes(NamedTuple):
+class _NamedModes(NamedTuple):
     """Modes at an airspeed.
 
-    names (modes,); modes, their eigenvalues and vectors; model, at speed in m/s; eigen_solves, what finding them took.
+    names (modes,); modes : eigenvalues and vectors; model : at the airspeed; speed : m/s; eigen_solves : of the
+    analysis.
     """
 
     names: list[str]
@@ -34,13 +35,13 @@ class NamedModes(NamedTuple):
 
 def named_modes(
     case: Configuration, airspeed: Any, mode: str | None, options: Mapping[str, Any]
-) -> NamedModes:
-    """The modes of a case at one airspeed, or one of them by its name.
+) -> _NamedModes:
+    """Return the modes of a case at one airspeed, or one of these modes by its name.
 
     Raises
     ------
     InputError
-        For an airspeed that is not one, or that cannot be analysed, many designs, and an unknown mode.
+        For a value that is no single airspeed, an airspeed that cannot be analysed, many designs, and an unknown mode.
     """
     speed = in_metres_per_second(airspeed).reshape(-1)
     if len(speed) != 1:
@@ -58,4 +59,4 @@ def named_modes(
         raise InputError("mode", mode, unknown_name(mode, names, "mode"))
     chosen = np.array([names.index(name) for name in (names if mode is None else [mode])])
     wanted = spectrum.modes(columns[0, chosen])
-    return NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]), 1)
+    return _NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]), 1)

@@ -1,7 +1,7 @@
-"""The matrices of a case by what they come from, with the trim held.
+"""The matrices of a case by physical origin, with the trim held.
 
 The matrices are sums: of inertia, springs and loads of a blade, carried into the fixed frame by a linear map, and of
-what the support adds. Airloads are linear in the coefficients of the sections, which are taken one at a time.
+the matrices of the support. Airloads are linear in the coefficients of the sections, which are taken one at a time.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
-_COUPLINGS_TOLD = {
+_COUPLING_ORIGINS = {
     "pitch_flap_coupling": "pitch-flap coupling K_Pβ",
     "pitch_lag_coupling": "pitch-lag coupling K_Pζ",
 }
@@ -75,7 +75,7 @@ class _SomeCoefficients:
     contains_compressibility: bool = True
 
     def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
-        """Those kept, and zero for the others."""
+        """Return the kept coefficients, and zero for the others."""
         found = self.airfoil.coefficients(alpha, mach)
         if self.compressible and not self.airfoil.contains_compressibility:
             found = compressible(found, mach)
@@ -84,7 +84,7 @@ class _SomeCoefficients:
 
 
 def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict[str, Part]:
-    """M, C and K of a case by origin; their sum is the model.
+    """Return M, C and K of a case by origin; their sum is the model.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
     model : LinearModel
         Of this case; its trim is held.
     **options
-        Those of the model, see `proprotor.rotor.options.Options`; they need not be repeated where it says its own.
+        Options of the model, see `proprotor.rotor.options.Options`; they need not be repeated where the model has them.
 
     Returns
     -------
@@ -114,10 +114,12 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
         raise InputError("reactionless", True, "is not taken apart: leave it out")
     rotor = case.rotor
     shape = batch_shape(rotor, case.operation, model.airspeed, choice.drive_train)
-    pool = _pool(case, choice, model, shape)
-    blade = _structure(pool, choice) | dict(_airloads(BladeSections.of(rotor, shape), pool, choice))
-    own = {name: _in_fixed_frame(part, pool) for name, part in blade.items()}
-    own |= _other_parts(pool, choice)
+    quantities = _quantities(case, choice, model, shape)
+    blade = _structure(quantities, choice) | dict(
+        _airloads(BladeSections.of(rotor, shape), quantities, choice)
+    )
+    own = {name: _in_fixed_frame(part, quantities) for name, part in blade.items()}
+    own |= _other_parts(quantities, choice)
     support = case.support.at(model.airspeed, case.operation.density)
     nothing = np.zeros_like(support.mass)
     carrier = NormalModes(support.names, nothing, nothing, nothing, support.hub, includes_rotor=False)
@@ -126,42 +128,46 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
     return {name: part for name, part in found.items() if any(np.any(matrix) for matrix in part)}
 
 
-def _pool(case: Configuration, choice: Options, model: LinearModel, shape: tuple[int, ...]) -> dict[str, Any]:
-    """All quantities at the trim of the model, arrays flattened over the batch."""
-    quantities = model_quantities(case.rotor, case.operation, choice, model.airspeed, shape)
+def _quantities(
+    case: Configuration, choice: Options, model: LinearModel, shape: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return all quantities at the trim of the model, arrays flattened over the batch."""
+    given = model_quantities(case.rotor, case.operation, choice, model.airspeed, shape)
     state = {name: np.broadcast_to(getattr(model.trim, name), shape).reshape(-1) for name in UNKNOWNS}
-    pool = with_trim(quantities, choice, state)
-    return pool | couplings(choice, pool)
+    trimmed = with_trim(given, choice, state)
+    return trimmed | couplings(choice, trimmed)
 
 
-def _structure(pool: dict[str, Any], choice: Options) -> dict[str, Part]:
-    """Inertia, springs and dampers of one blade (points, 12, 12)."""
+def _structure(quantities: dict[str, Any], choice: Options) -> dict[str, Part]:
+    """Return inertia, springs and dampers of one blade (points, 12, 12)."""
     equations = choice.equation_set
-    pool = pool | evaluate(equations.inertia.trim_integrals, pool)._asdict()
+    quantities = quantities | evaluate(equations.inertia.trim_integrals, quantities)._asdict()
     zero = np.zeros((12, 12))
     parts = {
         "inertia": Part(
-            evaluate(equations.inertia.mass, pool) + evaluate(equations.pitch.mass, pool), zero, zero
+            evaluate(equations.inertia.mass, quantities) + evaluate(equations.pitch.mass, quantities),
+            zero,
+            zero,
         ),
-        "gyroscopic": Part(zero, evaluate(equations.inertia.gyroscopic, pool), zero),
-        "centrifugal": Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, pool)),
-        "dampers": Part(zero, evaluate(pitch.damping, pool), zero),
+        "gyroscopic": Part(zero, evaluate(equations.inertia.gyroscopic, quantities), zero),
+        "centrifugal": Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, quantities)),
+        "dampers": Part(zero, evaluate(pitch.damping, quantities), zero),
     }
-    every = {"gimbal damper": "gimbal_damping"} | {told: name for name, told in _RESTRAINTS.items()}
-    for told, name in every.items():
+    every = {"gimbal damper": "gimbal_damping"} | {origin: name for name, origin in _RESTRAINTS.items()}
+    for origin, name in every.items():
         others = dict.fromkeys(set(every.values()) - {name}, 0.0)
-        parts[told] = Part(zero, zero, evaluate(equations.pitch.stiffness, pool | others))
-    springs = evaluate(equations.flap_lag_springs.stiffness, pool)
+        parts[origin] = Part(zero, zero, evaluate(equations.pitch.stiffness, quantities | others))
+    springs = evaluate(equations.flap_lag_springs.stiffness, quantities)
     return parts | {
-        told: Part(zero, zero, np.where(mask, springs, 0)) for told, mask in _spring_entries().items()
+        origin: Part(zero, zero, np.where(mask, springs, 0)) for origin, mask in _spring_entries().items()
     }
 
 
 def _spring_entries() -> dict[str, Array]:
-    """Which entries (12, 12) of the flap-lag springs are what.
+    """Return which entries (12, 12) of the flap-lag springs belong to which origin.
 
-    The springs turn with the pitch relative to the yoke, which is that of pitch, gimbal flap and gimbal roll: entries
-    of these with flap and lag are what pitch-flap and pitch-lag coupling come from.
+    The springs turn with the pitch relative to the yoke, which consists of pitch, gimbal flap and gimbal roll: entries
+    of these three with flap and lag cause pitch-flap and pitch-lag coupling.
     """
     flap, lag = BLADE_COORDINATES.index("flap"), BLADE_COORDINATES.index("lag")
     index = np.arange(len(BLADE_COORDINATES))
@@ -178,39 +184,43 @@ def _spring_entries() -> dict[str, Array]:
     }
 
 
-def _airloads(sections: BladeSections, pool: dict[str, Any], choice: Options) -> Iterator[tuple[str, Part]]:
-    """Airloads of one blade (points, 12, 12) by coefficient, and by coupling of the pitch they see."""
+def _airloads(
+    sections: BladeSections, quantities: dict[str, Any], choice: Options
+) -> Iterator[tuple[str, Part]]:
+    """Yield airloads of one blade (points, 12, 12) by coefficient, and by coupling of the blade's pitch."""
     if choice.airloads == "none":
         return
     zero, none = np.zeros((12, 12)), dict.fromkeys(COUPLINGS, 0.0)
     kinds = {"lift slope": _COEFFICIENTS["lift slope"]} if choice.airloads == "lift-slope" else _COEFFICIENTS
-    for told, kept in kinds.items():
-        loads = _moments(sections, pool, choice, kept, section_damping=False)
-        yield f"airloads: {told}", Part(zero, *_loads(pool | none, choice, loads))
+    for origin, kept in kinds.items():
+        loads = _moments(sections, quantities, choice, kept, section_damping=False)
+        yield f"airloads: {origin}", Part(zero, *_loads(quantities | none, choice, loads))
     every = tuple(name for kept in kinds.values() for name in kept)
-    whole = _moments(sections, pool, choice, every, section_damping=False)
+    whole = _moments(sections, quantities, choice, every, section_damping=False)
     if choice.section_damping:
-        damped = _moments(sections, pool, choice, every, section_damping=True)
-        with_it, without = (_loads(pool | none, choice, loads) for loads in (damped, whole))
+        damped = _moments(sections, quantities, choice, every, section_damping=True)
+        with_it, without = (_loads(quantities | none, choice, loads) for loads in (damped, whole))
         yield "section pitch damping", Part(zero, *(a - b for a, b in zip(with_it, without, strict=True)))
         whole = damped
-    alone = _loads(pool | none, choice, whole)
-    for name, told in _COUPLINGS_TOLD.items():
-        if np.any(pool[name]):
-            coupled = _loads(pool | none | {name: pool[name]}, choice, whole)
-            yield told, Part(zero, *(a - b for a, b in zip(coupled, alone, strict=True)))
+    alone = _loads(quantities | none, choice, whole)
+    for name, origin in _COUPLING_ORIGINS.items():
+        if np.any(quantities[name]):
+            coupled = _loads(quantities | none | {name: quantities[name]}, choice, whole)
+            yield origin, Part(zero, *(a - b for a, b in zip(coupled, alone, strict=True)))
 
 
 def _moments(
     sections: BladeSections,
-    pool: dict[str, Any],
+    quantities: dict[str, Any],
     choice: Options,
     kept: tuple[str, ...],
     section_damping: bool,
 ) -> dict[str, Any]:
-    """Radial moments of the section loads by some of the coefficients, and what segments are."""
+    """Return radial moments of the section loads by some of the coefficients, and the quantities of segments."""
     equations = choice.equation_set.airloads
-    segments = segment_quantities(sections, pool | {"section_damping": float(section_damping)}, equations)
+    segments = segment_quantities(
+        sections, quantities | {"section_damping": float(section_damping)}, equations
+    )
     if in_closed_form(sections, choice):
         return segments | closed_form_moments(sections, segments)
     some = replace(sections, airfoil=_SomeCoefficients(sections.airfoil, kept, choice.compressibility))
@@ -220,35 +230,35 @@ def _moments(
     )
 
 
-def _loads(pool: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
-    """Airload damping and stiffness of one blade."""
-    given = {**segments, **pool, "equations": choice.equation_set}
+def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
+    """Return airload damping and stiffness of one blade."""
+    given = {**segments, **quantities, "equations": choice.equation_set}
     damping, stiffness, _ = evaluate(whole_rotor.blade_airloads, given)
     return damping, stiffness
 
 
-def _in_fixed_frame(part: Part, pool: Mapping[str, Any]) -> Part:
-    """A part of one blade as a part of the rotor (points, 18, 18)."""
+def _in_fixed_frame(part: Part, quantities: Mapping[str, Any]) -> Part:
+    """Return a part of one blade as a part of the rotor (points, 18, 18)."""
     return Part(
-        evaluate(multiblade.mass, pool, part.M),
-        evaluate(multiblade.damping, pool, part.M, part.C),
-        evaluate(multiblade.stiffness, pool, part.M, part.C, part.K),
+        evaluate(multiblade.mass, quantities, part.M),
+        evaluate(multiblade.damping, quantities, part.M, part.C),
+        evaluate(multiblade.stiffness, quantities, part.M, part.C, part.K),
     )
 
 
-def _other_parts(pool: Mapping[str, Any], choice: Options) -> dict[str, Part]:
-    """What is added in the fixed frame (18, 18)."""
+def _other_parts(quantities: Mapping[str, Any], choice: Options) -> dict[str, Part]:
+    """Return the parts that are added in the fixed frame (18, 18)."""
     zero, parts = np.zeros((len(FIXED_COORDINATES),) * 2), {}
     if choice.drive_train is not None:
         kinds = (drive_train.mass, drive_train.damping, drive_train.stiffness)
-        parts["drive train"] = Part(*(evaluate(kind, pool) for kind in kinds))
-    if "cyclic_flap_stiffness_excess" in pool:
-        parts["cyclic flap restraint"] = Part(zero, zero, evaluate(multiblade.cyclic_restraint, pool))
+        parts["drive train"] = Part(*(evaluate(kind, quantities) for kind in kinds))
+    if "cyclic_flap_stiffness_excess" in quantities:
+        parts["cyclic flap restraint"] = Part(zero, zero, evaluate(multiblade.cyclic_restraint, quantities))
     return parts
 
 
 def _mounted(part: Part, carrier: NormalModes, model: LinearModel, shape: tuple[int, ...]) -> Part:
-    """A part of the rotor on the coordinates of the model."""
+    """Return a part of the rotor on the coordinates of the model."""
     n, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
     matrices: dict[str, Any] = {
         name: np.broadcast_to(matrix, (points, n, n)).reshape(*shape, n, n)
@@ -262,7 +272,7 @@ def _mounted(part: Part, carrier: NormalModes, model: LinearModel, shape: tuple[
 def _support_parts(
     case: Configuration, support: NormalModes, model: LinearModel, shape: tuple[int, ...]
 ) -> dict[str, Part]:
-    """What the support adds; its mass is that without the rotor's."""
+    """Return the parts of the support; its mass is taken without the rotor's."""
     n, modes = len(model.dofs), len(support.names)
 
     def whole(matrix: Array) -> Array:

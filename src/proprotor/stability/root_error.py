@@ -1,17 +1,18 @@
-"""Roots as exact as the matrices of a model allow, and how exact that is: what "neutral" rests on.
+"""Roots as exact as the matrices of a model allow, and the bound on their error: the definition of "neutral".
 
 LAPACK finds the eigenvalues of a state matrix to rounding of its largest entries, so that a stiff spring or a hinge
-near the centre spoils roots that have nothing to do with it. In (λ²M + λC + K)x = 0 such a spring stands beside the
-small motion that it allows: the root that the computed vectors have there,
+near the centre spoils other roots. In (λ²M + λC + K)x = 0 such a spring multiplies the small motion that it allows: the
+root that follows from the computed vectors there,
 
     λ - yᴴ(λ²M + λC + K)x / yᴴ(2λM + C)x,
 
-has an error of second order in theirs. What is left is rounding of the matrices' own entries, a few times
-ε |yᴴ|(|λ|²|M| + |λ||C| + |K|)|x| / |yᴴ(2λM + C)x|: the backward error, times the condition of the root.
+has an error of second order in the error of the vectors. The remaining error is rounding of the entries of the
+matrices, a few times ε |yᴴ|(|λ|²|M| + |λ||C| + |K|)|x| / |yᴴ(2λM + C)x|: the backward error, times the condition of the
+root.
 
 A root whose distance from a level is within its error is neutral there: neither beyond the level nor crossing it. Two
 roots that fall into one, as those of a motion without spring and damper, have an error without bound by that formula,
-and in fact one of the square root of rounding: that is the most that is told.
+but in fact one of the square root of rounding: no larger error is reported.
 """
 
 from __future__ import annotations
@@ -34,25 +35,25 @@ _DOUBLE = _EPSILON**0.5  # of the largest root: what rounding parts two roots by
 _NEAR = 1e-6  # of the largest root: farther from a level no error reaches
 
 
-class Refined(NamedTuple):
-    """Roots (..., modes), and the bound on the error of each, rad/s."""
+class _Refined(NamedTuple):
+    """Roots (..., modes), and the bound on the error of each root, rad/s."""
 
     values: Array
     error: Array
 
 
 def growth(values: Array, level: float = 0.0) -> Array:
-    """G = Re λ + ζ0 |λ|, 1/s: positive where the damping ratio is below the level."""
+    """Return G = Re λ + ζ0 |λ|, 1/s: positive where the damping ratio is below the level."""
     return values.real + level * np.abs(values) if level else values.real
 
 
 def growth_error(error: Array, level: float = 0.0) -> Array:
-    """Error of G with that of the root."""
+    """Return the error of G from the error of the root."""
     return error * (1 + abs(level)) if level else error
 
 
-def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refined:
-    """Roots refined by their vectors, with their errors; NaN at failed points.
+def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> _Refined:
+    """Return roots refined by their vectors, with their errors; NaN at failed points.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refi
     modes : Modes
         All modes of every point, each pair side by side.
     left : array (..., modes, n), optional
-        Of `second_order_left`, where it is known.
+        The result of `second_order_left`, where it is known.
     """
     values, right, _ = modes
     n, held = len(model.dofs), held_coordinates(model, right.shape[-2])
@@ -80,27 +81,27 @@ def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> Refi
         error = rounding + size_of(correction) * np.where(better, _OF_CORRECTION + share, 1.0)
         most = _DOUBLE * _largest(values)
         error = np.where(np.isnan(values), np.nan, np.fmin(error, most))
-    return Refined(np.where(better, values + correction, values), error)
+    return _Refined(np.where(better, values + correction, values), error)
 
 
 def refined_near(
     model: LinearModel, spectrum: Spectrum, level: float = 0.0, left: Array | None = None
-) -> Refined:
-    """The same of points (k,) that work, where a root is near a level; elsewhere roots as they are, with no error.
+) -> _Refined:
+    """Return roots of points (k,) that work, refined where one is near a level; elsewhere unchanged, with no error.
 
-    Farther from the level than a millionth of the largest root no error reaches. `left` of `second_order_left`, where
-    it is known.
+    No error reaches farther than a millionth of the largest root. `left` is the result of `second_order_left`, where it
+    is known.
     """
     values, error = spectrum.values.copy(), np.zeros(spectrum.values.shape)
     near = _any_near(growth(values, level), values)
     if near.any():
         modes, rows = spectrum.at(near).all_modes, None if left is None else left[near]
         values[near], error[near] = refined(some_points(model, near), modes, rows)
-    return Refined(values, error)
+    return _Refined(values, error)
 
 
 def errors_of(model: LinearModel, spectrum: Spectrum) -> Array:
-    """Bound on the error (..., states) of eigenvalues as LAPACK finds them, rad/s; NaN at failed points."""
+    """Return the bound on the error (..., states) of eigenvalues as LAPACK finds them, rad/s; NaN at failed points."""
     works = spectrum.works
     error = np.full(spectrum.values.shape, np.nan)
     if works.any():
@@ -110,10 +111,10 @@ def errors_of(model: LinearModel, spectrum: Spectrum) -> Array:
     return error
 
 
-def roots(model: LinearModel, level: float = 0.0) -> Refined:
-    """Eigenvalues (..., states) and their errors; refined, with vectors, at points where one is near the level.
+def roots(model: LinearModel, level: float = 0.0) -> _Refined:
+    """Return eigenvalues (..., states) and their errors; refined by vectors at points where a root is near the level.
 
-    Farther away no error reaches, and it is told as zero. NaN at failed points.
+    Farther from the level the error does not matter, and is returned as zero. NaN at failed points.
     """
     values = eigenvalues(model)
     error = np.where(np.isnan(values), np.nan, 0.0)
@@ -121,11 +122,11 @@ def roots(model: LinearModel, level: float = 0.0) -> Refined:
     if near.any():
         part = some_points(model, near)
         values[near], error[near] = refined(part, decomposition(part, held_coordinates(model)).all_modes)
-    return Refined(values, error)
+    return _Refined(values, error)
 
 
 def error_near_zero(model: LinearModel, values: Array) -> Array:
-    """Errors of known eigenvalues (..., states) at points where one is near zero or the imaginary axis; else zero."""
+    """Return errors of known eigenvalues (..., states) where one of a point is near the imaginary axis; else zero."""
     error = np.zeros(values.shape)
     near = _any_near(values.real, values)
     if near.any():
@@ -138,24 +139,24 @@ def error_near_zero(model: LinearModel, values: Array) -> Array:
 
 
 def _any_near(distance: Array, values: Array) -> Array:
-    """At which points (...) a root is so near to a level that its error may reach it."""
+    """Return at which points (...) a root is so near to a level that its error may reach the level."""
     return np.asarray((np.abs(distance) <= _NEAR * _largest(values)).any(axis=-1))
 
 
 def _largest(values: Array) -> Array:
-    """Size of the largest root of each point (..., 1)."""
+    """Return the size of the largest root of each point (..., 1)."""
     largest: Array = np.fmax.reduce(size_of(values), axis=-1, keepdims=True)
     return largest
 
 
 def _products(rows: Array, columns: Array) -> Array:
-    """Of each row (..., modes, n) with its own column (..., n, modes)."""
+    """Multiply each row (..., modes, n) by its own column (..., n, modes)."""
     found: Array = (rows * np.swapaxes(columns, -1, -2)).sum(axis=-1)
     return found
 
 
 def _nearest(values: Array) -> Array:
-    """Distance of each root to the nearest other one of its point."""
+    """Return the distance of each root to the nearest other root of its point."""
     apart = size_of(values[..., :, None] - values[..., None, :])
     states = np.arange(values.shape[-1])
     apart[..., states, states] = np.inf

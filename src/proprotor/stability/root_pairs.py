@@ -9,18 +9,17 @@ real roots is one case of it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
 from proprotor.stability.cubic import hermite
 from proprotor.stability.matching import size_of, way_to_zero
+from proprotor.stability.points import Points
 from proprotor.stability.root_error import growth
+from proprotor.stability.steps import Steps
 from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    from proprotor.stability.crossings import Points
-    from proprotor.stability.steps import Steps
 
 _APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
 _MEETING = 0.5  # of the distance at the farther end: and so may those that are as near at one end
@@ -30,21 +29,21 @@ _INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
 MANY, _FEW = 6, 4  # points of a scan through which polynomials go
 
 
-class Smooth(NamedTuple):
+class _Smooth(NamedTuple):
     """A smooth quantity of pairs (m, places) within their steps, and how wrong it may be."""
 
     value: Array
     wrong: Array
 
 
-PairsWithin = Callable[["Steps", "Points", Array, Array, Array], tuple[Smooth, Smooth]]
+PairsWithin = Callable[[Steps, Points, Array, Array, Array], tuple[_Smooth, _Smooth]]
 
 
 def may_meet(first: Array, last: Array, state: Array) -> Array:
-    """Which roots (n, k, states) some of them, state (n, k), may meet or turn away from between two points.
+    """Return which roots (n, k, states) some roots, state (n, k), may meet or turn away from between two points.
 
-    By the values (n, states) alone: where the straight ways come nearer to each other than their ends, or one end is
-    the nearer by far.
+    Values (n, states) alone decide: the straight ways of two roots come nearer to each other than their ends, or the
+    roots are much nearer at one end.
     """
     apart, later = (
         np.take_along_axis(values, state, 1)[:, :, None] - values[:, None, :] for values in (first, last)
@@ -54,8 +53,8 @@ def may_meet(first: Array, last: Array, state: Array) -> Array:
     return np.asarray((way_to_zero(apart, later) < _APPROACH * near) | (near < _MEETING * far))
 
 
-def partners(first: Array, last: Array) -> Array:
-    """The one root (n, states) that each may meet, where neither of the two may meet another; -1 elsewhere."""
+def _partners(first: Array, last: Array) -> Array:
+    """Return the one root (n, states) that each may meet, where neither of the two may meet another; -1 elsewhere."""
     meeting = may_meet(first, last, np.broadcast_to(np.arange(first.shape[1]), first.shape))
     alone = meeting.sum(axis=2) == 1
     partner = meeting.argmax(axis=2)
@@ -65,14 +64,14 @@ def partners(first: Array, last: Array) -> Array:
 def keep_off(
     steps: Steps, points: Points, row: Array, state: Array, level: float, trust: float, within: PairsWithin
 ) -> Array:
-    """Which states (m,) of steps, with the one that each may meet, stay on one side of the level for certain."""
+    """Return which states (m,) of steps stay on one side of the level for certain, with the root that each may meet."""
     found = np.zeros(len(row), dtype=bool)
     if not len(row):
         return found
     which, place = np.unique(row, return_inverse=True)
     few = steps.at(which)
     values = points.spectrum.values
-    partner = partners(values[few.before], few.later(values))[place, state]
+    partner = _partners(values[few.before], few.later(values))[place, state]
     sides = few.sides(points)[:, place]
     own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
     side = own[0]
@@ -84,8 +83,8 @@ def keep_off(
     return found
 
 
-def _off(sums: Smooth, squares: Smooth, side: Array, level: float, trust: float) -> Array:
-    """Whether both roots (m,) stay on a side of the level all over their step, with all within its band."""
+def _off(sums: _Smooth, squares: _Smooth, side: Array, level: float, trust: float) -> Array:
+    """Return whether both roots (m,) of a pair stay on a side of the level all over their step, bands included."""
     wrong_sum, wrong_square = (part.wrong / trust for part in (sums, squares))
     root = np.sqrt(squares.value)
     with np.errstate(divide="ignore", invalid="ignore"):  # |√(d + e) - √d| is within both of these
@@ -97,8 +96,16 @@ def _off(sums: Smooth, squares: Smooth, side: Array, level: float, trust: float)
 
 def by_derivatives(
     steps: Steps, points: Points, row: Array, state: Array, partner: Array
-) -> tuple[Smooth, Smooth]:
+) -> tuple[_Smooth, _Smooth]:
     """Return s and d (m, places) of pairs within their steps, cubics by the derivatives of both roots."""
+    sums, squares = _sums_and_squares(steps, points, row, state, partner)
+    return _cubic(sums), _cubic(squares)
+
+
+def _sums_and_squares(
+    steps: Steps, points: Points, row: Array, state: Array, partner: Array
+) -> tuple[Array, Array]:
+    """Return s and d of pairs at the ends of their steps (4, m): values, then slopes times the length of the step."""
     before, after = steps.before[row], steps.after[row]
     length = points.position[after] - points.position[before]
     values, changes = points.spectrum.values, points.change
@@ -110,23 +117,52 @@ def by_derivatives(
         sums[2 + end] = length * (changes[point, one] + changes[point, other])
         squares[end] = apart**2
         squares[2 + end] = 2 * length * apart * (changes[point, one] - changes[point, other])
-    return _cubic(sums), _cubic(squares)
+    return sums, squares
 
 
-def _cubic(ends: Array) -> Smooth:
+def _couples(steps: Steps, points: Points) -> tuple[Array, Array, Array]:
+    """Return steps (k,), two states (2, k) that are real at one end and a pair at the other, and which end that is."""
+    values = points.spectrum.values
+    ends = np.stack([values[steps.before], steps.later(values)])
+    real = ends.imag == 0
+    found = []
+    for end in (0, 1):
+        mixed = real[end] & ~real[1 - end] & np.isfinite(ends[0]) & np.isfinite(ends[1])
+        for row in np.flatnonzero(mixed.sum(axis=1) > 1).tolist():
+            pair = ends[1 - end, row]
+            found += [
+                (row, one, other, end)
+                for one, other in combinations(np.flatnonzero(mixed[row]).tolist(), 2)
+                if pair[one] == pair[other].conjugate()
+            ]
+    rows, *couples, ends_of = np.array(found, dtype=int).reshape(-1, 4).T
+    return np.asarray(rows), np.stack(couples), np.asarray(ends_of)
+
+
+def joining_roots(steps: Steps, points: Points) -> tuple[Array, Array, Array, Array, Array]:
+    """Return steps (k,) in which two real roots join or part, the two states (2, k), the end at which they are real.
+
+    Then the cubics (4, k), by their ends, of the mean of the two roots and of the square of half their distance.
+    """
+    rows, couples, real_end = _couples(steps, points)
+    sums, squares = _sums_and_squares(steps, points, rows, *couples)
+    return rows, couples, real_end, sums.real / 2, squares.real / 4
+
+
+def _cubic(ends: Array) -> _Smooth:
     rise = ends[1] - ends[0]
     bend = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
     band = 16 * _INSIDE**2 * (1 - _INSIDE) ** 2
-    return Smooth(hermite(_INSIDE, ends[:, :, None]), _OF_BEND * bend[:, None] * band)
+    return _Smooth(hermite(_INSIDE, ends[:, :, None]), _OF_BEND * bend[:, None] * band)
 
 
 def along_scan(
     steps: Steps, points: Points, row: Array, state: Array, partner: Array
-) -> tuple[Smooth, Smooth]:
-    """Return the same by the polynomials through six points of the scan about the step; NaN where a line has fewer.
+) -> tuple[_Smooth, _Smooth]:
+    """Return s and d of pairs by polynomials through six points of the scan about the step; NaN where a line has fewer.
 
-    What parts them from those through four points is the error of the latter, and more than their own. The steps are
-    all those of their lines, one after the other.
+    Their difference from polynomials through four points is the error of the latter, and an upper bound of their own.
+    The steps are all those of their lines, one after the other.
     """
     line = points.line[steps.before]
     first, last = np.searchsorted(line, line[row]), np.searchsorted(line, line[row], side="right")
@@ -149,12 +185,12 @@ def along_scan(
             _polynomial(np.take_along_axis(x, some, 0), np.take_along_axis(y, some, 0), wanted)
             for some in (nearest, here + np.array([[0], [1]]))
         )
-        found.append(Smooth(value, np.abs(value - rough) + _OF_CHORD * np.abs(value - chord)))
+        found.append(_Smooth(value, np.abs(value - rough) + _OF_CHORD * np.abs(value - chord)))
     return found[0], found[1]
 
 
 def _places(steps: Steps, chain: Array, here: Array, state: Array) -> Array:
-    """Places (points, m) of states along chains of steps (points - 1, m), with that at the step `here` known."""
+    """Return places (points, m) of states along chains of steps (points - 1, m), known at the step `here`."""
     rows = np.arange(len(state))
     places = np.tile(state, (len(chain) + 1, 1))
     for k, step in enumerate(chain):
@@ -166,7 +202,7 @@ def _places(steps: Steps, chain: Array, here: Array, state: Array) -> Array:
 
 
 def _polynomial(x: Array, y: Array, wanted: Array) -> Array:
-    """The polynomials through points (k, m) at places (m, any), by Lagrange."""
+    """Return the values at places (m, any) of polynomials through points (k, m), by Lagrange."""
     found = np.zeros(wanted.shape, dtype=y.dtype)
     with np.errstate(all="ignore"):
         for one in range(len(x)):

@@ -1,7 +1,7 @@
-"""Steps between points of which the eigenvalues alone are known, linked by the nearest ones.
+"""Steps between points whose eigenvalues alone are known: each root is matched with the nearest one at the next point.
 
-The nearest root at the next point is the same root unless two of them may have met on the way. Where that may be is
-all that has to be known: such roots have no trust, as those that vectors cannot tell apart.
+The nearest root at the next point is the same root unless two roots may have met on the way. Roots that may have met
+have no trust, like roots that vectors cannot tell apart.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _NEVER = 1e300  # the distance between a root and none
 
 
 def steps_by_values(values: Array, before: Array, after: Array) -> Steps:
-    """Steps from points to those that follow them, by eigenvalues (points, states); their quality is not known."""
+    """Return steps from points to those that follow, by eigenvalues (points, states); their quality is not known."""
     count = len(before)
     successor = np.empty((count, values.shape[1]), dtype=int)
     for start in range(0, count, _BLOCK):
@@ -29,7 +29,7 @@ def steps_by_values(values: Array, before: Array, after: Array) -> Steps:
 
 
 def _nearest(first: Array, last: Array) -> Array:
-    """Places (steps, states) of the nearest root at the later point, each to another."""
+    """Return places (steps, states) of the nearest root at the later point, a different one for each root."""
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
     none, none_later = np.isnan(first)[:, :, None], np.isnan(last)[:, None, :]

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.deck.vary import design_inputs
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.options_of_result import options_of
-from proprotor.stability.crossings import growth_rate
+from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import (
     STEP,
     defect,
@@ -27,10 +28,11 @@ from proprotor.stability.eigenvalue_derivatives import (
     eigenvalue_change,
     matrix_derivatives,
 )
-from proprotor.stability.flutter import Boundary, flutter_point
+from proprotor.stability.flutter import flutter_point
 from proprotor.stability.matching import Modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.named_modes import named_modes
+from proprotor.stability.points import growth_rate
 from proprotor.stability.root_error import refined
 from proprotor.typing import Array
 
@@ -40,28 +42,28 @@ if TYPE_CHECKING:
     from proprotor.datum import Datum
     from proprotor.model.configuration import Configuration
 
-QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
-NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
+_QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
+_NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
 
 
-def input_rates(
+def _input_rates(
     linearize: Callable[[Mapping[str, Array]], LinearModel],
     values: Mapping[str, float],
     model: LinearModel,
     modes: Modes,
 ) -> Array:
-    """Derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
+    """Return derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
 
     Parameters
     ----------
     linearize : callable
         Models for arrays (inputs,) of the inputs by name, analytic in them.
     values : mapping of str to float
-        Where the derivatives are wanted.
+        Values of the inputs at which the derivatives are wanted.
     model : LinearModel
-        At these values; one point.
+        The model at these values; one point.
     modes : Modes
-        Of that point.
+        Modes of the model.
     """
     count = len(values)
     moved = {
@@ -72,7 +74,7 @@ def input_rates(
 
 
 def damping_rate(values: Array, changes: Array) -> Array:
-    """Change of the damping ratio -Re λ/|λ| with a change of λ; NaN for a root at zero."""
+    """Return the change of the damping ratio -Re λ/|λ| with a change of λ; NaN for a root at zero."""
     size = np.abs(values)
     with np.errstate(all="ignore"):
         turned = values.real * (values.conj() * changes).real / size**3
@@ -89,7 +91,7 @@ def sensitivity(
     level: float = 0.0,
     **options: Any,
 ) -> xarray.Dataset:
-    """Exact derivatives by inputs of a case's deck.
+    """Return exact derivatives by inputs of a case's deck.
 
     Parameters
     ----------
@@ -99,7 +101,7 @@ def sensitivity(
     wrt : sequence of str, optional
         Paths of inputs, see `proprotor.deck.vary.design_inputs`; all by default.
     airspeed : float in m/s, text such as "300 kt", or pint quantity
-        Where damping or eigenvalues are; for the flutter speed optionally the airspeeds of the scan.
+        Airspeed of damping or eigenvalues; for the flutter speed optionally the airspeeds of the scan.
     mode : str, optional
         One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary at which this
         moves, onset or not, instead of the lowest onset of any.
@@ -114,18 +116,18 @@ def sensitivity(
         derivative (input,) or (input, mode), SI units per SI unit of the input; relative, the derivative times the
         input: the change per change of the input by its own size; value, unit and status of every input; exact, whether
         its matrices were derived by a complex step, or, those of finite elements, by extrapolated differences; defect
-        and nearly_defective of the modes (`proprotor.stability.eigenvalue_derivatives.defect`): there derivatives hold in a small
-        range only. For the flutter speed also frequency_derivative, of the frequency at the boundary as it moves.
-        warning is what makes the numbers doubtful. Attributes: of, its value where there is one, eigen_solves, and the
-        case and its options (`proprotor.model.stamp`).
+        and nearly_defective of the modes (`proprotor.stability.eigenvalue_derivatives.defect`): derivatives of a nearly
+        defective mode hold in a small range only. For the flutter speed also frequency_derivative, of the frequency at
+        the boundary as it moves. warning is what makes the numbers doubtful. Attributes: of, its value where there is
+        one, eigen_solves, and the case and its options (`proprotor.model.stamp`).
 
     Raises
     ------
     InputError
         For an unknown quantity, input, mode or option, or where nothing becomes unstable.
     """
-    if of not in QUANTITIES:
-        raise InputError("of", of, f"must be one of {', '.join(QUANTITIES)}")
+    if of not in _QUANTITIES:
+        raise InputError("of", of, f"must be one of {', '.join(_QUANTITIES)}")
     inputs = _chosen(case, wrt)
     if of == "flutter_speed":
         return _of_flutter_speed(case, inputs, airspeed, mode, level, options)
@@ -135,8 +137,6 @@ def sensitivity(
 
 
 def _chosen(case: Configuration, wrt: Sequence[str] | None) -> dict[str, Datum]:
-    from proprotor.deck.vary import design_inputs
-
     known = design_inputs(case)
     for path in wrt or ():
         if path not in known:
@@ -152,7 +152,7 @@ def _rates(
     model: LinearModel,
     options: Any,
 ) -> tuple[Array, Array]:
-    """Derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) had them by a complex step."""
+    """Return derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) took a complex step."""
 
     def linearize(values: Mapping[str, Array]) -> LinearModel:
         return vary_case(case, values).linearize(airspeed, **options)
@@ -162,7 +162,7 @@ def _rates(
 
     values = {path: float(number.si) for path, number in inputs.items()}
     try:
-        return input_rates(linearize, values, model, modes), np.ones(len(values), dtype=bool)
+        return _input_rates(linearize, values, model, modes), np.ones(len(values), dtype=bool)
     except InputError:
         exact = np.array([_takes_complex(case, path, value) for path, value in values.items()])
         if exact.all():  # something else is wrong
@@ -170,7 +170,7 @@ def _rates(
     rates = np.empty((len(values), len(modes.values)), dtype=complex)
     if exact.any():
         analytic = {path: value for (path, value), takes in zip(values.items(), exact, strict=True) if takes}
-        rates[exact] = input_rates(linearize, analytic, model, modes)
+        rates[exact] = _input_rates(linearize, analytic, model, modes)
     for place in np.flatnonzero(~exact):
         path = list(values)[place]
         changes = differences(partial(of_one, path), np.array(values[path]))
@@ -210,7 +210,7 @@ def at_boundary(
     options: Mapping[str, Any],
     eigen_solves: int = 0,
 ) -> xarray.Dataset:
-    """Derivatives of the airspeed of one boundary: see `sensitivity`. One more eigen-solve, for the vectors.
+    """Return derivatives of the airspeed of one boundary, see `sensitivity`, by one more eigen-solve for the vectors.
 
     The level and the options are the boundary's own; options may be repeated.
 
@@ -231,7 +231,7 @@ def at_boundary(
     data = _dataset(inputs, ("input",), moves, "m/s", exact)
     data["frequency_derivative"] = ("input", frequency, {"units": "rad/s per SI unit of the input"})
     data["defect"] = ((), float(defect(modes)[0]))
-    data["nearly_defective"] = ((), bool(data.defect > NEARLY_DEFECTIVE))
+    data["nearly_defective"] = ((), bool(data.defect > _NEARLY_DEFECTIVE))
     data["warning"] = _doubt(boundary.warning)
     data.attrs = dict(boundary.stamp) | {
         "of": "flutter_speed",
@@ -264,7 +264,7 @@ def _of_modes(
     data = _dataset(inputs, ("input", "mode"), rates, units, exact).assign_coords(mode=names)
     data[of] = ("mode", value, {"units": units})
     data["defect"] = ("mode", defect(modes))
-    data["nearly_defective"] = ("mode", data.defect.values > NEARLY_DEFECTIVE)
+    data["nearly_defective"] = ("mode", data.defect.values > _NEARLY_DEFECTIVE)
     data["warning"] = _doubt(model.trim.warning)
     data.attrs = stamp.of_model(model) | {"of": of, "airspeed": speed, "eigen_solves": eigen_solves}
     return data

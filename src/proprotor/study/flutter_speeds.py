@@ -9,7 +9,8 @@ import numpy as np
 
 from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
-from proprotor.stability.crossings import Brackets, Crossing, Search
+from proprotor.stability.brackets import Brackets, Crossing
+from proprotor.stability.crossings import Search
 from proprotor.stability.matching import Spectrum
 from proprotor.stability.mode_names import moving
 from proprotor.stability.modes import coordinate_shares

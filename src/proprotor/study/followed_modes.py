@@ -7,7 +7,7 @@ from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
-from proprotor.stability.matching import NOT_TOLD, Spectrum, link
+from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
 from proprotor.stability.mode_names import moving
 from proprotor.stability.modes import coordinate_shares
 from proprotor.study.roots import by_frequency
@@ -58,7 +58,7 @@ def _follow(spectrum: Spectrum) -> tuple[Array, Array, Array]:
     places : array (designs, speeds, states) of int
         Where each followed state is at each airspeed; states by their frequency at the design's first good airspeed.
     quality : array (designs, speeds, states)
-        Trust in the step from the good airspeed before, see `proprotor.stability.matching.link`: NaN at the first good
+        Trust in the step from the good airspeed before, see `proprotor.stability.matching.match_modes`: NaN at the first good
         airspeed and at failed points.
     first : array (designs,) of int
         Place of the first good airspeed, -1 where there is none.
@@ -69,7 +69,7 @@ def _follow(spectrum: Spectrum) -> tuple[Array, Array, Array]:
     same_design = np.diff(points // speeds) == 0
     before, after = points[:-1][same_design], points[1:][same_design]
     flat = Spectrum(*(array.reshape(designs * speeds, *array.shape[2:]) for array in spectrum[:2]))
-    steps = link(flat, before, after)
+    steps = match_modes(flat, before, after)
     places = by_frequency(spectrum.values).reshape(-1, states)
     quality = np.full(places.shape, np.nan)
     for speed in range(1, speeds):

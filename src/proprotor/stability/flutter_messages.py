@@ -1,9 +1,9 @@
-"""What boundaries say at a glance, in the units people read."""
+"""Records and sentences on stability boundaries, in the units people read."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from proprotor.model.doubts import doubt_at, marked
@@ -11,7 +11,8 @@ from proprotor.units import KNOT
 
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
-    from proprotor.stability.flutter import Boundary, Crossings, FlutterPoint
+    from proprotor.stability.boundary import Boundary
+    from proprotor.stability.flutter import FlutterPoint
 
 COLUMNS = (
     "airspeed (kt)",
@@ -29,7 +30,7 @@ COLUMNS = (
 
 
 def boundary_record(boundary: Boundary, case: Configuration) -> dict[str, Any]:
-    """A boundary in the units people read, by `COLUMNS`."""
+    """Return a boundary in the units people read, by `COLUMNS`."""
     values = (
         boundary.position / KNOT,
         boundary.position,
@@ -47,7 +48,7 @@ def boundary_record(boundary: Boundary, case: Configuration) -> dict[str, Any]:
 
 
 def modes_beyond(found: FlutterPoint, airspeed: float) -> int | None:
-    """How many modes are beyond the level at an airspeed; None outside the range that was searched."""
+    """Return how many modes are beyond the level at an airspeed; None outside the range that was searched."""
     low, high = found.searched
     if not low <= airspeed <= high:
         return None
@@ -55,12 +56,12 @@ def modes_beyond(found: FlutterPoint, airspeed: float) -> int | None:
     return len(found.unstable_at_start) + 2 * sum(passed) - len(passed)
 
 
-def mechanism_told(mechanism: dict[str, float]) -> str:
-    """Which modes take part in a boundary, and how much."""
+def mechanism_message(mechanism: Mapping[str, float]) -> str:
+    """Return which modes take part in a boundary, and how much."""
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in mechanism.items())
 
 
-def least_told(found: FlutterPoint, unit: str, factor: float) -> str:
+def least_damping_message(found: FlutterPoint, unit: str, factor: float) -> str:
     """Return the least damping of a search, with its mode and airspeed; "" where there was no mode."""
     if math.isnan(found.least_damping):
         return ""
@@ -71,32 +72,25 @@ def least_told(found: FlutterPoint, unit: str, factor: float) -> str:
     )
 
 
-def failed_told(found: FlutterPoint | Crossings, unit: str, factor: float) -> Iterator[str]:
-    """Sentences on what of a scan could not be analysed, and why: where the range searched ends, and its gaps."""
-    for first, last, reason in found.failed:
-        low, high = f"{first / factor:.4g}", f"{last / factor:.4g}"
-        yield f"Not analysed: {low if low == high else f'{low} to {high}'} {unit}".rstrip() + f" ({reason})."
-
-
 def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:
-    """The same as plain data."""
+    """Return the airspeeds that could not be analysed, and why, as plain data."""
     return [{"from (m/s)": first, "to (m/s)": last, "reason": reason} for first, last, reason in found.failed]
 
 
 def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
-    """Sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
+    """Yield sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
     low, high = (marked(f"{at / factor:.4g}", doubt_at(found.doubts, at)) for at in found.searched)
     beyond = f"below {100 * found.level:g} % of critical" if found.level else "unstable"
     if found.unstable_at_start:
         yield f"Already {beyond} at {low} {unit}: {', '.join(found.unstable_at_start)}."
     if math.isnan(found.speed):
         yield f"No mode becomes {beyond} between {low} and {high} {unit}."
-        if told := least_told(found, unit, factor):
-            yield f"The least damping there is {told}."
+        if least := least_damping_message(found, unit, factor):
+            yield f"The least damping there is {least}."
     else:
         speed = marked(f"{found.speed / factor:.2f}", found.warning)
         yield f"Flutter speed {speed} {unit} ({found.mode}, {found.kind})."
-    yield from failed_told(found, unit, factor)
+    yield from (stretch.message(unit, factor) for stretch in found.failed)
     if at is None:
         return
     count = modes_beyond(found, at)

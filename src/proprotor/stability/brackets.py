@@ -1,0 +1,198 @@
+"""Crossings of a damping level, closed in on by Newton's method, all of them at once.
+
+Each crossing is started at the root of the cubic over its step and kept in its bracket. A root within its error
+(`proprotor.stability.root_error`) is neutral, and counts as not beyond the level.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from proprotor.stability.crossings import Search
+from proprotor.stability.cubic import hermite_root
+from proprotor.stability.matching import POOR, Spectrum, match_modes
+from proprotor.stability.points import Points
+from proprotor.typing import Array
+
+JUMPS = "the model jumps, as from one trim to another"
+_ITERATIONS = 60  # of Newton's method; with bisection as the last resort
+_CLOSE = 1e-9  # of the position: the last correction, after which the next is rounding
+_JUMP = 1e-6  # of a root and of 1 rad/s: growth that is left where a bracket has collapsed upon a jump
+_SURE = 4.0  # errors of the growth that a slope must make over a bracket to count
+
+
+class Crossing(NamedTuple):
+    """One root through the level.
+
+    line; position; spectrum of the position, and the state that crosses; value of the root; change of the root and
+    slope of G with the position; onset, whether the root becomes unstable; start, the point of the search before the
+    crossing, and from_state, the state there; solves, beyond those of the search.
+    """
+
+    line: int
+    position: float
+    spectrum: Spectrum
+    state: int
+    value: complex
+    change: complex
+    slope: float
+    onset: bool
+    start: int
+    from_state: int
+    solves: int
+
+
+class Brackets:
+    """Steps over which a followed root crosses, each a bracket of one crossing.
+
+    Parameters
+    ----------
+    search : Search
+    close : float, optional
+        The last correction of a position, in its unit; a billionth of it by default.
+    """
+
+    def __init__(self, search: Search, close: float | None = None) -> None:
+        steps, points = search.steps, search.points
+        self._search = search
+        rows, states, ends = steps.crossing(points)
+        if search.onset_only:
+            rows, states, ends = _lowest_onsets(rows, states, ends, points.line[steps.before])
+        self.start, self.from_state = steps.before[rows], states
+        self.count, self.line = len(rows), points.line[self.start]
+        last, to_state = steps.after[rows], steps.successor[rows, states]
+        self.x = np.stack([points.position[self.start], points.position[last]])
+        self.scale = np.abs(self.x).max(axis=0, initial=0)
+        self.near = np.full(self.count, close) if close else _CLOSE * self.scale
+        self.cubic = ends
+        self.onset = ends[1] > ends[0]
+        self.place = np.stack([states, to_state])
+        self.ends = [points.spectrum.at(self.start), points.spectrum.at(last)]
+        self.solves = np.zeros(self.count, dtype=int)
+        self.found: dict[int, Crossing] = {}
+        self.lost: dict[int, str] = {}  # of each crossing that was not found: why
+
+    def close(self) -> list[Crossing]:
+        """Run Newton's method on every crossing, by the derivative at the last point, within the bracket."""
+        active = np.arange(self.count)
+        with np.errstate(all="ignore"):
+            share = hermite_root(self.cubic) if self.count else np.empty(0)
+        guess = self.x[0] + share * (self.x[1] - self.x[0])
+        for _ in range(_ITERATIONS):
+            if not len(active):
+                break
+            tried = self._search.solve(self.line[active], guess[active])
+            for row in np.flatnonzero(~tried.works):
+                self.lost[int(active[row])] = str(tried.reason[row])
+            if tried.points is None:
+                break
+            active, points = active[tried.works], tried.points
+            place = self._place(active, points)
+            rows = np.arange(len(active))
+            value, slope, error = (part[rows, place] for part in (points.growth, points.slope, points.error))
+            self.solves[active] += 1
+            with np.errstate(all="ignore"):  # at a double root the slope has no bound
+                correction = -value / slope
+            width = np.abs(self.x[1, active] - self.x[0, active])
+            # Growth within its error is as good as zero, if the slope over the bracket is larger than the error.
+            done = (np.abs(value) <= error) & (np.abs(slope) * width > _SURE * error)
+            done |= (np.abs(correction) <= self.near[active]) & (np.abs(value) > error)
+            collapsed = ~done & (width <= 4e-16 * self.scale[active])
+            size = np.abs(points.spectrum.values[rows, place])
+            jumps = collapsed & (np.abs(value) > np.fmax(error, _JUMP * (1 + size)))
+            self.lost |= dict.fromkeys(active[jumps].tolist(), JUMPS)
+            done |= collapsed
+            for one in np.flatnonzero(done & ~jumps).tolist():
+                self._keep(int(active[one]), points, one, int(place[one]), float(correction[one]))
+            beyond = value > error
+            self._narrow(active, beyond, points, place)
+            newton = points.position + correction
+            low, high = self.x[:, active].min(axis=0), self.x[:, active].max(axis=0)
+            inside = (newton > low) & (newton < high) & (np.abs(value) > error)
+            guess[active] = np.where(inside, newton, (low + high) / 2)
+            active = active[~done]
+        return list(self.found.values())
+
+    def _keep(self, crossing: int, points: Points, row: int, place: int, correction: float) -> None:
+        """Record the crossing at a trial point, with a last correction if that stays in the bracket."""
+        low, high = self.x[:, crossing]
+        if not (np.isfinite(correction) and low <= points.position[row] + correction <= high):
+            correction = 0.0
+        slope = float(points.slope[row, place])
+        self.found[crossing] = Crossing(
+            int(self.line[crossing]),
+            float(points.position[row]) + correction,
+            points.spectrum.at(row),
+            place,
+            complex(points.spectrum.values[row, place] + correction * points.change[row, place]),
+            complex(points.change[row, place]),
+            slope,
+            slope > 0 if slope else bool(self.onset[crossing]),
+            int(self.start[crossing]),
+            int(self.from_state[crossing]),
+            int(self.solves[crossing]),
+        )
+
+    def _place(self, active: Array, points: Points) -> Array:
+        """Return which state of each trial point is the one that crosses, followed from an end of the bracket.
+
+        The state is followed from the nearer end. Where roots fall into one on the way, it is followed from the end
+        with the better quality; if both are poor, from the end beyond the level, where the roots have parted. Where a
+        pair parts into real roots between the ends, it is followed from the end of the same kind as the trial point,
+        since a pair does not tell which of two real roots it becomes.
+        """
+        rows, spectrum = np.arange(len(active)), points.spectrum
+        nearer = np.argmin(np.abs(self.x[:, active] - points.position), axis=0)
+        places, alike = np.empty((2, len(active)), dtype=int), np.empty((2, len(active)), dtype=bool)
+        quality = np.empty((2, len(active)))
+        for end, found in enumerate(self.ends):
+            start = found.at(active)
+            step = match_modes(start.joined(spectrum), rows, len(active) + rows)
+            own = self.place[end, active]
+            places[end], quality[end] = step.successor[rows, own], step.quality[rows, own]
+            alike[end] = (start.values[rows, own].imag == 0) == (spectrum.values[rows, places[end]].imag == 0)
+        beyond = self.onset[active].astype(int)
+        better = np.where(quality.max(axis=0) < POOR, beyond, quality.argmax(axis=0))
+        clear = np.where(quality[nearer, rows] < POOR, better, nearer)
+        chosen = np.where(alike[0] == alike[1], clear, alike[1].astype(int))
+        followed: Array = places[chosen, rows]
+        return followed
+
+    def _narrow(self, active: Array, beyond: Array, points: Points, place: Array) -> None:
+        """Put each trial point in the place of the end on its side of the level."""
+        end = (beyond == self.onset[active]).astype(int)
+        for row, crossing in enumerate(active):
+            side = end[row]
+            self.x[side, crossing], self.place[side, crossing] = points.position[row], place[row]
+            for kept, new in zip(self.ends[side], points.spectrum, strict=True):
+                if kept is not None and new is not None:
+                    kept[crossing] = new[row]
+
+
+def each_once(found: list[Crossing]) -> list[Crossing]:
+    """Return crossings by line and position, each root once."""
+    kept: list[Crossing] = []
+    for one in sorted(found, key=lambda one: (one.line, one.position)):
+        if not any(_same(one, other) for other in reversed(kept[-8:])):
+            kept.append(one)
+    return kept
+
+
+def _same(one: Crossing, other: Crossing) -> bool:
+    """Return whether two crossings are one: both states of a pair that joins within a step may be found to cross."""
+    near = abs(one.position - other.position) <= 1e-7 * max(abs(one.position), abs(other.position))
+    values = [complex(found.value.real, abs(found.value.imag)) for found in (one, other)]
+    alike = abs(values[0] - values[1]) <= 1e-6 * max(1.0, abs(one.value))
+    return one.line == other.line and one.onset == other.onset and near and alike
+
+
+def _lowest_onsets(rows: Array, states: Array, ends: Array, line: Array) -> tuple[Array, Array, Array]:
+    """Return the onsets that lie in the first step of each line with any onset."""
+    onset = ends[1] > ends[0]
+    rows, states, ends = rows[onset], states[onset], ends[:, onset]
+    first = np.full(int(line.max(initial=-1)) + 1, np.iinfo(int).max)
+    np.minimum.at(first, line[rows], rows)  # steps are in the order of their lines and positions
+    lowest = rows == first[line[rows]]
+    return rows[lowest], states[lowest], ends[:, lowest]

@@ -1,0 +1,203 @@
+"""Points of many lines of models, solved at once: the roots of each point, how they move, and their growth.
+
+The level is a damping ratio ζ0, and the growth G = Re λ + ζ0 |λ| is positive where the damping -Re λ/|λ| is below the
+level. Each root has G and its exact derivative at every point, from matrices a complex step away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from proprotor.errors import InputError
+from proprotor.model.first_order import held_coordinates, missing_roots, some_points
+from proprotor.model.linear_model import LinearModel
+from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, second_order_left, with_changes
+from proprotor.stability.matching import Modes, Spectrum
+from proprotor.stability.modes import decomposition
+from proprotor.stability.root_error import growth, growth_error, refined_near, roots
+from proprotor.typing import Array
+
+Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
+
+
+def growth_rate(values: Array, changes: Array, level: float = 0.0) -> Array:
+    """Return the change of G with a change of λ."""
+    if not level:
+        return changes.real
+    size = np.abs(values)
+    return changes.real + level * (values.conj() * changes).real / np.where(size > 0, size, 1)
+
+
+class Points(NamedTuple):
+    """Points of lines: the roots of each point, refined, and how they move.
+
+    line, position (k,); spectrum; change (k, states) : of each root with the position; growth, slope, error
+    (k, states) : the growth G, its change with the position, and its error.
+    """
+
+    line: Array
+    position: Array
+    spectrum: Spectrum
+    change: Array
+    growth: Array
+    slope: Array
+    error: Array
+
+    def at(self, points: Array) -> Points:
+        """Return some of the points."""
+        line, position, *rest = (part[points] for part in self._arrays)
+        return Points(line, position, self.spectrum.at(points), *rest)
+
+    def joined(self, other: Points) -> Points:
+        """Return the points of both."""
+        line, position, *rest = (
+            np.concatenate(parts) for parts in zip(self._arrays, other._arrays, strict=True)
+        )
+        return Points(line, position, self.spectrum.joined(other.spectrum), *rest)
+
+    @property
+    def _arrays(self) -> tuple[Array, ...]:
+        return self.line, self.position, self.change, self.growth, self.slope, self.error
+
+
+class Solved(NamedTuple):
+    """The result of a number of eigen-solves.
+
+    points : the points that work, None if no point does; works (k,) : which of all points these are; reason (k,) : why
+    a point failed; warning (k,) : what makes a point doubtful; missing (k,) : why a point has fewer eigenvalues than
+    others.
+    """
+
+    points: Points | None
+    works: Array
+    reason: Array
+    warning: Array
+    missing: Array
+
+
+def solve_points(
+    models: Models,
+    line: Array,
+    position: Array,
+    level: float,
+    forgiving: bool = False,
+    states: int | None = None,
+    plain: bool = False,
+) -> Solved:
+    """Solve points of lines; a point that cannot be solved spoils no other point.
+
+    Parameters
+    ----------
+    models : callable
+        Takes lines (k,) and positions (k,) and returns the models of these points.
+    line, position : array (k,)
+        The points.
+    level : float
+        Damping ratio.
+    forgiving : bool
+        Whether an impossible input is the reason of its point, and not raised.
+    states : int, optional
+        Number of eigenvalues that arrays have room for; by default that of the point with the most.
+    plain : bool
+        Whether to find eigenvalues alone, for a quarter of the cost: the spectrum then has no vectors, and derivatives
+        are NaN.
+
+    Raises
+    ------
+    InputError
+        For an impossible input, unless `forgiving`.
+    """
+    try:
+        return _solved(models, line, position, level, states, plain)
+    except np.linalg.LinAlgError as error:
+        failure: Exception = error
+    except InputError as error:
+        if not forgiving:
+            raise
+        failure = error
+    if len(line) == 1:
+        reason = np.array([" ".join(str(failure).split("\n"))], dtype=object)
+        nothing = np.array([""], dtype=object)
+        return Solved(None, np.array([False]), reason, nothing, nothing)
+    halves = [
+        solve_points(models, line[half], position[half], level, forgiving, states, plain)
+        for half in np.array_split(np.arange(len(line)), 2)
+    ]
+    counts = {half.points.growth.shape[1] for half in halves if half.points is not None}
+    if len(counts) > 1:  # a shaft holds the azimuth in one half alone
+        return solve_points(models, line, position, level, forgiving, max(counts), plain)
+    return _together(*halves)
+
+
+def _together(one: Solved, other: Solved) -> Solved:
+    """Return the points of two results as one."""
+    texts = (np.concatenate(parts) for parts in zip(one[1:], other[1:], strict=True))
+    if one.points is None or other.points is None:
+        return Solved(other.points if one.points is None else one.points, *texts)
+    return Solved(one.points.joined(other.points), *texts)
+
+
+def _solved(
+    models: Models, line: Array, position: Array, level: float, states: int | None, plain: bool
+) -> Solved:
+    """Solve points of lines; raise an error if one of them cannot be solved."""
+    if plain:
+        return _values_alone(models(line, position), line, position, level, states)
+    model, changes = with_changes(lambda x: models(line, x), position)
+    spectrum = decomposition(model, None if states is None else held_coordinates(model, states))
+    works, states = spectrum.works, spectrum.values.shape[-1]
+    if not works.any():
+        return Solved(None, works, *_texts(model, states))
+    part, some = some_points(model, works), spectrum.at(works)
+    modes = some.all_modes
+    left = second_order_left(part, modes.left)
+    found = refined_near(part, some, level, left)
+    mass, damping, stiffness = (np.broadcast_to(one, model.K.shape)[works] for one in changes)
+    moved = Modes(found.values, modes.right, modes.left)
+    change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
+    points = Points(
+        line[works],
+        position[works],
+        Spectrum(found.values, some.right, some.shapes),
+        change,
+        growth(found.values, level),
+        growth_rate(found.values, change, level),
+        growth_error(found.error, level),
+    )
+    return Solved(points, works, *_texts(model, states))
+
+
+def _values_alone(
+    model: LinearModel, line: Array, position: Array, level: float, states: int | None
+) -> Solved:
+    """Return the points without vectors and derivatives."""
+    values, error = roots(model, level)
+    works = np.asarray(np.isfinite(values).any(axis=-1))
+    states = values.shape[-1] if states is None else states
+    if not works.any():
+        return Solved(None, works, *_texts(model, states))
+    more = states - values.shape[-1]
+    values, error = (
+        np.pad(part[works], [(0, 0), (0, more)], constant_values=np.nan) for part in (values, error)
+    )
+    unknown = np.full(values.shape, complex(np.nan))
+    spectrum = Spectrum(values, np.empty((*values.shape, 0), dtype=complex))
+    points = Points(
+        line[works],
+        position[works],
+        spectrum,
+        unknown,
+        growth(values, level),
+        unknown.real,
+        growth_error(error, level),
+    )
+    return Solved(points, works, *_texts(model, states))
+
+
+def _texts(model: LinearModel, states: int) -> tuple[Array, Array, Array]:
+    """Return why points failed, what makes them doubtful, and why they have fewer roots than so many."""
+    reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
+    return reason, warning, missing_roots(model, states)
