@@ -39,7 +39,6 @@ DOCS = ROOT / "docs"
 NOT_RUN = {
     "make": "a whole environment, or minutes; tests/project/test_readme.py holds the targets, CI runs most of them",
     "python -m benchmarks": "minutes; writes the tables of pages",
-    "proprotor figures": "minutes; tests/paper_figures/test_figures.py makes figures",
     "proprotor explore": "a server, which its own tests start",
     "proprotor report": "half a minute each; tests/report/test_report.py makes reports",
     "source ": "the shell that a reader works in",

@@ -46,7 +46,7 @@ _BAND_WORK = 10  # a sample takes about as long as so many figures
     help="Between airspeeds, kt.",
 )
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Of the samples.")
-@output.output_options()
+@output.json_option
 def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed: int, as_json: bool) -> None:
     """Make the analytical figures of AIAA-2002-1604, each with its numbers as CSV.
 
@@ -73,7 +73,7 @@ def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed:
         for number in wanted:
             progress.update(task, description=f"Figure {number}")
             content = make_figure(number, analyses)
-            with output.told("--out", str(folder)):
+            with output.one_message("--out", str(folder)):
                 write_whole(_place(folder, number, "png"), partial(save, content))
                 write_whole(_place(folder, number, "csv"), methodcaller("write", csv_of(content)))
             progress.advance(task)
@@ -89,7 +89,7 @@ def _folder(out: str, numbers: Sequence[int]) -> Path:
     folder = Path(out)
     if folder.exists() and not folder.is_dir():
         raise InputError("--out", out, "must be a folder")
-    with output.told("--out", out):
+    with output.one_message("--out", out):
         folder.mkdir(parents=True, exist_ok=True)
     for number in numbers:
         for kind in _KINDS:

@@ -7,17 +7,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    case_argument,
-    in_order,
-    loaded_case,
-    model_options,
-    one_speed,
-    settings_of,
-)
+from proprotor.commands.arguments import EXIT_CODES, Request, case_argument, model_options, one_speed
 from proprotor.commands.waiting import waiting
 from proprotor.model.doubts import doubts_along, marked
+from proprotor.plots import plot_attribution
+from proprotor.stability.sensitivity import damping_rate
 from proprotor.tables.csv_text import csv_of
 
 if TYPE_CHECKING:
@@ -34,16 +28,7 @@ _COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critic
 @click.option("--mode", help="Mode by name; by default the one that is damped least.")
 @output.output_options(csv="Write a row for each origin.", plot="Draw the damping of each origin")
 @model_options
-def attribution(
-    case: str,
-    settings: tuple[str, ...],
-    speed: str,
-    mode: str | None,
-    csv: str | None,
-    plot: str | None,
-    as_json: bool,
-    **options: Any,
-) -> None:
+def attribution(request: Request, outputs: output.Outputs, speed: str, mode: str | None) -> None:
     """What drives and what damps a mode, by the physical origin of the terms.
 
     CASE is a bundled case or a TOML file. A number is the change of the eigenvalue if all terms of one origin grew by
@@ -55,37 +40,33 @@ def attribution(
       proprotor attribution xv15 --speed "380 kt" --mode chord
       proprotor attribution xv15 --speed "380 kt" --plot chord.png --csv chord.csv
     """
-    output.check_outputs(csv, plot, as_json=as_json)
-    options, airspeed = in_order(options), one_speed(speed)
-    loaded = loaded_case(case, settings)
+    airspeed, case = one_speed(speed), request.load()
     with waiting("Analysing"):
-        found = _one_mode(loaded.attribution(airspeed, mode, **options))
+        found = _one_mode(case.attribution(airspeed, mode, **request.options))
     records = _records(found)
-    if csv:
-        output.write_csv(csv, csv_of(records, _COLUMNS, found.attrs))
-    if plot:
-        output.write_plot(plot, loaded, lambda: _draw(found))
-    if as_json:
-        head = output.about(loaded, options, settings_of(settings))
-        output.print_json(head | _document(found, records, airspeed))
-    elif csv != output.STANDARD_OUTPUT:
-        _print(loaded, found, records, speed)
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(found, records, airspeed),
+        table=lambda: _print(case, found, records, speed),
+        csv=lambda: csv_of(records, _COLUMNS, found.attrs),
+        plot=lambda: output.with_origin(plot_attribution(found), case),
+    )
 
 
 def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
-    """Of several modes the one that is damped least."""
+    """Return the part of the dataset on the mode that is damped least."""
     value = found.eigenvalue.values
     return found.isel(mode=[int((-value.real / abs(value)).argmin())])
 
 
 def _records(found: xarray.Dataset) -> list[dict[str, Any]]:
-    value = complex(found.eigenvalue.values[0])
-    records = []
-    for origin, change in zip(found.origin.values.tolist(), found.contribution.values[:, 0], strict=True):
-        along = (value.conjugate() * change).real / abs(value) ** 2
-        damping = -(change.real - value.real * along) / abs(value)
-        numbers = (float(change.real), float(change.imag), 100 * float(damping))
-        records.append(dict(zip(_COLUMNS, (origin, *numbers, found.warning.item()), strict=True)))
+    """Return a record of `_COLUMNS` for each origin, the largest change of growth first."""
+    changes = found.contribution.values[:, 0]
+    damping = 100 * damping_rate(found.eigenvalue.values, changes)
+    numbers = zip(changes.real.tolist(), changes.imag.tolist(), damping.tolist(), strict=True)
+    records = [
+        dict(zip(_COLUMNS, (origin, *of_origin, found.warning.item()), strict=True))
+        for origin, of_origin in zip(found.origin.values.tolist(), numbers, strict=True)
+    ]
     return sorted(records, key=lambda record: -abs(record["growth (1/s)"]))
 
 
@@ -100,12 +81,6 @@ def _document(found: xarray.Dataset, records: list[dict[str, Any]], airspeed: fl
         "warning": found.warning.item(),
         "origins": records,
     }
-
-
-def _draw(found: xarray.Dataset) -> Any:
-    from proprotor.plots import plot_attribution
-
-    return plot_attribution(found)
 
 
 def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], speed: str) -> None:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import click
 
 from proprotor.commands import output
 from proprotor.commands.arguments import EXIT_CODES, Field
+from proprotor.deck import describe as fields
+from proprotor.deck.schema import deck_schema
 from proprotor.errors import InputError
-
-if TYPE_CHECKING:
-    from proprotor.deck.describe import DeckField
 
 _MOST_IN_FULL = 3  # fields that are told in full; more of them are a table
 
@@ -20,7 +17,7 @@ _MOST_IN_FULL = 3  # fields that are told in full; more of them are a table
 @click.argument("field", required=False, type=Field(), metavar="[FIELD]")
 @click.option("--schema", is_flag=True, help="Print the JSON schema, by which editors check a deck.")
 @click.option("--markdown", is_flag=True, help="Print all fields as a page, docs/decks.md.")
-@output.output_options()
+@output.json_option
 def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> None:
     """The fields of a deck: what each means, which unit and range it has, its default and its alternatives.
 
@@ -33,9 +30,6 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
       proprotor describe beam-wing
       proprotor describe --schema > deck.schema.json
     """
-    from proprotor.deck import describe as told
-    from proprotor.deck.schema import deck_schema
-
     if sum((schema, markdown, as_json)) > 1:
         raise InputError("--schema", None, "must not be given with --markdown or --json")
     if field is not None and (schema or markdown):
@@ -44,28 +38,26 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
         output.print_json(deck_schema())
         return
     if markdown:
-        click.echo(told.markdown(), nl=False)
+        click.echo(fields.markdown(), nl=False)
         return
-    found = told.deck_fields() if field is None else told.find_fields(field)
+    found = fields.deck_fields() if field is None else fields.find_fields(field)
     if as_json:
-        output.print_json(told.field_records(found))
+        output.print_json(fields.field_records(found))
     elif len(found) <= _MOST_IN_FULL:
         _print_in_full(found)
     else:
         _print_table(found)
 
 
-def _print_in_full(found: tuple[DeckField, ...]) -> None:
-    from proprotor.deck.describe import field_lines
-
+def _print_in_full(found: tuple[fields.DeckField, ...]) -> None:
     out = output.console()
     for field in found:
         out.print(field.path, style="bold")
-        for label, text in field_lines(field):
+        for label, text in fields.field_lines(field):
             out.print(f"  {label:<11}{text}", soft_wrap=True)
 
 
-def _print_table(found: tuple[DeckField, ...]) -> None:
+def _print_table(found: tuple[fields.DeckField, ...]) -> None:
     out = output.console()
     for kind in dict.fromkeys(field.kind for field in found):
         if kind:
@@ -77,5 +69,5 @@ def _print_table(found: tuple[DeckField, ...]) -> None:
     out.print("* must be given, or one of its alternatives. `proprotor describe FIELD` tells all of one.")
 
 
-def _row(field: DeckField) -> tuple[str, ...]:
+def _row(field: fields.DeckField) -> tuple[str, ...]:
     return f"{field.path}{'*' if field.required else ''}", field.unit, field.range, field.meaning

@@ -10,15 +10,12 @@ import click
 from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
+    Request,
     case_argument,
-    in_order,
-    level_of,
     level_option,
-    loaded_case,
     model_options,
     one_speed,
     scan_option,
-    settings_of,
     unit_of,
 )
 from proprotor.commands.waiting import waiting
@@ -34,7 +31,7 @@ from proprotor.stability.boundary_summary import (
     verdict,
 )
 from proprotor.tables.csv_text import csv_of
-from proprotor.units import KNOT
+from proprotor.units import KNOT, factor_to_si, speeds
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -51,14 +48,7 @@ if TYPE_CHECKING:
 @output.output_options(csv="Write a row for each boundary.")
 @model_options
 def flutter(
-    case: str,
-    settings: tuple[str, ...],
-    scan: str | None,
-    speed: str | None,
-    level: str,
-    csv: str | None,
-    as_json: bool,
-    **options: Any,
+    request: Request, outputs: output.Outputs, scan: str | None, speed: str | None, level: float
 ) -> None:
     """Airspeeds at which modes become unstable, or stable again.
 
@@ -75,26 +65,20 @@ def flutter(
       proprotor flutter xv15 --speed "160 kt" --level "3 %"
       proprotor flutter my.toml --set rotor.precone="1.5 deg" --json
     """
-    from proprotor.units import speeds
-
-    output.check_outputs(csv, as_json=as_json)
-    options, damping = in_order(options), level_of(level)
     airspeeds = None if scan is None else speeds(scan, "--scan")
     at = None if speed is None else one_speed(speed)
     if at == 0:
         raise InputError("--speed", speed, "must be above zero")
-    loaded = loaded_case(case, settings)
+    case = request.load()
     with waiting("Looking for boundaries"):
-        found = loaded.flutter_point(airspeeds, level=damping, **options)
-    records = [boundary_record(boundary, loaded) for boundary in found.boundaries]
-    if csv:
-        rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
-        output.write_csv(csv, csv_of(rows, COLUMNS, found.stamp))
-    if as_json:
-        head = output.about(loaded, options, settings_of(settings))
-        output.print_json(head | _document(found, records, at))
-    elif csv != output.STANDARD_OUTPUT:
-        _print(loaded, found, at, unit_of(scan or speed or "kt"))
+        found = case.flutter_point(airspeeds, level=level, **request.options)
+    records = [boundary_record(boundary, case) for boundary in found.boundaries]
+    rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(found, records, at),
+        table=lambda: _print(case, found, rows, at, unit_of(scan or speed or "kt")),
+        csv=lambda: csv_of(rows, COLUMNS, found.stamp),
+    )
     if not math.isfinite(found.searched[0]):
         raise click.exceptions.Exit(1)
 
@@ -129,9 +113,7 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
     return document | {"at": margin}
 
 
-def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None:
-    from proprotor.units import factor_to_si
-
+def _print(case: Case, found: FlutterPoint, rows: list[dict[str, Any]], at: float | None, unit: str) -> None:
     output.print_head(case, found.stamp)
     factor = factor_to_si(unit, unit, "m/s")
     if not math.isfinite(found.searched[0]):
@@ -139,10 +121,9 @@ def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None
         for line in failed_told(found, unit, factor):
             output.console().print(line)
         return
-    if found.boundaries:
+    if rows:
         columns = (unit, "Hz", "/rev", "mode", "kind", "", "mechanism")
-        rows = (_row(boundary_record(boundary, case), factor) for boundary in found.boundaries)
-        output.print_table(columns, rows, text=columns[3:])
+        output.print_table(columns, (_row(record, factor) for record in rows), text=columns[3:])
     for line in verdict(found, at, unit, factor):
         output.console().print(line, style="bold")
     output.print_doubts(found.doubts, unit, factor)
@@ -156,5 +137,5 @@ def _row(record: dict[str, Any], factor: float) -> tuple[str, ...]:
         record["mode"],
         record["kind"],
         "begins" if record["onset"] else "ends",
-        mechanism_told(record["mechanism"]),
+        record["mechanism"],
     )

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
 
 from proprotor.commands import output
 from proprotor.commands.arguments import EXIT_CODES, CaseName
+from proprotor.deck.file import list_cases, read_tables
+from proprotor.deck.template import deck_text
 from proprotor.errors import InputError
 
 
@@ -24,7 +27,7 @@ from proprotor.errors import InputError
 )
 @click.option("--variant", is_flag=True, help="Write a short deck that alters the other, instead of a copy.")
 @click.option("--force", is_flag=True, help="Replace a file that exists.")
-@output.output_options()
+@output.json_option
 def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None:
     """Write a deck with every field there is, each with its meaning, its range and its default.
 
@@ -37,11 +40,7 @@ def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None
       proprotor new wing.toml --from xv15-wing
       proprotor new stiffer.toml --variant
     """
-    import os
-
-    from proprotor.deck.file import list_cases, read_tables
-    from proprotor.deck.sections import validate
-    from proprotor.deck.template import deck_text
+    from proprotor.deck.sections import validate  # here, because pydantic takes long to import
 
     place = Path(file)
     if place.suffix != ".toml":

@@ -11,22 +11,20 @@ from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
     Input,
+    Request,
     case_argument,
-    in_order,
-    level_of,
     level_option,
-    loaded_case,
     model_options,
     one_speed,
     scan_option,
-    settings_of,
 )
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubts_along, marked
+from proprotor.plots import plot_sensitivity
 from proprotor.tables.csv_text import csv_of
 from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records
-from proprotor.units import KNOT
+from proprotor.units import KNOT, speeds
 
 if TYPE_CHECKING:
     import xarray
@@ -59,19 +57,15 @@ if TYPE_CHECKING:
 @output.output_options(csv="Write a row for each input.", plot="Draw a tornado")
 @model_options
 def sensitivity(
-    case: str,
-    settings: tuple[str, ...],
+    request: Request,
+    outputs: output.Outputs,
     of: str,
     speed: str | None,
     mode: str | None,
     wrt: tuple[str, ...],
     scan: str | None,
-    level: str,
+    level: float,
     top: int,
-    csv: str | None,
-    plot: str | None,
-    as_json: bool,
-    **options: Any,
 ) -> None:
     """Derivatives of the flutter speed, or of the damping of a mode, by inputs of the deck.
 
@@ -85,29 +79,20 @@ def sensitivity(
       proprotor sensitivity xv15 --of damping --speed "300 kt" --mode chord
       proprotor sensitivity xv15 --wrt rotor.precone --wrt rotor.control_stiffness --json
     """
-    output.check_outputs(csv, plot, as_json=as_json)
-    options, damping = in_order(options), level_of(level)
-    where = _where(of, speed, scan, damping)
-    loaded = loaded_case(case, settings)
+    where, case = _where(of, speed, scan, level), request.load()
     with waiting("Deriving"):
-        found = loaded.sensitivity(of, wrt or None, mode=mode, **where, **options)
-    found = _one_mode(found)
-    records = sensitivity_records(loaded, found, of)
-    if csv:
-        output.write_csv(csv, csv_of(records, list(records[0]), found.attrs))
-    if plot:
-        output.write_plot(plot, loaded, lambda: _draw(found, top))
-    if as_json:
-        head = output.about(loaded, options, settings_of(settings))
-        output.print_json(head | _document(found, records, of))
-    elif csv != output.STANDARD_OUTPUT:
-        _print(loaded, found, records, of, top)
+        found = _one_mode(case.sensitivity(of, wrt or None, mode=mode, **where, **request.options))
+    records = sensitivity_records(case, found, of)
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(found, records, of),
+        table=lambda: _print(case, found, records, of, top),
+        csv=lambda: csv_of(records, list(records[0]), found.attrs),
+        plot=lambda: output.with_origin(plot_sensitivity(found, count=top or found.sizes["input"]), case),
+    )
 
 
 def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[str, Any]:
-    """Where the quantity is, as `Case.sensitivity` takes it."""
-    from proprotor.units import speeds
-
+    """Return the arguments of `Case.sensitivity` that say at which airspeed, or between which, the quantity is."""
     if of == "damping":
         for option, given in (("--scan", scan), ("--level", level or None)):
             if given is not None:
@@ -121,7 +106,7 @@ def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[s
 
 
 def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
-    """Of several modes the one that is damped least."""
+    """Return the part of the dataset on the mode that is damped least, where it has several."""
     if "mode" not in found.dims:
         return found
     return found.isel(mode=int(np.nanargmin(found.damping.values)))
@@ -147,12 +132,6 @@ def _document(found: xarray.Dataset, records: list[dict[str, Any]], of: str) -> 
 
 def _value(found: xarray.Dataset, of: str) -> float:
     return float(found.attrs["value"] if of == "flutter_speed" else found.damping)
-
-
-def _draw(found: xarray.Dataset, top: int) -> Any:
-    from proprotor.plots import plot_sensitivity
-
-    return plot_sensitivity(found, count=top or found.sizes["input"])
 
 
 def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], of: str, top: int) -> None:

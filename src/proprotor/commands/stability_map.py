@@ -12,21 +12,22 @@ from proprotor.commands import output
 from proprotor.commands.arguments import (
     EXIT_CODES,
     InputValues,
+    Request,
     case_argument,
-    in_order,
-    level_of,
     level_option,
-    loaded_case,
     model_options,
     one_speed,
-    settings_of,
     unit_of,
 )
 from proprotor.commands.waiting import waiting
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.model.doubts import MARK, map_doubts, marked
+from proprotor.plots import plot_stability_map
+from proprotor.study.sampling import grid
 from proprotor.tables.csv_text import csv_of
 from proprotor.typing import Array
+from proprotor.units import factor_to_si
 
 if TYPE_CHECKING:
     import xarray
@@ -62,16 +63,7 @@ class _Axis(NamedTuple):
 )
 @model_options
 def stability_map(
-    case: str,
-    settings: tuple[str, ...],
-    x: str,
-    y: str,
-    speed: str | None,
-    level: str,
-    csv: str | None,
-    plot: str | None,
-    as_json: bool,
-    **options: Any,
+    request: Request, outputs: output.Outputs, x: str, y: str, speed: str | None, level: float
 ) -> None:
     """Where in the plane of two inputs a case is stable, and the boundary between.
 
@@ -85,38 +77,27 @@ def stability_map(
       proprotor map xv15 --speed "350 kt" --x "support.modes[beam].frequency=2:5:0.1 Hz"
         --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
     """
-    output.check_outputs(csv, plot, as_json=as_json)
-    options, damping = in_order(options), level_of(level)
-    airspeed = None if speed is None else one_speed(speed)
-    loaded = loaded_case(case, settings)
-    axes = _axis("--x", x, loaded), _axis("--y", y, loaded)
+    airspeed, case = None if speed is None else one_speed(speed), request.load()
+    axes = _axis("--x", x, case), _axis("--y", y, case)
     if axes[0].path == axes[1].path:
         raise InputError("--y", y, "must not be the input of --x")
     if airspeed is None and _AIRSPEED not in (axis.path for axis in axes):
         raise InputError("--speed", None, "must be given, or be --x or --y: airspeed=100:400:10kt")
     with waiting("Analysing"):
         values = {axis.path: axis.values for axis in axes}
-        found = loaded.stability_map(values, airspeed=airspeed, level=damping, **options)
-    if csv:
-        records = list(_records(found, axes))
-        output.write_csv(csv, csv_of(records, list(records[0]), found.attrs))
-    if plot:
-        output.write_plot(plot, loaded, lambda: _draw(found, axes))
-    if as_json:
-        output.print_json(
-            output.about(loaded, options, settings_of(settings)) | _document(found, axes, airspeed)
-        )
-    elif csv != output.STANDARD_OUTPUT:
-        _print(loaded, found, axes)
+        found = case.stability_map(values, airspeed=airspeed, level=level, **request.options)
+    units = {axis.path: axis.unit for axis in axes if axis.unit}
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(found, axes, airspeed),
+        table=lambda: _print(case, found, axes),
+        csv=lambda: csv_of(records := list(_records(found, axes)), list(records[0]), found.attrs),
+        plot=lambda: output.with_origin(plot_stability_map(found, units=units), case),
+    )
     if not np.isfinite(found.growth.values).any():
         raise click.exceptions.Exit(1)
 
 
 def _axis(option: str, text: str, case: Case) -> _Axis:
-    from proprotor.deck.vary import design_inputs
-    from proprotor.study.sampling import grid
-    from proprotor.units import factor_to_si
-
     path, equals, given = (part.strip() for part in text.partition("="))
     if not equals or not given:
         raise InputError(option, text, f"must be an input and its values, such as {_EXAMPLE}")
@@ -180,12 +161,6 @@ def _document(found: xarray.Dataset, axes: tuple[_Axis, _Axis], airspeed: float 
     }
 
 
-def _draw(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> Any:
-    from proprotor.plots import plot_stability_map
-
-    return plot_stability_map(found, units={axis.path: axis.unit for axis in axes if axis.unit})
-
-
 def _print(case: Case, found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> None:
     output.print_head(case, found.attrs)
     x, y = axes
@@ -218,5 +193,4 @@ def _print(case: Case, found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> None
         )
         count = sum(map(bool, doubts))
         out.print(f"boundary {number}: {len(line)} points from {ends}" + f", {count} doubtful" * bool(count))
-    for sentence in map_doubts(found):
-        out.print(f"{MARK} {sentence}", style="yellow")
+    output.print_footnotes(map_doubts(found))

@@ -8,6 +8,6 @@ from proprotor.report.analyses import Findings, analyse
 from proprotor.report.content import report_document
 from proprotor.report.document import Document
 from proprotor.report.page import html_of
-from proprotor.report.typeset import pdf_of
+from proprotor.report.typeset import check_typesetter, pdf_of
 
-__all__ = ["Document", "Findings", "analyse", "html_of", "pdf_of", "report_document"]
+__all__ = ["Document", "Findings", "analyse", "check_typesetter", "html_of", "pdf_of", "report_document"]

@@ -6,6 +6,7 @@ import io
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from proprotor.plots.headless import drawn
 from proprotor.report.document import Picture
 
 if TYPE_CHECKING:
@@ -21,18 +22,11 @@ _FIXED: Any = {"svg.hashsalt": "proprotor", "text.parse_math": False}
 
 def svg_of(draw: Callable[[], Axes]) -> bytes:
     """A plot as SVG, the same each time."""
-    import matplotlib
+    import matplotlib  # here, because matplotlib takes long to import
 
-    matplotlib.use("Agg")  # no window, and no display needed
-    from matplotlib import pyplot
-
-    with matplotlib.rc_context(_FIXED):
-        figure = draw().get_figure(root=True)
-        if figure is None:
-            raise RuntimeError("axes without a figure")
-        file = io.BytesIO()
+    file = io.BytesIO()
+    with matplotlib.rc_context(_FIXED), drawn(draw) as (_, figure):
         figure.savefig(file, format="svg", bbox_inches="tight", metadata={"Date": None})
-        pyplot.close(figure)
     return file.getvalue()
 
 
