@@ -20,10 +20,11 @@ from proprotor.commands.arguments import (
 )
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
-from proprotor.model.doubts import doubt_at, marked
+from proprotor.model.doubts import doubt_at
 from proprotor.stability.boundary_summary import (
     COLUMNS,
     boundary_record,
+    boundary_row,
     failed_records,
     failed_told,
     mechanism_told,
@@ -76,7 +77,7 @@ def flutter(
     rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
     outputs.write(
         document=lambda: output.about(case, request) | _document(found, records, at),
-        table=lambda: _print(case, found, rows, at, unit_of(scan or speed or "kt")),
+        table=lambda: _print(case, found, records, at, unit_of(scan or speed or "kt")),
         csv=lambda: csv_of(rows, COLUMNS, found.stamp),
     )
     if not math.isfinite(found.searched[0]):
@@ -113,7 +114,9 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
     return document | {"at": margin}
 
 
-def _print(case: Case, found: FlutterPoint, rows: list[dict[str, Any]], at: float | None, unit: str) -> None:
+def _print(
+    case: Case, found: FlutterPoint, records: list[dict[str, Any]], at: float | None, unit: str
+) -> None:
     output.print_head(case, found.stamp)
     factor = factor_to_si(unit, unit, "m/s")
     if not math.isfinite(found.searched[0]):
@@ -121,21 +124,9 @@ def _print(case: Case, found: FlutterPoint, rows: list[dict[str, Any]], at: floa
         for line in failed_told(found, unit, factor):
             output.console().print(line)
         return
-    if rows:
+    if records:
         columns = (unit, "Hz", "/rev", "mode", "kind", "", "mechanism")
-        output.print_table(columns, (_row(record, factor) for record in rows), text=columns[3:])
+        output.print_table(columns, (boundary_row(record, factor) for record in records), text=columns[3:])
     for line in verdict(found, at, unit, factor):
         output.console().print(line, style="bold")
     output.print_doubts(found.doubts, unit, factor)
-
-
-def _row(record: dict[str, Any], factor: float) -> tuple[str, ...]:
-    return (
-        marked(f"{record['airspeed (m/s)'] / factor:.2f}", record["warning"]),
-        f"{record['frequency (Hz)']:.3f}",
-        f"{record['frequency (per rev)']:.3f}",
-        record["mode"],
-        record["kind"],
-        "begins" if record["onset"] else "ends",
-        record["mechanism"],
-    )

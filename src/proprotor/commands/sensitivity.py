@@ -23,7 +23,12 @@ from proprotor.errors import InputError
 from proprotor.model.doubts import doubts_along, marked
 from proprotor.plots import plot_sensitivity
 from proprotor.tables.csv_text import csv_of
-from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records
+from proprotor.tables.sensitivity_summary import (
+    NEARLY_DEFECTIVE,
+    READ_IN,
+    sensitivity_records,
+    sensitivity_row,
+)
 from proprotor.units import KNOT, speeds
 
 if TYPE_CHECKING:
@@ -144,21 +149,12 @@ def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], of:
     out.print(f"{what} {value} {read_in}{at} ({_mode(found)})", style="bold")
     shown = records[: top or None]
     columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %")
-    output.print_table(columns, (_row(record, read_in) for record in shown), text=("input", "value", "unit"))
+    output.print_table(
+        columns, (sensitivity_row(record, read_in) for record in shown), text=("input", "value", "unit")
+    )
     if len(shown) < len(records):
         out.print(f"{len(records) - len(shown)} more inputs (--top 0).")
     airspeed = found.attrs["value" if of == "flutter_speed" else "airspeed"]
     output.print_doubts(doubts_along(airspeed, found.warning.values))
     if bool(found.nearly_defective):
-        out.print("The mode nearly falls into one with another: derivatives hold in a small range only.")
-
-
-def _row(record: dict[str, Any], read_in: str) -> tuple[str, ...]:
-    change = record[f"for +1 % ({read_in})"]
-    return (
-        record["input"],
-        record["value"],
-        marked(f"{record[f'derivative ({read_in} per unit)']:+.4g}", record["warning"]),
-        record["unit"],
-        "" if change is None else marked(f"{change:+.3g}", record["warning"]),
-    )
+        out.print(NEARLY_DEFECTIVE)
