@@ -6,7 +6,7 @@ and show its result; they compute nothing themselves.
     main        the command `proprotor`: the list of commands, and how an error ends one
     arguments   arguments and options that several commands share; `Request`, the case and options a user asks for
     output      what commands print and write; `Outputs`, the files a user asks for
-    waiting     a sign of life while something takes more than a second
+    waiting     a spinner while a step takes more than a second
 
     cases new describe                              decks
     sweep flutter stability_map sensitivity attribution study    analyses of a case

@@ -259,6 +259,7 @@ def _in_order(found: dict[str, Any]) -> dict[str, Any]:
 
 def _model_option(name: str, choices: tuple[Any, ...], meaning: str) -> Option:
     flag = name.replace("_", "-")
+    """Return the option of the command line for one option of the model."""
     declared: dict[str, Any] = {"default": choices[0], "show_default": True, "help": meaning}
     if name == "structure":
         declared |= {"default": None, "show_default": "coupled; tabulated where the deck has frequencies"}

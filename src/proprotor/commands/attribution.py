@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 _COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)", "warning")
 
 
-@click.command(epilog=EXIT_CODES, short_help="What drives and what damps a mode, by physical origin.")
+@click.command(epilog=EXIT_CODES, short_help="Show what drives and what damps a mode, by physical origin.")
 @case_argument
-@click.option("--speed", required=True, metavar="SPEED", help='Airspeed, such as "300 kt".')
-@click.option("--mode", help="Mode by name; by default the one that is damped least.")
+@click.option("--speed", required=True, metavar="SPEED", help='Airspeed: "300 kt".')
+@click.option("--mode", help="Name of the mode; by default the mode that is damped least.")
 @output.output_options(csv="Write a row for each origin.", plot="Draw the damping of each origin")
 @model_options
 def attribution(request: Request, outputs: output.Outputs, speed: str, mode: str | None) -> None:
-    """What drives and what damps a mode, by the physical origin of the terms.
+    """Show what drives and what damps a mode, by the physical origin of the terms.
 
     CASE is a bundled case or a TOML file. A number is the change of the eigenvalue if all terms of one origin grew by
-    100 %, at the rate at which it begins; trim and mode are held. Where growth is positive the origin drives the mode.
-    Over all origins the changes sum to zero.
+    100 %, to first order, with the same trim and mode. An origin with positive growth drives the mode. Over all origins
+    the changes sum to zero.
 
     \b
     Examples:
@@ -91,16 +91,11 @@ def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], spe
     damping = f"damping {marked(f'{-100 * value.real / abs(value):.3g}', doubt)} % of critical"
     frequency = f"{marked(f'{abs(value.imag) / float(case.operation.rotor_speed):.3f}', doubt)} per rev"
     out.print(f"{found.mode.values[0]} at {speed.strip()}: {frequency}, {damping}", style="bold")
+    rows = []
+    for origin, *numbers, _ in map(dict.values, records):
+        rows.append(
+            (origin, *(marked(f"{n:+.4f}", doubt) for n in numbers), "drives" if numbers[0] > 0 else "damps")
+        )
     columns = ("origin", "growth, 1/s", "frequency, rad/s", "damping, %", "")
-    output.print_table(columns, (_row(record) for record in records), text=("origin", ""))
+    output.print_table(columns, rows, text=("origin", ""))
     output.print_doubts(doubts_along(found.attrs["airspeed"], found.warning.values))
-
-
-def _row(record: dict[str, Any]) -> tuple[str, ...]:
-    origin, *numbers, doubt = (record[name] for name in _COLUMNS)
-    growth = numbers[0]
-    return (
-        origin,
-        *(marked(f"{number:+.4f}", doubt) for number in numbers),
-        "drives" if growth > 0 else "damps",
-    )

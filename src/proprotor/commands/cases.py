@@ -1,4 +1,4 @@
-"""The command `proprotor cases`: the bundled cases, and what a case rests on."""
+"""The command `proprotor cases`: the bundled cases, and what the numbers of a case rest on."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from proprotor.deck.file import read_tables
 from proprotor.errors import InputError
 
 
-@click.command(epilog=EXIT_CODES, short_help="List the bundled cases, or tell what one rests on.")
+@click.command(epilog=EXIT_CODES, short_help="List the bundled cases, or show one case.")
 @click.argument("name", required=False, type=CaseName(), metavar="[CASE]")
 @set_option
 @output.json_option
 def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
-    """List the bundled cases, or tell what one case, bundled or a TOML file, is and rests on.
+    """List the bundled cases, or show what one case is and which of its inputs are doubtful.
 
-    With --json every number of the case is told, with its value as written, in SI units, its status and source.
+    CASE is a bundled case or a TOML file. With --json the command prints every number of the case: its value as
+    written and in SI units, its status and its source.
 
     \b
     Examples:
@@ -38,10 +39,10 @@ def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
     case = request.load()
     if as_json:
         output.print_json(_document(case, request))
-        return
-    from proprotor.tables.terminal import print_case  # here, because rich takes long to import
+    else:
+        from proprotor.tables.terminal import print_case  # here, because rich takes long to import
 
-    print_case(case)
+        print_case(case)
 
 
 def _list(as_json: bool) -> None:

@@ -10,18 +10,20 @@ from proprotor.deck import describe as fields
 from proprotor.deck.schema import deck_schema
 from proprotor.errors import InputError
 
-_MOST_IN_FULL = 3  # fields that are told in full; more of them are a table
+_COLUMNS = ("field", "SI unit", "range", "meaning")
+_MOST_IN_FULL = 3  # up to so many fields are printed in full, more fields as a table
 
 
-@click.command(epilog=EXIT_CODES, short_help="The fields of a deck: meaning, unit, range, default.")
+@click.command(epilog=EXIT_CODES, short_help="Show the fields of a deck: meaning, unit, range, default.")
 @click.argument("field", required=False, type=Field(), metavar="[FIELD]")
-@click.option("--schema", is_flag=True, help="Print the JSON schema, by which editors check a deck.")
-@click.option("--markdown", is_flag=True, help="Print all fields as a page, docs/decks.md.")
+@click.option("--schema", is_flag=True, help="Print the JSON schema, with which editors check a deck.")
+@click.option("--markdown", is_flag=True, help="Print all fields as a page in Markdown (docs/decks.md).")
 @output.json_option
 def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> None:
-    """The fields of a deck: what each means, which unit and range it has, its default and its alternatives.
+    """Show the fields of a deck: the meaning, unit, range, default and alternatives of each field.
 
-    FIELD is a field, a section, a kind of support or the last name of a field; without it all are listed.
+    FIELD is a field, a section, a kind of support or the last part of a field's name. Without FIELD all fields are
+    listed.
 
     \b
     Examples:
@@ -62,12 +64,10 @@ def _print_table(found: tuple[fields.DeckField, ...]) -> None:
     for kind in dict.fromkeys(field.kind for field in found):
         if kind:
             out.print(f'[support] of kind "{kind}"', style="bold")
-        rows = (_row(field) for field in found if field.kind == kind)
-        output.print_table(
-            ("field", "SI unit", "range", "meaning"), rows, text=("field", "SI unit", "meaning")
-        )
+        rows = [
+            (f"{field.path}{'*' * field.required}", field.unit, field.range, field.meaning)
+            for field in found
+            if field.kind == kind
+        ]
+        output.print_table(_COLUMNS, rows, text=("field", "SI unit", "meaning"))
     out.print("* must be given, or one of its alternatives. `proprotor describe FIELD` tells all of one.")
-
-
-def _row(field: fields.DeckField) -> tuple[str, ...]:
-    return f"{field.path}{'*' if field.required else ''}", field.unit, field.range, field.meaning

@@ -19,27 +19,31 @@ from proprotor.units import speeds
 if TYPE_CHECKING:
     from bokeh.document import Document
 
-_POINTS = 60
+_POINTS = 60  # airspeeds by default
 
 
-@click.command(epilog=EXIT_CODES, short_help="A page with sliders on the inputs, and at once what they do.")
+@click.command(epilog=EXIT_CODES, short_help="Move sliders on the inputs, and see at once what they do.")
 @case_argument
 @click.option(
     "--speed",
     metavar="RANGE",
-    help='Airspeeds drawn, such as "100:400:5kt"; by default 60 from 0.2 to 1.2 of the tip speed.',
+    help='Airspeeds to draw: "100:400:5kt"; by default 60 airspeeds from 0.2 to 1.2 of the tip speed.',
 )
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=5006, show_default=True, help="0 takes a free one."
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=5006,
+    show_default=True,
+    help="Port of the page on this machine; 0 takes a free port.",
 )
-@click.option("--no-browser", is_flag=True, help="Tell the address, and open no browser.")
+@click.option("--no-browser", is_flag=True, help="Print the address, and open no browser.")
 @output.json_option
 @model_options
 def explore(request: Request, speed: str | None, port: int, no_browser: bool, as_json: bool) -> None:
-    """Sliders on the inputs of a deck, with damping and root locus that follow.
+    """Open a page with sliders on the inputs of a deck; damping and root locus follow the sliders.
 
-    CASE is a bundled case or a TOML file, which stays as it is: what one sets is saved from the page as a deck of its
-    own. The page is served to this machine alone, until Ctrl+C. Needs the extra `explore`: pip install
+    CASE is a bundled case or a TOML file. The file stays as it is; the page saves your settings as a new deck. Only
+    this machine can open the page, and Ctrl+C ends it. The command needs the extra `explore`: pip install
     "proprotor[explore]".
 
     \b

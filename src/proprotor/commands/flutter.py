@@ -1,4 +1,4 @@
-"""The command `proprotor flutter`: where a case becomes unstable."""
+"""The command `proprotor flutter`: the airspeeds at which a case becomes unstable."""
 
 from __future__ import annotations
 
@@ -39,26 +39,24 @@ if TYPE_CHECKING:
     from proprotor.stability.flutter import FlutterPoint
 
 
-@click.command(epilog=EXIT_CODES, short_help="Flutter and divergence boundaries, and the margin.")
+@click.command(epilog=EXIT_CODES, short_help="Find flutter and divergence boundaries, and the margin.")
 @case_argument
 @scan_option
-@click.option(
-    "--speed", metavar="SPEED", help='An airspeed, such as "250 kt", whose margin to flutter is told.'
-)
+@click.option("--speed", metavar="SPEED", help='Airspeed whose margin to flutter is wanted: "250 kt".')
 @level_option
 @output.output_options(csv="Write a row for each boundary.")
 @model_options
 def flutter(
     request: Request, outputs: output.Outputs, scan: str | None, speed: str | None, level: float
 ) -> None:
-    """Airspeeds at which modes become unstable, or stable again.
+    """Find the airspeeds at which modes become unstable, or stable again.
 
-    CASE is a bundled case (see `proprotor cases`) or a TOML file that describes one.
+    CASE is a bundled case (see `proprotor cases`) or a TOML file.
 
-    Boundaries are sought in the whole range, between the airspeeds of the scan too, and settled to rounding: flutter,
-    where a pair of eigenvalues loses its damping, and divergence, where a real one does. The mechanism tells which
-    modes take part in the motion there and how much. Where no mode becomes unstable, the range that was searched is
-    told, and the least damping in it with its mode. Airspeeds that could not be analysed are told with the reason.
+    The search covers the whole range, also between the airspeeds of the scan, and is exact to rounding. At flutter a
+    pair of eigenvalues loses its damping, at divergence a real eigenvalue does. The mechanism says which modes take
+    part in the motion at the boundary, and how much. If no mode becomes unstable, the command prints the range of the
+    search, and the least damping in the range with its mode. If airspeeds could not be analysed, it says why.
 
     \b
     Examples:

@@ -112,7 +112,7 @@ def output_options(*, csv: str, plot: str = "") -> Option:
             return command(outputs=outputs, **given)
 
         declared = json_option(with_outputs)
-        csv_help = f"{csv} - prints it instead of the table."
+        csv_help = f"{csv} The file name - prints the rows instead of the table."
         declared = click.option("--csv", metavar="FILE", help=csv_help)(declared)
         plot_help = f"{plot}: a .png, .pdf or .svg file."
         return click.option("--plot", metavar="FILE", help=plot_help)(declared) if plot else declared

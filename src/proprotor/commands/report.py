@@ -1,4 +1,4 @@
-"""The command `proprotor report`: all that can be told of a case, on one page."""
+"""The command `proprotor report`: all results on a case, on one page."""
 
 from __future__ import annotations
 
@@ -33,27 +33,27 @@ if TYPE_CHECKING:
 _SUFFIXES = (".html", ".pdf")
 
 
-@click.command(epilog=EXIT_CODES, short_help="All that can be told of a case, as one page in HTML or PDF.")
+@click.command(epilog=EXIT_CODES, short_help="Write all results on a case as one page, HTML or PDF.")
 @case_argument
 @click.option(
     "--speed",
     metavar="RANGE",
-    help='Airspeeds analysed, such as "50:400:5kt"; by default 0.2 to 1.2 of the tip speed, in knots.',
+    help='Airspeeds to analyse: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed, in knots.',
 )
 @click.option(
     "--out",
     metavar="FILE",
-    help="Where it is written: a .html or .pdf file; by default the name of the case and -report.html.",
+    help="File to write, .html or .pdf; by default the name of the case and -report.html.",
 )
 @click.option("--pdf", is_flag=True, help="Write a PDF beside the HTML (pip install 'proprotor[report]').")
 @output.json_option
 @model_options
 def report(request: Request, speed: str | None, out: str | None, pdf: bool, as_json: bool) -> None:
-    """A report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
+    """Write a report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
 
-    CASE is a bundled case or a TOML file. The file needs nothing else: send it, print it, keep it. What the numbers
-    rest on stands on its first page. The same deck and options give the same file, but for the date, which
-    SOURCE_DATE_EPOCH (seconds since 1970) sets.
+    CASE is a bundled case or a TOML file. The report is one file that needs no other: send it, print it, keep it. Its
+    first page says what the numbers rest on. The same deck and options give the same file, except for the date;
+    the environment variable SOURCE_DATE_EPOCH (seconds since 1970) sets the date.
 
     \b
     Examples:
@@ -93,7 +93,7 @@ def report(request: Request, speed: str | None, out: str | None, pdf: bool, as_j
 
 
 def _places(out: str, pdf: bool) -> list[str]:
-    """The files to write, refused before anything is analysed where they cannot be."""
+    """Return the files to write. Refuse other kinds of files, and a PDF without its typesetter, before the analysis."""
     from proprotor.report import check_typesetter
 
     place = Path(out)
@@ -114,7 +114,7 @@ def _content(document: Document, place: str) -> bytes:
 
 
 def _date() -> str:
-    """Today, or the day of SOURCE_DATE_EPOCH, which reproducible builds set."""
+    """Return the date of today, or of SOURCE_DATE_EPOCH, which reproducible builds set."""
     given = os.environ.get("SOURCE_DATE_EPOCH")
     if given is None:
         return datetime.now(UTC).date().isoformat()

@@ -1,4 +1,4 @@
-"""The command `proprotor sensitivity`: what moves the flutter speed, or the damping of a mode."""
+"""The command `proprotor sensitivity`: which inputs move the flutter speed, or the damping of a mode."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 
-@click.command(epilog=EXIT_CODES, short_help="What moves the flutter speed or a damping, input by input.")
+@click.command(epilog=EXIT_CODES, short_help="Show how each input moves the flutter speed or a damping.")
 @case_argument
 @click.option(
     "--of",
@@ -45,20 +45,22 @@ if TYPE_CHECKING:
     type=click.Choice(tuple(READ_IN)),
     default="flutter_speed",
     show_default=True,
-    help="What is derived.",
+    help="Quantity whose derivatives are wanted.",
 )
-@click.option("--speed", metavar="SPEED", help='Airspeed, such as "300 kt"; for --of damping.')
-@click.option("--mode", help="Mode by name; by default the one that flutters first, or is damped least.")
+@click.option("--speed", metavar="SPEED", help='Airspeed, for --of damping: "300 kt".')
+@click.option("--mode", help="Name of the mode; by default the mode that flutters first, or is damped least.")
 @click.option(
     "--wrt",
     multiple=True,
     type=Input(),
     metavar="INPUT",
-    help="With respect to what, by deck path, such as rotor.precone; all inputs by default. Repeatable.",
+    help="Input by which to derive, by deck path: rotor.precone; all inputs by default. Repeatable.",
 )
 @scan_option
 @level_option
-@click.option("--top", type=click.IntRange(0), default=20, show_default=True, help="Rows; 0 for all.")
+@click.option(
+    "--top", type=click.IntRange(0), default=20, show_default=True, help="Rows of the table; 0 for all."
+)
 @output.output_options(csv="Write a row for each input.", plot="Draw a tornado")
 @model_options
 def sensitivity(
@@ -72,11 +74,11 @@ def sensitivity(
     level: float,
     top: int,
 ) -> None:
-    """Derivatives of the flutter speed, or of the damping of a mode, by inputs of the deck.
+    """Derive the flutter speed, or the damping of a mode, by inputs of the deck.
 
-    CASE is a bundled case or a TOML file. Derivatives are exact, trim included, per unit of the deck. The last column
-    is the change when an input grows by 1 % of itself; it sorts the table, and cannot be told for inputs that are
-    zero.
+    CASE is a bundled case or a TOML file. Derivatives are exact, with the change of the trim, per unit of the deck. The
+    last column, which sorts the table, is the change if an input grows by 1 % of itself; inputs that are zero have
+    none.
 
     \b
     Examples:

@@ -22,7 +22,6 @@ from proprotor.model import stamp
 from proprotor.model.doubts import marked
 from proprotor.study import sampling
 from proprotor.study.batch import DEFAULT_QUANTITIES
-from proprotor.study.sampling import Plan
 from proprotor.study.study import study as study_of
 from proprotor.study.uncertainty import distribution
 from proprotor.tables.study_summary import study_summary
@@ -33,10 +32,10 @@ if TYPE_CHECKING:
 
 _SAMPLES = ("latin-hypercube", "sobol", "saltelli")
 _OF_DECK = " of deck"
-_REASONS = 5  # of failures, the most frequent first
+_REASONS = 5  # most frequent reasons of failures that are printed
 
 
-@click.command(epilog=EXIT_CODES, short_help="Many designs: grids, lists and samples.")
+@click.command(epilog=EXIT_CODES, short_help="Analyse many designs: grids, lists and samples.")
 @case_argument
 @click.option(
     "--vary",
@@ -45,8 +44,8 @@ _REASONS = 5  # of failures, the most frequent first
     required=True,
     type=InputValues(),
     metavar="INPUT=VALUES",
-    help='What varies, by deck path: "rotor.precone=1:4:0.5 deg" or "=1 deg, 2 deg"; in a sample the limits, '
-    '"=1:4 deg" or "=0.9:1.1 of deck". Repeatable.',
+    help='Input that varies, by deck path, and its values: "rotor.precone=1:4:0.5 deg" or "=1 deg, 2 deg"; with '
+    '--sample its limits: "=1:4 deg" or "=0.9:1.1 of deck". Repeatable.',
 )
 @click.option(
     "--speed",
@@ -55,12 +54,14 @@ _REASONS = 5  # of failures, the most frequent first
     help='Airspeeds with their unit: "160:460:20kt" or "300 kt".',
 )
 @click.option("--out", metavar="FILE", help="Write the results: a .nc file (netCDF).")
-@click.option("--sample", type=click.Choice(_SAMPLES), help="Sample the inputs; without it all combinations.")
-@click.option("--size", type=click.IntRange(1), default=256, show_default=True, help="Of the sample.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the sample.")
+@click.option(
+    "--sample", type=click.Choice(_SAMPLES), help="Draw a sample of the inputs instead of all combinations."
+)
+@click.option("--size", type=click.IntRange(1), default=256, show_default=True, help="Size of the sample.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the sample.")
 @click.option("--flutter", is_flag=True, help="Find the flutter speed of each design in the range.")
-@click.option("--checkpoint", metavar="FOLDER", help="Keep finished batches, and go on from those kept.")
-@click.option("--workers", type=click.IntRange(1), help="Processes; by default one for each core.")
+@click.option("--checkpoint", metavar="FOLDER", help="Folder that keeps finished batches, for a restart.")
+@click.option("--workers", type=click.IntRange(1), help="Number of processes; by default one for each core.")
 @output.json_option
 @model_options
 def study(
@@ -76,10 +77,10 @@ def study(
     workers: int | None,
     as_json: bool,
 ) -> None:
-    """Stability and trim of many designs of a case.
+    """Analyse stability and trim of many designs of a case.
 
-    CASE is a bundled case or a TOML file; `proprotor cases CASE` lists its inputs. A study that was stopped goes on
-    where it was when it has a checkpoint.
+    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. A study with a checkpoint that was
+    stopped goes on where it stopped when the same command runs again.
 
     \b
     Examples:
@@ -114,30 +115,26 @@ def study(
         raise click.exceptions.Exit(1)
 
 
-def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> Plan:
+def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> sampling.Plan:
+    """Return the grid or sample of the inputs of `--vary`."""
     inputs = {}
     for text in varied:
         path, equals, values = text.partition("=")
         if not equals or not values.strip():
-            raise InputError(
-                "--vary", text, 'must be an input and its values, such as "rotor.precone=1:4:0.5 deg"'
-            )
+            rule = 'must be an input and its values, such as "rotor.precone=1:4:0.5 deg"'
+            raise InputError("--vary", text, rule)
         if path.strip() in inputs:
             raise InputError("--vary", text, "must not vary an input twice")
-        inputs[path.strip()] = _limits(text, values) if sample else _values(values)
+        listed = [value.strip() for value in values.split(",")]
+        inputs[path.strip()] = _limits(text, values) if sample else listed if len(listed) > 1 else listed[0]
     if sample is None:
         return sampling.grid(inputs)
-    draw: Callable[..., Plan] = getattr(sampling, sample.replace("-", "_"))
+    draw: Callable[..., sampling.Plan] = getattr(sampling, sample.replace("-", "_"))
     return draw(inputs, size, seed)
 
 
-def _values(text: str) -> Any:
-    parts = [part.strip() for part in text.split(",")]
-    return parts if len(parts) > 1 else parts[0]
-
-
 def _limits(whole: str, text: str) -> Any:
-    """``"1:4 deg"`` or ``"0.9:1.1 of deck"``."""
+    """Return the limits of ``"1:4 deg"`` or ``"0.9:1.1 of deck"``."""
     low, colon, high = text.removesuffix(_OF_DECK).strip().partition(":")
     if not colon or ":" in high:
         raise InputError("--vary", whole, 'must have two limits, such as "rotor.precone=1:4 deg"')
@@ -159,8 +156,8 @@ def _print(results: xarray.Dataset) -> None:
         _print_flutter(results)
     elif "points unstable" in found:
         lowest = found["lowest damping (% of critical)"]
-        told = marked(f"{lowest:.3g}", found["points doubtful"])
-        out.print(f"{found['points unstable']} points unstable; lowest damping {told} %")
+        damping = marked(f"{lowest:.3g}", found["points doubtful"])
+        out.print(f"{found['points unstable']} points unstable; lowest damping {damping} %")
     doubts = found["doubts of points"].items()
     output.print_footnotes(
         f"Doubtful at {count} of {found['points']} points: {text}." for text, count in doubts

@@ -29,17 +29,17 @@ if TYPE_CHECKING:
     metavar="RANGE",
     help='Airspeeds with their unit: "50:400:5kt" is 50 to 400 kt by 5 kt; also "300 kt", "25:200:2.5 m/s".',
 )
-@click.option("--all-modes", is_flag=True, help="Put every mode into the table, not only as many as fit.")
+@click.option("--all-modes", is_flag=True, help="Show all modes, not only as many as fit into one table.")
 @output.output_options(csv="Write a row for each airspeed and mode.", plot="Draw frequency and damping")
 @model_options
 def sweep(request: Request, outputs: output.Outputs, speed: str, all_modes: bool) -> None:
-    """Frequency and damping of each mode along a range of airspeeds.
+    """Show frequency and damping of each mode along a range of airspeeds.
 
-    CASE is a bundled case (see `proprotor cases`) or a TOML file that describes one.
+    CASE is a bundled case (see `proprotor cases`) or a TOML file.
 
-    The table has the modes that become unstable, the support's, and others that move it the most. Damping
-    is -Re s/|s| of the eigenvalue s in percent of critical, negative where a mode is unstable. An airspeed
-    that cannot be analysed is a row that says why.
+    The table shows the modes that become unstable, the modes of the support, and the modes that move the support most.
+    Damping is -Re s/|s| of the eigenvalue s in percent of critical, negative where a mode is unstable. If an airspeed
+    cannot be analysed, its row says why.
 
     \b
     Examples:
