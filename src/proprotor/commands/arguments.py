@@ -37,6 +37,11 @@ _MODEL = (*CHOICES, *_NUMBERS, "locked")  # the options of the model, in the ord
 _RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # the characters of a range; the unit follows them
 
 
+def command(name: str | None = None, **settings: Any) -> Callable[[Command], click.Command]:
+    """Make a function a command whose help ends with the exit codes; `settings` are those of `click.command`."""
+    return click.command(name, epilog=EXIT_CODES, **settings)
+
+
 class Request(NamedTuple):
     """Which case a command shall analyse, and how.
 
@@ -152,8 +157,8 @@ def set_option(command: Command) -> Command:
         type=_Setting(),
         metavar="FIELD=VALUE",
         help='Change a field of the deck for this run: rotor.precone="1.5 deg", operation.trim=windmill, '
-        '"support.modes[beam].frequency=3 Hz". `proprotor describe` lists the fields. A new rotor speed leaves '
-        "frequencies in /rev at the hertz that the deck's own rotor speed gives them. Repeatable.",
+        '"support.modes[beam].frequency=3 Hz". `proprotor describe` lists the fields. Frequencies in '
+        "/rev keep the hertz that they have at the deck's own rotor speed. Repeatable.",
     )(command)
 
 

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, Request, case_argument, model_options, one_speed
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.model.doubts import doubts_along, marked
 from proprotor.plots import plot_attribution
@@ -22,13 +21,13 @@ if TYPE_CHECKING:
 _COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)", "warning")
 
 
-@click.command(epilog=EXIT_CODES, short_help="Show what drives and what damps a mode, by physical origin.")
-@case_argument
+@arguments.command(short_help="Show what drives and what damps a mode, by physical origin.")
+@arguments.case_argument
 @click.option("--speed", required=True, metavar="SPEED", help='Airspeed: "300 kt".')
 @click.option("--mode", help="Name of the mode; by default the mode that is damped least.")
 @output.output_options(csv="Write a row for each origin.", plot="Draw the damping of each origin")
-@model_options
-def attribution(request: Request, outputs: output.Outputs, speed: str, mode: str | None) -> None:
+@arguments.model_options
+def attribution(request: arguments.Request, outputs: output.Outputs, speed: str, mode: str | None) -> None:
     """Show what drives and what damps a mode, by the physical origin of the terms.
 
     CASE is a bundled case or a TOML file. A number is the change of the eigenvalue if all terms of one origin grew by
@@ -40,7 +39,7 @@ def attribution(request: Request, outputs: output.Outputs, speed: str, mode: str
       proprotor attribution xv15 --speed "380 kt" --mode chord
       proprotor attribution xv15 --speed "380 kt" --plot chord.png --csv chord.csv
     """
-    airspeed, case = one_speed(speed), request.load()
+    airspeed, case = arguments.one_speed(speed), request.load()
     with waiting("Analysing"):
         found = _one_mode(case.attribution(airspeed, mode, **request.options))
     records = _records(found)

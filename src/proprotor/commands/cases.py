@@ -8,15 +8,14 @@ from typing import Any
 import click
 
 from proprotor.case import Case, list_cases
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, CaseName, Request, set_option, settings_of
+from proprotor.commands import arguments, output
 from proprotor.deck.file import read_tables
 from proprotor.errors import InputError
 
 
-@click.command(epilog=EXIT_CODES, short_help="List the bundled cases, or show one case.")
-@click.argument("name", required=False, type=CaseName(), metavar="[CASE]")
-@set_option
+@arguments.command(short_help="List the bundled cases, or show one case.")
+@click.argument("name", required=False, type=arguments.CaseName(), metavar="[CASE]")
+@arguments.set_option
 @output.json_option
 def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
     """List the bundled cases, or show what one case is and which of its inputs are doubtful.
@@ -35,7 +34,7 @@ def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
             raise InputError("--set", settings[0], "needs a case")
         _list(as_json)
         return
-    request = Request(name, settings_of(settings), {})
+    request = arguments.Request(name, arguments.settings_of(settings), {})
     case = request.load()
     if as_json:
         output.print_json(_document(case, request))
@@ -54,7 +53,7 @@ def _list(as_json: bool) -> None:
             click.echo(f"{name:<24} {title}")
 
 
-def _document(case: Case, request: Request) -> dict[str, Any]:
+def _document(case: Case, request: arguments.Request) -> dict[str, Any]:
     head = output.about(case, request)
     del head["options"]
     inputs = {

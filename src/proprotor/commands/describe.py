@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, Field
+from proprotor.commands import arguments, output
 from proprotor.deck import describe as fields
 from proprotor.deck.schema import deck_schema
 from proprotor.errors import InputError
@@ -14,8 +13,8 @@ _COLUMNS = ("field", "SI unit", "range", "meaning")
 _MOST_IN_FULL = 3  # up to so many fields are printed in full, more fields as a table
 
 
-@click.command(epilog=EXIT_CODES, short_help="Show the fields of a deck: meaning, unit, range, default.")
-@click.argument("field", required=False, type=Field(), metavar="[FIELD]")
+@arguments.command(short_help="Show the fields of a deck: meaning, unit, range, default.")
+@click.argument("field", required=False, type=arguments.Field(), metavar="[FIELD]")
 @click.option("--schema", is_flag=True, help="Print the JSON schema, with which editors check a deck.")
 @click.option("--markdown", is_flag=True, help="Print all fields as a page in Markdown (docs/decks.md).")
 @output.json_option

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, Request, case_argument, model_options
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.needs import need
@@ -22,8 +21,8 @@ if TYPE_CHECKING:
 _POINTS = 60  # airspeeds by default
 
 
-@click.command(epilog=EXIT_CODES, short_help="Move sliders on the inputs, and see at once what they do.")
-@case_argument
+@arguments.command(short_help="Move sliders on the inputs, and see at once what they do.")
+@arguments.case_argument
 @click.option(
     "--speed",
     metavar="RANGE",
@@ -38,8 +37,10 @@ _POINTS = 60  # airspeeds by default
 )
 @click.option("--no-browser", is_flag=True, help="Print the address, and open no browser.")
 @output.json_option
-@model_options
-def explore(request: Request, speed: str | None, port: int, no_browser: bool, as_json: bool) -> None:
+@arguments.model_options
+def explore(
+    request: arguments.Request, speed: str | None, port: int, no_browser: bool, as_json: bool
+) -> None:
     """Open a page with sliders on the inputs of a deck; damping and root locus follow the sliders.
 
     CASE is a bundled case or a TOML file. The file stays as it is; the page saves your settings as a new deck. Only

@@ -7,17 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    Request,
-    case_argument,
-    level_option,
-    model_options,
-    one_speed,
-    scan_option,
-    unit_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubt_at
@@ -39,15 +29,15 @@ if TYPE_CHECKING:
     from proprotor.stability.flutter import FlutterPoint
 
 
-@click.command(epilog=EXIT_CODES, short_help="Find flutter and divergence boundaries, and the margin.")
-@case_argument
-@scan_option
+@arguments.command(short_help="Find flutter and divergence boundaries, and the margin.")
+@arguments.case_argument
+@arguments.scan_option
 @click.option("--speed", metavar="SPEED", help='Airspeed whose margin to flutter is wanted: "250 kt".')
-@level_option
+@arguments.level_option
 @output.output_options(csv="Write a row for each boundary.")
-@model_options
+@arguments.model_options
 def flutter(
-    request: Request, outputs: output.Outputs, scan: str | None, speed: str | None, level: float
+    request: arguments.Request, outputs: output.Outputs, scan: str | None, speed: str | None, level: float
 ) -> None:
     """Find the airspeeds at which modes become unstable, or stable again.
 
@@ -65,7 +55,7 @@ def flutter(
       proprotor flutter my.toml --set rotor.precone="1.5 deg" --json
     """
     airspeeds = None if scan is None else speeds(scan, "--scan")
-    at = None if speed is None else one_speed(speed)
+    at = None if speed is None else arguments.one_speed(speed)
     if at == 0:
         raise InputError("--speed", speed, "must be above zero")
     case = request.load()
@@ -75,7 +65,7 @@ def flutter(
     rows = [record | {"mechanism": mechanism_told(record["mechanism"])} for record in records]
     outputs.write(
         document=lambda: output.about(case, request) | _document(found, records, at),
-        table=lambda: _print(case, found, records, at, unit_of(scan or speed or "kt")),
+        table=lambda: _print(case, found, records, at, arguments.unit_of(scan or speed or "kt")),
         csv=lambda: csv_of(rows, COLUMNS, found.stamp),
     )
     if not math.isfinite(found.searched[0]):

@@ -7,19 +7,18 @@ from pathlib import Path
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, CaseName
+from proprotor.commands import arguments, output
 from proprotor.deck.file import list_cases, read_tables
 from proprotor.deck.template import deck_text
 from proprotor.errors import InputError
 
 
-@click.command(epilog=EXIT_CODES, short_help="Write a commented deck that runs as it is.")
+@arguments.command(short_help="Write a commented deck that runs as it is.")
 @click.argument("file", metavar="FILE")
 @click.option(
     "--from",
     "base",
-    type=CaseName(),
+    type=arguments.CaseName(),
     default="xv15",
     show_default=True,
     metavar="CASE",

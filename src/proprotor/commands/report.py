@@ -9,14 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    Request,
-    case_argument,
-    model_options,
-    unit_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.deck.file import read_tables
 from proprotor.deck.reading import FilePath
@@ -33,8 +26,8 @@ if TYPE_CHECKING:
 _SUFFIXES = (".html", ".pdf")
 
 
-@click.command(epilog=EXIT_CODES, short_help="Write all results on a case as one page, HTML or PDF.")
-@case_argument
+@arguments.command(short_help="Write all results on a case as one page, HTML or PDF.")
+@arguments.case_argument
 @click.option(
     "--speed",
     metavar="RANGE",
@@ -47,8 +40,8 @@ _SUFFIXES = (".html", ".pdf")
 )
 @click.option("--pdf", is_flag=True, help="Write a PDF beside the HTML (pip install 'proprotor[report]').")
 @output.json_option
-@model_options
-def report(request: Request, speed: str | None, out: str | None, pdf: bool, as_json: bool) -> None:
+@arguments.model_options
+def report(request: arguments.Request, speed: str | None, out: str | None, pdf: bool, as_json: bool) -> None:
     """Write a report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
 
     CASE is a bundled case or a TOML file. The report is one file that needs no other: send it, print it, keep it. Its
@@ -77,7 +70,7 @@ def report(request: Request, speed: str | None, out: str | None, pdf: bool, as_j
             settings=request.settings,
             deck_hash=_deck_hash(case, request),
             date=date,
-            unit=unit_of(speed or "kt"),
+            unit=arguments.unit_of(speed or "kt"),
         )
         contents = {place: _content(document, place) for place in places}
     for place, content in contents.items():
@@ -124,7 +117,7 @@ def _date() -> str:
         raise InputError("SOURCE_DATE_EPOCH", given, "must be seconds since 1970") from None
 
 
-def _deck_hash(case: Case, request: Request) -> str:
+def _deck_hash(case: Case, request: arguments.Request) -> str:
     """Return the SHA-256 of a deck with its base, the fields of `--set`, and the content of the files in the deck."""
     numbers = {
         path: Path(number.si).read_bytes() if isinstance(number.si, FilePath) else number.si

@@ -7,17 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    Input,
-    Request,
-    case_argument,
-    level_option,
-    model_options,
-    one_speed,
-    scan_option,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubts_along, marked
@@ -37,8 +27,8 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 
-@click.command(epilog=EXIT_CODES, short_help="Show how each input moves the flutter speed or a damping.")
-@case_argument
+@arguments.command(short_help="Show how each input moves the flutter speed or a damping.")
+@arguments.case_argument
 @click.option(
     "--of",
     "of",
@@ -52,19 +42,19 @@ if TYPE_CHECKING:
 @click.option(
     "--wrt",
     multiple=True,
-    type=Input(),
+    type=arguments.Input(),
     metavar="INPUT",
-    help="Input by which to derive, by deck path: rotor.precone; all inputs by default. Repeatable.",
+    help="Input with respect to which to differentiate: rotor.precone; by default all inputs. Repeatable.",
 )
-@scan_option
-@level_option
+@arguments.scan_option
+@arguments.level_option
 @click.option(
     "--top", type=click.IntRange(0), default=20, show_default=True, help="Rows of the table; 0 for all."
 )
 @output.output_options(csv="Write a row for each input.", plot="Draw a tornado")
-@model_options
+@arguments.model_options
 def sensitivity(
-    request: Request,
+    request: arguments.Request,
     outputs: output.Outputs,
     of: str,
     speed: str | None,
@@ -74,7 +64,7 @@ def sensitivity(
     level: float,
     top: int,
 ) -> None:
-    """Derive the flutter speed, or the damping of a mode, by inputs of the deck.
+    """Differentiate the flutter speed, or the damping of a mode, with respect to inputs of the deck.
 
     CASE is a bundled case or a TOML file. Derivatives are exact, with the change of the trim, per unit of the deck. The
     last column, which sorts the table, is the change if an input grows by 1 % of itself; inputs that are zero have
@@ -106,7 +96,7 @@ def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[s
                 raise InputError(option, given, "goes with --of flutter_speed")
         if speed is None:
             raise InputError("--speed", None, 'must be given for the damping, such as "300 kt"')
-        return {"airspeed": one_speed(speed)}
+        return {"airspeed": arguments.one_speed(speed)}
     if speed is not None:
         raise InputError("--speed", speed, "goes with --of damping; --scan is where flutter is looked for")
     return {"airspeed": None if scan is None else speeds(scan, "--scan"), "level": level}
@@ -119,44 +109,42 @@ def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
     return found.isel(mode=int(np.nanargmin(found.damping.values)))
 
 
-def _mode(found: xarray.Dataset) -> str:
-    return str(found.attrs["mode"] if "mode" in found.attrs else found.mode.item())
+def _point(found: xarray.Dataset, of: str) -> tuple[str, float, float]:
+    """Return the mode, the airspeed (m/s) and the value of the quantity, in SI units."""
+    if of == "flutter_speed":
+        return str(found.attrs["mode"]), float(found.attrs["value"]), float(found.attrs["value"])
+    return str(found.mode.item()), float(found.attrs["airspeed"]), float(found.damping)
 
 
 def _document(found: xarray.Dataset, records: list[dict[str, Any]], of: str) -> dict[str, Any]:
     read_in, factor = READ_IN[of]
-    airspeed = found.attrs["value"] if of == "flutter_speed" else found.attrs["airspeed"]
+    mode, airspeed, value = _point(found, of)
     return {
         "of": of,
-        "mode": _mode(found),
-        "airspeed (m/s)": float(airspeed),
-        f"value ({read_in})": _value(found, of) / factor,
+        "mode": mode,
+        "airspeed (m/s)": airspeed,
+        f"value ({read_in})": value / factor,
         "nearly defective": bool(found.nearly_defective),
         "warning": found.warning.item(),
         "sensitivities": records,
     }
 
 
-def _value(found: xarray.Dataset, of: str) -> float:
-    return float(found.attrs["value"] if of == "flutter_speed" else found.damping)
-
-
 def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], of: str, top: int) -> None:
     output.print_head(case, found.attrs)
     out = output.console()
     read_in, factor = READ_IN[of]
+    mode, airspeed, value = _point(found, of)
+    number = marked(f"{value / factor:.4g}", found.warning.item())
     what = "Flutter speed" if of == "flutter_speed" else "Damping"
-    at = "" if of == "flutter_speed" else f" at {found.attrs['airspeed'] / KNOT:.4g} kt"
-    value = marked(f"{_value(found, of) / factor:.4g}", found.warning.item())
-    out.print(f"{what} {value} {read_in}{at} ({_mode(found)})", style="bold")
+    at = "" if of == "flutter_speed" else f" at {airspeed / KNOT:.4g} kt"
+    out.print(f"{what} {number} {read_in}{at} ({mode})", style="bold")
     shown = records[: top or None]
     columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %")
-    output.print_table(
-        columns, (sensitivity_row(record, read_in) for record in shown), text=("input", "value", "unit")
-    )
+    rows = (sensitivity_row(record, read_in) for record in shown)
+    output.print_table(columns, rows, text=("input", "value", "unit"))
     if len(shown) < len(records):
         out.print(f"{len(records) - len(shown)} more inputs (--top 0).")
-    airspeed = found.attrs["value" if of == "flutter_speed" else "airspeed"]
     output.print_doubts(doubts_along(airspeed, found.warning.values))
     if bool(found.nearly_defective):
         out.print(NEARLY_DEFECTIVE)

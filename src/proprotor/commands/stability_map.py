@@ -7,17 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 import numpy as np
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    InputValues,
-    Request,
-    case_argument,
-    level_option,
-    model_options,
-    one_speed,
-    unit_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
@@ -45,30 +35,30 @@ class _Axis(NamedTuple):
     factor: float  # the unit in SI units
 
 
-@click.command("map", epilog=EXIT_CODES, short_help="Show where in the plane of two inputs a case is stable.")
-@case_argument
+@arguments.command("map", short_help="Show where in the plane of two inputs a case is stable.")
+@arguments.case_argument
 @click.option(
     "--x",
     required=True,
-    type=InputValues(),
+    type=arguments.InputValues(),
     metavar="INPUT=RANGE",
     help=f'Input on the axis across, by deck path, and its values: {_EXAMPLE} or "airspeed=100:400:10kt".',
 )
 @click.option(
     "--y",
     required=True,
-    type=InputValues(),
+    type=arguments.InputValues(),
     metavar="INPUT=RANGE",
     help="Input on the axis up, and its values, likewise.",
 )
 @click.option("--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 kt".')
-@level_option
+@arguments.level_option
 @output.output_options(
     csv="Write a row for each point of the grid.", plot="Draw the boundary, the stable side shaded"
 )
-@model_options
+@arguments.model_options
 def stability_map(
-    request: Request, outputs: output.Outputs, x: str, y: str, speed: str | None, level: float
+    request: arguments.Request, outputs: output.Outputs, x: str, y: str, speed: str | None, level: float
 ) -> None:
     """Show where in the plane of two inputs a case is stable, and the boundary.
 
@@ -82,7 +72,7 @@ def stability_map(
       proprotor map xv15 --speed "350 kt" --x "support.modes[beam].frequency=2:5:0.1 Hz"
         --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
     """
-    airspeed, case = None if speed is None else one_speed(speed), request.load()
+    airspeed, case = None if speed is None else arguments.one_speed(speed), request.load()
     axes = _axis("--x", x, case), _axis("--y", y, case)
     if axes[0].path == axes[1].path:
         raise InputError("--y", y, "must not be the input of --x")
@@ -111,7 +101,7 @@ def _axis(option: str, text: str, case: Case) -> _Axis:
     values = designs.values[path]
     if len(values) < 2:
         raise InputError(option, text, f"must be a range, start:stop:step, such as {_EXAMPLE}")
-    unit = unit_of(given)
+    unit = arguments.unit_of(given)
     return _Axis(path, values, unit, factor_to_si(given, unit, designs.units[path]))
 
 

@@ -8,14 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    InputValues,
-    Request,
-    case_argument,
-    model_options,
-)
+from proprotor.commands import arguments, output
 from proprotor.errors import InputError
 from proprotor.exchange.netcdf import check_path, save_results
 from proprotor.model import stamp
@@ -35,14 +28,14 @@ _OF_DECK = " of deck"
 _REASONS = 5  # most frequent reasons of failures that are printed
 
 
-@click.command(epilog=EXIT_CODES, short_help="Analyse many designs: grids, lists and samples.")
-@case_argument
+@arguments.command(short_help="Analyse many designs: grids, lists and samples.")
+@arguments.case_argument
 @click.option(
     "--vary",
     "varied",
     multiple=True,
     required=True,
-    type=InputValues(),
+    type=arguments.InputValues(),
     metavar="INPUT=VALUES",
     help='Input that varies, by deck path, and its values: "rotor.precone=1:4:0.5 deg" or "=1 deg, 2 deg"; with '
     '--sample its limits: "=1:4 deg" or "=0.9:1.1 of deck". Repeatable.',
@@ -63,9 +56,9 @@ _REASONS = 5  # most frequent reasons of failures that are printed
 @click.option("--checkpoint", metavar="FOLDER", help="Folder that keeps finished batches, for a restart.")
 @click.option("--workers", type=click.IntRange(1), help="Number of processes; by default one for each core.")
 @output.json_option
-@model_options
+@arguments.model_options
 def study(
-    request: Request,
+    request: arguments.Request,
     varied: tuple[str, ...],
     speed: str,
     out: str | None,

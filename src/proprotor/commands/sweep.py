@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, Request, case_argument, model_options, unit_of
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.model.provenance import reservations
 from proprotor.plots import plot_sweep
@@ -21,8 +20,8 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 
-@click.command(epilog=EXIT_CODES)
-@case_argument
+@arguments.command()
+@arguments.case_argument
 @click.option(
     "--speed",
     required=True,
@@ -31,8 +30,8 @@ if TYPE_CHECKING:
 )
 @click.option("--all-modes", is_flag=True, help="Show all modes, not only as many as fit into one table.")
 @output.output_options(csv="Write a row for each airspeed and mode.", plot="Draw frequency and damping")
-@model_options
-def sweep(request: Request, outputs: output.Outputs, speed: str, all_modes: bool) -> None:
+@arguments.model_options
+def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_modes: bool) -> None:
     """Show frequency and damping of each mode along a range of airspeeds.
 
     CASE is a bundled case (see `proprotor cases`) or a TOML file.
@@ -51,7 +50,7 @@ def sweep(request: Request, outputs: output.Outputs, speed: str, all_modes: bool
     with waiting("Analysing"):
         case = request.load()
         found = case.sweep(airspeeds, **request.options)
-    table = SweepTable(found, case.operation.rotor_speed, unit_of(speed))
+    table = SweepTable(found, case.operation.rotor_speed, arguments.unit_of(speed))
     outputs.write(
         document=lambda: output.about(case, request) | _document(table),
         table=lambda: _print(case, table, all_modes),
