@@ -228,9 +228,9 @@ def check_writable(option: str, path: str | None) -> None:
     Raises
     ------
     InputError
-        When the path is no place for a file.
+        If the path is no place for a file.
     click.ClickException
-        When no file can be made in the folder, or the present file may not be replaced.
+        If no file can be made in the folder, or the present file may not be replaced.
     """
     if path is not None:
         with _named(option, path):
@@ -253,9 +253,9 @@ def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes
     Raises
     ------
     InputError
-        When the path is no place for a file.
+        If the path is no place for a file.
     click.ClickException
-        When the file cannot be written.
+        If the file cannot be written.
     """
     with _named(option, path):
         output_file.write_whole(path, content if callable(content) else lambda file: file.write(content))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -126,12 +127,10 @@ def _failures(table: SweepTable) -> Iterator[str]:
 
 def _runs(texts: Sequence[str]) -> Iterator[tuple[int, int, str]]:
     """Yield first place, last place and text of each run of equal texts that are not empty."""
-    start = 0
-    for place in range(1, len(texts) + 1):
-        if place == len(texts) or texts[place] != texts[start]:
-            if texts[start]:
-                yield start, place - 1, texts[start]
-            start = place
+    for text, run in groupby(enumerate(texts), key=lambda entry: entry[1]):
+        places = [place for place, _ in run]
+        if text:
+            yield places[0], places[-1], text
 
 
 def _range(table: SweepTable, first: int, last: int) -> str:
@@ -352,9 +351,7 @@ def _distribution(path: str, number: Datum) -> Table:
     pair = ("r/R", number.unit or "value")
     rows = []
     for place in range(count):
-        cells: list[str] = []
-        for station in stations[place::count]:
-            cells += [f"{station[0]:.4g}", f"{station[1]:.6g}"]
+        cells = [text for r, value in stations[place::count] for text in (f"{r:.4g}", f"{value:.6g}")]
         rows.append(tuple(cells + [""] * (2 * _PAIRS - len(cells))))
     return Table(f"{path} along the blade", pair * _PAIRS, tuple(rows), frozenset(pair))
 
