@@ -44,7 +44,7 @@ _CONVENTIONS = (
     "Eigenvalues s = −ζω ± iω√(1 − ζ²). Damping is −Re s/|s| in percent of critical, negative where a mode is "
     "unstable. Frequency is |Im s|; per revolution (/rev) means divided by the rotor speed.",
     "Airloads are quasi-steady strip theory at cruise inflow: no induced velocity and no stall.",
-    "A point that has no trim is left out with its reason, and spoils no other.",
+    "A point without trim is left out with its reason; it does not affect the other points.",
 )
 
 
