@@ -36,8 +36,6 @@ SUCCEED = {
     ],
     "attribution": [("xv15", "--speed", "300 kt", *FAST)],
     "study": [STUDY],
-    "figures": [("4", "--samples", "0", "--step", "50", "--out", "figures")],
-    "audit": [()],
 }
 FAIL = {
     "cases": (("xv16",), "did you mean xv15?"),
@@ -52,8 +50,6 @@ FAIL = {
     "sensitivity": (("xv15", "--wrt", "rotor.precon"), "wrt = rotor.precon: unknown input"),
     "attribution": (("xv15", "--speed", "300 kt", "--mode", "bean"), "did you mean beam?"),
     "study": (("xv15", "--vary", "rotor.precone", "--speed", "200 kt"), "--vary = rotor.precone: must be"),
-    "figures": (("3",), "3"),
-    "audit": (("--check", "--json"), "--json: goes without --check"),
 }
 NOTHING_ANALYSED = {
     "sweep": ("xv15", "--speed", "0 kt"),
@@ -192,7 +188,7 @@ def test_an_output_that_cannot_be_written_is_told_before_the_analysis(
     def analysed(*_):
         raise AssertionError("analysed first")
 
-    monkeypatch.setattr("proprotor.case.load_case", analysed)
+    monkeypatch.setattr("proprotor.commands.arguments.load_case", analysed)
     result = run(command, *arguments, option, f"missing/{file}")
     assert (result.exit_code, result.stdout) == (1, "")
     assert (
@@ -274,7 +270,6 @@ def test_standard_output_that_takes_nothing(arguments):
 @pytest.mark.parametrize(
     "arguments",
     [
-        ("figures", "--out", ".", "--samples", "100000"),
         (
             "map",
             "xv15",

@@ -13,7 +13,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 import proprotor as pp
-from proprotor.commands.main import main, sweep
+from proprotor.commands.main import main
+from proprotor.commands.sweep import sweep
 from proprotor.files.output import write_whole
 from proprotor.rotor.options import CHOICES, LOCKABLE
 from tests.csv_files import without_comments

@@ -1,5 +1,5 @@
-"""The commands flutter, map, sensitivity, attribution, audit, cases, study: the same numbers as the functions behind
-them, in the units people read, in every form of output."""
+"""The commands flutter, map, sensitivity, attribution, cases, study: the same numbers as the functions behind the
+commands, in the units people read, in every form of output."""
 
 import csv
 import json
@@ -332,7 +332,6 @@ def test_figures_are_written_and_not_blank(tmp_path, arguments):
             ("study", "xv15", "--vary", "rotor.precone=1 deg", "--speed", "9 kt", "--set", "x=1"),
             "unknown field",
         ),
-        (("audit", "--check", "--json"), "goes without --check"),
     ],
 )
 def test_an_unusable_input_is_told_without_a_traceback(arguments, told):
@@ -382,21 +381,3 @@ def test_a_study_as_json(tmp_path):
         for x in (1, 2)
     ]  # fmt: skip
     assert found["lowest damping (% of critical)"] == pytest.approx(100 * min(lowest), rel=1e-6)
-
-
-def test_the_recorded_audit_is_told():
-    terms = json.loads(run("audit", "--json").stdout)
-    output = run("audit").stdout
-    assert f"{len(terms)} terms, as recorded" in output
-    contradicting = [t for t in terms if t["verdict"] == "contradicts"]
-    assert len(terms) > 500 and {t["number"] for t in contradicting} <= set(output.split()) | {
-        "Table 1",
-        "Table 2",
-    }
-
-
-def test_without_the_repository_the_audit_is_one_message(monkeypatch, tmp_path):
-    monkeypatch.setattr(pp, "__file__", str(tmp_path / "a" / "b" / "c" / "__init__.py"))
-    result = run("audit")
-    assert result.exit_code == 2
-    assert len(result.stderr.strip().splitlines()) == 1 and "needs the repository" in result.stderr

@@ -226,7 +226,6 @@ def test_a_folder_is_no_file_to_write(tmp_path):
             ("describe", "rotor.precone", "--schema"),
             ("FIELD = rotor.precone", "goes with the table or --json"),
         ),
-        (("audit", "--check", "--json"), ("--json", "goes without --check")),
         (("new", "own.toml", "--from", "own.toml", "--variant", "--force"), ("FILE", "must not be the deck")),
     ],
 )

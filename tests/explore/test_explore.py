@@ -19,8 +19,8 @@ from proprotor.explore.analysis import live_modes
 from proprotor.explore.curves import curves
 from proprotor.explore.inputs import first_inputs, slider_input
 from proprotor.explore.page import ExplorePage
-from proprotor.rotor.options import Options
-from proprotor.stability.boundaries import scan_speeds
+from proprotor.rotor.options import CHOICES, Options
+from proprotor.stability.flutter import scan_speeds
 from proprotor.tables.sweep_summary import leaps
 from tests.explore_server import serving
 
@@ -40,9 +40,8 @@ def speeds(case):
 
 
 def options(**changed):
-    from proprotor.commands.arguments import in_order
-
-    return in_order(vars(Options(**changed)))
+    chosen = vars(Options(**changed))
+    return {name: chosen[name] for name in (*CHOICES, "pitch_flap_coupling", "pitch_lag_coupling", "locked")}
 
 
 # The analysis -------------------------------------------------------------------------------------------------------

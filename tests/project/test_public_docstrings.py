@@ -71,7 +71,8 @@ NUMBER = re.compile(r"\b(float|array|complex|ndarray|array_like)\b")
 def public_objects() -> dict[str, Any]:
     """Functions and classes by name, each once."""
     named = {name: getattr(pp, name) for name in pp.__all__ if not inspect.ismodule(getattr(pp, name))}
-    named |= {name: getattr(plots, name) for name in plots.__all__}
+    shown = {name: entry for name, entry in vars(plots).items() if name in plots.__all__}
+    named |= {name: entry for name, entry in shown.items() if not inspect.ismodule(entry)}
     found = [(module, entry) for module in MODULES for entry in vars(module).values()]
     own = [entry for module, entry in found if getattr(entry, "__module__", "") == module.__name__]
     for entry in (*own, *OTHERS):

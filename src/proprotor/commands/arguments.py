@@ -1,22 +1,26 @@
-"""Arguments and options that commands share, so that each is the same everywhere."""
+"""Arguments and options that several commands share, so that an option is the same in every command.
+
+`case_argument` and `model_options` go together: what the user chose with them reaches the command as one `Request`.
+"""
 
 from __future__ import annotations
 
 import inspect
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
+from typing import Any, NamedTuple
 
 import click
 from click.shell_completion import CompletionItem
 from click.types import StringParamType
 
+from proprotor.case import Case, list_cases, load_case
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
+from proprotor.units import speeds, to_si
 
 Command = Callable[..., Any]
 Option = Callable[[Command], Command]  # a decorator
@@ -28,27 +32,52 @@ Exit codes:
   2  an input cannot be used: the message says which and why
   130  interrupted (Ctrl-C)"""
 
-NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
-_RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # those of a range; what follows is the unit
-_PERCENT_OF_LEVEL = 'Damping that counts as the boundary, of critical: "3 %" or 0.03.'
+_NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
+_MODEL = (*CHOICES, *_NUMBERS, "locked")  # the options of the model, in the order in which results list them
+_RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # the characters of a range; the unit follows them
+
+
+def command(name: str | None = None, **settings: Any) -> Callable[[Command], click.Command]:
+    """Make a function a command whose help ends with the exit codes; `settings` are those of `click.command`."""
+    return click.command(name, epilog=EXIT_CODES, **settings)
+
+
+class Request(NamedTuple):
+    """Which case a command shall analyse, and how.
+
+    name : of a bundled case, or of a TOML file; settings : fields of `--set` with their values, as text; options : of
+    the model, see `proprotor.rotor.options.Options`
+    """
+
+    name: str
+    settings: Mapping[str, str]
+    options: Mapping[str, Any]
+
+    def load(self) -> Case:
+        """Return the case of the deck, with the fields of `--set`.
+
+        Raises
+        ------
+        InputError
+            For a deck or field that cannot be used.
+        """
+        return load_case(self.name, self.settings)
 
 
 class CaseName(StringParamType):
-    """A bundled case or a TOML file, which the shell completes."""
+    """The type of an argument that is a bundled case or a TOML file; the shell completes it."""
 
     name = "case"
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        from proprotor.deck.file import list_cases
-
         found = [name for name in list_cases() if name.startswith(incomplete)]
         return [CompletionItem(name) for name in found] or [CompletionItem(incomplete, type="file")]
 
 
 class Field(StringParamType):
-    """A field of a deck, which the shell completes."""
+    """The type of an argument that is a field of a deck; the shell completes it."""
 
     name = "field"
     ending = ""
@@ -61,76 +90,80 @@ class Field(StringParamType):
         ]
 
     def paths(self, ctx: click.Context) -> Iterable[str]:
-        """Every field there is."""
+        """Return the fields that the shell offers: all fields of decks."""
         from proprotor.deck.describe import deck_fields
 
         return dict.fromkeys(field.path for field in deck_fields())
 
 
-class Setting(Field):
-    """FIELD=VALUE; the shell completes the field."""
+class _Setting(Field):
+    """The type of FIELD=VALUE; the shell completes the field."""
 
     name, ending = "setting", "="
 
     def paths(self, ctx: click.Context) -> Iterable[str]:
-        """Every field there is, entries of lists by the names that the case gives them."""
+        """Return all fields of decks; entries of lists have the names that the case gives them."""
         plain = (path for path in super().paths(ctx) if "[NAME]" not in path)
         return dict.fromkeys((*plain, *(path for path in _numbers_of_case(ctx) if "[" in path)))
 
 
 class Input(Field):
-    """A number of the case that may vary, or the airspeed."""
+    """The type of an argument that is an input: a number of the case that may vary."""
 
     name = "input"
 
     def paths(self, ctx: click.Context) -> Iterable[str]:
-        """Of the case, once it is given."""
+        """Return the inputs of the case once the command line names one, and all fields of decks before."""
         return _numbers_of_case(ctx) or super().paths(ctx)
 
 
 class InputValues(Input):
-    """INPUT=VALUES; the shell completes the input."""
+    """The type of INPUT=VALUES; the shell completes the input."""
 
     name, ending = "values", "="
 
     def paths(self, ctx: click.Context) -> Iterable[str]:
-        """Of the case, and the airspeed."""
+        """Return the airspeed and the inputs of the case."""
         return ("airspeed", *super().paths(ctx))
 
 
 def _numbers_of_case(ctx: click.Context) -> tuple[str, ...]:
-    """Inputs of the case on the command line; none before one is given, or while it cannot be read."""
-    from proprotor.deck.vary import design_inputs
-
-    # click leaves the words it could not place in args, as after an option that still misses its value
+    """Return the inputs of the case on the command line; none before a case is given, or if it cannot be read."""
+    # After an option that still misses its value, click leaves the words in args.
     name = ctx.params.get("case") or ctx.params.get("name") or next(iter(ctx.args), None)
     try:
-        return tuple(design_inputs(loaded_case(name, ()))) if name else ()
+        return tuple(design_inputs(load_case(name))) if name else ()
     except InputError:
         return ()
 
 
 def case_argument(command: Command) -> Command:
-    """CASE and `--set`, for `loaded_case`."""
-    return click.argument("case", type=CaseName())(set_option(command))
+    """Add CASE and `--set` to a command that has `model_options`; the command gets all of them as `request`."""
+
+    @wraps(command)
+    def with_request(*, case: str, settings: tuple[str, ...], **given: Any) -> Any:
+        options = _in_order({name: given.pop(name) for name in _MODEL})
+        return command(request=Request(case, settings_of(settings), options), **given)
+
+    return click.argument("case", type=CaseName())(set_option(with_request))
 
 
 def set_option(command: Command) -> Command:
-    """`--set`, for `settings_of`."""
+    """Add `--set` to a command; `settings_of` reads what it gives."""
     return click.option(
         "--set",
         "settings",
         multiple=True,
-        type=Setting(),
+        type=_Setting(),
         metavar="FIELD=VALUE",
-        help='A field of the deck to set first, such as rotor.precone="1.5 deg", operation.trim=windmill or '
-        '"support.modes[beam].frequency=3 Hz"; `proprotor describe` lists them. Frequencies in /rev are those of the '
-        "deck's own rotor speed, and keep their hertz where another is set. Repeatable.",
+        help='Change a field of the deck for this run: rotor.precone="1.5 deg", operation.trim=windmill, '
+        '"support.modes[beam].frequency=3 Hz". `proprotor describe` lists the fields. Frequencies in '
+        "/rev keep the hertz that they have at the deck's own rotor speed. Repeatable.",
     )(command)
 
 
 def settings_of(texts: tuple[str, ...]) -> dict[str, str]:
-    """Fields and values of `--set`.
+    """Return the fields and values of `--set`.
 
     Raises
     ------
@@ -148,44 +181,32 @@ def settings_of(texts: tuple[str, ...]) -> dict[str, str]:
     return found
 
 
-def loaded_case(name: str, settings: tuple[str, ...]) -> Case:
-    """The case of a deck with the fields of `--set`.
-
-    Raises
-    ------
-    InputError
-        For a deck or field that cannot be used.
-    """
-    from proprotor.case import load_case
-
-    return load_case(name, settings_of(settings))
-
-
-SCAN_HELP = 'Where boundaries are looked for: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed.'
-
-
 def scan_option(command: Command) -> Command:
-    """`--scan`, airspeeds between which boundaries are looked for."""
-    return click.option("--scan", metavar="RANGE", help=SCAN_HELP)(command)
+    """Add `--scan`, the airspeeds between which boundaries are looked for."""
+    scan_help = 'Airspeeds between which to search: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed.'
+    return click.option("--scan", metavar="RANGE", help=scan_help)(command)
 
 
 def level_option(command: Command) -> Command:
-    """`--level`, for `level_of`."""
-    return click.option("--level", default="0", show_default=True, metavar="DAMPING", help=_PERCENT_OF_LEVEL)(
-        command
-    )
+    """Add `--level`; the command gets the damping ratio as `level`."""
+    return click.option(
+        "--level",
+        default="0",
+        show_default=True,
+        metavar="DAMPING",
+        callback=lambda _, __, text: _level_of(text),
+        help='Damping ratio below which a mode counts as unstable: "3 %" or 0.03.',
+    )(command)
 
 
-def level_of(text: str) -> float:
-    """A damping ratio from ``"3 %"`` or ``"0.03"``.
+def _level_of(text: str) -> float:
+    """Return the damping ratio of ``"3 %"`` or ``"0.03"``.
 
     Raises
     ------
     InputError
-        For what is no damping ratio.
+        For a text that is no damping ratio.
     """
-    from proprotor.units import to_si
-
     try:
         level = to_si(text, "")
     except InputError as error:
@@ -196,15 +217,13 @@ def level_of(text: str) -> float:
 
 
 def one_speed(text: str, option: str = "--speed") -> float:
-    """A single airspeed, m/s.
+    """Return a single airspeed, m/s.
 
     Raises
     ------
     InputError
-        For text that is not one.
+        For a text that is not exactly one airspeed.
     """
-    from proprotor.units import speeds
-
     found = speeds(text, option)
     if len(found) != 1:
         raise InputError(option, text, 'must be one speed, such as "300 kt"')
@@ -212,12 +231,12 @@ def one_speed(text: str, option: str = "--speed") -> float:
 
 
 def unit_of(text: str) -> str:
-    """The unit of a value or range, as written; "" for none."""
+    """Return the unit of a value or range, as written; "" without a unit."""
     return _RANGE.sub("", text, count=1).strip()
 
 
 def model_options(command: Command) -> Command:
-    """A flag for each choice of the model, as `proprotor.rotor.options` has them."""
+    """Add a flag for each option of the model; names, choices and help are those of `proprotor.rotor.options`."""
     meanings = _meanings(Options)
     locked: dict[str, Any] = {
         "multiple": True,
@@ -225,19 +244,19 @@ def model_options(command: Command) -> Command:
         "help": f"{meanings['locked']} Repeatable.",
     }
     command = click.option("--locked", **locked)(command)
-    for name in reversed(NUMBERS):
+    for name in reversed(_NUMBERS):
         command = click.option(f"--{name.replace('_', '-')}", type=float, help=meanings[name])(command)
     for name, choices in reversed(CHOICES.items()):
         command = _model_option(name, choices, meanings[name])(command)
     return command
 
 
-def in_order(options: dict[str, Any]) -> dict[str, Any]:
-    """The options of the model, in a fixed order; a structure that is not given is the deck's.
+def _in_order(found: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of the model with what they mean when they are not given.
 
-    Section damping that is not given stands as the model takes it, so that what is printed and written says it.
+    A structure that is not given is left out, so that the deck chooses it. Section damping that is not given gets the
+    value that the model would take, so that results print and write this value.
     """
-    found = {name: options[name] for name in (*CHOICES, *NUMBERS, "locked")}
     if found["section_damping"] is None:
         found["section_damping"] = default_choice("section_damping", found)
     return {name: value for name, value in found.items() if name != "structure" or value is not None}
@@ -245,6 +264,7 @@ def in_order(options: dict[str, Any]) -> dict[str, Any]:
 
 def _model_option(name: str, choices: tuple[Any, ...], meaning: str) -> Option:
     flag = name.replace("_", "-")
+    """Return the option of the command line for one option of the model."""
     declared: dict[str, Any] = {"default": choices[0], "show_default": True, "help": meaning}
     if name == "structure":
         declared |= {"default": None, "show_default": "coupled; tabulated where the deck has frequencies"}
@@ -256,7 +276,7 @@ def _model_option(name: str, choices: tuple[Any, ...], meaning: str) -> Option:
 
 
 def _meanings(documented: type) -> dict[str, str]:
-    """What the docstring says on each parameter; nothing in a Python without docstrings."""
+    """Return what a docstring says on each parameter; "" for all in a Python that drops docstrings (-OO)."""
     lines = inspect.getdoc(documented) or ""
     found = re.findall(r"^([\w, ]+) : .*\n((?:    .*\n)+)", lines, re.MULTILINE)
     meanings = {name: " ".join(text.split()) for names, text in found for name in names.split(", ")}

@@ -6,18 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    case_argument,
-    in_order,
-    loaded_case,
-    model_options,
-    one_speed,
-    settings_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.model.doubts import doubts_along, marked
+from proprotor.plots import plot_attribution
+from proprotor.stability.sensitivity import damping_rate
 from proprotor.tables.csv_text import csv_of
 
 if TYPE_CHECKING:
@@ -28,64 +21,51 @@ if TYPE_CHECKING:
 _COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)", "warning")
 
 
-@click.command(epilog=EXIT_CODES, short_help="What drives and what damps a mode, by physical origin.")
-@case_argument
-@click.option("--speed", required=True, metavar="SPEED", help='Airspeed, such as "300 kt".')
-@click.option("--mode", help="Mode by name; by default the one that is damped least.")
+@arguments.command(short_help="Show what drives and what damps a mode, by physical origin.")
+@arguments.case_argument
+@click.option("--speed", required=True, metavar="SPEED", help='Airspeed: "300 kt".')
+@click.option("--mode", help="Name of the mode; by default the mode that is damped least.")
 @output.output_options(csv="Write a row for each origin.", plot="Draw the damping of each origin")
-@model_options
-def attribution(
-    case: str,
-    settings: tuple[str, ...],
-    speed: str,
-    mode: str | None,
-    csv: str | None,
-    plot: str | None,
-    as_json: bool,
-    **options: Any,
-) -> None:
-    """What drives and what damps a mode, by the physical origin of the terms.
+@arguments.model_options
+def attribution(request: arguments.Request, outputs: output.Outputs, speed: str, mode: str | None) -> None:
+    """Show what drives and what damps a mode, by the physical origin of the terms.
 
     CASE is a bundled case or a TOML file. A number is the change of the eigenvalue if all terms of one origin grew by
-    100 %, at the rate at which it begins; trim and mode are held. Where growth is positive the origin drives the mode.
-    Over all origins the changes sum to zero.
+    100 %, to first order, with the same trim and mode. An origin with positive growth drives the mode. Over all origins
+    the changes sum to zero.
 
     \b
     Examples:
       proprotor attribution xv15 --speed "380 kt" --mode chord
       proprotor attribution xv15 --speed "380 kt" --plot chord.png --csv chord.csv
     """
-    output.check_outputs(csv, plot, as_json=as_json)
-    options, airspeed = in_order(options), one_speed(speed)
-    loaded = loaded_case(case, settings)
+    airspeed, case = arguments.one_speed(speed), request.load()
     with waiting("Analysing"):
-        found = _one_mode(loaded.attribution(airspeed, mode, **options))
+        found = _one_mode(case.attribution(airspeed, mode, **request.options))
     records = _records(found)
-    if csv:
-        output.write_csv(csv, csv_of(records, _COLUMNS, found.attrs))
-    if plot:
-        output.write_plot(plot, loaded, lambda: _draw(found))
-    if as_json:
-        head = output.about(loaded, options, settings_of(settings))
-        output.print_json(head | _document(found, records, airspeed))
-    elif csv != output.STANDARD_OUTPUT:
-        _print(loaded, found, records, speed)
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(found, records, airspeed),
+        table=lambda: _print(case, found, records, speed),
+        csv=lambda: csv_of(records, _COLUMNS, found.attrs),
+        plot=lambda: output.with_origin(plot_attribution(found), case),
+    )
 
 
 def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
-    """Of several modes the one that is damped least."""
+    """Return the part of the dataset on the mode that is damped least."""
     value = found.eigenvalue.values
     return found.isel(mode=[int((-value.real / abs(value)).argmin())])
 
 
 def _records(found: xarray.Dataset) -> list[dict[str, Any]]:
-    value = complex(found.eigenvalue.values[0])
-    records = []
-    for origin, change in zip(found.origin.values.tolist(), found.contribution.values[:, 0], strict=True):
-        along = (value.conjugate() * change).real / abs(value) ** 2
-        damping = -(change.real - value.real * along) / abs(value)
-        numbers = (float(change.real), float(change.imag), 100 * float(damping))
-        records.append(dict(zip(_COLUMNS, (origin, *numbers, found.warning.item()), strict=True)))
+    """Return a record of `_COLUMNS` for each origin, the largest change of growth first."""
+    changes = found.contribution.values[:, 0]
+    damping = 100 * damping_rate(found.eigenvalue.values, changes)
+    numbers = zip(changes.real.tolist(), changes.imag.tolist(), damping.tolist(), strict=True)
+    records = [
+        dict(zip(_COLUMNS, (origin, *of_origin, found.warning.item()), strict=True))
+        for origin, of_origin in zip(found.origin.values.tolist(), numbers, strict=True)
+    ]
     return sorted(records, key=lambda record: -abs(record["growth (1/s)"]))
 
 
@@ -102,12 +82,6 @@ def _document(found: xarray.Dataset, records: list[dict[str, Any]], airspeed: fl
     }
 
 
-def _draw(found: xarray.Dataset) -> Any:
-    from proprotor.plots import plot_attribution
-
-    return plot_attribution(found)
-
-
 def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], speed: str) -> None:
     output.print_head(case, found.attrs)
     value = complex(found.eigenvalue.values[0])
@@ -116,16 +90,11 @@ def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], spe
     damping = f"damping {marked(f'{-100 * value.real / abs(value):.3g}', doubt)} % of critical"
     frequency = f"{marked(f'{abs(value.imag) / float(case.operation.rotor_speed):.3f}', doubt)} per rev"
     out.print(f"{found.mode.values[0]} at {speed.strip()}: {frequency}, {damping}", style="bold")
+    rows = []
+    for origin, *numbers, _ in map(dict.values, records):
+        rows.append(
+            (origin, *(marked(f"{n:+.4f}", doubt) for n in numbers), "drives" if numbers[0] > 0 else "damps")
+        )
     columns = ("origin", "growth, 1/s", "frequency, rad/s", "damping, %", "")
-    output.print_table(columns, (_row(record) for record in records), text=("origin", ""))
+    output.print_table(columns, rows, text=("origin", ""))
     output.print_doubts(doubts_along(found.attrs["airspeed"], found.warning.values))
-
-
-def _row(record: dict[str, Any]) -> tuple[str, ...]:
-    origin, *numbers, doubt = (record[name] for name in _COLUMNS)
-    growth = numbers[0]
-    return (
-        origin,
-        *(marked(f"{number:+.4f}", doubt) for number in numbers),
-        "drives" if growth > 0 else "damps",
-    )

@@ -1,29 +1,27 @@
-"""The command `proprotor cases`: the bundled cases, and what a case rests on."""
+"""The command `proprotor cases`: the bundled cases, and what the numbers of a case rest on."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, CaseName, loaded_case, set_option, settings_of
-from proprotor.deck.file import list_cases, read_tables
+from proprotor.case import Case, list_cases
+from proprotor.commands import arguments, output
+from proprotor.deck.file import read_tables
 from proprotor.errors import InputError
 
-if TYPE_CHECKING:
-    from proprotor.case import Case
 
-
-@click.command(epilog=EXIT_CODES, short_help="List the bundled cases, or tell what one rests on.")
-@click.argument("name", required=False, type=CaseName(), metavar="[CASE]")
-@set_option
-@output.output_options()
+@arguments.command(short_help="List the bundled cases, or show one case.")
+@click.argument("name", required=False, type=arguments.CaseName(), metavar="[CASE]")
+@arguments.set_option
+@output.json_option
 def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
-    """List the bundled cases, or tell what one case, bundled or a TOML file, is and rests on.
+    """List the bundled cases, or show what one case is and which of its inputs are doubtful.
 
-    With --json every number of the case is told, with its value as written, in SI units, its status and source.
+    CASE is a bundled case or a TOML file. With --json the command prints every number of the case: its value as
+    written and in SI units, its status and its source.
 
     \b
     Examples:
@@ -36,13 +34,14 @@ def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
             raise InputError("--set", settings[0], "needs a case")
         _list(as_json)
         return
-    case = loaded_case(name, settings)
+    request = arguments.Request(name, arguments.settings_of(settings), {})
+    case = request.load()
     if as_json:
-        output.print_json(_document(case, settings))
-        return
-    from proprotor.commands.terminal import print_case
+        output.print_json(_document(case, request))
+    else:
+        from proprotor.commands.terminal import print_case  # here, because rich takes long to import
 
-    print_case(case)
+        print_case(case)
 
 
 def _list(as_json: bool) -> None:
@@ -54,8 +53,8 @@ def _list(as_json: bool) -> None:
             click.echo(f"{name:<24} {title}")
 
 
-def _document(case: Case, settings: tuple[str, ...]) -> dict[str, Any]:
-    head = output.about(case, {}, settings_of(settings))
+def _document(case: Case, request: arguments.Request) -> dict[str, Any]:
+    head = output.about(case, request)
     del head["options"]
     inputs = {
         path: {key: value for key, value in asdict(number).items() if value is not None}

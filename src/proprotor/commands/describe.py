@@ -6,25 +6,26 @@ from typing import TYPE_CHECKING
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, Field
+from proprotor.commands import arguments, output
 from proprotor.errors import InputError
 
 if TYPE_CHECKING:
     from proprotor.deck.describe import DeckField
 
-_MOST_IN_FULL = 3  # fields that are told in full; more of them are a table
+_COLUMNS = ("field", "SI unit", "range", "meaning")
+_MOST_IN_FULL = 3  # up to so many fields are printed in full, more fields as a table
 
 
-@click.command(epilog=EXIT_CODES, short_help="The fields of a deck: meaning, unit, range, default.")
-@click.argument("field", required=False, type=Field(), metavar="[FIELD]")
-@click.option("--schema", is_flag=True, help="Print the JSON schema, by which editors check a deck.")
-@click.option("--markdown", is_flag=True, help="Print all fields as a page, docs/decks.md.")
-@output.output_options()
+@arguments.command(short_help="Show the fields of a deck: meaning, unit, range, default.")
+@click.argument("field", required=False, type=arguments.Field(), metavar="[FIELD]")
+@click.option("--schema", is_flag=True, help="Print the JSON schema, with which editors check a deck.")
+@click.option("--markdown", is_flag=True, help="Print all fields as a page in Markdown (docs/decks.md).")
+@output.json_option
 def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> None:
-    """The fields of a deck: what each means, which unit and range it has, its default and its alternatives.
+    """Show the fields of a deck: the meaning, unit, range, default and alternatives of each field.
 
-    FIELD is a field, a section, a kind of support or the last name of a field; without it all are listed.
+    FIELD is a field, a section, a kind of support or the last part of a field's name. Without FIELD all fields are
+    listed.
 
     \b
     Examples:
@@ -33,7 +34,7 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
       proprotor describe beam-wing
       proprotor describe --schema > deck.schema.json
     """
-    from proprotor.deck import describe as told
+    from proprotor.deck import describe as fields  # here, because pydantic takes long to import
     from proprotor.deck.fields_page import markdown as markdown_page
     from proprotor.deck.schema import deck_schema
 
@@ -47,9 +48,9 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
     if markdown:
         click.echo(markdown_page(), nl=False)
         return
-    found = told.deck_fields() if field is None else told.find_fields(field)
+    found = fields.deck_fields() if field is None else fields.find_fields(field)
     if as_json:
-        output.print_json(told.field_records(found))
+        output.print_json(fields.field_records(found))
     elif len(found) <= _MOST_IN_FULL:
         _print_in_full(found)
     else:
@@ -71,12 +72,10 @@ def _print_table(found: tuple[DeckField, ...]) -> None:
     for kind in dict.fromkeys(field.kind for field in found):
         if kind:
             out.print(f'[support] of kind "{kind}"', style="bold")
-        rows = (_row(field) for field in found if field.kind == kind)
-        output.print_table(
-            ("field", "SI unit", "range", "meaning"), rows, text=("field", "SI unit", "meaning")
-        )
+        rows = [
+            (f"{field.path}{'*' * field.required}", field.unit, field.range, field.meaning)
+            for field in found
+            if field.kind == kind
+        ]
+        output.print_table(_COLUMNS, rows, text=("field", "SI unit", "meaning"))
     out.print("* must be given, or one of its alternatives. `proprotor describe FIELD` tells all of one.")
-
-
-def _row(field: DeckField) -> tuple[str, ...]:
-    return f"{field.path}{'*' if field.required else ''}", field.unit, field.range, field.meaning

@@ -3,55 +3,48 @@
 from __future__ import annotations
 
 import webbrowser
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
+import numpy as np
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    case_argument,
-    in_order,
-    loaded_case,
-    model_options,
-    settings_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.needs import need
+from proprotor.stability.boundaries import scan_speeds
+from proprotor.units import speeds
 
 if TYPE_CHECKING:
     from bokeh.document import Document
 
-_POINTS = 60
+_POINTS = 60  # airspeeds by default
 
 
-@click.command(epilog=EXIT_CODES, short_help="A page with sliders on the inputs, and at once what they do.")
-@case_argument
+@arguments.command(short_help="Move sliders on the inputs, and see at once what they do.")
+@arguments.case_argument
 @click.option(
     "--speed",
     metavar="RANGE",
-    help='Airspeeds drawn, such as "100:400:5kt"; by default 60 from 0.2 to 1.2 of the tip speed.',
+    help='Airspeeds to draw: "100:400:5kt"; by default 60 airspeeds from 0.2 to 1.2 of the tip speed.',
 )
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=5006, show_default=True, help="0 takes a free one."
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=5006,
+    show_default=True,
+    help="Port of the page on this machine; 0 takes a free port.",
 )
-@click.option("--no-browser", is_flag=True, help="Tell the address, and open no browser.")
-@output.output_options()
-@model_options
+@click.option("--no-browser", is_flag=True, help="Print the address, and open no browser.")
+@output.json_option
+@arguments.model_options
 def explore(
-    case: str,
-    settings: tuple[str, ...],
-    speed: str | None,
-    port: int,
-    no_browser: bool,
-    as_json: bool,
-    **options: Any,
+    request: arguments.Request, speed: str | None, port: int, no_browser: bool, as_json: bool
 ) -> None:
-    """Sliders on the inputs of a deck, with damping and root locus that follow.
+    """Open a page with sliders on the inputs of a deck; damping and root locus follow the sliders.
 
-    CASE is a bundled case or a TOML file, which stays as it is: what one sets is saved from the page as a deck of its
-    own. The page is served to this machine alone, until Ctrl+C. Needs the extra `explore`: pip install
+    CASE is a bundled case or a TOML file. The file stays as it is; the page saves your settings as a new deck. Only
+    this machine can open the page, and Ctrl+C ends it. The command needs the extra `explore`: pip install
     "proprotor[explore]".
 
     \b
@@ -60,25 +53,20 @@ def explore(
       proprotor explore my.toml --speed 100:350:5kt --pitch coupling
       proprotor explore my.toml --port 0 --no-browser
     """
-    import numpy as np
-
-    from proprotor.stability.boundaries import scan_speeds
-    from proprotor.units import speeds
-
     need("bokeh", "explore", "the page", "explore")
     need("tornado", "explore", "the page", "explore")
-    options, given = in_order(options), settings_of(settings)
     airspeeds = None if speed is None else np.unique(speeds(speed, "--speed"))
     if airspeeds is not None and len(airspeeds) < 2:
         raise InputError("--speed", speed, "must be a range of airspeeds")
-    loaded = loaded_case(case, settings)
+    case = request.load()
     with waiting("Making the page"):
+        # Here, because bokeh takes long to import and may not be installed.
         from proprotor.explore.analysis import live_modes
         from proprotor.explore.page import ExplorePage
         from proprotor.explore.server import ADDRESS, listen, serve
 
-        drawn = scan_speeds(loaded, _POINTS) if airspeeds is None else airspeeds
-        live_modes(loaded, drawn, **options)  # which tells what is wrong before anything is served
+        drawn = scan_speeds(case, _POINTS) if airspeeds is None else airspeeds
+        live_modes(case, drawn, **request.options)  # an unusable input ends here, before anything is served
     try:
         opened = listen(port)
     except OSError as error:
@@ -86,11 +74,12 @@ def explore(
         raise click.ClickException(f"--port = {port}: cannot listen on {ADDRESS} ({reason})") from None
 
     def put_on(document: Document) -> None:
-        ExplorePage(loaded, case, drawn, given, output.told_options(loaded, options)).put_on(document)
+        options = output.options_in_force(case, request.options)
+        ExplorePage(case, request.name, drawn, request.settings, options).put_on(document)
 
     def ready(address: str) -> None:
         if as_json:
-            output.print_json(output.about(loaded, options, given) | {"address": address})
+            output.print_json(output.about(case, request) | {"address": address})
         else:
             click.echo(f"{address}  (Ctrl+C ends it)")
         if not no_browser:

@@ -1,4 +1,4 @@
-"""The command `proprotor flutter`: where a case becomes unstable."""
+"""The command `proprotor flutter`: the airspeeds at which a case becomes unstable."""
 
 from __future__ import annotations
 
@@ -7,66 +7,45 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    case_argument,
-    in_order,
-    level_of,
-    level_option,
-    loaded_case,
-    model_options,
-    one_speed,
-    scan_option,
-    settings_of,
-    unit_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
-from proprotor.model.doubts import doubt_at, marked
+from proprotor.model.doubts import doubt_at
 from proprotor.stability.flutter_messages import (
     COLUMNS,
     boundary_record,
+    boundary_row,
     failed_records,
     mechanism_message,
     modes_beyond,
     verdict,
 )
 from proprotor.tables.csv_text import csv_of
-from proprotor.units import KNOT
+from proprotor.units import KNOT, factor_to_si, speeds
 
 if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.stability.flutter import FlutterPoint
 
 
-@click.command(epilog=EXIT_CODES, short_help="Flutter and divergence boundaries, and the margin.")
-@case_argument
-@scan_option
-@click.option(
-    "--speed", metavar="SPEED", help='An airspeed, such as "250 kt", whose margin to flutter is told.'
-)
-@level_option
+@arguments.command(short_help="Find flutter and divergence boundaries, and the margin.")
+@arguments.case_argument
+@arguments.scan_option
+@click.option("--speed", metavar="SPEED", help='Airspeed whose margin to flutter is wanted: "250 kt".')
+@arguments.level_option
 @output.output_options(csv="Write a row for each boundary.")
-@model_options
+@arguments.model_options
 def flutter(
-    case: str,
-    settings: tuple[str, ...],
-    scan: str | None,
-    speed: str | None,
-    level: str,
-    csv: str | None,
-    as_json: bool,
-    **options: Any,
+    request: arguments.Request, outputs: output.Outputs, scan: str | None, speed: str | None, level: float
 ) -> None:
-    """Airspeeds at which modes become unstable, or stable again.
+    """Find the airspeeds at which modes become unstable, or stable again.
 
-    CASE is a bundled case (see `proprotor cases`) or a TOML file that describes one.
+    CASE is a bundled case (see `proprotor cases`) or a TOML file.
 
-    Boundaries are sought in the whole range, between the airspeeds of the scan too, and settled to rounding: flutter,
-    where a pair of eigenvalues loses its damping, and divergence, where a real one does. The mechanism tells which
-    modes take part in the motion there and how much. Where no mode becomes unstable, the range that was searched is
-    told, and the least damping in it with its mode. Airspeeds that could not be analysed are told with the reason.
+    The search covers the whole range, also between the airspeeds of the scan, and is exact to rounding. At flutter a
+    pair of eigenvalues loses its damping, at divergence a real eigenvalue does. The mechanism says which modes take
+    part in the motion at the boundary, and how much. If no mode becomes unstable, the command prints the range of the
+    search, and the least damping in the range with its mode. If airspeeds could not be analysed, it says why.
 
     \b
     Examples:
@@ -74,26 +53,20 @@ def flutter(
       proprotor flutter xv15 --speed "160 kt" --level "3 %"
       proprotor flutter my.toml --set rotor.precone="1.5 deg" --json
     """
-    from proprotor.units import speeds
-
-    output.check_outputs(csv, as_json=as_json)
-    options, damping = in_order(options), level_of(level)
     airspeeds = None if scan is None else speeds(scan, "--scan")
-    at = None if speed is None else one_speed(speed)
+    at = None if speed is None else arguments.one_speed(speed)
     if at == 0:
         raise InputError("--speed", speed, "must be above zero")
-    loaded = loaded_case(case, settings)
+    case = request.load()
     with waiting("Looking for boundaries"):
-        found = loaded.flutter_point(airspeeds, level=damping, **options)
-    records = [boundary_record(boundary, loaded) for boundary in found.boundaries]
-    if csv:
-        rows = [record | {"mechanism": mechanism_message(record["mechanism"])} for record in records]
-        output.write_csv(csv, csv_of(rows, COLUMNS, found.stamp))
-    if as_json:
-        head = output.about(loaded, options, settings_of(settings))
-        output.print_json(head | _document(found, records, at))
-    elif csv != output.STANDARD_OUTPUT:
-        _print(loaded, found, at, unit_of(scan or speed or "kt"))
+        found = case.flutter_point(airspeeds, level=level, **request.options)
+    records = [boundary_record(boundary, case) for boundary in found.boundaries]
+    rows = [record | {"mechanism": mechanism_message(record["mechanism"])} for record in records]
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(found, records, at),
+        table=lambda: _print(case, found, records, at, arguments.unit_of(scan or speed or "kt")),
+        csv=lambda: csv_of(rows, COLUMNS, found.stamp),
+    )
     if not math.isfinite(found.searched[0]):
         raise click.exceptions.Exit(1)
 
@@ -128,9 +101,9 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
     return document | {"at": margin}
 
 
-def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None:
-    from proprotor.units import factor_to_si
-
+def _print(
+    case: Case, found: FlutterPoint, records: list[dict[str, Any]], at: float | None, unit: str
+) -> None:
     output.print_head(case, found.stamp)
     factor = factor_to_si(unit, unit, "m/s")
     if not math.isfinite(found.searched[0]):
@@ -138,22 +111,9 @@ def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None
         for line in (stretch.message(unit, factor) for stretch in found.failed):
             output.console().print(line)
         return
-    if found.boundaries:
+    if records:
         columns = (unit, "Hz", "/rev", "mode", "kind", "", "mechanism")
-        rows = (_row(boundary_record(boundary, case), factor) for boundary in found.boundaries)
-        output.print_table(columns, rows, text=columns[3:])
+        output.print_table(columns, (boundary_row(record, factor) for record in records), text=columns[3:])
     for line in verdict(found, at, unit, factor):
         output.console().print(line, style="bold")
     output.print_doubts(found.doubts, unit, factor)
-
-
-def _row(record: dict[str, Any], factor: float) -> tuple[str, ...]:
-    return (
-        marked(f"{record['airspeed (m/s)'] / factor:.2f}", record["warning"]),
-        f"{record['frequency (Hz)']:.3f}",
-        f"{record['frequency (per rev)']:.3f}",
-        record["mode"],
-        record["kind"],
-        "begins" if record["onset"] else "ends",
-        mechanism_message(record["mechanism"]),
-    )

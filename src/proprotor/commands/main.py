@@ -1,4 +1,4 @@
-"""The command `proprotor`."""
+"""The command `proprotor`: the group of all commands, and how an error ends one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import IO, Any
 
 import click
 
-from proprotor.commands.arguments import EXIT_CODES as _EXIT_CODES
+from proprotor.commands.arguments import EXIT_CODES
 from proprotor.commands.attribution import attribution
 from proprotor.commands.cases import cases
 from proprotor.commands.describe import describe
@@ -26,9 +26,7 @@ from proprotor.commands.study import study
 from proprotor.commands.sweep import sweep
 from proprotor.errors import InputError
 
-# pint, pydantic, xarray, rich and matplotlib are slow to import: each is imported where it is needed.
-
-__all__ = ["main", "sweep"]
+# pint, pydantic, xarray, rich, bokeh and matplotlib are slow to import: functions import them when they need them.
 
 
 class _UnusableInput(click.ClickException):
@@ -47,7 +45,7 @@ class _Interrupted(click.ClickException):
 
 @contextlib.contextmanager
 def errors_as_messages() -> Iterator[None]:
-    """Turn errors of what a user gave, of files and an interruption into one message each, without a traceback."""
+    """Turn errors about inputs and files, and an interruption, into one message each, without a traceback."""
     try:
         yield
     except InputError as error:
@@ -62,27 +60,8 @@ def errors_as_messages() -> Iterator[None]:
         raise click.ClickException(f"{where}: {error.strerror or error}") from None
 
 
-def _let_go_of_standard_output() -> None:
-    """Send what is still to be written nowhere, or Python would try once more at its end, and complain."""
-    with contextlib.suppress(OSError, AttributeError, ValueError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
-        os.close(nowhere)
-
-
-def _write_any_character() -> None:
-    """Have characters that the terminal's encoding lacks, such as cp1252's Greek, written as their codes."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
-
-
-class _InOrder(click.Group):
-    """Commands listed as a newcomer meets them."""
-
-    def invoke(self, ctx: click.Context) -> Any:
-        with errors_as_messages():
-            return super().invoke(ctx)
+class _Commands(click.Group):
+    """Commands in the order in which a newcomer meets them; an error is one message, without a traceback."""
 
     def main(self, *args: Any, **more: Any) -> Any:
         _write_any_character()
@@ -91,8 +70,27 @@ class _InOrder(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self.commands)
 
+    def invoke(self, ctx: click.Context) -> Any:
+        with errors_as_messages():
+            return super().invoke(ctx)
 
-@click.group(cls=_InOrder, epilog=_EXIT_CODES, context_settings={"max_content_width": 100})
+
+def _let_go_of_standard_output() -> None:
+    """Discard the rest of the output; otherwise Python would try to write it once more at its end, and complain."""
+    with contextlib.suppress(OSError, AttributeError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+
+
+def _write_any_character() -> None:
+    """Write characters that the encoding of the terminal lacks, such as Greek in cp1252, as their codes."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+@click.group(cls=_Commands, epilog=EXIT_CODES, context_settings={"max_content_width": 100})
 @click.version_option(package_name="proprotor")
 def main() -> None:
     """Whirl-flutter stability of gimballed tiltrotors.
@@ -102,32 +100,21 @@ def main() -> None:
       proprotor cases                               the bundled cases
       proprotor sweep xv15 --speed 50:400:5kt       frequency and damping of each mode
       proprotor flutter xv15                        flutter speed and all other boundaries
-      proprotor report xv15                         all of it on one page, HTML or PDF
+      proprotor report xv15                         all results on one page, HTML or PDF
       proprotor explore xv15                        a page with sliders on the inputs
       proprotor new my.toml                         a commented deck of your own
-      proprotor describe rotor.precone              what a field of it is
-      proprotor sweep --help                        all there is to choose
+      proprotor describe rotor.precone              what a field of a deck means
+      proprotor sweep --help                        every option of a command
 
-    Each command tells its options with --help. --set changes a field of the deck for one run; --json prints
-    everything a command finds.
+    A deck is the TOML file that describes a case. --set changes a field of the deck for one run; --json prints
+    everything that a command finds. Each command lists its options with --help.
 
     \b
-    Completion in the shell, for bash (likewise zsh, fish):
+    To have the shell complete commands and fields, in bash (likewise in zsh and fish):
       eval "$(_PROPROTOR_COMPLETE=bash_source proprotor)"
     """
 
 
-for _command in (
-    cases,
-    new,
-    describe,
-    sweep,
-    flutter,
-    stability_map,
-    sensitivity,
-    attribution,
-    report,
-    explore,
-    study,
-):
+_ANALYSES = (sweep, flutter, stability_map, sensitivity, attribution, report, explore, study)
+for _command in (cases, new, describe, *_ANALYSES):
     main.add_command(_command)

@@ -1,35 +1,37 @@
-"""The command `proprotor new`: a commented deck to begin with."""
+"""The command `proprotor new`: a commented deck as a start."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import EXIT_CODES, CaseName
+from proprotor.commands import arguments, output
+from proprotor.deck.file import list_cases, read_tables
+from proprotor.deck.template import deck_text
 from proprotor.errors import InputError
 
 
-@click.command(epilog=EXIT_CODES, short_help="Write a commented deck that runs as it is.")
+@arguments.command(short_help="Write a commented deck that runs as it is.")
 @click.argument("file", metavar="FILE")
 @click.option(
     "--from",
     "base",
-    type=CaseName(),
+    type=arguments.CaseName(),
     default="xv15",
     show_default=True,
     metavar="CASE",
-    help="Whose numbers it has: a bundled case or a TOML file.",
+    help="Case whose numbers the deck gets: a bundled case or a TOML file.",
 )
-@click.option("--variant", is_flag=True, help="Write a short deck that alters the other, instead of a copy.")
+@click.option("--variant", is_flag=True, help="Write a short deck that refers to CASE and alters it.")
 @click.option("--force", is_flag=True, help="Replace a file that exists.")
-@output.output_options()
+@output.json_option
 def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None:
-    """Write a deck with every field there is, each with its meaning, its range and its default.
+    """Write a deck with all fields of decks, each with its meaning, range and default.
 
-    It has the numbers of another case and runs as it is; change what differs. Fields left out stand in it as comments
-    with an example.
+    The deck has the numbers of another case and runs as it is; change the numbers that differ. Fields that the other
+    case does not set are comments with an example.
 
     \b
     Examples:
@@ -37,11 +39,7 @@ def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None
       proprotor new wing.toml --from xv15-wing
       proprotor new stiffer.toml --variant
     """
-    import os
-
-    from proprotor.deck.file import list_cases, read_tables
-    from proprotor.deck.template import deck_text
-    from proprotor.deck.validation import validate
+    from proprotor.deck.validation import validate  # here, because pydantic takes long to import
 
     place = Path(file)
     if place.suffix != ".toml":

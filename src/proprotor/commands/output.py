@@ -7,50 +7,121 @@ import math
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from proprotor.commands.arguments import Command, Option
+from proprotor.commands.arguments import Command, Option, Request
+from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.files import output as output_file
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK, Doubt, footnotes
+from proprotor.model.provenance import reservations
+from proprotor.plots import rests_on
+from proprotor.plots.headless import drawn
 from proprotor.rotor.options import CHOICES, parse_options
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from proprotor.case import Case
     from proprotor.commands.terminal import PlainConsole
 
-STANDARD_OUTPUT = "-"  # as the file of an option: print instead, as other programs have it
-FIGURE_FORMATS = (".png", ".pdf", ".svg")
+_STANDARD_OUTPUT = "-"  # as the file of an option: print instead of writing, as other programs do
+_FIGURE_FORMATS = (".png", ".pdf", ".svg")
 _NARROWEST = 30  # characters of a wrapped column
 
 
-def output_options(*, csv: str = "", plot: str = "") -> Option:
-    """`--json`, and `--csv` and `--plot` with what they hold."""
+class Outputs(NamedTuple):
+    """Where a command writes its results: JSON instead of a table, and the files of `--csv` and `--plot`."""
+
+    as_json: bool
+    csv: str | None = None
+    plot: str | None = None
+
+    def check(self) -> None:
+        """Refuse files that cannot be written, before anything is analysed.
+
+        Raises
+        ------
+        InputError, click.ClickException
+            As `check_writable`; for a figure whose name does not end in .png, .pdf or .svg; for CSV and JSON on one
+            standard output.
+        """
+        if self.as_json and self.csv == _STANDARD_OUTPUT:
+            raise InputError("--csv", self.csv, "goes without --json: both would be printed")
+        if self.plot and Path(self.plot).suffix.lower() not in _FIGURE_FORMATS:
+            raise InputError("--plot", self.plot, f"must end in {', '.join(_FIGURE_FORMATS)}")
+        check_writable("--csv", None if self.csv == _STANDARD_OUTPUT else self.csv)
+        check_writable("--plot", self.plot)
+
+    def write(
+        self,
+        document: Callable[[], dict[str, Any]],
+        table: Callable[[], None],
+        csv: Callable[[], bytes],
+        plot: Callable[[], Axes | Figure] | None = None,
+    ) -> None:
+        """Write the files that the user asked for, then print the JSON document or the table.
+
+        Files come first: a reader of the table, such as `head`, may leave early.
+
+        Parameters
+        ----------
+        document, csv, plot : callable
+            Make the content of the outputs; each is called if its output is asked for.
+        table : callable
+            Prints the table.
+
+        Raises
+        ------
+        InputError, click.ClickException
+            As `write`.
+        """
+        if self.csv == _STANDARD_OUTPUT:
+            click.echo(csv(), nl=False)
+        elif self.csv:
+            write("--csv", self.csv, csv())
+        if self.plot and plot:
+            _write_plot(self.plot, plot)
+        if self.as_json:
+            print_json(document())
+        elif self.csv != _STANDARD_OUTPUT:
+            table()
+
+
+def json_option(command: Command) -> Command:
+    """Add `--json` to a command, which gets it as `as_json`."""
+    json_help = "Print everything as JSON instead of the table."
+    return click.option("--json", "as_json", is_flag=True, help=json_help)(command)
+
+
+def output_options(*, csv: str, plot: str = "") -> Option:
+    """Add `--json`, `--csv` and, if `plot` says what it shows, `--plot` to a command, which gets all as `outputs`."""
 
     def declare(command: Command) -> Command:
-        json_help = "Print everything as JSON instead of the table."
-        command = click.option("--json", "as_json", is_flag=True, help=json_help)(command)
-        if csv:
-            csv_help = f"{csv} - prints it instead of the table."
-            command = click.option("--csv", metavar="FILE", help=csv_help)(command)
-        if plot:
-            command = click.option("--plot", metavar="FILE", help=f"{plot}: a .png, .pdf or .svg file.")(
-                command
-            )
-        return command
+        @wraps(command)
+        def with_outputs(*, as_json: bool, csv: str | None, plot: str | None = None, **given: Any) -> Any:
+            outputs = Outputs(as_json, csv, plot)
+            outputs.check()
+            return command(outputs=outputs, **given)
+
+        declared = json_option(with_outputs)
+        csv_help = f"{csv} The file name - prints the rows instead of the table."
+        declared = click.option("--csv", metavar="FILE", help=csv_help)(declared)
+        plot_help = f"{plot}: a .png, .pdf or .svg file."
+        return click.option("--plot", metavar="FILE", help=plot_help)(declared) if plot else declared
 
     return declare
 
 
 def print_json(document: Any) -> None:
-    """Print plain data as JSON; what is not finite as null."""
+    """Print plain data as JSON; numbers that are not finite become null."""
     click.echo(json.dumps(_finite(document), indent=1, allow_nan=False))
 
 
@@ -62,15 +133,13 @@ def _finite(data: Any) -> Any:
     return None if isinstance(data, float) and not math.isfinite(data) else data
 
 
-def about(case: Case, options: Mapping[str, Any], settings: Mapping[str, str]) -> dict[str, Any]:
-    """What stands at the head of every JSON document of a case."""
-    from proprotor.model.provenance import reservations
-
-    own = stamp.of_case(case, options)
+def about(case: Case, request: Request) -> dict[str, Any]:
+    """Return the entries with which every JSON document on a case begins."""
+    own = stamp.of_case(case, request.options)
     return {
         "case": case.name,
         "title": case.title,
-        "set": dict(settings),
+        "set": dict(request.settings),
         "rotor speed (rad/s)": float(case.operation.rotor_speed),
         "deck": own["deck"],
         "options": json.loads(own["options"]),
@@ -80,22 +149,21 @@ def about(case: Case, options: Mapping[str, Any], settings: Mapping[str, str]) -
     }
 
 
-def told_options(case: Case, options: Mapping[str, Any]) -> dict[str, Any]:
-    """The choices as they hold for a case, and the other options that are given, as keywords."""
+def options_in_force(case: Case, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of the model as keywords, each choice as it holds for the case."""
     choice = parse_options(case.model_options(options))
     return {name: getattr(choice, name) for name in (*CHOICES, *options)}
 
 
 def console() -> PlainConsole:
-    """Of the standard output; text is printed as it is."""
+    """Return a console of the standard output that prints text as it is."""
     from proprotor.commands.terminal import PlainConsole  # here, because rich takes long to import
 
     return PlainConsole()
 
 
 def print_head(case: Case, found: Mapping[Any, Any]) -> None:
-    """Print what was analysed, with which options of those that are no defaults, and what it rests on."""
-    from proprotor.model.provenance import reservations
+    """Print the case, the options that are no defaults, and what the numbers rest on."""
     from proprotor.tables.sweep_table import heading
 
     out = console()
@@ -103,21 +171,26 @@ def print_head(case: Case, found: Mapping[Any, Any]) -> None:
         out.print(line)
 
 
+def print_footnotes(sentences: Iterable[str]) -> None:
+    """Print what the question marks in a table mean, a line for each doubt."""
+    for sentence in sentences:
+        console().print(f"{MARK} {sentence}", style="yellow")
+
+
 def print_doubts(doubts: Iterable[Doubt], unit: str = "kt", factor: float = KNOT) -> None:
-    """Print what the question marks above mean, positions in a unit of so many SI units."""
-    for line in footnotes(doubts, unit, factor):
-        console().print(f"{MARK} {line}", style="yellow")
+    """Print the footnotes of doubts along airspeeds in a unit of speed; `factor` is that unit in m/s."""
+    print_footnotes(footnotes(doubts, unit, factor))
 
 
 def doubts_as_data(doubts: Iterable[Doubt]) -> list[dict[str, Any]]:
-    """Doubts along airspeeds, as JSON has them."""
+    """Return doubts along airspeeds as entries of a JSON document."""
     return [{"doubt": doubt.text, "from (m/s)": doubt.low, "to (m/s)": doubt.high} for doubt in doubts]
 
 
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: Sequence[str] = ()) -> None:
-    """Print a table: numbers to the right, columns named in `text` to the left.
+    """Print a table: numbers are set to the right, the columns named in `text` to the left.
 
-    Nothing is cut off; only the last column, when it is text, is wrapped to the width of the terminal.
+    No cell is cut off. The last column, if it is text, is wrapped to the width of the terminal.
     """
     table = [tuple(columns), *map(tuple, rows)]
     widths = [max(len(row[place]) for row in table) for place in range(len(columns))]
@@ -138,8 +211,8 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: 
 
 
 @contextmanager
-def told(option: str, path: str | None) -> Iterator[None]:
-    """An output that cannot be written, in one message; another error where no path is given."""
+def one_message(option: str, path: str | None) -> Iterator[None]:
+    """Turn an `OSError` about the output of an option into one message; without a path the error passes on."""
     try:
         yield
     except OSError as error:
@@ -155,48 +228,23 @@ def check_writable(option: str, path: str | None) -> None:
     Raises
     ------
     InputError
-        When the path is no place for a file.
+        If the path is no place for a file.
     click.ClickException
-        When no file can be made in its folder, or the one that is there may not be replaced.
+        If no file can be made in the folder, or the present file may not be replaced.
     """
-    if path is None:
-        return
-    try:
-        with told(option, path):
+    if path is not None:
+        with _named(option, path):
             output_file.check_writable(path)
+
+
+@contextmanager
+def _named(option: str, path: str) -> Iterator[None]:
+    """Have errors about a path name the option that gave it."""
+    try:
+        with one_message(option, path):
+            yield
     except InputError as error:
         raise InputError(option, path, error.rule) from None
-
-
-def check_outputs(csv: str | None = None, plot: str | None = None, *, as_json: bool) -> None:
-    """Refuse `--csv` and `--plot` that cannot be written, or a figure of another kind, before anything is analysed.
-
-    Raises
-    ------
-    InputError, click.ClickException
-        As `check_writable`; for a figure whose name does not end in .png, .pdf or .svg; for CSV and JSON on one
-        standard output.
-    """
-    if as_json and csv == STANDARD_OUTPUT:
-        raise InputError("--csv", csv, "goes without --json: both would be printed")
-    if plot and Path(plot).suffix.lower() not in FIGURE_FORMATS:
-        raise InputError("--plot", plot, f"must end in {', '.join(FIGURE_FORMATS)}")
-    check_writable("--csv", None if csv == STANDARD_OUTPUT else csv)
-    check_writable("--plot", plot)
-
-
-def write_csv(path: str, content: bytes) -> None:
-    """Write the file of `--csv`, or print it.
-
-    Raises
-    ------
-    InputError, click.ClickException
-        As `write`.
-    """
-    if path == STANDARD_OUTPUT:
-        click.echo(content, nl=False)
-    else:
-        write("--csv", path, content)
 
 
 def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes) -> None:
@@ -205,42 +253,28 @@ def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes
     Raises
     ------
     InputError
-        When the path is no place for a file.
+        If the path is no place for a file.
     click.ClickException
-        When the file cannot be written.
+        If the file cannot be written.
     """
-    try:
-        with told(option, path):
-            output_file.write_whole(path, content if callable(content) else lambda file: file.write(content))
-    except InputError as error:
-        raise InputError(option, path, error.rule) from None
+    with _named(option, path):
+        output_file.write_whole(path, content if callable(content) else lambda file: file.write(content))
     click.echo(f"Wrote {path}", err=True)
 
 
-def write_plot(path: str, case: Case, draw: Callable[[], Axes]) -> None:
-    """Write the figure of `--plot`, with what it is and what it rests on below.
+def _write_plot(path: str, draw: Callable[[], Axes | Figure]) -> None:
+    """Write the figure of `--plot`.
 
-    Raises
-    ------
-    InputError, click.ClickException
-        As `write`.
+    Axes are cut out of their figure close to what is drawn; a whole figure keeps its margins.
     """
-    from proprotor.commands.waiting import waiting
+    with waiting("Drawing"), drawn(draw) as (plot, figure):
+        close: dict[str, Any] = {} if plot is figure else {"bbox_inches": "tight"}
+        form = Path(path).suffix.removeprefix(".").lower()
+        write("--plot", path, lambda file: figure.savefig(file, format=form, dpi=160, **close))
 
-    with waiting("Drawing"):
-        import matplotlib
 
-        matplotlib.use("Agg")  # no window, and no display needed
-        from matplotlib import pyplot
+def with_origin(axes: Axes, case: Case) -> Axes:
+    """Write beneath a plot which case it shows, and what the numbers rest on; return the axes."""
+    from proprotor.tables.sweep_table import heading
 
-        from proprotor.plots import rests_on
-        from proprotor.tables.sweep_table import heading
-
-        axes = draw()
-        rests_on(axes, case, f"{heading(case)}.")
-        figure = axes.get_figure(root=True)
-        if figure is None:
-            raise RuntimeError("axes without a figure")
-        suffix = Path(path).suffix.removeprefix(".").lower()
-        write("--plot", path, lambda file: figure.savefig(file, format=suffix, dpi=160, bbox_inches="tight"))
-        pyplot.close(figure)
+    return rests_on(axes, case, f"{heading(case)}.")

@@ -1,4 +1,4 @@
-"""The command `proprotor report`: all that can be told of a case, on one page."""
+"""The command `proprotor report`: all results on a case, on one page."""
 
 from __future__ import annotations
 
@@ -9,19 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    case_argument,
-    in_order,
-    loaded_case,
-    model_options,
-    settings_of,
-    unit_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
+from proprotor.deck.file import read_tables
+from proprotor.deck.settings import with_settings
+from proprotor.deck.written import FilePath
 from proprotor.errors import InputError
+from proprotor.files.fingerprint import fingerprint
 from proprotor.stability.flutter_messages import boundary_record, failed_records
+from proprotor.units import speeds
 
 if TYPE_CHECKING:
     from proprotor.case import Case
@@ -30,35 +26,27 @@ if TYPE_CHECKING:
 _SUFFIXES = (".html", ".pdf")
 
 
-@click.command(epilog=EXIT_CODES, short_help="All that can be told of a case, as one page in HTML or PDF.")
-@case_argument
+@arguments.command(short_help="Write all results on a case as one page, HTML or PDF.")
+@arguments.case_argument
 @click.option(
     "--speed",
     metavar="RANGE",
-    help='Airspeeds analysed, such as "50:400:5kt"; by default 0.2 to 1.2 of the tip speed, in knots.',
+    help='Airspeeds to analyse: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed, in knots.',
 )
 @click.option(
     "--out",
     metavar="FILE",
-    help="Where it is written: a .html or .pdf file; by default the name of the case and -report.html.",
+    help="File to write, .html or .pdf; by default the name of the case and -report.html.",
 )
 @click.option("--pdf", is_flag=True, help="Write a PDF beside the HTML (pip install 'proprotor[report]').")
-@output.output_options()
-@model_options
-def report(
-    case: str,
-    settings: tuple[str, ...],
-    speed: str | None,
-    out: str | None,
-    pdf: bool,
-    as_json: bool,
-    **options: Any,
-) -> None:
-    """A report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
+@output.json_option
+@arguments.model_options
+def report(request: arguments.Request, speed: str | None, out: str | None, pdf: bool, as_json: bool) -> None:
+    """Write a report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
 
-    CASE is a bundled case or a TOML file. The file needs nothing else: send it, print it, keep it. What the numbers
-    rest on stands on its first page. The same deck and options give the same file, but for the date, which
-    SOURCE_DATE_EPOCH (seconds since 1970) sets.
+    CASE is a bundled case or a TOML file. The report is one file that needs no other: send it, print it, keep it. Its
+    first page says what the numbers rest on. The same deck and options give the same file, except for the date;
+    the environment variable SOURCE_DATE_EPOCH (seconds since 1970) sets the date.
 
     \b
     Examples:
@@ -66,34 +54,31 @@ def report(
       proprotor report my.toml --out my.pdf
       proprotor report my.toml --speed 100:400:5kt --set rotor.precone="1.5 deg" --pdf
     """
-    from proprotor.report import analyse, report_document
-    from proprotor.units import speeds
+    from proprotor.report import analyse, report_document  # here, because rich takes long to import
 
-    date, options, given = _date(), in_order(options), settings_of(settings)
-    airspeeds = None if speed is None else speeds(speed, "--speed")
-    loaded = loaded_case(case, settings)
-    places = _places(out or f"{loaded.name}-report.html", pdf)
+    date, airspeeds = _date(), None if speed is None else speeds(speed, "--speed")
+    case = request.load()
+    places = _places(out or f"{case.name}-report.html", pdf)
     for place in places:
         output.check_writable("--out", place)
     with waiting("Analysing"):
-        found = analyse(loaded, airspeeds, options)
+        found = analyse(case, airspeeds, request.options)
     with waiting("Drawing"):
         document = report_document(
-            loaded,
+            case,
             found,
-            settings=given,
-            deck_hash=_deck_hash(case, given, loaded),
+            settings=request.settings,
+            deck_hash=_deck_hash(case, request),
             date=date,
-            unit=unit_of(speed or "kt"),
+            unit=arguments.unit_of(speed or "kt"),
         )
         contents = {place: _content(document, place) for place in places}
     for place, content in contents.items():
         output.write("--out", place, content)
     if as_json:
-        head = output.about(loaded, options, given)
-        output.print_json(head | _told(loaded, found, document, places))
+        output.print_json(output.about(case, request) | _document(case, found, document, places))
     else:
-        output.print_head(loaded, found.sweep.attrs)
+        output.print_head(case, found.sweep.attrs)
         for sentence in document.verdict:
             output.console().print(sentence, style="bold")
     if not found.mode:
@@ -101,8 +86,8 @@ def report(
 
 
 def _places(out: str, pdf: bool) -> list[str]:
-    """The files to write, refused before anything is analysed where they cannot be."""
-    from proprotor.report.typeset import check_typesetter
+    """Return the files to write. Refuse other kinds of files, and a PDF without its typesetter, before the analysis."""
+    from proprotor.report import check_typesetter
 
     place = Path(out)
     if place.suffix.lower() not in _SUFFIXES:
@@ -122,7 +107,7 @@ def _content(document: Document, place: str) -> bytes:
 
 
 def _date() -> str:
-    """Today, or the day of SOURCE_DATE_EPOCH, which reproducible builds set."""
+    """Return the date of today, or of SOURCE_DATE_EPOCH, which reproducible builds set."""
     given = os.environ.get("SOURCE_DATE_EPOCH")
     if given is None:
         return datetime.now(UTC).date().isoformat()
@@ -132,21 +117,16 @@ def _date() -> str:
         raise InputError("SOURCE_DATE_EPOCH", given, "must be seconds since 1970") from None
 
 
-def _deck_hash(name: str, settings: dict[str, str], case: Case) -> str:
-    """SHA-256 of a deck with its base, what was set, and the content of the files that it names."""
-    from proprotor.deck.file import read_tables
-    from proprotor.deck.settings import with_settings
-    from proprotor.deck.written import FilePath
-    from proprotor.files.fingerprint import fingerprint
-
+def _deck_hash(case: Case, request: arguments.Request) -> str:
+    """Return the SHA-256 of a deck with its base, the fields of `--set`, and the content of the files in the deck."""
     numbers = {
         path: Path(number.si).read_bytes() if isinstance(number.si, FilePath) else number.si
         for path, number in case.given.items()
     }
-    return fingerprint((with_settings(read_tables(name), settings), numbers))
+    return fingerprint((with_settings(read_tables(request.name), request.settings), numbers))
 
 
-def _told(case: Case, found: Findings, document: Document, places: list[str]) -> dict[str, Any]:
+def _document(case: Case, found: Findings, document: Document, places: list[str]) -> dict[str, Any]:
     return {
         "written": places,
         "date": document.date,

@@ -1,32 +1,22 @@
-"""The command `proprotor map`: where in the plane of two inputs a case is stable."""
+"""The command `proprotor map`: in which part of the plane of two inputs a case is stable."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 import numpy as np
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    InputValues,
-    case_argument,
-    in_order,
-    level_of,
-    level_option,
-    loaded_case,
-    model_options,
-    one_speed,
-    settings_of,
-    unit_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.model.doubts import MARK, map_doubts, marked
+from proprotor.plots import plot_stability_map
+from proprotor.study.sampling import grid
 from proprotor.tables.csv_text import csv_of
 from proprotor.typing import Array
+from proprotor.units import factor_to_si
 
 if TYPE_CHECKING:
     import xarray
@@ -42,42 +32,39 @@ class _Axis(NamedTuple):
     path: str
     values: Array  # SI
     unit: str  # as written
-    factor: float  # SI units in one of them
+    factor: float  # the unit in SI units
 
 
-@click.command("map", epilog=EXIT_CODES, short_help="Where in the plane of two inputs a case is stable.")
-@case_argument
+@arguments.command("map", short_help="Show where in the plane of two inputs a case is stable.")
+@arguments.case_argument
 @click.option(
     "--x",
     required=True,
-    type=InputValues(),
+    type=arguments.InputValues(),
     metavar="INPUT=RANGE",
-    help=f'Across: an input by deck path and its values, {_EXAMPLE}, or "airspeed=100:400:10kt".',
+    help=f'Input on the axis across, by deck path, and its values: {_EXAMPLE} or "airspeed=100:400:10kt".',
 )
-@click.option("--y", required=True, type=InputValues(), metavar="INPUT=RANGE", help="Up, likewise.")
-@click.option("--speed", metavar="SPEED", help='Airspeed, such as "300 kt", where it is neither x nor y.')
-@level_option
+@click.option(
+    "--y",
+    required=True,
+    type=arguments.InputValues(),
+    metavar="INPUT=RANGE",
+    help="Input on the axis up, and its values, likewise.",
+)
+@click.option("--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 kt".')
+@arguments.level_option
 @output.output_options(
     csv="Write a row for each point of the grid.", plot="Draw the boundary, the stable side shaded"
 )
-@model_options
+@arguments.model_options
 def stability_map(
-    case: str,
-    settings: tuple[str, ...],
-    x: str,
-    y: str,
-    speed: str | None,
-    level: str,
-    csv: str | None,
-    plot: str | None,
-    as_json: bool,
-    **options: Any,
+    request: arguments.Request, outputs: output.Outputs, x: str, y: str, speed: str | None, level: float
 ) -> None:
-    """Where in the plane of two inputs a case is stable, and the boundary between.
+    """Show where in the plane of two inputs a case is stable, and the boundary.
 
-    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. A point is stable when every mode is.
-    Where neighbours of the grid differ, the boundary between them is found to rounding; islands
-    smaller than a cell of the grid are not seen.
+    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. A point is stable if every mode is
+    stable. Between neighbours of the grid of which only one is stable, the boundary is exact to rounding. The map does
+    not show islands that are smaller than a cell of the grid.
 
     \b
     Examples:
@@ -85,38 +72,28 @@ def stability_map(
       proprotor map xv15 --speed "350 kt" --x "support.modes[beam].frequency=2:5:0.1 Hz"
         --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
     """
-    output.check_outputs(csv, plot, as_json=as_json)
-    options, damping = in_order(options), level_of(level)
-    airspeed = None if speed is None else one_speed(speed)
-    loaded = loaded_case(case, settings)
-    axes = _axis("--x", x, loaded), _axis("--y", y, loaded)
+    airspeed, case = None if speed is None else arguments.one_speed(speed), request.load()
+    axes = _axis("--x", x, case), _axis("--y", y, case)
     if axes[0].path == axes[1].path:
         raise InputError("--y", y, "must not be the input of --x")
     if airspeed is None and _AIRSPEED not in (axis.path for axis in axes):
         raise InputError("--speed", None, "must be given, or be --x or --y: airspeed=100:400:10kt")
     with waiting("Analysing"):
         values = {axis.path: axis.values for axis in axes}
-        found = loaded.stability_map(values, airspeed=airspeed, level=damping, **options)
-    if csv:
-        records = list(_records(found, axes))
-        output.write_csv(csv, csv_of(records, list(records[0]), found.attrs))
-    if plot:
-        output.write_plot(plot, loaded, lambda: _draw(found, axes))
-    if as_json:
-        output.print_json(
-            output.about(loaded, options, settings_of(settings)) | _document(found, axes, airspeed)
-        )
-    elif csv != output.STANDARD_OUTPUT:
-        _print(loaded, found, axes)
+        found = case.stability_map(values, airspeed=airspeed, level=level, **request.options)
+    units = {axis.path: axis.unit for axis in axes if axis.unit}
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(found, axes, airspeed),
+        table=lambda: _print(case, found, axes),
+        csv=lambda: csv_of(records := _records(found, axes), list(records[0]), found.attrs),
+        plot=lambda: output.with_origin(plot_stability_map(found, units=units), case),
+    )
     if not np.isfinite(found.growth.values).any():
         raise click.exceptions.Exit(1)
 
 
 def _axis(option: str, text: str, case: Case) -> _Axis:
-    from proprotor.deck.vary import design_inputs
-    from proprotor.study.sampling import grid
-    from proprotor.units import factor_to_si
-
+    """Return the axis of ``INPUT=RANGE``."""
     path, equals, given = (part.strip() for part in text.partition("="))
     if not equals or not given:
         raise InputError(option, text, f"must be an input and its values, such as {_EXAMPLE}")
@@ -124,7 +101,7 @@ def _axis(option: str, text: str, case: Case) -> _Axis:
     values = designs.values[path]
     if len(values) < 2:
         raise InputError(option, text, f"must be a range, start:stop:step, such as {_EXAMPLE}")
-    unit = unit_of(given)
+    unit = arguments.unit_of(given)
     return _Axis(path, values, unit, factor_to_si(given, unit, designs.units[path]))
 
 
@@ -133,30 +110,26 @@ def _label(axis: _Axis) -> str:
 
 
 def _written(axis: _Axis) -> list[float]:
-    """The values in the unit they were given in, free of the rounding of conversion."""
+    """Return the values in the unit of the command line, without the rounding of the conversion."""
     return [float(f"{value:.10g}") for value in axis.values / axis.factor]
 
 
-def _records(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> Iterator[dict[str, Any]]:
+def _records(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[dict[str, Any]]:
+    """Return a record for each point of the grid, row by row."""
     x, y = axes
-    of = {
-        name: found[name].transpose(y.path, x.path).values.tolist()
-        for name in ("growth", "frequency", "warning", "reason")
-    }
-    for row, up in enumerate(_written(y)):
-        for column, across in enumerate(_written(x)):
-            yield {
-                _label(x): across,
-                _label(y): up,
-                "largest growth (1/s)": of["growth"][row][column],
-                "frequency (rad/s)": of["frequency"][row][column],
-                "warning": of["warning"][row][column],
-                "failure": of["reason"][row][column],
-            }
+    columns = (_label(x), _label(y), "largest growth (1/s)", "frequency (rad/s)", "warning", "failure")
+    places = ((across, up) for up in _written(y) for across in _written(x))
+    names = ("growth", "frequency", "warning", "reason")
+    values = zip(
+        *(found[name].transpose(y.path, x.path).values.ravel().tolist() for name in names), strict=True
+    )
+    return [
+        dict(zip(columns, (*at, *of_point), strict=True)) for at, of_point in zip(places, values, strict=True)
+    ]
 
 
 def _lines(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[tuple[list[list[float]], list[str]]]:
-    """The boundary as lines of points (x, y) in the units of the axes, with the warnings of the points."""
+    """Return the boundary as lines of points (x, y) in the units of the axes, with the warnings of the points."""
     vertices = found.boundary.sel(axis=[axis.path for axis in axes]).values
     vertices = vertices / np.array([axis.factor for axis in axes])
     warnings = found.boundary_warning.values
@@ -175,15 +148,9 @@ def _document(found: xarray.Dataset, axes: tuple[_Axis, _Axis], airspeed: float 
         "y": _label(axes[1]),
         "boundary": [line for line, _ in _lines(found, axes)],
         "boundary warnings": [warnings for _, warnings in _lines(found, axes)],
-        "points": list(_records(found, axes)),
+        "points": _records(found, axes),
         "eigen-solves": int(found.attrs["eigen_solves"]),
     }
-
-
-def _draw(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> Any:
-    from proprotor.plots import plot_stability_map
-
-    return plot_stability_map(found, units={axis.path: axis.unit for axis in axes if axis.unit})
 
 
 def _print(case: Case, found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> None:
@@ -204,19 +171,16 @@ def _print(case: Case, found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> None
         )
         out.print(f"{up[row]:>{width}g} {marks}", soft_wrap=True)
     out.print(f"{'':>{width}} {_label(x)} from {across[0]:g} to {across[-1]:g}", soft_wrap=True)
-    beyond = (
-        f"below {100 * float(found.attrs['level']):g} % of critical" if found.attrs["level"] else "unstable"
-    )
-    told = f"   {MARK} doubtful" if doubtful else ""
-    out.print(f"\n. stable   # {beyond}   x could not be analysed{told}\n")
+    level = 100 * float(found.attrs["level"])
+    beyond = f"below {level:g} % of critical" if level else "unstable"
+    doubt = f"   {MARK} doubtful" if doubtful else ""
+    out.print(f"\n. stable   # {beyond}   x could not be analysed{doubt}\n")
     counts = {name: int((state == name).sum()) for name in _MARKS}
     out.print(", ".join(f"{count} points {name}" for name, count in counts.items()), style="bold")
-    lines = _lines(found, axes)
-    for number, (line, doubts) in enumerate(lines, start=1):
+    for number, (line, doubts) in enumerate(_lines(found, axes), start=1):
         ends = " to ".join(
             marked(f"({line[place][0]:.4g}, {line[place][1]:.4g})", doubts[place]) for place in (0, -1)
         )
         count = sum(map(bool, doubts))
         out.print(f"boundary {number}: {len(line)} points from {ends}" + f", {count} doubtful" * bool(count))
-    for sentence in map_doubts(found):
-        out.print(f"{MARK} {sentence}", style="yellow")
+    output.print_footnotes(map_doubts(found))

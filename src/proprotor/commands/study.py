@@ -8,41 +8,37 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    InputValues,
-    case_argument,
-    in_order,
-    loaded_case,
-    model_options,
-    settings_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.errors import InputError
+from proprotor.exchange.netcdf import check_path, save_results
 from proprotor.model import stamp
-from proprotor.model.doubts import MARK, marked
+from proprotor.model.doubts import marked
+from proprotor.study import sampling
+from proprotor.study.study import study as study_of
+from proprotor.study.uncertainty import distribution
+from proprotor.study.variables import DEFAULT_QUANTITIES
+from proprotor.tables.study_summary import study_summary
+from proprotor.units import KNOT, speeds
 
 if TYPE_CHECKING:
     import xarray
 
-    from proprotor.study.sampling import Plan
-
-SAMPLES = ("latin-hypercube", "sobol", "saltelli")
+_SAMPLES = ("latin-hypercube", "sobol", "saltelli")
 _OF_DECK = " of deck"
-_REASONS = 5  # of failures, the most frequent first
+_REASONS = 5  # most frequent reasons of failures that are printed
 
 
-@click.command(epilog=EXIT_CODES, short_help="Many designs: grids, lists and samples.")
-@case_argument
+@arguments.command(short_help="Analyse many designs: grids, lists and samples.")
+@arguments.case_argument
 @click.option(
     "--vary",
     "varied",
     multiple=True,
     required=True,
-    type=InputValues(),
+    type=arguments.InputValues(),
     metavar="INPUT=VALUES",
-    help='What varies, by deck path: "rotor.precone=1:4:0.5 deg" or "=1 deg, 2 deg"; in a sample the limits, '
-    '"=1:4 deg" or "=0.9:1.1 of deck". Repeatable.',
+    help='Input that varies, by deck path, and its values: "rotor.precone=1:4:0.5 deg" or "=1 deg, 2 deg"; with '
+    '--sample its limits: "=1:4 deg" or "=0.9:1.1 of deck". Repeatable.',
 )
 @click.option(
     "--speed",
@@ -51,17 +47,18 @@ _REASONS = 5  # of failures, the most frequent first
     help='Airspeeds with their unit: "160:460:20kt" or "300 kt".',
 )
 @click.option("--out", metavar="FILE", help="Write the results: a .nc file (netCDF).")
-@click.option("--sample", type=click.Choice(SAMPLES), help="Sample the inputs; without it all combinations.")
-@click.option("--size", type=click.IntRange(1), default=256, show_default=True, help="Of the sample.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the sample.")
+@click.option(
+    "--sample", type=click.Choice(_SAMPLES), help="Draw a sample of the inputs instead of all combinations."
+)
+@click.option("--size", type=click.IntRange(1), default=256, show_default=True, help="Size of the sample.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the sample.")
 @click.option("--flutter", is_flag=True, help="Find the flutter speed of each design in the range.")
-@click.option("--checkpoint", metavar="FOLDER", help="Keep finished batches, and go on from those kept.")
-@click.option("--workers", type=click.IntRange(1), help="Processes; by default one for each core.")
-@output.output_options()
-@model_options
+@click.option("--checkpoint", metavar="FOLDER", help="Folder that keeps finished batches, for a restart.")
+@click.option("--workers", type=click.IntRange(1), help="Number of processes; by default one for each core.")
+@output.json_option
+@arguments.model_options
 def study(
-    case: str,
-    settings: tuple[str, ...],
+    request: arguments.Request,
     varied: tuple[str, ...],
     speed: str,
     out: str | None,
@@ -72,12 +69,11 @@ def study(
     checkpoint: str | None,
     workers: int | None,
     as_json: bool,
-    **options: Any,
 ) -> None:
-    """Stability and trim of many designs of a case.
+    """Analyse stability and trim of many designs of a case.
 
-    CASE is a bundled case or a TOML file; `proprotor cases CASE` lists its inputs. A study that was stopped goes on
-    where it was when it has a checkpoint.
+    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. A study with a checkpoint that was
+    stopped goes on where it stopped when the same command runs again.
 
     \b
     Examples:
@@ -85,74 +81,59 @@ def study(
       proprotor study xv15 --vary "rotor.precone=1:4 deg" --vary "support.modes[chord].frequency=0.9:1.1 of deck"
         --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter --out study.nc --checkpoint batches
     """
-    from proprotor.exchange.netcdf import check_path, save_results
-    from proprotor.study.study import study as analyse
-    from proprotor.study.variables import DEFAULT_QUANTITIES
-    from proprotor.tables.study_summary import study_summary
-    from proprotor.units import speeds
-
     output.check_writable("--out", out)
     if out:
         check_path(out, "--out")
-    options, airspeeds = in_order(options), speeds(speed, "--speed")
-    loaded, plan = loaded_case(case, settings), _plan(varied, sample, size, seed)
-    with output.told("--checkpoint", checkpoint):
-        results = analyse(
-            loaded,
+    airspeeds, case = speeds(speed, "--speed"), request.load()
+    plan = _plan(varied, sample, size, seed)
+    with output.one_message("--checkpoint", checkpoint):
+        results = study_of(
+            case,
             plan,
             airspeeds if len(airspeeds) > 1 else airspeeds[0],
             (*DEFAULT_QUANTITIES, *["flutter"] * flutter),
             workers=workers,
             checkpoint=checkpoint,
-            **{name: value for name, value in options.items() if value is not None},
+            **{name: value for name, value in request.options.items() if value is not None},
         )
     if out:
-        with output.told("--out", out):
+        with output.one_message("--out", out):
             save_results(results, out)
         click.echo(f"Wrote {out}", err=True)
     if as_json:
-        head = output.about(loaded, options, settings_of(settings))
-        output.print_json(head | study_summary(results) | {"results": out})
+        output.print_json(output.about(case, request) | study_summary(results) | {"results": out})
     else:
         _print(results)
     if bool((results.reason != "").all()):
         raise click.exceptions.Exit(1)
 
 
-def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> Plan:
-    from proprotor.study import sampling
-
+def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> sampling.Plan:
+    """Return the grid or sample of the inputs of `--vary`."""
     inputs = {}
     for text in varied:
         path, equals, values = text.partition("=")
         if not equals or not values.strip():
-            raise InputError(
-                "--vary", text, 'must be an input and its values, such as "rotor.precone=1:4:0.5 deg"'
-            )
+            rule = 'must be an input and its values, such as "rotor.precone=1:4:0.5 deg"'
+            raise InputError("--vary", text, rule)
         if path.strip() in inputs:
             raise InputError("--vary", text, "must not vary an input twice")
-        inputs[path.strip()] = _limits(text, values) if sample else _values(values)
+        listed = [value.strip() for value in values.split(",")]
+        inputs[path.strip()] = _limits(text, values) if sample else listed if len(listed) > 1 else listed[0]
     if sample is None:
         return sampling.grid(inputs)
-    draw: Callable[..., Plan] = getattr(sampling, sample.replace("-", "_"))
+    draw: Callable[..., sampling.Plan] = getattr(sampling, sample.replace("-", "_"))
     return draw(inputs, size, seed)
 
 
-def _values(text: str) -> Any:
-    parts = [part.strip() for part in text.split(",")]
-    return parts if len(parts) > 1 else parts[0]
-
-
 def _limits(whole: str, text: str) -> Any:
-    """``"1:4 deg"`` or ``"0.9:1.1 of deck"``."""
-    from proprotor.study.sampling import Relative
-
+    """Return the limits of ``"1:4 deg"`` or ``"0.9:1.1 of deck"``."""
     low, colon, high = text.removesuffix(_OF_DECK).strip().partition(":")
     if not colon or ":" in high:
         raise InputError("--vary", whole, 'must have two limits, such as "rotor.precone=1:4 deg"')
     if text.endswith(_OF_DECK):
         try:
-            return Relative(float(low), float(high))
+            return sampling.Relative(float(low), float(high))
         except ValueError:
             raise InputError("--vary", whole, 'must have two factors, such as "0.9:1.1 of deck"') from None
     unit = high.strip().lstrip("0123456789.+-eE").strip()
@@ -160,8 +141,6 @@ def _limits(whole: str, text: str) -> Any:
 
 
 def _print(results: xarray.Dataset) -> None:
-    from proprotor.tables.study_summary import study_summary
-
     out, found = output.console(), study_summary(results)
     out.print(f"{found['title']}: {found['points']} points, {found['failed']} failed")
     for text, count in list(found["reasons"].items())[:_REASONS]:
@@ -170,18 +149,17 @@ def _print(results: xarray.Dataset) -> None:
         _print_flutter(results)
     elif "points unstable" in found:
         lowest = found["lowest damping (% of critical)"]
-        told = marked(f"{lowest:.3g}", found["points doubtful"])
-        out.print(f"{found['points unstable']} points unstable; lowest damping {told} %")
-    for text, count in found["doubts of points"].items():
-        out.print(f"{MARK} Doubtful at {count} of {found['points']} points: {text}.", style="yellow")
+        damping = marked(f"{lowest:.3g}", found["points doubtful"])
+        out.print(f"{found['points unstable']} points unstable; lowest damping {damping} %")
+    doubts = found["doubts of points"].items()
+    output.print_footnotes(
+        f"Doubtful at {count} of {found['points']} points: {text}." for text, count in doubts
+    )
     for line in (*stamp.unusual_options(results.attrs), results.attrs["reservations"]):
         out.print(line)
 
 
 def _print_flutter(results: xarray.Dataset) -> None:
-    from proprotor.study.uncertainty import distribution
-    from proprotor.units import KNOT
-
     stacked = results[["flutter_speed", "flutter_note", "flutter_warning"]]
     if "design" not in stacked.dims:
         stacked = stacked.stack(design=stacked.flutter_speed.dims)
@@ -200,6 +178,6 @@ def _print_flutter(results: xarray.Dataset) -> None:
         output.print_table(("% of designs", "flutter speed at most, m/s", "kt"), rows)
         if doubts:
             counted = f"{int(found.doubtful)} of {int(found.known)} flutter speeds"
-            output.console().print(f"{MARK} Doubtful are {counted}: {doubts}.", style="yellow")
+            output.print_footnotes([f"Doubtful are {counted}: {doubts}."])
     for text, count in notes.most_common(_REASONS):
         output.console().print(f"  {count} × {text}", soft_wrap=True)

@@ -2,56 +2,43 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from proprotor.commands import output
-from proprotor.commands.arguments import (
-    EXIT_CODES,
-    case_argument,
-    in_order,
-    loaded_case,
-    model_options,
-    settings_of,
-    unit_of,
-)
+from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
+from proprotor.model.provenance import reservations
+from proprotor.plots import plot_sweep
+from proprotor.tables.sweep_summary import unstable_ranges
+from proprotor.tables.sweep_table import CONVENTION, SweepTable
+from proprotor.units import speeds
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from proprotor.case import Case
-    from proprotor.tables.sweep_table import SweepTable
 
 
-@click.command(epilog=EXIT_CODES)
-@case_argument
+@arguments.command()
+@arguments.case_argument
 @click.option(
     "--speed",
     required=True,
     metavar="RANGE",
     help='Airspeeds with their unit: "50:400:5kt" is 50 to 400 kt by 5 kt; also "300 kt", "25:200:2.5 m/s".',
 )
-@click.option("--all-modes", is_flag=True, help="Put every mode into the table, not only as many as fit.")
+@click.option("--all-modes", is_flag=True, help="Show all modes, not only as many as fit into one table.")
 @output.output_options(csv="Write a row for each airspeed and mode.", plot="Draw frequency and damping")
-@model_options
-def sweep(
-    case: str,
-    settings: tuple[str, ...],
-    speed: str,
-    plot: str | None,
-    csv: str | None,
-    as_json: bool,
-    all_modes: bool,
-    **options: Any,
-) -> None:
-    """Frequency and damping of each mode along a range of airspeeds.
+@arguments.model_options
+def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_modes: bool) -> None:
+    """Show frequency and damping of each mode along a range of airspeeds.
 
-    CASE is a bundled case (see `proprotor cases`) or a TOML file that describes one.
+    CASE is a bundled case (see `proprotor cases`) or a TOML file.
 
-    The table has the modes that become unstable, the support's, and others that move it the most. Damping
-    is -Re s/|s| of the eigenvalue s in percent of critical, negative where a mode is unstable. An airspeed
-    that cannot be analysed is a row that says why.
+    The table shows the modes that become unstable, the modes of the support, and the modes that move the support most.
+    Damping is -Re s/|s| of the eigenvalue s in percent of critical, negative where a mode is unstable. If an airspeed
+    cannot be analysed, its row says why.
 
     \b
     Examples:
@@ -59,42 +46,22 @@ def sweep(
       proprotor sweep xv15 --speed 50:400:5kt --set rotor.precone="1.5 deg"
       proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
     """
-    output.check_outputs(csv, plot, as_json=as_json)
-    options = in_order(options)
+    airspeeds = speeds(speed, "--speed")
     with waiting("Analysing"):
-        loaded, table = _analysed(case, settings, speed, options)
-    # Files first: a reader of the table, such as `head`, may leave early.
-    if csv:
-        output.write_csv(csv, table.csv())
-    if plot:
-        suffix = Path(plot).suffix
-        with waiting("Drawing"):
-            output.write("--plot", plot, lambda file: _draw(loaded, table, file, suffix))
-    if as_json:
-        output.print_json(output.about(loaded, options, settings_of(settings)) | _document(table))
-    elif csv != output.STANDARD_OUTPUT:
-        from proprotor.commands.terminal import print_sweep
-
-        print_sweep(loaded, table, all_modes)
+        case = request.load()
+        found = case.sweep(airspeeds, **request.options)
+    table = SweepTable(found, case.operation.rotor_speed, arguments.unit_of(speed))
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(table),
+        table=lambda: _print(case, table, all_modes),
+        csv=table.csv,
+        plot=lambda: _figure(case, table),
+    )
     if table.failed.all():
         raise click.exceptions.Exit(1)
 
 
-def _analysed(
-    name: str, settings: tuple[str, ...], speed: str, options: dict[str, Any]
-) -> tuple[Case, SweepTable]:
-    from proprotor.tables.sweep_table import SweepTable
-    from proprotor.units import speeds
-
-    airspeeds = speeds(speed, "--speed")
-    case = loaded_case(name, settings)
-    return case, SweepTable(case.sweep(airspeeds, **options), case.operation.rotor_speed, unit_of(speed))
-
-
 def _document(table: SweepTable) -> dict[str, Any]:
-    from proprotor.tables.sweep_summary import unstable_ranges
-    from proprotor.tables.sweep_table import CONVENTION
-
     return {
         "convention": CONVENTION,
         "unstable ranges (m/s, interpolated)": [found._asdict() for found in unstable_ranges(table.sweep)],
@@ -102,19 +69,14 @@ def _document(table: SweepTable) -> dict[str, Any]:
     }
 
 
-def _draw(case: Case, table: SweepTable, file: IO[bytes], suffix: str) -> None:
-    import matplotlib
+def _print(case: Case, table: SweepTable, all_modes: bool) -> None:
+    from proprotor.commands.terminal import print_sweep
 
-    matplotlib.use("Agg")  # no window, and no display needed
-    from matplotlib import pyplot
+    print_sweep(case, table, all_modes)
 
-    from proprotor.model.provenance import reservations
-    from proprotor.plots import plot_sweep
+
+def _figure(case: Case, table: SweepTable) -> Figure:
     from proprotor.tables.sweep_table import heading
 
-    footer = " ".join(reservations(case))
-    figure = plot_sweep(
-        table.sweep, rotor_speed=table.rotor_speed, unit=table.unit, title=heading(case), footer=footer
-    )
-    figure.savefig(file, format=suffix.removeprefix(".").lower(), dpi=160)
-    pyplot.close(figure)
+    shown: dict[str, Any] = {"rotor_speed": table.rotor_speed, "unit": table.unit}
+    return plot_sweep(table.sweep, **shown, title=heading(case), footer=" ".join(reservations(case)))

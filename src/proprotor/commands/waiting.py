@@ -1,4 +1,4 @@
-"""A sign of life on the error stream while something takes more than a second."""
+"""A spinner on the error stream while a step takes more than a second."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PATIENCE = 1.0  # seconds
 
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
-    """Say what takes so long, once it does, with a spinner; nothing where nobody looks at a terminal."""
+    """Show a spinner and `what` the command does, once it takes more than a second; only on a terminal."""
     from rich.console import Console  # here, because rich takes long to import
     from rich.text import Text
 
@@ -27,5 +27,5 @@ def waiting(what: str) -> Iterator[None]:
         yield
     finally:
         timer.cancel()
-        timer.join()  # or the spinner could start after it was stopped
+        timer.join()  # otherwise the spinner could start after it was stopped
         spinner.stop()

@@ -1,4 +1,4 @@
-"""What was found on the page as a deck, so that it is not lost."""
+"""A deck with the settings of the page, so that they are not lost."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from proprotor.case import Case
 
 
-def settings_of_values(case: Case, values: Mapping[str, float]) -> dict[str, str]:
-    """SI values by path as a deck has them, in the units of the case's own deck."""
+def _settings_of_values(case: Case, values: Mapping[str, float]) -> dict[str, str]:
+    """Return SI values by path as texts for a deck, in the units of the case's own deck."""
     found = {}
     for path, value in values.items():
         slider = slider_input(case, path)
@@ -35,29 +35,30 @@ def altered_deck(
     settings: Mapping[str, str] | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> str:
-    """A deck that alters another, with each changed number marked as assumed.
+    """Return the text of a deck that alters another; each changed number is marked as assumed.
 
-    Frequencies keep their hertz: one per revolution is told in rad/s where the new deck has another rotor speed.
+    Frequencies keep their hertz: if the new deck has another rotor speed, frequencies per revolution are written in
+    rad/s.
 
     Parameters
     ----------
     base : str
-        Name of a bundled deck, or of the file that the new one is put beside.
+        Name of a bundled deck, or of a file in the folder of the new deck.
     case : Case
-        Of the base, with its settings.
+        Case of the base with the settings.
     values : mapping of str to float
         SI values by path.
     settings : mapping of str to str, optional
-        Fields that were set before.
+        Fields that were set before, on the command line.
     options : mapping, optional
-        Of the model, which no deck holds: a comment tells those that are no default.
+        Options of the model. A deck holds no options, so a comment lists those that are no default.
 
     Raises
     ------
     InputError
         For a path that is no input.
     """
-    changed = dict(settings or {}) | settings_of_values(case, values)
+    changed = dict(settings or {}) | _settings_of_values(case, values)
     tables = as_one_file(with_settings(read_tables(base), changed))
     lines = ["# Made by `proprotor explore`: what stands here replaces what the base has."]
     chosen = {name: value for name, value in (options or {}).items() if name in CHOICES}
@@ -68,14 +69,14 @@ def altered_deck(
     lines.append(f"title = {toml(tables['case'].get('title', case.name))}")
     sections: dict[str, list[str]] = {}
     for path in changed:
-        if "[" in path:
-            continue
         section, _, name = path.rpartition(".")
-        if section != "case":
+        if "[" not in path and section != "case":
             sections.setdefault(section, []).append(f"{name} = {toml(_at(tables, path))}")
     for section, entries in sorted(sections.items()):
         lines += ["", f"[{section}]", *entries]
-    if any("[" in path for path in changed):  # a list replaces the base's, so all of it is written
+    if any(
+        "[" in path for path in changed
+    ):  # a list replaces the list of the base, so all entries are written
         for mode in tables["support"]["modes"]:
             lines += ["", "[[support.modes]]", *(f"{name} = {toml(value)}" for name, value in mode.items())]
     return "\n".join(lines) + "\n"

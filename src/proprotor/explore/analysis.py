@@ -1,4 +1,4 @@
-"""The modes of a case along airspeeds as fast as a slider moves: named and followed, without the rest of a sweep."""
+"""Named modes of a case along airspeeds, without the rest of a sweep, so that a page can follow a slider."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ class LiveModes:
     airspeed : array (points,)
         m/s.
     names : list of str
-        Of the modes by what moves in them, in the order of the coordinates.
+        Names of the modes, in the order of the coordinates that move most in them.
     eigenvalue : array (points, modes)
         rad/s; NaN at failed points.
     reason, warning : array (points,) of str
-        Why a point failed, or is doubtful; empty where it is neither.
+        Why a point failed, or is doubtful; empty for all other points.
     unstable : list of UnstableRange
-        Their ends are interpolated between the points.
+        Unstable ranges of airspeed, with ends interpolated between the points.
     leaps : array (points - 1, modes) of bool
         Where a name passes to a root that lies elsewhere, see `proprotor.tables.sweep_summary.leaps`.
     """
@@ -55,7 +55,7 @@ class LiveModes:
 
     @property
     def flutter(self) -> UnstableRange | None:
-        """The lowest airspeed at which a mode becomes unstable; None where none does within the points."""
+        """The unstable range that begins at the lowest airspeed; None if no mode becomes unstable within the points."""
         onsets = [found for found in self.unstable if not found.open_start]
         return min(onsets, key=lambda found: found.start, default=None)
 
@@ -70,11 +70,11 @@ class LiveModes:
 def live_modes(
     case: Case, airspeeds: Array, values: Mapping[str, float] | None = None, **options: Any
 ) -> LiveModes:
-    """Modes of a case, or of one with other inputs, along airspeeds.
+    """Return the modes of a case, or of the case with other inputs, along airspeeds.
 
-    Modes are those of `Case.sweep`, by the same names. The ends of unstable ranges need the roots followed. There,
-    where a step does not tell roots apart, the matrices between its ends come from splines through those of the points,
-    which are smooth, and not from new trims: no number that is shown comes from them.
+    Modes are those of `Case.sweep`, with the same names. To find the ends of unstable ranges, roots are followed from
+    point to point. Where a step is too large to follow the roots, the matrices within the step come from splines
+    through the matrices at the points, and not from new trims. No number on the page comes from these matrices.
 
     Parameters
     ----------
@@ -113,8 +113,11 @@ def live_modes(
 
 
 def _between(model: LinearModel) -> Any:
-    """Models between the points of one, by cubic splines of its matrices; None with too few points."""
-    from scipy.interpolate import CubicSpline  # here, because it takes long to import
+    """Return a function that gives models between the points of a model, by cubic splines of its matrices.
+
+    Return None if there are too few points for splines.
+    """
+    from scipy.interpolate import CubicSpline  # here, because scipy.interpolate takes long to import
 
     good = np.flatnonzero(model.trim.converged)
     if len(good) < 4:
@@ -131,7 +134,7 @@ def _between(model: LinearModel) -> Any:
 
 
 def _named(branches: Branches, line: ParameterLine, anchors: Array) -> NamedStates:
-    """Name the states at the first anchor that has a trim, or else at the first point that has one."""
+    """Return the names of the states at the first anchor with a trim, or else at the first point with a trim."""
     at = branches.positions[branches.points]
     places = [int(np.flatnonzero(at == anchor)[0]) for anchor in anchors if anchor in at]
     return named_at(branches, line, places[0] if places else 0)
@@ -140,7 +143,7 @@ def _named(branches: Branches, line: ParameterLine, anchors: Array) -> NamedStat
 def _as_sweep(
     airspeeds: Array, names: list[str], eigenvalue: Array, labels: Array, error: Array
 ) -> xarray.Dataset:
-    """What the summary of a sweep needs of one."""
+    """Return the part of a sweep that its summary reads."""
     import xarray
 
     by_mode = ("airspeed", "mode")

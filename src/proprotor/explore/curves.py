@@ -1,4 +1,4 @@
-"""The data that the page draws: a line for each mode, in the units of its axes."""
+"""The data of the lines on the page: one line for each mode, in the units of the axes."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ from proprotor.plots.style import COLOURS
 from proprotor.rotor.motions import SECOND, name_list
 
 _DASHES = ("solid", "dashed", "dotted")
-_ROTOR_NAMES = frozenset(name_list(FIXED_COORDINATES))  # of modes; what has another is the support's
+_ROTOR_NAMES = frozenset(name_list(FIXED_COORDINATES))  # modes with other names are modes of the support
 
 
 def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str, list[Any]]:
-    """Columns of a source of lines, a row for each mode; a line is broken where its name leaps to another root.
+    """Return the columns of Bokeh's source of lines, with a row for each mode.
+
+    A line is broken where the name of its mode leaps to another root.
 
     Parameters
     ----------
@@ -25,7 +27,7 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
     rotor_speed : float
         rad/s, for frequencies per revolution.
     speed_unit : float
-        m/s in one unit of the axis of airspeed.
+        Unit of the axis of airspeed, in m/s.
     """
     count = len(found.names)
     turns = found.eigenvalue / rotor_speed
@@ -44,7 +46,7 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
 
 
 def ends(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:
-    """Where each root locus ends, at the highest airspeed that works: the markers that tell the sense of the lines."""
+    """Return the end of each root locus, at the highest airspeed that works: a marker that shows which way roots go."""
     growth, frequency = [], []
     for real, imaginary in zip(columns["growth"], columns["frequency"], strict=True):
         works = np.flatnonzero(np.isfinite(real))

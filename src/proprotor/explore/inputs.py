@@ -1,4 +1,4 @@
-"""Sliders for the inputs of a deck: which to begin with, and how far each goes."""
+"""Sliders for the inputs of a deck: which inputs have one at first, and the range of each slider."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _FIRST = (
     "rotor.structural_pitch_offset",
 )
 _FIRST_OF_SUPPORT = ("frequency", "damping_ratio")
-_MOST = 13  # to begin with
+_MOST = 13  # sliders at first
 
-# By the last part of a path: the ends of the range in parts of the deck's value.
+# By the end of a path: the ends of the range, as factors on the value of the deck.
 _FACTORS = {
     "frequency": (0.5, 1.6),
     "stiffness": (0.2, 3.0),
@@ -41,21 +41,21 @@ _FACTORS = {
     "density": (0.2, 1.2),
 }
 _ANGLES = ("rad", 0.0873)  # at least five degrees to either side
-_COUPLING = 0.6  # to either side, of a number such as K_PG
-_STEPS = 250  # at most
+_COUPLING = 0.6  # to either side, for a coupling such as K_PG
+_STEPS = 250  # of a slider, at most
 
 
 @dataclass(frozen=True)
 class SliderInput:
-    """An input with the range of its slider, in the unit that the deck has it in.
+    """An input and the range of its slider, in the unit of the deck.
 
     Attributes
     ----------
     path, name, unit, meaning : str
     factor : float
-        SI units in one of the unit.
+        The unit of the deck in SI units.
     value, low, high : float
-        The deck's value, and the ends.
+        Value of the deck, and ends of the range.
     """
 
     path: str
@@ -69,19 +69,19 @@ class SliderInput:
 
     @property
     def label(self) -> str:
-        """What it is, with its unit."""
+        """The name of the input, with its unit."""
         return f"{self.name} ({written(self.unit)})" if self.unit else self.name
 
     @property
     def step(self) -> float:
-        """Of the slider: a round number, 100 to 250 of which are its range."""
+        """The step of the slider: a round number, so that the range has 100 to 250 steps."""
         raw = (self.high - self.low) / _STEPS
         power = 10.0 ** int(f"{raw:e}".partition("e")[2])
         return next(digit * power for digit in (1, 2, 5, 10) if digit * power >= raw * 0.999)
 
 
 def first_inputs(case: Case) -> list[str]:
-    """Paths of the inputs that have sliders to begin with, those the field turns first."""
+    """Return the paths of the inputs that have sliders at first: those that engineers vary most often."""
     known = design_inputs(case)
     of_support = [
         path
@@ -93,7 +93,7 @@ def first_inputs(case: Case) -> list[str]:
 
 
 def slider_input(case: Case, path: str) -> SliderInput:
-    """The slider of an input.
+    """Return the slider of an input.
 
     Raises
     ------
@@ -107,12 +107,12 @@ def slider_input(case: Case, path: str) -> SliderInput:
     unit, factor = deck_unit(number)
     value = float(f"{float(number.si) / factor:.10g}")  # free of the rounding of conversion
     low, high = (float(f"{end:.3g}") for end in _range(path, value, number.unit, factor))
-    return SliderInput(
-        path, short_name(path), unit, _meanings().get(_plain(path), ""), factor, value, low, high
-    )
+    meaning = _meanings().get(_plain(path), "")
+    return SliderInput(path, short_name(path), unit, meaning, factor, value, low, high)
 
 
 def _range(path: str, value: float, si_unit: str, factor: float) -> tuple[float, float]:
+    """Return the ends of a slider in the unit of the deck; `factor` is this unit in SI units."""
     last = path.rpartition(".")[2]
     if last.endswith("coupling"):
         return value - _COUPLING, value + _COUPLING
@@ -127,9 +127,11 @@ def _range(path: str, value: float, si_unit: str, factor: float) -> tuple[float,
 
 
 def _plain(path: str) -> str:
+    """Return a path without the names of entries in brackets."""
     return re.sub(r"\[[^\]]*\]", "", path)
 
 
 @functools.cache
 def _meanings() -> Mapping[str, str]:
+    """Return the meaning of each field of a deck by its path."""
     return {_plain(field.path): field.meaning for field in deck_fields()}

@@ -1,4 +1,4 @@
-"""The page: sliders on the left, what was found above, damping and root locus below."""
+"""The page: sliders on the left, the flutter speed above, damping and root locus below."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _SWITCHES = (
     "section_damping",
     "rotor_speed",
 )
-_TOGETHER = 15  # ms in which several moves count as one
+_TOGETHER = 15  # ms: several moves within this time cause one analysis
 _DAMPING, _FREQUENCY, _GROWTH = (-5, 20), (0, 4.5), (-0.3, 0.15)
 _SIDE, _HEIGHT = 330, 560  # pixels
 
@@ -54,8 +54,8 @@ place.click();
 URL.revokeObjectURL(place.href);
 """
 _HELP = """<p>Move a slider, or focus it (Tab) and press the arrow keys. <b>Reset</b> brings the
-deck's own values back, and <b>Save as a deck</b> downloads what you have set as a TOML file that alters the deck.</p>
-<p>Damping below zero is unstable. On the right, each root moves with airspeed towards its dot, which is the highest.
+deck's own values back, and <b>Save as a deck</b> downloads your settings as a TOML file that alters the deck.</p>
+<p>Damping below zero is unstable. On the right, each root moves towards its dot, which is at the highest airspeed.
 Broad lines are modes of the support and modes that become unstable. The flutter speed is interpolated between the
 airspeeds analysed; <code>proprotor flutter</code> finds it to rounding.</p>"""
 
@@ -67,13 +67,13 @@ class ExplorePage:
     ----------
     case : Case
     base : str
-        The deck, as the saved one names it.
+        Name or path of the deck, as a saved deck shall refer to it.
     airspeeds : array (points,)
         m/s.
     settings : mapping
-        What was set on the command line.
+        Fields that were set on the command line.
     options : mapping
-        Of the model, all of them.
+        All options of the model.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class ExplorePage:
     ) -> None:
         self.case, self.base, self.airspeeds, self.settings = case, base, airspeeds, settings
         self.options, self.first_options = dict(options), dict(options)
-        self.values: dict[str, float] = {}  # SI, of the inputs that differ from the deck's
+        self.values: dict[str, float] = {}  # inputs that differ from the deck, in SI units
         self.sliders: dict[str, Slider] = {}
         self.inputs: dict[str, SliderInput] = {}
         self.document: Document | None = None
@@ -97,7 +97,9 @@ class ExplorePage:
         self.foot = Div(name="reservations", width=850)
         self.side = column(name="sliders", width=_SIDE)
         self.guide = Div(name="help", width=_SIDE)
-        self.deck = ColumnDataSource(name="deck")  # whose text goes to the browser when it is asked for
+        self.deck = ColumnDataSource(
+            name="deck"
+        )  # its text goes to the browser when the reader saves the deck
         self.choice = MultiChoice(
             title="Inputs with a slider (type to find others)",
             options=list(design_inputs(case)),
@@ -111,7 +113,7 @@ class ExplorePage:
         self.switches = {name: _switch(case, name, options[name]) for name in _SWITCHES}
 
     def put_on(self, document: Document) -> None:
-        """Build the page in a document of Bokeh, and draw the deck as it is."""
+        """Build the page in a Bokeh document, and draw the modes of the deck."""
         self.document = document
         document.title = f"{self.case.title or self.case.name}: explore"
         self._show_sliders(self.choice.value)
@@ -124,7 +126,7 @@ class ExplorePage:
         self.update()
 
     def update(self) -> None:
-        """Analyse what is set and draw it; where that cannot be, say why and leave the last drawing."""
+        """Analyse and draw the case with all settings; if that is impossible, say why and keep the last drawing."""
         self._waiting = False
         try:
             found = live_modes(self.case, self.airspeeds, self.values, **self.options)
@@ -136,10 +138,10 @@ class ExplorePage:
         self.dots.data = ends(columns)
         self.readout.text = readout(found, self.values, self.inputs)
         self.message.text = messages(found)
-        told = (*unusual_options(of_case(self.case, self.options)), *reservations(self.case))
-        self.foot.text = f"<small>{escape(' '.join(told))}</small>"
+        origin = (*unusual_options(of_case(self.case, self.options)), *reservations(self.case))
+        self.foot.text = f"<small>{escape(' '.join(origin))}</small>"
 
-    # What is moved ----------------------------------------------------------------------------------------------
+    # Settings ---------------------------------------------------------------------------------------------------
 
     def _show_sliders(self, paths: list[str]) -> None:
         for path in paths:
@@ -191,8 +193,7 @@ class ExplorePage:
             unit = "" if given.unit == "/rev" and number != written else design_inputs(self.case)[path].unit
             value = to_si(number, unit) / (1.0 if unit == "" and given.unit == "/rev" else given.factor)
         except InputError as error:
-            told = error if error.field else error.within(path)
-            self.message.text = _alert(f"{told}.")
+            self.message.text = _alert(f"{error if error.field else error.within(path)}.")
             return
         if path not in self.choice.value:
             self.choice.value = [*self.choice.value, path]
@@ -215,7 +216,7 @@ class ExplorePage:
         self.deck.data = {"text": [text]}
 
     def _soon(self) -> None:
-        """Update once for all moves that come together."""
+        """Update the page once for all moves within a short time."""
         if self._waiting or self._held or self.document is None:
             return
         self._waiting = True
@@ -224,7 +225,7 @@ class ExplorePage:
     def _rotor_speed(self) -> float:
         return self.values.get("operation.rotor_speed", float(self.case.operation.rotor_speed))
 
-    # What is seen -----------------------------------------------------------------------------------------------
+    # Layout and plots -------------------------------------------------------------------------------------------
 
     def _layout(self) -> Any:
         reset = Button(label="Reset", name="reset", width=90)
@@ -251,17 +252,9 @@ class ExplorePage:
         return row(side, column(title, self.readout, plots, self.message, self.foot), spacing=8)
 
     def _damping(self) -> Any:
-        first, last = (float(speed) / KNOT for speed in self.airspeeds[[0, -1]])
-        plot = figure(
-            width=490,
-            height=_HEIGHT,
-            x_range=Range1d(start=first, end=last),
-            y_range=Range1d(start=_DAMPING[0], end=_DAMPING[1]),
-            x_axis_label="Airspeed (kt)",
-            y_axis_label="Damping −Re s/|s| (% of critical)",
-            tools="pan,wheel_zoom,box_zoom,reset,save",
-            title="Damping",
-            name="damping",
+        ends = tuple(float(speed) / KNOT for speed in self.airspeeds[[0, -1]])
+        plot = _figure(
+            "Damping", 490, ("Airspeed (kt)", ends), ("Damping −Re s/|s| (% of critical)", _DAMPING)
         )
         self._draw(plot, "airspeed", "damping", [("airspeed", "$x{0.0} kt"), ("damping", "$y{0.00} %")])
         plot.add_layout(Span(location=0, dimension="width", line_color="black"))
@@ -269,35 +262,20 @@ class ExplorePage:
         return plot
 
     def _root_locus(self) -> Any:
-        plot = figure(
-            width=360,
-            height=_HEIGHT,
-            x_range=Range1d(start=_GROWTH[0], end=_GROWTH[1]),
-            y_range=Range1d(start=_FREQUENCY[0], end=_FREQUENCY[1]),
-            x_axis_label="Growth Re s (per rev)",
-            y_axis_label="Frequency |Im s| (per rev)",
-            tools="pan,wheel_zoom,box_zoom,reset,save",
-            title="Root locus",
-            name="root-locus",
-        )
+        across, up = ("Growth Re s (per rev)", _GROWTH), ("Frequency |Im s| (per rev)", _FREQUENCY)
+        plot = _figure("Root locus", 360, across, up)
         self._draw(plot, "growth", "frequency", [("growth", "$x{0.000}"), ("frequency", "$y{0.000}")])
         plot.scatter("growth", "frequency", source=self.dots, color="colour", size=7)
         plot.add_layout(Span(location=0, dimension="height", line_color="black"))
         plot.add_layout(BoxAnnotation(left=0, fill_color=UNSTABLE, fill_alpha=1, level="image"))
         return plot
 
-    def _draw(self, plot: Any, across: str, up: str, told: list[tuple[str, str]]) -> None:
-        drawn = plot.multi_line(
-            across,
-            up,
-            source=self.lines,
-            line_color="colour",
-            line_dash="dash",
-            line_width="width",
-        )
-        plot.add_tools(
-            HoverTool(renderers=[drawn], tooltips=[("mode", "@mode"), *told], line_policy="nearest")
-        )
+    def _draw(self, plot: Any, across: str, up: str, values: list[tuple[str, str]]) -> None:
+        """Draw the lines of all modes, with the values that show beside the pointer, and a legend below damping."""
+        style = {"line_color": "colour", "line_dash": "dash", "line_width": "width"}
+        drawn = plot.multi_line(across, up, source=self.lines, **style)
+        tooltips = [("mode", "@mode"), *values]
+        plot.add_tools(HoverTool(renderers=[drawn], tooltips=tooltips, line_policy="nearest"))
         if up == "damping":
             legend = Legend(items=[LegendItem(label={"field": "mode"}, renderers=[drawn])])
             legend.update(label_text_font_size="10px", spacing=5, padding=3, glyph_width=28, glyph_height=12)
@@ -306,7 +284,23 @@ class ExplorePage:
         plot.toolbar.logo = None
 
 
+def _figure(title: str, width: int, across: tuple[str, Any], up: tuple[str, Any]) -> Any:
+    """Return an empty plot whose axes, across and up, each have a label and two ends."""
+    return figure(
+        width=width,
+        height=_HEIGHT,
+        x_range=Range1d(*across[1]),
+        y_range=Range1d(*up[1]),
+        x_axis_label=across[0],
+        y_axis_label=up[0],
+        tools="pan,wheel_zoom,box_zoom,reset,save",
+        title=title,
+        name=title.lower().replace(" ", "-"),
+    )
+
+
 def _switch(case: Case, name: str, value: Any) -> Select:
+    """Return a widget that chooses an option of the model."""
     kept = [choice for choice in CHOICES[name] if choice is not None]
     if case.frequencies is None and "tabulated" in kept:
         kept.remove("tabulated")
@@ -318,42 +312,42 @@ def _switch(case: Case, name: str, value: Any) -> Select:
 
 
 def _word(value: Any) -> str:
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return str(value)
+    """Return a choice as the page shows it."""
+    return {True: "yes", False: "no"}.get(value, str(value))
 
 
 def _alert(text: str) -> str:
+    """Return the HTML of a message that screen readers read at once."""
     style = "border-left:6px double #b34700;background:#fdf3ec;padding:4px 10px;margin:0"
     return f'<p role="alert" style="{style}"><b>Cannot be:</b> {escape(text)}</p>'
 
 
 def readout(found: LiveModes, values: Mapping[str, float], inputs: Mapping[str, SliderInput]) -> str:
-    """The flutter speed and what was changed, as HTML."""
+    """Return the flutter speed and the changed inputs as HTML."""
     low, high = (f"{speed / KNOT:.4g}" for speed in found.airspeed[[0, -1]])
     onset = found.flutter
     if not np.any(found.reason == ""):
-        told = "No airspeed could be analysed."
+        verdict = "No airspeed could be analysed."
     elif onset is None:
-        told = f"No mode becomes unstable between {low} and {high} kt."
+        verdict = f"No mode becomes unstable between {low} and {high} kt."
     else:
         doubtful = doubtful_near(found.airspeed, found.warning, onset.start)
         speed = marked(f"{onset.start / KNOT:.1f}", doubtful)
-        told = f"Flutter speed {speed} kt ({escape(onset.mode)}), interpolated."
+        verdict = f"Flutter speed {speed} kt ({escape(onset.mode)}), interpolated."
     already = [one.mode for one in found.unstable if one.open_start]
     if already:
-        told += f" Already unstable at {low} kt: {escape(', '.join(already))}."
+        verdict += f" Already unstable at {low} kt: {escape(', '.join(already))}."
     changed = [
         f"{inputs[path].name} {value / inputs[path].factor:.4g} {inputs[path].unit} "
         f"(deck {inputs[path].value:.4g})"
         for path, value in values.items()
     ]
     set_to = "Changed: " + "; ".join(changed) if changed else "All inputs as in the deck."
-    return f'<div aria-live="polite"><b style="font-size:16px">{told}</b><br>{escape(set_to)}</div>'
+    return f'<div aria-live="polite"><b style="font-size:16px">{verdict}</b><br>{escape(set_to)}</div>'
 
 
 def messages(found: LiveModes) -> str:
-    """Reasons of points that failed or are doubtful, as HTML."""
+    """Return the reasons why points failed or are doubtful as HTML."""
     lines = []
     for text in dict.fromkeys(found.reason[found.reason != ""].tolist()):
         at = found.airspeed[found.reason == text] / KNOT

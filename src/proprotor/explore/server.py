@@ -21,10 +21,11 @@ ADDRESS = "127.0.0.1"
 
 
 class _OwnPages(BokehTornado):
-    """Answers pages of its own, asked for by the machine's own names, and nobody else.
+    """A server that answers only requests of its own page, sent to one of this machine's own names.
 
-    A foreign page may have a name of its own point here; the browser then sends that name along. It may also ask here
-    by the right name, from which the browser sends an origin, or that the page is of another site.
+    A foreign site may let its own name point to this machine; then the browser sends that name along as the host. A
+    foreign page may also send requests to the right name; then the browser sends the origin of the page along, or says
+    that the page belongs to another site.
     """
 
     names: frozenset[str] = frozenset()
@@ -36,20 +37,20 @@ class _OwnPages(BokehTornado):
 
     def _is_own(self, request: Any) -> bool:
         if request.host not in self.names or request.path.startswith("/autoload"):
-            return False  # the latter is Bokeh's script for foreign pages, which has a session
+            return False  # /autoload is Bokeh's script for foreign pages, and opens a session
         if (origin := request.headers.get("Origin")) is not None:
             return origin in {f"http://{name}" for name in self.names}
-        # From another port of this machine is "same-site"; what a reader has typed is "none".
+        # "same-site" is a page from another port of this machine; "none" is an address that the reader has typed.
         return request.headers.get("Sec-Fetch-Site", "none") in ("none", "same-origin")
 
 
 def listen(port: int) -> socket.socket:
-    """A socket on this machine's own address; port 0 takes a free one.
+    """Return a socket on this machine's own address; port 0 takes a free port.
 
     Raises
     ------
     OSError
-        When the port is taken.
+        If the port is taken.
     """
     opened = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -69,11 +70,11 @@ def serve(page: Callable[[Document], None], opened: socket.socket, ready: Callab
     Parameters
     ----------
     page : callable
-        Puts a page on the document of each reader.
+        Puts a page into the Bokeh document of each reader.
     opened : socket
-        Of `listen`.
+        Result of `listen`.
     ready : callable
-        Told the address once the page can be opened.
+        Called with the address once the page can be opened.
     """
     port = opened.getsockname()[1]
     names = frozenset(f"{name}:{port}" for name in (ADDRESS, "localhost"))

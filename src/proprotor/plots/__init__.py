@@ -1,7 +1,24 @@
-"""Plots that specialists expect: each takes a dataset and, if wanted, axes, and returns the axes.
+"""Plots that specialists expect: each takes a dataset and, optionally, axes, and returns the axes.
 
-`plot_sweep`, two plots in a figure of their own, returns the figure. `rests_on` writes beneath a plot what its numbers
-rest on. `proprotor.plots.animation` moves a mode.
+In come results of analyses; out go Matplotlib axes. Nothing is computed here but what a picture needs: limits, round
+numbers, and the motion of points in a mode.
+
+    frequency_and_damping campbell root_locus participation mode_shape    a sweep, or one of its modes
+    attribution tornado stability_map study_results                       what moves a mode or a boundary
+    mode_motion         how wing, mast and blades move in a mode, as points in space
+    animation           a mode in motion, as a GIF
+
+    canvas              the axes, and the notes around them: `rests_on` writes what the numbers of a case rest on
+    mode_lines          the lines of the modes of a sweep
+    end_labels          names of lines beside the axes
+    bars                what plots of bars have in common
+    style               colours, dashes and markers
+    line_of_sweep       positions along a sweep in the usual unit
+    input_names         short names of inputs
+    headless            drawing for a file, without a window
+
+`plot_sweep`, two plots in a figure of their own, returns the figure. This room may import the rooms above it, from
+`errors` to `tables`. Matplotlib takes long to import: functions import it when they draw.
 """
 
 from proprotor.plots.attribution import plot_attribution
@@ -16,6 +33,11 @@ from proprotor.plots.study_results import plot_distribution, plot_sobol
 from proprotor.plots.tornado import plot_sensitivity
 
 __all__ = [
+    "animation",
+    "headless",
+    "input_names",
+    "line_of_sweep",
+    "mode_motion",
     "plot_attribution",
     "plot_campbell",
     "plot_damping",
@@ -29,4 +51,5 @@ __all__ = [
     "plot_stability_map",
     "plot_sweep",
     "rests_on",
+    "style",
 ]

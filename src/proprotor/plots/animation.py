@@ -1,4 +1,4 @@
-"""A mode of rotor and wing in motion, as a GIF."""
+"""Animation of a mode: rotor and wing in motion, as a GIF."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from proprotor.files.output import check_place, write_whole
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK, marked
 from proprotor.needs import check_memory
+from proprotor.plots.mode_shape import draw_moving, draw_still
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
@@ -25,9 +26,9 @@ if TYPE_CHECKING:
 _SIZE = (8.0, 4.4)  # inches
 _PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "side": (0.82, 0.09, 0.17, 0.76)}
 _TITLES = {"3d": "", "front": "from ahead", "side": "from outboard"}
-_COLOURS = 32  # of the GIF
-_CANVAS = 16  # bytes a pixel while one picture is drawn: the canvas, its background, the colours
-_LETTERS = 170  # of a line of the small print
+_COLOURS = 32  # colours of the GIF
+_CANVAS = 16  # bytes for a pixel while one picture is drawn: the canvas, its background, the colours
+_LETTERS = 170  # letters in a line of the small print
 
 
 def animate_mode(
@@ -38,20 +39,20 @@ def animate_mode(
     frames_per_second: float = 12.0,
     dpi: int = 80,
 ) -> Path:
-    """Write one cycle of a mode as a GIF that repeats without end, in perspective, from ahead and from the side.
+    """Write one cycle of a mode as a GIF that repeats forever, in perspective, from ahead and from the side.
 
     Parameters
     ----------
     motion : ModeMotion
-        Of `proprotor.plots.mode_motion.mode_motion`.
+        Result of `proprotor.plots.mode_motion.mode_motion`.
     path : str or path
         A file that ends in .gif.
     frames : int
-        Of one cycle, at least 4.
+        Number of pictures of one cycle, at least 4.
     frames_per_second : float
-        Frames in 1 s; the title tells the true frequency.
+        Frames in 1 s; the title gives the true frequency.
     dpi : int
-        Dots per inch of a picture of 8 by 4.4 inches.
+        Dots per inch of the pictures, which are 8 by 4.4 inches large.
 
     Returns
     -------
@@ -67,19 +68,19 @@ def animate_mode(
     target = Path(path)
     check_place(path, ".gif")
     if frames < 4 or not frames_per_second > 0 or not dpi > 0:
-        told = f"{frames} frames, {frames_per_second} per second, {dpi} dpi"
-        raise InputError("frames", told, "must be at least 4, at a speed and a size above zero")
+        given = f"{frames} frames, {frames_per_second} per second, {dpi} dpi"
+        raise InputError("frames", given, "must be at least 4, at a speed and a size above zero")
     picture = _SIZE[0] * _SIZE[1] * float(dpi) ** 2  # pixels
     check_memory("frames", frames, picture * (frames + _CANVAS), "the pictures", "take fewer or smaller ones")
     first, *others = _frames(motion, frames, dpi)
-    lasts = round(1000 / frames_per_second)
-    given: dict[str, Any] = {"append_images": others, "duration": lasts, "loop": 0, "optimize": True}
-    write_whole(target, lambda file: first.save(file, format="GIF", save_all=True, **given))
+    milliseconds = round(1000 / frames_per_second)
+    how: dict[str, Any] = {"append_images": others, "duration": milliseconds, "loop": 0, "optimize": True}
+    write_whole(target, lambda file: first.save(file, format="GIF", save_all=True, **how))
     return target
 
 
 def title_of(motion: ModeMotion) -> str:
-    """The mode with airspeed, frequency and damping.
+    """Return the title of a mode: its name, airspeed, frequency and damping.
 
     Parameters
     ----------
@@ -100,10 +101,8 @@ def title_of(motion: ModeMotion) -> str:
 
 
 def _frames(motion: ModeMotion, count: int, dpi: int) -> list[Image]:
-    """Pictures of one cycle: what stands still is drawn once, and the moving lines over it."""
-    from PIL import Image
-
-    from proprotor.plots.mode_shape import draw_moving
+    """Return the pictures of one cycle. The trim state is drawn once, and the moving lines over copies of it."""
+    from PIL import Image  # here, because PIL takes long to import
 
     canvas, axes = _still(motion, dpi)
     background = canvas.copy_from_bbox(canvas.figure.bbox)
@@ -116,19 +115,20 @@ def _frames(motion: ModeMotion, count: int, dpi: int) -> list[Image]:
                 ax.draw_artist(line)
                 line.remove()
         whole = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
-        palette = palette or whole.quantize(
-            _COLOURS
-        )  # one for all, so that what stands still keeps its shade
+        palette = palette or whole.quantize(_COLOURS)  # one for all pictures, so that shades do not flicker
         pictures.append(whole.quantize(palette=palette, dither=Image.Dither.NONE))
     return pictures
 
 
 def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
-    """The canvas of a figure with titles and the trim state (Matplotlib does not type its methods), and its axes."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    """Return the canvas of a figure with titles and the trim state, and its axes by view.
 
-    from proprotor.plots.mode_shape import draw_still
+    Matplotlib does not type the methods of the canvas.
+    """
+    from matplotlib.backends.backend_agg import (
+        FigureCanvasAgg,
+    )  # here, because matplotlib takes long to import
+    from matplotlib.figure import Figure
 
     figure = Figure(figsize=_SIZE, dpi=dpi)
     canvas: Any = FigureCanvasAgg(figure)
@@ -147,9 +147,9 @@ def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
 
 
 def _small_print(motion: ModeMotion) -> str:
-    told = "Blades are shown at azimuths that stand still. Amplitude enlarged and held; grey: trim."
+    """Return the text below the pictures: how the mode is drawn, its case and options, and a doubt about it."""
+    drawing = "Blades are shown at azimuths that stand still. Amplitude enlarged and held; grey: trim."
     sketch = " The wing is a sketch in the proportions of the XV-15." if motion.sketched else ""
     doubt = f" {MARK} Doubtful: {motion.warning}." if motion.warning else ""
-    return "\n".join(
-        filter(None, (told + sketch, textwrap.fill(f"{stamp.line(motion.stamp)}{doubt}", _LETTERS)))
-    )
+    origin = textwrap.fill(f"{stamp.line(motion.stamp)}{doubt}", _LETTERS)
+    return "\n".join(filter(None, (drawing + sketch, origin)))

@@ -1,4 +1,4 @@
-"""What drives a mode and what damps it, by physical origin."""
+"""Bars of what drives a mode and what damps it, by the physical origin of the terms."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ import numpy as np
 
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.doubts import marked
-from proprotor.plots.canvas import axes_or_new, grid, note, say_origin, signed
-from proprotor.plots.style import DAMPS, DRIVES, LABEL_SIZE
+from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
+from proprotor.plots.canvas import axes_or_new, note, say_origin
+from proprotor.plots.style import DAMPS, DRIVES
+from proprotor.stability.sensitivity import damping_rate
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
@@ -24,34 +26,32 @@ def plot_attribution(
     *,
     count: int = 15,
 ) -> Axes:
-    """Draw what each origin adds to the damping of a mode, in percent of critical, to first order.
+    """Draw what each origin of terms adds to the damping of a mode, in percent of critical, to first order.
 
-    A bar is the change of the damping ratio if all terms of that origin grew by 100 %, at the rate at which it begins.
-    Over all origins the changes sum to zero.
+    A bar is the change of the damping ratio if all terms of one origin grew by 100 %, extrapolated from the rate at the
+    present terms. Over all origins the changes sum to zero.
 
     Parameters
     ----------
     found : xarray.Dataset
-        Of `Case.attribution`.
+        Result of `Case.attribution`.
     mode : str, optional
-        By name; not needed when there is one only.
+        Name of the mode; not needed if the result has one mode only.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     count : int
-        Bars at most, the longest; the rest is one bar, their sum.
+        Number of bars, the longest; one more bar is the sum of all others.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one.
+        The given axes, or the new ones.
 
     Raises
     ------
     InputError
-        For an unknown mode, or none of several.
+        If the mode is unknown, or if the result has several modes and none is named.
     """
-    from proprotor.stability.sensitivity import damping_rate
-
     names = found.mode.values.tolist()
     if mode is None and len(names) == 1:
         mode = names[0]
@@ -80,19 +80,13 @@ def plot_attribution(
 
 def _draw(ax: Axes, bars: list[tuple[str, float]]) -> None:
     places, values = np.arange(len(bars)), np.array([value for _, value in bars])
-    for drives, colour, hatch, told in ((True, DRIVES, "////", "drives it"), (False, DAMPS, "", "damps it")):
+    for drives, colour, hatch, label in ((True, DRIVES, "////", "drives it"), (False, DAMPS, "", "damps it")):
         chosen = (values < 0) == drives
         style: dict[str, Any] = {"color": colour, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
-        ax.barh(places[chosen], values[chosen], height=0.7, label=told, **style)
-    for place, value in zip(places.tolist(), values.tolist(), strict=True):
-        told_at: dict[str, Any] = {"textcoords": "offset points", "xytext": (3 if value >= 0 else -3, 0)}
-        side = "left" if value >= 0 else "right"
-        ax.annotate(signed(value), (value, place), fontsize=7, va="center", ha=side, **told_at)
-    ax.axvline(0, color="black", linewidth=0.8)
-    reach = 1.2 * max(np.abs(values).max(initial=0), 1e-12)
-    ax.set_xlim(-reach, reach)
-    ax.set_yticks(places, [name for name, _ in bars], fontsize=LABEL_SIZE)
+        ax.barh(places[chosen], values[chosen], height=0.7, label=label, **style)
+    for place, value in enumerate(values.tolist()):
+        write_beside(ax, place, value, signed(value))
+    centre_on_zero(ax, 1.2 * max(np.abs(values).max(initial=0), 1e-12))
+    name_bars(ax, [name for name, _ in bars])
     ax.set_ylim(-0.6, len(bars) - 0.4)
-    grid(ax)
-    ax.grid(visible=False, axis="y")
     ax.legend(fontsize=7, loc="lower right", framealpha=0.95)

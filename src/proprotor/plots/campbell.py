@@ -1,4 +1,4 @@
-"""Frequencies in the fixed frame against the rotor speed, with the harmonics of the rotor: Campbell's diagram."""
+"""Campbell's diagram: frequencies in the fixed frame over the rotor speed, with the harmonics of the rotor."""
 
 from __future__ import annotations
 
@@ -8,20 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.plots.canvas import along, axes_or_new, grid, say_origin
-from proprotor.plots.end_labels import label_ends, name_those_outside
-from proprotor.plots.frequency_and_damping import mark_failed
-from proprotor.plots.line_of_sweep import positions, with_gaps
-from proprotor.plots.style import LABEL_SIZE, mode_styles
-from proprotor.tables.sweep_summary import damped_frequency, leaps
-from proprotor.typing import Array
+from proprotor.plots.canvas import along, axes_or_new, say_origin
+from proprotor.plots.end_labels import label_lines
+from proprotor.plots.line_of_sweep import positions
+from proprotor.plots.mode_lines import draw_modes
+from proprotor.plots.style import LABEL_SIZE
+from proprotor.tables.sweep_summary import damped_frequency
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
 
-ROTOR_SPEED = "operation.rotor_speed"
+_ROTOR_SPEED = "operation.rotor_speed"
 _HARMONICS = 5
 
 
@@ -35,47 +33,47 @@ def plot_campbell(
     unit: str = "rpm",
     limits: tuple[float, float] | None = None,
 ) -> Axes:
-    """Draw the frequency |Im s| of each mode in the fixed frame over the rotor speed, and the rays n/rev.
+    """Draw the frequency |Im s| of each mode in the fixed frame over the rotor speed, and rays of n per revolution.
 
     Parameters
     ----------
     sweep : xarray.Dataset
-        Of `Case.sweep` at one airspeed with ``vary={"operation.rotor_speed": ...}``: windmilling in air, or in vacuum
-        with ``airloads="none"``.
+        Result of `Case.sweep` at one airspeed with ``vary={"operation.rotor_speed": ...}``: windmilling in air, or in
+        vacuum with ``airloads="none"``.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default. Labels stand to its right.
     harmonics : sequence of int, optional
-        The n of the rays; 1 to 5, or to one beyond the number of blades, by default.
+        The n of the rays; by default 1 to 5, or 1 to one more than the number of blades.
     n_blades : int, optional
-        The rays of multiples of it, at which blades shake the fixed frame, are then drawn in black.
+        Number of blades. Rays of its multiples, at which blades shake the fixed frame, are black.
     rotor_speed : float, optional
-        rad/s, at which the rotor is operated: a vertical line.
+        Operating speed of the rotor, rad/s, drawn as a vertical line.
     unit : str
-        Of the rotor speed.
+        Unit of the axis of rotor speed.
     limits : (float, float), optional
-        Of the frequency axis, Hz; up to the highest ray by default. Modes that leave it are named above the axes.
+        Ends of the frequency axis, Hz; up to the highest ray by default. A note above the axes names the modes that
+        leave the axis.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one.
+        The given axes, or the new ones.
 
     Raises
     ------
     InputError
-        When the sweep is not over the rotor speed, or the unit is not one of it.
+        If the sweep is not over the rotor speed, or the unit does not fit it.
     """
-    if sweep.eigenvalue.dims[0] != ROTOR_SPEED:
-        raise InputError("sweep", str(sweep.eigenvalue.dims[0]), f"must be over {ROTOR_SPEED}")
+    if sweep.eigenvalue.dims[0] != _ROTOR_SPEED:
+        raise InputError("sweep", str(sweep.eigenvalue.dims[0]), f"must be over {_ROTOR_SPEED}")
     line = positions(sweep, unit)
     ax = axes_or_new(ax, size=(8, 6), labels_beside=True)
     rays = list(harmonics or range(1, max(_HARMONICS, (n_blades or 0) + 1) + 1))
-    omega = sweep[ROTOR_SPEED].values
-    lines = _draw_modes(ax, sweep, line.values)
+    omega = sweep[_ROTOR_SPEED].values
+    lines = draw_modes(ax, sweep, damped_frequency(sweep) / (2 * np.pi), line)
     ax.set_xlim(0, float(line.values.max()))
     ax.set_ylim(*(limits or (0, max(rays) * float(omega.max()) / (2 * np.pi))))
     _draw_rays(ax, rays, line.factor / (2 * np.pi), n_blades)
-    mark_failed(ax, line.values[sweep.reason.values != ""], line.label)
     if rotor_speed is not None:
         at = rotor_speed / line.factor
         ax.axvline(at, color="0.35", linewidth=1.0, linestyle="-.", zorder=1)
@@ -84,26 +82,13 @@ def plot_campbell(
         style |= {"ha": "right", "va": "top", "zorder": 4, "textcoords": "offset points", "xytext": (-3, 0)}
         ax.annotate(f"{at:.0f} {unit}", (at, 0.98), xycoords=ax.get_xaxis_transform(), **style)
     ax.set_ylabel("Frequency |Im s| in the fixed frame (Hz)")
-    grid(ax)
-    label_ends(ax, lines)
-    name_those_outside(ax, lines, "at some rotor speeds or all")
+    label_lines(ax, lines, "at some rotor speeds or all")
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
 
-def _draw_modes(ax: Axes, sweep: xarray.Dataset, speeds: Array) -> list[Line2D]:
-    hertz = damped_frequency(sweep) / (2 * np.pi)
-    spacing, gaps = max(1, len(speeds) // 7), leaps(sweep)
-    lines: list[Line2D] = []
-    for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
-        more: dict[str, Any] = {"markevery": (3 * place % spacing, spacing), "markersize": 5, "label": mode}
-        x, y = with_gaps(gaps[:, place], speeds, hertz[:, place])
-        lines += ax.plot(x, y, **more, **style._asdict())
-    return lines
-
-
 def _draw_rays(ax: Axes, harmonics: Sequence[int], hertz: float, n_blades: int | None) -> None:
-    """n times the rotor speed; `hertz` is one unit of the rotor speed. Each has its n inside, near its end."""
+    """Draw the lines of n times the rotor speed, with n near the end of each; `hertz` is one unit of rotor speed."""
     right, top = ax.get_xlim()[1], ax.get_ylim()[1]
     for n in harmonics:
         strong = n_blades is not None and n % n_blades == 0

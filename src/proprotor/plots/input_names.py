@@ -8,22 +8,22 @@ from collections.abc import Sequence
 
 _MODE = re.compile(r"support\.modes\[(.+)\]\.(.+)")
 _SECTIONS = ("rotor.", "operation.")
-_TOLD = {"rotor.chord": "blade chord"}  # the wing has one too, and a mode of that name
+_OTHERS = {"rotor.chord": "blade chord"}  # the wing has a chord too, and one mode is called chord
 
 
 def short_name(path: str) -> str:
-    """An input by what it is, without the section of the deck it stands in."""
+    """Return the name of an input without the section of the deck in which it stands."""
     if found := _MODE.fullmatch(path):
         return f"{found[1]}: {found[2].replace('_', ' ')}"
-    if path in _TOLD:
-        return _TOLD[path]
+    if path in _OTHERS:
+        return _OTHERS[path]
     for section in _SECTIONS:
         path = path.removeprefix(section)
     return path.replace(".", " ").replace("_", " ")
 
 
 def short_names(paths: Sequence[str]) -> list[str]:
-    """Short names of several inputs; the whole path where two would read the same."""
+    """Return short names of several inputs; the whole path for inputs that would have the same short name."""
     names = [short_name(path) for path in paths]
     counts = Counter(names)
     return [name if counts[name] == 1 else path for name, path in zip(names, paths, strict=True)]

@@ -1,12 +1,12 @@
-"""How wing, mast and blades move in a mode, as points in space: what a picture of the mode draws.
+"""Motion of wing, mast and blades in a mode, as points in space: the numbers behind a picture of the mode.
 
 Positions are those of the derivation: a straight blade with a flap and a lag hinge on precone, in its trim state, on
-a gimbal. Motions are linear in the coordinates. Coordinates of the fixed frame say how a blade is deflected that passes
-an azimuth, β(ψ) = β_0 + β_1c cos ψ + β_1s sin ψ, so blades are drawn at azimuths that stand still, and the path of the
-tips is a closed line.
+a gimbal. Motions are linear in the coordinates. Coordinates of the fixed frame give the deflection of the blade that
+passes an azimuth, β(ψ) = β_0 + β_1c cos ψ + β_1s sin ψ. Therefore blades are drawn at azimuths that stand still, and
+the path of the tips is a closed line.
 
-The wing is a sketch. The analysis knows a support by the motion of the hub alone; between root and tip the sketch bends
-as a cantilever that is loaded at its tip, and twists in proportion to the distance from its root.
+The wing is a sketch. The analysis knows only how a support moves the hub; between root and tip the sketch bends as a
+cantilever that is loaded at its tip, and twists in proportion to the distance from its root.
 """
 
 from __future__ import annotations
@@ -20,19 +20,20 @@ import numpy as np
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.stamp import Stamp, of_model
 from proprotor.typing import Array
+from proprotor.units import in_metres_per_second
 
 if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.model.linear_model import LinearModel
 
-_SPAN, _MAST, _CHORD = 1.333, 0.342, 0.42  # of the XV-15, in radii: where a deck has no wing
-_PER_BLADE, _PER_WING, _PER_CIRCLE = 12, 12, 73
-_LARGEST_TRAVEL, _LARGEST_ANGLE = 0.22, 0.35  # in radii, and rad: what is still drawn without looking torn
+_SPAN, _MAST, _CHORD = 1.333, 0.342, 0.42  # of the XV-15, in radii: for a deck without a wing
+_PER_BLADE, _PER_WING, _PER_CIRCLE = 12, 12, 73  # points
+_LARGEST_TRAVEL, _LARGEST_ANGLE = 0.22, 0.35  # radii, rad: larger motions would look torn
 _HARMONIC = re.compile(r"(flap|lag|pitch|gimbal)_(0|(\d+)([cs]))")
 
 
 class WingSketch(NamedTuple):
-    """A wing to be drawn.
+    """Size of a wing to be drawn.
 
     Parameters
     ----------
@@ -41,11 +42,11 @@ class WingSketch(NamedTuple):
     mast : float
         From the wing forward to the hub, m.
     chord : float
-        Of the wing, m.
+        Chord of the wing, m.
     sweep : float
-        Of its axis, rad, back where positive.
+        Sweep of the wing's axis, rad, positive backwards.
     assumed : bool
-        Whether the deck does not tell.
+        Whether the size is assumed because the deck does not give it.
     """
 
     span: float
@@ -89,9 +90,9 @@ class ModeMotion:
     parts : tuple of Part
         Motions scaled so that they can be seen.
     sketched : bool
-        Whether the wing's size is the sketch's and not the deck's.
+        Whether the size of the wing is assumed because the deck does not give it.
     warning : str
-        What makes the mode doubtful; empty where nothing does.
+        What makes the mode doubtful; empty if nothing does.
     stamp : mapping of str to str
         The case and the options in force, see `proprotor.model.stamp`.
     """
@@ -108,12 +109,12 @@ class ModeMotion:
     stamp: Stamp = field(default_factory=dict)
 
     def at(self, phase: float) -> dict[str, Array]:
-        """Every part at a phase of the cycle; growth and decay are left out.
+        """Return the points of every part at a phase of the cycle, without growth or decay.
 
         Parameters
         ----------
         phase : float
-            rad.
+            Phase of the cycle, rad.
 
         Returns
         -------
@@ -126,7 +127,7 @@ class ModeMotion:
 def mode_motion(
     case: Case, airspeed: Any, mode: str, *, wing: WingSketch | None = None, **options: Any
 ) -> ModeMotion:
-    """The motion of one mode of a case.
+    """Return the motion of one mode of a case.
 
     Parameters
     ----------
@@ -134,9 +135,9 @@ def mode_motion(
         One design.
     airspeed : float in m/s, text such as "300 kt", or pint quantity
     mode : str
-        By what moves at the airspeed.
+        Name that the mode has at the airspeed.
     wing : WingSketch, optional
-        What to draw; by default what the deck says of its wing, else the proportions of the XV-15.
+        Size of the wing; by default that of the deck, or the proportions of the XV-15 if the deck gives none.
     **options
         See `proprotor.rotor.options.Options`.
 
@@ -147,11 +148,9 @@ def mode_motion(
     Raises
     ------
     InputError
-        For an airspeed that cannot be analysed, an unknown mode, one that does not oscillate, or coordinates of blades
-        that stand for no azimuth.
+        For an airspeed that cannot be analysed, a mode that is unknown or does not oscillate, or coordinates of blades
+        that belong to no azimuth.
     """
-    from proprotor.units import in_metres_per_second
-
     speed = in_metres_per_second(airspeed).reshape(-1)
     if len(speed) != 1:
         raise InputError("airspeed", airspeed, "must be one speed")
@@ -188,7 +187,7 @@ def mode_motion(
 
 
 def sketch_of(case: Case) -> WingSketch:
-    """The wing of a case as far as its deck tells, else in the proportions of the XV-15.
+    """Return the size of a case's wing, or the proportions of the XV-15 if the deck gives no wing.
 
     Parameters
     ----------
@@ -203,21 +202,17 @@ def sketch_of(case: Case) -> WingSketch:
     radius = float(case.rotor.radius)
     if "distance" in given:  # a pivot: a mast and no wing
         return WingSketch(0.0, float(given["distance"]), 0.0)
-    for within in ("", "wing_aerodynamics."):
-        if f"{within}span" in given:
+    for section in ("", "wing_aerodynamics."):
+        if f"{section}span" in given:
+            span, mast = given[f"{section}span"], given[f"{section}mast_length"]
             chord = given.get("wing_aerodynamics.chord", _CHORD * radius)
-            sweep = given.get(f"{within}sweep", 0.0)
-            return WingSketch(
-                float(given[f"{within}span"]),
-                float(given[f"{within}mast_length"]),
-                float(chord),
-                float(sweep),
-            )
+            sweep = given.get(f"{section}sweep", 0.0)
+            return WingSketch(float(span), float(mast), float(chord), float(sweep))
     return WingSketch(_SPAN * radius, _MAST * radius, _CHORD * radius, assumed=True)
 
 
 def _hub_motion(model: LinearModel, shape: Array) -> Array:
-    """Displacement and rotation (6,) of the hub."""
+    """Return the displacement and rotation (6,) of the hub."""
     if model.hub is None:
         return np.asarray(shape[:6])
     hub = np.asarray(model.hub @ shape) if model.hub.size else np.zeros(6)
@@ -227,7 +222,7 @@ def _hub_motion(model: LinearModel, shape: Array) -> Array:
 def _parts(
     case: Case, model: LinearModel, coordinates: dict[str, complex], hub: Array, wing: WingSketch
 ) -> tuple[list[Part], float]:
-    """All lines with their motions, and the largest angle of any coordinate."""
+    """Return all lines with their motions, and the largest angle of any coordinate."""
     blade = _Blade.of(case, model)
     azimuths = 2 * np.pi * np.arange(int(case.rotor.n_blades)) / int(case.rotor.n_blades)
     parts = _wing(wing, hub)
@@ -242,6 +237,7 @@ def _parts(
 
 
 def _scale(parts: list[Part], largest_angle: float, radius: float) -> float:
+    """Return the factor that makes a mode as large as it can be drawn."""
     travel = max(float(np.linalg.norm(np.abs(part.motion), axis=1).max()) for part in parts)
     limits = [_LARGEST_TRAVEL * radius / travel] if travel > 0 else []
     limits += [_LARGEST_ANGLE / largest_angle] if largest_angle > 0 else []
@@ -249,7 +245,7 @@ def _scale(parts: list[Part], largest_angle: float, radius: float) -> float:
 
 
 def _wing(wing: WingSketch, hub: Array) -> list[Part]:
-    """The mast, and the outline of a wing that runs from its root to the pylon; the hub is where lines begin."""
+    """Return the mast, and the outline of the wing from its root to the pylon, in coordinates from the hub."""
     still, turn = hub[:3], hub[3:]
     foot = np.array([0.0, 0.0, -wing.mast])
     mast = np.array([np.zeros(3), foot])
@@ -266,19 +262,17 @@ def _wing(wing: WingSketch, hub: Array) -> list[Part]:
     edges = [np.array([0.0, 0.0, offset * wing.chord]) for offset in (0.4, -0.6)]
     points = [line + edge for edge in edges]
     motions = [bent + share * np.cross(twist, edge) for edge in edges]
-    parts.append(
-        Part(
-            "wing",
-            np.concatenate([points[0], points[1][::-1]]),
-            np.concatenate([motions[0], motions[1][::-1]]),
-        )
-    )
-    return parts
+    around = (np.concatenate([front, rear[::-1]]) for front, rear in (points, motions))
+    return [*parts, Part("wing", *around)]
 
 
 @dataclass(frozen=True)
 class _Blade:
-    """A blade in its trim state: radii (k,), lever arms of flap and lag, pitch and chord of sections, angles in rad."""
+    """A blade in its trim state.
+
+    r, flap_arm, lag_arm, chord : arrays (k,), m; pitch : of the sections (k,), rad; the others are angles in rad and a
+    ratio of angles.
+    """
 
     r: Array
     flap_arm: Array
@@ -292,6 +286,7 @@ class _Blade:
 
     @classmethod
     def of(cls, case: Case, model: LinearModel) -> _Blade:
+        """Return the blade of a case, in the trim state of a model."""
         rotor, trim = case.rotor, model.trim
         r = np.linspace(float(rotor.root_cutout), float(rotor.radius), _PER_BLADE)
         return cls(
@@ -307,7 +302,7 @@ class _Blade:
         )
 
     def line(self, azimuth: float, coordinates: dict[str, complex], hub: Array) -> tuple[Array, Array]:
-        """Points (k, 3) of the reference line from the hub, and their motion."""
+        """Return points (k, 3) of the reference line from the hub, and the motions of the points."""
         i, j, k = _axes(azimuth)
         inner, outer = self.precone, self.precone + self.flap
         d1, d2 = np.cos(inner) * j + np.sin(inner) * k, np.cos(outer) * j + np.sin(outer) * k
@@ -322,13 +317,13 @@ class _Blade:
         return points, motion + _carried(points, coordinates, hub)
 
     def outline(self, azimuth: float, coordinates: dict[str, complex], hub: Array) -> tuple[Array, Array]:
-        """Leading edge outwards and trailing edge back, (2 k + 1, 3): a closed line, and its motion."""
+        """Return the closed outline (2 k + 1, 3), leading edge outwards and trailing edge back, and its motion."""
         points, motion = self.line(azimuth, coordinates, hub)
         i, j, k = _axes(azimuth)
         normal = np.cos(self.precone + self.flap) * k - np.sin(self.precone + self.flap) * j
         cosine, sine = np.cos(self.pitch)[:, None], np.sin(self.pitch)[:, None]
         ahead = sine * normal - cosine * i  # towards the leading edge
-        turned = cosine * normal + sine * i  # its change with the pitch
+        turned = cosine * normal + sine * i  # change of `ahead` with the pitch
         tilt = coordinates.get("gimbal_1c", 0.0), coordinates.get("gimbal_1s", 0.0)
         flap = tilt[0] * np.cos(azimuth) + tilt[1] * np.sin(azimuth)
         roll = tilt[1] * np.cos(azimuth) - tilt[0] * np.sin(azimuth)
@@ -345,13 +340,13 @@ class _Blade:
 
 
 def _axes(azimuth: float) -> tuple[Array, Array, Array]:
-    """i against the rotation, j along the blade, k along the shaft, in x, y, z."""
+    """Return unit vectors in x, y, z: i against the rotation, j along the blade, k along the shaft."""
     cosine, sine = np.cos(azimuth), np.sin(azimuth)
     return np.array([sine, -cosine, 0.0]), np.array([cosine, sine, 0.0]), np.array([0.0, 0.0, 1.0])
 
 
 def _at_azimuth(stem: str, azimuth: float, coordinates: dict[str, complex]) -> complex:
-    """An angle of the blade that passes an azimuth, from the coordinates of the fixed frame."""
+    """Return an angle of the blade that passes an azimuth, from the coordinates of the fixed frame."""
     total = 0j
     for name, value in coordinates.items():
         if not name.startswith(f"{stem}_"):
@@ -367,11 +362,11 @@ def _at_azimuth(stem: str, azimuth: float, coordinates: dict[str, complex]) -> c
 
 
 def _turn(coordinates: dict[str, complex], hub: Array) -> Array:
-    """Rotation (3,) of the whole rotor: hub, gimbal g = β_GS I - β_GC J, and azimuth."""
+    """Return the rotation (3,) of the whole rotor: hub, gimbal g = β_GS I - β_GC J, and azimuth."""
     gimbal = coordinates.get("gimbal_1s", 0.0), -coordinates.get("gimbal_1c", 0.0)
     return np.array([hub[3] + gimbal[0], hub[4] + gimbal[1], hub[5] + coordinates.get("azimuth", 0.0)])
 
 
 def _carried(points: Array, coordinates: dict[str, complex], hub: Array) -> Array:
-    """Motion of points that are carried along by hub, gimbal and azimuth."""
+    """Return the motion of points that hub, gimbal and azimuth carry along."""
     return np.asarray(hub[:3] + np.cross(_turn(coordinates, hub), points))

@@ -1,4 +1,4 @@
-"""A mode of rotor and wing at one phase of its cycle, from ahead, from the side, from above or in perspective."""
+"""Rotor and wing at one phase of a mode, seen from ahead, from the side, from above or in perspective."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 
 class _View(NamedTuple):
-    across: tuple[int, float]  # which of x, y, z, and its sign
+    across: tuple[int, float]  # 0, 1, 2 for x, y, z, and the sign of the coordinate
     up: tuple[int, float]
-    told: tuple[str, str]
+    labels: tuple[str, str]
 
 
-# x is up, y outboard, z along the shaft; seen from ahead outboard is to the left on a right wing.
+# x is up, y outboard, z along the shaft. Seen from ahead, outboard is to the left on a right wing.
 _VIEWS = {
     "front": _View((1, -1.0), (0, 1.0), ("−y, inboard (radii)", "x, up (radii)")),
     "side": _View((2, 1.0), (0, 1.0), ("z, along the shaft (radii)", "x, up (radii)")),
     "top": _View((1, 1.0), (2, 1.0), ("y, outboard (radii)", "z, along the shaft (radii)")),
 }
-VIEWS = (*_VIEWS, "3d")
+_NAMES = (*_VIEWS, "3d")
 _LINES = {
     "wing": ("#009E73", 1.6),
     "mast": ("#000000", 2.6),
@@ -42,31 +42,31 @@ _MARGIN = 0.25  # radii
 def plot_mode_shape(
     motion: ModeMotion, ax: Axes | None = None, *, view: str = "front", phase: float = 0.0
 ) -> Axes:
-    """Draw rotor and wing at one phase of a mode, over their trim state in grey.
+    """Draw rotor and wing at one phase of a mode, over the trim state in grey.
 
     Parameters
     ----------
     motion : ModeMotion
-        Of `proprotor.plots.mode_motion.mode_motion`.
+        Result of `proprotor.plots.mode_motion.mode_motion`.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; a new figure by default. For the view "3d" one with that projection.
+        Where to draw; a new figure by default. The view "3d" needs axes with the projection "3d".
     view : "front", "side", "top" or "3d"
-        From ahead of the rotor, from outboard, from above, or in perspective.
+        View from ahead of the rotor, from outboard, from above, or in perspective.
     phase : float
-        Of the cycle, rad.
+        Phase of the cycle, rad.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one. Lengths are in radii of the rotor, from the hub at trim.
+        The given axes, or the new ones. Lengths are in radii of the rotor, from the hub at trim.
 
     Raises
     ------
     InputError
-        For an unknown view, or axes that do not have its projection.
+        For an unknown view, or axes with another projection than the view needs.
     """
-    if view not in VIEWS:
-        raise InputError("view", view, unknown_name(view, VIEWS, "view"))
+    if view not in _NAMES:
+        raise InputError("view", view, unknown_name(view, _NAMES, "view"))
     ax = _axes(ax, view)
     draw_still(ax, motion, view)
     draw_moving(ax, motion, view, phase)
@@ -75,6 +75,7 @@ def plot_mode_shape(
 
 
 def _axes(ax: Axes | None, view: str) -> Axes:
+    """Return the given axes if they fit the view, or new axes."""
     solid = view == "3d"
     if ax is None:
         import matplotlib.pyplot as plt  # here, because matplotlib takes long to import
@@ -87,7 +88,7 @@ def _axes(ax: Axes | None, view: str) -> Axes:
 
 
 def draw_moving(ax: Axes, motion: ModeMotion, view: str, phase: float) -> list[Any]:
-    """Draw the moving lines, and return them so that they can be taken away again."""
+    """Draw the moving lines, and return them so that the caller can remove them again."""
     lines = []
     for name, points in motion.at(phase).items():
         colour, width = _LINES[name.rstrip("0123456789 ")]
@@ -97,7 +98,7 @@ def draw_moving(ax: Axes, motion: ModeMotion, view: str, phase: float) -> list[A
 
 
 def draw_still(ax: Axes, motion: ModeMotion, view: str) -> None:
-    """The trim state in grey, limits and labels."""
+    """Draw the trim state in grey, and set limits and labels."""
     still = {part.name: part.points / motion.radius for part in motion.parts}
     for points in still.values():
         ax.plot(*_seen(points, view), color="0.75", linewidth=0.8, zorder=1)
@@ -110,15 +111,15 @@ def draw_still(ax: Axes, motion: ModeMotion, view: str) -> None:
     for (axis, sign), limit in ((chosen.across, ax.set_xlim), (chosen.up, ax.set_ylim)):
         limit(*sorted((sign * low[axis], sign * high[axis])))
     ax.set_aspect("equal")
-    ax.set_xlabel(chosen.told[0], fontsize=LABEL_SIZE)
-    ax.set_ylabel(chosen.told[1], fontsize=LABEL_SIZE)
+    ax.set_xlabel(chosen.labels[0], fontsize=LABEL_SIZE)
+    ax.set_ylabel(chosen.labels[1], fontsize=LABEL_SIZE)
     ax.tick_params(labelsize=LABEL_SIZE - 1)
     ax.grid(color="0.92", linewidth=0.5)
     ax.set_axisbelow(True)
 
 
 def _set_solid(ax: Any, low: Array, high: Array) -> None:
-    """Limits and a view from ahead, above and outboard, without the box."""
+    """Set limits and a view from ahead, above and outboard, without the box of the axes."""
     limits = [(low[2], high[2]), (-high[1], -low[1]), (low[0], high[0])]
     for (start, stop), limit in zip(limits, (ax.set_xlim, ax.set_ylim, ax.set_zlim), strict=True):
         limit(start, stop)
@@ -128,7 +129,7 @@ def _set_solid(ax: Any, low: Array, high: Array) -> None:
 
 
 def _seen(points: Array, view: str) -> tuple[Array, ...]:
-    """Coordinates on the page, or z, -y and x for a right-handed perspective with x up."""
+    """Return coordinates on the page, or z, -y and x for a right-handed perspective with x up."""
     if view == "3d":
         return points[:, 2], -points[:, 1], points[:, 0]
     chosen = _VIEWS[view]

@@ -1,4 +1,4 @@
-"""Which coordinates take part in a mode."""
+"""Bars of the coordinates that take part in a mode."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, unknown_name
-from proprotor.plots.canvas import along, axes_or_new, grid, say_origin
+from proprotor.plots.bars import name_bars
+from proprotor.plots.canvas import along, axes_or_new, say_origin
 from proprotor.plots.line_of_sweep import positions, written
 from proprotor.plots.style import COLOURS, LABEL_SIZE
 from proprotor.typing import Array
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-_LEAST = 0.01  # share of a coordinate that has bars of its own
+_LEAST = 0.01  # smallest share with which a coordinate has bars of its own
 _HATCHES = ("", "////", "....", "xxxx", "\\\\\\\\")
 
 
@@ -34,26 +35,26 @@ def plot_participation(
     Parameters
     ----------
     sweep : xarray.Dataset
-        Of `Case.sweep`, along airspeeds or one input.
+        Result of `Case.sweep`, along airspeeds or one input.
     mode : str
-        By name.
+        Name of the mode.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     at : float or sequence of float, optional
-        Airspeeds, or values of the input, in `unit`, at most five: the nearest points of the sweep that work are taken,
-        and told. The first and the last such point by default.
+        At most five airspeeds, or values of the input, in `unit`. The plot shows and names the nearest points of the
+        sweep that could be analysed; by default the first and the last such point.
     unit : str, optional
-        Of `at`; "kt" by default for airspeeds.
+        Unit of `at`; "kt" by default for airspeeds.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one.
+        The given axes, or the new ones.
 
     Raises
     ------
     InputError
-        For an unknown mode or unit, too many points, or when no point works.
+        For an unknown mode or unit, too many points, or a mode that exists at no point.
     """
     names = sweep.mode.values.tolist()
     if mode not in names:
@@ -61,28 +62,26 @@ def plot_participation(
     line = positions(sweep, unit)
     chosen = sweep.participation.sel(mode=mode).values
     points = _nearest(line.values, np.isfinite(chosen).all(axis=-1), at)
-    dofs, shares = _told(sweep.dof.values.tolist(), chosen[points])
+    dofs, shares = _largest(sweep.dof.values.tolist(), chosen[points])
     ax = axes_or_new(ax, size=(7, 1.3 + (0.1 + 0.13 * len(points)) * len(dofs)))
     height = 0.84 / len(points)
     for place, point in enumerate(points):
         style: dict[str, Any] = {"color": COLOURS[1 + place], "hatch": _HATCHES[place], "edgecolor": "white"}
         where = np.arange(len(dofs)) + height * (place - (len(points) - 1) / 2)
-        told = f"{line.values[point]:.4g} {written(line.unit)}".strip()
-        ax.barh(where, 100 * shares[place], height=height, linewidth=0, label=told, **style)
-    ax.set_yticks(np.arange(len(dofs)), dofs, fontsize=LABEL_SIZE)
+        label = f"{line.values[point]:.4g} {written(line.unit)}".strip()
+        ax.barh(where, 100 * shares[place], height=height, linewidth=0, label=label, **style)
+    name_bars(ax, dofs)
     ax.set_ylim(len(dofs) - 0.4, -0.6)
     ax.set_xlabel(f"Participation in the mode “{mode}” (%)")
     ax.set_xlim(0, None)
-    grid(ax)
-    ax.grid(visible=False, axis="y")
     title = "Airspeed" if line.name == "airspeed" else line.label.partition(" (")[0]
     ax.legend(title=title, fontsize=LABEL_SIZE, title_fontsize=LABEL_SIZE, loc="lower right")
     say_origin(ax, sweep.attrs, along(sweep.isel({line.name: points}), line))
     return ax
 
 
-def _told(dofs: list[str], shares: Array) -> tuple[list[str], Array]:
-    """Names and shares (points, names) of the coordinates that count at a point, and of all others together."""
+def _largest(dofs: list[str], shares: Array) -> tuple[list[str], Array]:
+    """Return names and shares (points, names) of coordinates with a share of note, and of all others together."""
     counts: Array = np.asarray((shares >= _LEAST).any(axis=0))
     names = [name.replace("_", " ") for name, own in zip(dofs, counts.tolist(), strict=True) if own]
     if counts.all():
@@ -92,6 +91,7 @@ def _told(dofs: list[str], shares: Array) -> tuple[list[str], Array]:
 
 
 def _nearest(values: Array, works: Array, at: ArrayLike | None) -> list[int]:
+    """Return the points that work nearest to the wanted values, each once."""
     good = np.flatnonzero(works)
     if not len(good):
         raise InputError("sweep", None, "has no point at which this mode exists")

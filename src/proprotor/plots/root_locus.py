@@ -1,4 +1,4 @@
-"""Roots of a sweep in the plane of growth and frequency, with the airspeed or an input as parameter."""
+"""Root locus: the roots of a sweep in the plane of growth and frequency, along airspeeds or one input."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.plots.canvas import along, axes_or_new, grid, note, points_per_pixel, say_origin
-from proprotor.plots.end_labels import label_ends, name_those_outside
+from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles
 from proprotor.tables.sweep_summary import growth_rate, leaps
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 _RATIOS = (0.01, 0.02, 0.05, 0.10, 0.20, 0.50)
-_SMALLEST, _LARGEST = 3.5, 8.0  # points, of the markers
-_APART = 14.0  # points: numbers nearer than that would lie on each other
-_MARKS = 8  # at most
+_SMALLEST, _LARGEST = 3.5, 8.0  # size of the markers, points
+_APART = 14.0  # points: the first and the last number of a line would overlap if they were nearer
+_MARKS = 8  # markers of a line, at most
 
 
 def plot_root_locus(
@@ -34,34 +34,36 @@ def plot_root_locus(
     growth_limits: tuple[float, float] | None = None,
     frequency_limits: tuple[float, float] | None = None,
 ) -> Axes:
-    """Draw how the roots s move, the upper half of their plane: Re s across, |Im s| up.
+    """Draw how the roots s move in the upper half of their plane: Re s across, |Im s| up.
 
-    Markers stand at round values of what varies and grow with it. Rays are lines of equal damping ratio.
+    Markers stand at round values of the airspeed or input, and grow with the value. Rays are lines of equal damping
+    ratio.
 
     Parameters
     ----------
     sweep : xarray.Dataset
-        Of `Case.sweep`, along airspeeds or one input.
+        Result of `Case.sweep`, along airspeeds or one input.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default. Labels stand to its right.
     rotor_speed : float, optional
-        rad/s. Both axes are then per revolution, and in rad/s without it.
+        rad/s. With a rotor speed both axes are per revolution, without it in rad/s.
     unit : str, optional
         Unit of the airspeed, "kt" by default, or of the input.
     marks : float, optional
-        Distance of the markers in that unit.
+        Distance of the markers, in this unit.
     growth_limits, frequency_limits : (float, float), optional
-        Of both axes, in their units; by default what holds the modes of the support and those that become unstable.
+        Ends of both axes, in their units; by default the axes hold the modes of the support and the modes that become
+        unstable.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one.
+        The given axes, or the new ones.
 
     Raises
     ------
     InputError
-        When the unit is not one of speed, or of the input.
+        If the unit does not fit the airspeed or the input.
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, size=(8, 7), labels_beside=True)
@@ -75,16 +77,14 @@ def plot_root_locus(
     ax.axvspan(0, max(ax.get_xlim()[1], 0), color=UNSTABLE, linewidth=0, zorder=0.5)
     ax.axvline(0, color="black", linewidth=0.8)
     ax.text(0.99, 0.01, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3", ha="right")
-    told = "per rev" if rotor_speed is not None else "rad/s"
-    ax.set_xlabel(f"Growth Re s ({told})")
-    ax.set_ylabel(f"Frequency |Im s| ({told})")
+    shown_in = "per rev" if rotor_speed is not None else "rad/s"
+    ax.set_xlabel(f"Growth Re s ({shown_in})")
+    ax.set_ylabel(f"Frequency |Im s| ({shown_in})")
     grid(ax)
     if len(at) > 1:
-        note(
-            ax, f"Markers every {at[1] - at[0]:g}, growing from {at[0]:g} to {at[-1]:g} {written(line.unit)}"
-        )
-    label_ends(ax, lines, tie=False)
-    name_those_outside(ax, lines, "somewhere or throughout")
+        ends = f"from {at[0]:g} to {at[-1]:g} {written(line.unit)}"
+        note(ax, f"Markers every {at[1] - at[0]:g}, growing {ends}")
+    label_lines(ax, lines, "somewhere or throughout", tie=False)
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
@@ -97,7 +97,7 @@ def _set_limits(
     growth: tuple[float, float] | None,
     frequency: tuple[float, float] | None,
 ) -> None:
-    """Limits that hold the broad modes, or all modes where there are none."""
+    """Set limits that hold the broad modes, or all modes if none is broad."""
     broad = broad_modes(sweep)
     chosen = [place for place, mode in enumerate(sweep.mode.values.tolist()) if mode in broad]
     columns = chosen or list(range(len(sweep.mode)))
@@ -107,12 +107,14 @@ def _set_limits(
 
 
 def _range(values: Array) -> tuple[float, float]:
+    """Return the ends of values and zero, or -1 and 1 if no value differs from zero."""
     finite = values[np.isfinite(values)]
     low, high = (min(finite.min(), 0.0), max(finite.max(), 0.0)) if finite.size else (0.0, 0.0)
     return (float(low), float(high)) if high > low else (-1.0, 1.0)
 
 
 def _round_values(line: Positions, step: float | None) -> Array:
+    """Return the round values within a line, a step apart or at most `_MARKS`, in the unit of the axis."""
     from matplotlib.ticker import MaxNLocator
 
     low, high = float(line.values.min()), float(line.values.max())
@@ -127,8 +129,9 @@ def _round_values(line: Positions, step: float | None) -> Array:
 def _draw(
     ax: Axes, sweep: xarray.Dataset, real: Array, imaginary: Array, line: Positions, at: Array
 ) -> list[Line2D]:
+    """Draw a line for each mode with markers at round values; return the lines."""
     lines: list[Line2D] = []
-    sizes = np.linspace(_LARGEST, _SMALLEST, len(at))[::-1] ** 2  # one alone is large
+    sizes = np.linspace(_LARGEST, _SMALLEST, len(at))[::-1] ** 2  # a single marker is large
     broad, gaps = broad_modes(sweep), leaps(sweep)
     for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
         plain = style._replace(marker="")._asdict()
@@ -138,18 +141,18 @@ def _draw(
         more: dict[str, Any] = {"color": style.color, "zorder": 3, "linewidths": 0.6, "edgecolors": "white"}
         ax.scatter(x, y, s=sizes, **more)
         if mode in broad:
-            _tell_ends(ax, x, y, at)
+            _write_ends(ax, x, y, at)
     return lines
 
 
 def _at(positions: Array, values: Array, at: Array) -> Array:
-    """Values at round positions, linear between the points of the sweep; NaN beside failed ones and gaps."""
+    """Return values at round positions, linear between the points of the sweep; NaN beside failed points and gaps."""
     order = np.argsort(positions)
     return np.interp(at, positions[order], values[order])
 
 
-def _tell_ends(ax: Axes, x: Array, y: Array, at: Array) -> None:
-    """The first and the last round value beside their markers."""
+def _write_ends(ax: Axes, x: Array, y: Array, at: Array) -> None:
+    """Write the first and the last round value beside their markers, or only the last if both markers are near."""
     seen = np.flatnonzero(np.isfinite(x))
     if not len(seen):
         return
@@ -163,7 +166,7 @@ def _tell_ends(ax: Axes, x: Array, y: Array, at: Array) -> None:
 
 
 def _draw_rays(ax: Axes) -> None:
-    """Lines of equal damping ratio, each with its number where it leaves the axes."""
+    """Draw lines of equal damping ratio, each with its number at the edge of the axes."""
     left, top = ax.get_xlim()[0], ax.get_ylim()[1]
     if left >= 0:
         return

@@ -1,4 +1,4 @@
-"""Where in the plane of two inputs a case is stable."""
+"""Stability map: where in the plane of two inputs a case is stable."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from proprotor.stability.boundary_lines import BoundaryLine
 
 _DASHES = ("-", "--", "-.", ":")
-_ROOM = 0.06  # of the axes: a region less wide than this is not named
+_ROOM = 0.06  # a region that is narrower than this share of the axes has no name in it
 
 
 def plot_stability_map(
@@ -30,28 +30,29 @@ def plot_stability_map(
     lines: Sequence[BoundaryLine] = (),
     units: Mapping[str, str] | None = None,
 ) -> Axes:
-    """Draw the boundary in the plane of two inputs, with the stable side shaded.
+    """Draw the stability boundary in the plane of two inputs, with the stable side shaded.
 
     Parameters
     ----------
     found : xarray.Dataset
-        Of `Case.stability_map`.
+        Result of `Case.stability_map`.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     lines : sequence of BoundaryLine, optional
-        Of `proprotor.stability.boundary_lines.boundary_lines`: the boundary by the mode that is neutral, and named after it.
+        Result of `proprotor.stability.boundary_lines.boundary_lines`: parts of the boundary, each named after the mode
+        that is neutral. Without lines the boundary is one black line.
     units : mapping of str to str, optional
         Units of the axes by input; the usual ones by default.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one.
+        The given axes, or the new ones.
 
     Raises
     ------
     InputError
-        When a unit is not one of its input.
+        If a unit does not fit its input.
     """
     names = [str(name) for name in found.axis.values]
     x, y = (_axis(found, name, (units or {}).get(name)) for name in names)
@@ -70,10 +71,10 @@ def plot_stability_map(
     _draw_named(ax, lines, x, y)
     _name_regions(ax, x.values, y.values, growth)
     level = float(found.attrs.get("level", 0.0))
-    told = f"“stable”: every mode has more than {100 * level:g} % of critical damping" if level else ""
+    stable = f"“stable”: every mode has more than {100 * level:g} % of critical damping" if level else ""
     crosses = "x: could not be analysed" if len(failed) else ""
-    if told or crosses:
-        note(ax, "; ".join(filter(None, (told, crosses))))
+    if stable or crosses:
+        note(ax, "; ".join(filter(None, (stable, crosses))))
     grid(ax)
     say_origin(ax, found.attrs, map_doubts(found))
     return ax
@@ -85,7 +86,7 @@ def _axis(found: xarray.Dataset, name: str, unit: str | None) -> Positions:
 
 
 def _shade(ax: Axes, x: Array, y: Array, growth: Array, vertices: Array) -> None:
-    """Fill the stable part of every cell, up to the boundary as it was found and not as a plane would have it."""
+    """Fill the stable part of every cell of the grid, up to the crossings that were found on the edges of the cell."""
     from matplotlib.collections import PolyCollection
 
     crossings = _by_edge(x, y, vertices)
@@ -98,11 +99,11 @@ def _shade(ax: Axes, x: Array, y: Array, growth: Array, vertices: Array) -> None
     ax.add_collection(PolyCollection(polygons, **style))
 
 
-_Edge = tuple[int, int, int]  # row, column, and 0 for an edge along x or 1 for one along y
+_Edge = tuple[int, int, int]  # row, column, and 0 for an edge along x or 1 for an edge along y
 
 
 def _by_edge(x: Array, y: Array, vertices: Array) -> dict[_Edge, tuple[float, float]]:
-    """Crossings by the edge of the grid they lie on."""
+    """Return the crossings by the edge of the grid on which they lie."""
     found: dict[_Edge, tuple[float, float]] = {}
     for here in vertices[np.isfinite(vertices).all(axis=1)]:
         off = [np.abs(axis - value) / np.ptp(axis) for axis, value in zip((x, y), here, strict=True)]
@@ -119,14 +120,16 @@ def _by_edge(x: Array, y: Array, vertices: Array) -> dict[_Edge, tuple[float, fl
 def _stable_part(
     x: Array, y: Array, growth: Array, crossings: Mapping[_Edge, tuple[float, float]], row: int, column: int
 ) -> list[list[tuple[float, float]]]:
-    """The stable polygons of one cell; none where a corner failed."""
+    """Return the stable polygons of one cell; none if a corner could not be analysed."""
     corners = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
     values = [growth[corner] for corner in corners]
     if not np.isfinite(values).all():
         return []
     edges = [(row, column, 0), (row, column + 1, 1), (row + 1, column, 0), (row, column, 1)]
     outline: list[tuple[float, float]] = []
-    own: list[list[tuple[float, float]]] = []  # of each stable corner, should they not be joined
+    own: list[
+        list[tuple[float, float]]
+    ] = []  # a polygon at each stable corner, for corners that are not joined
     for place, (corner, value) in enumerate(zip(corners, values, strict=True)):
         after, before = crossings.get(edges[place]), crossings.get(edges[place - 1])
         if value <= 0:
@@ -139,41 +142,34 @@ def _stable_part(
 
 
 def _draw_named(ax: Axes, lines: Sequence[BoundaryLine], x: Positions, y: Positions) -> None:
-    """The lines of each mode in one style, with its name beside the longest."""
+    """Draw the lines of each mode in one style, with the name of the mode beside its longest line."""
     modes = list(dict.fromkeys(line.mode for line in lines))
     for place, mode in enumerate(modes):
         own = [line for line in lines if line.mode == mode]
-        style: dict[str, Any] = {
-            "color": COLOURS[place % len(COLOURS)],
-            "linestyle": _DASHES[place % len(_DASHES)],
-            "linewidth": 2.0,
-        }
+        colour, dashes = COLOURS[place % len(COLOURS)], _DASHES[place % len(_DASHES)]
+        style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 2.0, "zorder": 3}
         for number, line in enumerate(own):
             label = mode if number == 0 else f"_{mode}"
-            ax.plot(line.x / x.factor, line.y / y.factor, label=label, **style, zorder=3)
-        longest = max(own, key=lambda line: _length(line, x, y))
+            ax.plot(line.x / x.factor, line.y / y.factor, label=label, **style)
+        longest = max(own, key=lambda line: float(_steps(line, x, y).sum()))
         at, offset = _beside(ax, longest, x, y)
         box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.2}
-        text: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": style["color"], "bbox": box, "zorder": 4}
+        text: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": colour, "bbox": box, "zorder": 4}
         text |= {"ha": "center" if abs(offset[0]) < 6 else "left" if offset[0] > 0 else "right"}
         text |= {"va": "center" if abs(offset[1]) < 6 else "bottom" if offset[1] > 0 else "top"}
         ax.annotate(mode, at, xytext=offset, textcoords="offset points", annotation_clip=True, **text)
 
 
 def _steps(line: BoundaryLine, x: Positions, y: Positions) -> Array:
-    """Lengths between vertices, in fractions of the axes."""
+    """Return the lengths between the vertices of a line, in fractions of the axes."""
     across = np.diff(line.x / x.factor) / np.ptp(x.values)
     return np.asarray(np.hypot(across, np.diff(line.y / y.factor) / np.ptp(y.values)))
-
-
-def _length(line: BoundaryLine, x: Positions, y: Positions) -> float:
-    return float(_steps(line, x, y).sum())
 
 
 def _beside(
     ax: Axes, line: BoundaryLine, x: Positions, y: Positions
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """The middle of a line, and an offset across it, in points, towards the middle of the axes."""
+    """Return the middle of a line, and an offset across the line, in points, towards the middle of the axes."""
     along = np.concatenate([[0.0], np.cumsum(_steps(line, x, y))])
     shares = np.clip(along[-1] * np.array([0.45, 0.5, 0.55]), 0, along[-1])
     points = np.column_stack(
@@ -189,17 +185,17 @@ def _beside(
 
 
 def _name_regions(ax: Axes, x: Array, y: Array, growth: Array) -> None:
-    """The words stable and unstable where each has most room."""
-    from scipy.ndimage import distance_transform_edt
+    """Write "stable" and "unstable" where each region is widest."""
+    from scipy.ndimage import distance_transform_edt  # here, because scipy.ndimage takes long to import
 
     fine = np.linspace(0, 1, 60)
     columns, rows = (
         np.abs((axis - axis[0]) / np.ptp(axis) - fine[:, None]).argmin(axis=1) for axis in (x, y)
     )
     signs = growth[np.ix_(rows, columns)]
-    for told, region in (("stable", signs <= 0), ("unstable", signs > 0)):
+    for name, region in (("stable", signs <= 0), ("unstable", signs > 0)):
         room = distance_transform_edt(np.pad(region, 1))[1:-1, 1:-1] / len(fine)
         if room.max() >= _ROOM:
             row, column = np.unravel_index(room.argmax(), room.shape)
             style: dict[str, Any] = {"ha": "center", "va": "center", "color": "0.3", "style": "italic"}
-            ax.text(float(fine[column]), float(fine[row]), told, transform=ax.transAxes, fontsize=10, **style)
+            ax.text(float(fine[column]), float(fine[row]), name, transform=ax.transAxes, fontsize=10, **style)

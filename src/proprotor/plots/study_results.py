@@ -1,12 +1,14 @@
-"""What a study of a sample says of its result: how it is distributed, and which inputs are behind that."""
+"""Results of a study of a sample: how a result is distributed, and which inputs cause its variance."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.plots.bars import name_bars
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.input_names import short_names
 from proprotor.plots.line_of_sweep import axis_of
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
+_BEYOND = {"above": "stable throughout the airspeeds", "below": "unstable from the lowest airspeed on"}
 _DASHES = ("--", "-", "-.", ":")
 
 
@@ -34,28 +37,28 @@ def plot_distribution(
     Parameters
     ----------
     results : xarray.Dataset
-        A study of a sample, as for `proprotor.distribution`.
+        Study of a sample, as for `proprotor.distribution`.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     of : str
-        A variable with one number for each design.
+        Name of a variable with one number for each design.
     percentiles : sequence of float
-        0 to 100, dimensionless. Those that lie among designs beyond the range of the study have no line; the note
-        above the axes counts these designs.
+        0 to 100, dimensionless. A percentile that lies among designs beyond the range of the study has no line; the
+        note above the axes counts these designs.
     unit : str, optional
-        Of the result; "kt" by default for speeds.
+        Unit of the result; "kt" by default for speeds.
     bins : int or str
         As `numpy.histogram` takes them.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one.
+        The given axes, or the new ones.
 
     Raises
     ------
     InputError
-        As `proprotor.distribution`, and for a unit that is not one of the result.
+        As `proprotor.distribution`, and for a unit that does not fit the result.
     """
     found = distribution(results, of, percentiles)
     axis = axis_of(of, results[of].values.astype(float), results[of].attrs.get("units", ""), unit)
@@ -64,39 +67,31 @@ def plot_distribution(
     heights, edges = np.histogram(known, bins)
     counted = int(sum(int(found[name]) for name in ("known", "above", "below")))
     share = 100 * heights / counted
-    ax.bar(
-        edges[:-1], share, np.diff(edges), align="edge", color=COLOURS[6], edgecolor="white", linewidth=0.5
-    )
+    bar: dict[str, Any] = {"align": "edge", "color": COLOURS[6], "edgecolor": "white", "linewidth": 0.5}
+    ax.bar(edges[:-1], share, np.diff(edges), **bar)
     top = float(share.max(initial=0)) or 1.0
     ax.set_ylim(0, 1.2 * top)
-    for place, (percentile, value) in enumerate(
-        zip(percentiles, found.value.values / axis.factor, strict=True)
-    ):
+    values = (found.value.values / axis.factor).tolist()
+    for percentile, value, dashes in zip(percentiles, values, cycle(_DASHES), strict=False):
         if np.isfinite(value):
-            ax.axvline(value, color="black", linewidth=1.2, linestyle=_DASHES[place % len(_DASHES)])
+            ax.axvline(value, color="black", linewidth=1.2, linestyle=dashes)
             box: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 1}
             style: dict[str, Any] = {"fontsize": LABEL_SIZE, "ha": "center", "va": "top", "bbox": box}
             ax.text(value, 1.18 * top, f"{percentile:g} %\n{value:.4g}", **style)
     ax.set_xlabel(axis.label)
     ax.set_ylabel("Share of the designs (%)")
     grid(ax)
-    others = [f"{int(found[name])} {told}" for name, told in _BEYOND.items() if int(found[name])]
-    note(ax, f"{counted} designs" + (f", of them {', '.join(others)}" if others else "") + _failed(found))
+    others = [f"{int(found[name])} {text}" for name, text in _BEYOND.items() if int(found[name])]
+    failed = f"; {int(found.failed)} failed and are left out" if int(found.failed) else ""
+    note(ax, f"{counted} designs" + (f", of them {', '.join(others)}" if others else "") + failed)
     say_origin(ax, found.attrs, _doubts(found))
     return ax
 
 
 def _doubts(found: xarray.Dataset) -> list[str]:
-    """What is doubtful in a distribution, or in shares of its variance."""
+    """Return a sentence on the doubtful designs behind a distribution or shares of variance, if any."""
     text = found.attrs.get("doubts")
     return [f"Doubtful for {int(found.doubtful)} designs: {text}."] if text else []
-
-
-_BEYOND = {"above": "stable throughout the airspeeds", "below": "unstable from the lowest airspeed on"}
-
-
-def _failed(found: xarray.Dataset) -> str:
-    return f"; {int(found.failed)} failed and are left out" if int(found.failed) else ""
 
 
 def plot_sobol(indices: xarray.Dataset, ax: Axes | None = None, *, count: int = 15) -> Axes:
@@ -105,36 +100,33 @@ def plot_sobol(indices: xarray.Dataset, ax: Axes | None = None, *, count: int = 
     Parameters
     ----------
     indices : xarray.Dataset
-        Of `proprotor.sobol_indices`.
+        Result of `proprotor.sobol_indices`.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     count : int
-        Inputs at most, those with the largest total share.
+        Number of inputs at most, those with the largest total shares.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one.
+        The given axes, or the new ones.
     """
     order = np.argsort(-indices.total.values)[:count][::-1]
     shown = indices.isel(input=order)
     ax = axes_or_new(ax, size=(7, 1.6 + 0.42 * len(order)))
     places = np.arange(len(order))
-    for name, told, offset, colour, hatch in (
+    for name, label, offset, colour, hatch in (
         ("total", "with all its interactions", 0.2, COLOURS[1], ""),
         ("first", "alone", -0.2, COLOURS[5], "////"),
     ):
         error: dict[str, Any] = {"ecolor": "black", "elinewidth": 0.9, "capsize": 2.5}
         style: dict[str, Any] = {"color": colour, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
         values, half = 100 * shown[name].values, 100 * shown[f"{name}_half_interval"].values
-        ax.barh(places + offset, values, 0.38, xerr=half, error_kw=error, label=told, **style)
+        ax.barh(places + offset, values, 0.38, xerr=half, error_kw=error, label=label, **style)
     ax.axvline(0, color="black", linewidth=0.8)
-    ax.set_yticks(places, short_names(shown.input.values.tolist()), fontsize=LABEL_SIZE)
-    ax.set_xlabel(
-        f"Share of the variance of {str(indices.attrs.get('of', 'the result')).replace('_', ' ')} (%)"
-    )
-    grid(ax)
-    ax.grid(visible=False, axis="y")
+    name_bars(ax, short_names(shown.input.values.tolist()))
+    result = str(indices.attrs.get("of", "the result")).replace("_", " ")
+    ax.set_xlabel(f"Share of the variance of {result} (%)")
     ax.legend(fontsize=LABEL_SIZE, loc="lower right")
     if len(order) < indices.sizes["input"]:
         note(ax, f"The {len(order)} of {indices.sizes['input']} inputs with the largest shares")

@@ -1,4 +1,4 @@
-"""Colours, dashes and markers that colour-blind readers and grey prints tell apart, and one style for each mode."""
+"""Colours, dashes and markers that differ for colour-blind readers and on grey prints; a style for each mode."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from proprotor.tables.sweep_summary import growth_rate, support_coordinates
 if TYPE_CHECKING:
     import xarray
 
-# Okabe and Ito's colours, which colour-blind readers tell apart, less the yellow, too pale on white.
+# Okabe and Ito's colours, which colour-blind readers can distinguish; without the yellow, which is too pale on white.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-DRIVES, DAMPS = "#D55E00", "#0072B2"  # what lowers stability, and what raises it
+DRIVES, DAMPS = "#D55E00", "#0072B2"  # of bars that lower stability, and of bars that raise it
 STABLE = "#D8EEE6"  # a light green that prints as a light grey
 UNSTABLE = "#FBE9DF"
 GREY = "0.35"
 LABEL_SIZE = 8  # points
 _DASHES = ("-", "--", ":")
-_MARKERS = "s^DvP<>"  # for broad lines, which colour alone would not tell apart on a grey print
+_MARKERS = "s^DvP<>"  # on broad lines, because their colours alone do not differ on a grey print
 
-# How sure the number is that a deck gives: hatches of bars, the blank one for what was read in a source.
+# Hatches of bars by the status of a number; a number that was read in a source has none.
 STATUS_HATCHES = {
     "published": "",
     "derived": "",
@@ -31,7 +31,7 @@ STATUS_HATCHES = {
 
 
 class ModeStyle(NamedTuple):
-    """Of the line of one mode, by the names that Matplotlib has for them."""
+    """Style of the line of one mode; the fields are arguments of Matplotlib's `plot`."""
 
     color: str
     linestyle: str
@@ -40,15 +40,16 @@ class ModeStyle(NamedTuple):
 
 
 def broad_modes(sweep: xarray.Dataset) -> set[str]:
-    """Modes drawn in broad lines: the support's, and those that are unstable somewhere."""
+    """Return the modes that have broad lines: modes of the support, and modes that are unstable at some point."""
     grows = (growth_rate(sweep) > 0).any(axis=0)
     return {*support_coordinates(sweep), *sweep.mode.values[grows].tolist()}
 
 
 def mode_styles(sweep: xarray.Dataset) -> list[ModeStyle]:
-    """One style for each mode of a sweep, in its order: no two have both colour and dashes in common.
+    """Return a style for each mode of a sweep, in the order of the modes; no two share both colour and dashes.
 
-    The same mode looks the same in every plot of a sweep. Support modes and unstable ones are broad, with a marker.
+    The same mode looks the same in every plot of a sweep. Modes of the support and unstable modes have broad lines with
+    markers.
     """
     broad = broad_modes(sweep)
     markers = cycle(_MARKERS)
@@ -62,9 +63,3 @@ def mode_styles(sweep: xarray.Dataset) -> list[ModeStyle]:
         )
         for place, mode in enumerate(sweep.mode.values.tolist())
     ]
-
-
-def along_airspeed(sweep: xarray.Dataset) -> xarray.Dataset:
-    """The sweep with its line, whatever varies, under the name that `sweep_summary` reads."""
-    line = str(sweep.eigenvalue.dims[0])
-    return sweep if line == "airspeed" else sweep.drop_vars("airspeed").rename({line: "airspeed"})

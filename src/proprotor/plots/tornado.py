@@ -1,4 +1,4 @@
-"""What moves the flutter speed most: a bar for each input, the longest on top."""
+"""Tornado plot: a bar for each input that moves the flutter speed or a damping, the longest on top."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ import numpy as np
 
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.doubts import marked
-from proprotor.plots.canvas import axes_or_new, grid, note, say_origin, signed
+from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
+from proprotor.plots.canvas import axes_or_new, note, say_origin
 from proprotor.plots.input_names import short_names
-from proprotor.plots.style import DAMPS, DRIVES, LABEL_SIZE, STATUS_HATCHES
-from proprotor.typing import Array
+from proprotor.plots.style import DAMPS, DRIVES, STATUS_HATCHES
 from proprotor.units import factor_to_si
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-_TOLD = {"flutter_speed": "flutter speed", "damping": "damping"}
+_QUANTITIES = ("flutter_speed", "damping")
 
 
 class _Bar(NamedTuple):
     input: str
-    low: float  # what the lower end of the range does
+    low: float  # change at the lower end of the range of the input
     high: float
 
 
@@ -39,45 +39,43 @@ def plot_sensitivity(
 ) -> Axes:
     """Draw how much inputs move the flutter speed, or the damping of a mode, to first order.
 
-    Hatches tell which inputs were not read in a source.
+    Hatches mark inputs that were not read in a source.
 
     Parameters
     ----------
     found : xarray.Dataset
-        Of `Case.sensitivity`, of the flutter speed or of the damping of one mode.
+        Result of `Case.sensitivity` for the flutter speed or the damping of one mode.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     percent : float
-        Every input grows by so many percent of itself, where no ranges are given; those that are zero are left out.
+        Growth of every input, in percent of itself, if no ranges are given; inputs that are zero have no bar.
     ranges : mapping of str to (low, high), optional
-        Of some inputs by path, in SI: what both ends of each would do, a bar to either side.
+        Ranges of some inputs by path, in SI units: a bar shows the change at both ends of the range of an input.
     count : int
-        Bars at most, the longest.
+        Number of bars at most, the longest.
     unit : str
-        Of the speed. Damping is in percent of critical.
+        Unit of the flutter speed. Damping is in percent of critical.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The one given, or the new one.
+        The given axes, or the new ones.
 
     Raises
     ------
     InputError
-        For derivatives of eigenvalues or of several modes, an unknown input, or a unit that is not one of speed.
+        For derivatives of eigenvalues or of several modes, an unknown input, or a unit that is no unit of speed.
     """
-    scale, told = _scale(found, unit)
+    scale, changing = _scale(found, unit)
     bars = _of_percent(found, percent, scale) if ranges is None else _of_ranges(found, ranges, scale)
     bars = sorted(bars, key=lambda bar: max(abs(bar.low), abs(bar.high)), reverse=True)
     shown = bars[:count][::-1]
     ax = axes_or_new(ax, size=(8, 1.4 + 0.27 * len(shown)))
     status = dict(zip(found.input.values.tolist(), found.status.values.tolist(), strict=True))
     _draw(ax, shown, status, both=ranges is not None)
-    ax.axvline(0, color="black", linewidth=0.8)
-    reach = max((abs(value) for bar in shown for value in bar[1:]), default=1.0) or 1.0
-    ax.set_xlim(-1.25 * reach, 1.25 * reach)
+    centre_on_zero(ax, 1.25 * (max((abs(value) for bar in shown for value in bar[1:]), default=1.0) or 1.0))
     how = "over the range of each input" if ranges is not None else f"for {percent:+g} % of each input"
-    ax.set_xlabel(f"Change of {told} {how}")
+    ax.set_xlabel(f"Change of {changing} {how}")
     if len(shown) < len(bars):
         note(ax, f"The {len(shown)} of {len(bars)} inputs that move it most; to first order")
     _legend(ax, {status[bar.input] for bar in shown}, both=ranges is not None)
@@ -87,10 +85,10 @@ def plot_sensitivity(
 
 
 def _scale(found: xarray.Dataset, unit: str) -> tuple[float, str]:
-    """Units of the plot per SI unit, and what it is that changes."""
+    """Return the units of the plot in one SI unit, and the name of the quantity that changes."""
     of = str(found.attrs.get("of"))
-    if of not in _TOLD:
-        raise InputError("found", of, f"must be derivatives of {' or '.join(_TOLD)}")
+    if of not in _QUANTITIES:
+        raise InputError("found", of, f"must be derivatives of {' or '.join(_QUANTITIES)}")
     if found.derivative.size != found.sizes["input"]:
         raise InputError("found", f"{found.sizes['mode']} modes", "must be of one mode: choose it with mode=")
     if of == "damping":
@@ -101,33 +99,24 @@ def _scale(found: xarray.Dataset, unit: str) -> tuple[float, str]:
     return 1 / factor, f"flutter speed, {value} {unit} ({found.attrs['mode']}), in {unit}"
 
 
-def _derivatives(found: xarray.Dataset) -> dict[str, float]:
-    values = found.derivative.values.reshape(-1).tolist()
-    return dict(zip(found.input.values.tolist(), values, strict=True))
-
-
 def _of_percent(found: xarray.Dataset, percent: float, scale: float) -> list[_Bar]:
-    # The input's own size, not its value: a twist of -2 grows to -2.02, and what rises with it is to the right.
-    values: Array = found.value.values
-    changes = [
-        rate * value * percent / 100 * scale
-        for rate, value in zip(_derivatives(found).values(), values.tolist(), strict=True)
-    ]
+    # The input grows in size: a twist of -2 grows to -2.02.
+    changes = found.derivative.values.reshape(-1) * found.value.values * percent / 100 * scale
+    paths = found.input[found.value.values != 0].values.tolist()
     return [
         _Bar(path, change, change)
-        for path, change, value in zip(found.input.values.tolist(), changes, values.tolist(), strict=True)
-        if value != 0
+        for path, change in zip(paths, changes[found.value.values != 0], strict=True)
     ]
 
 
 def _of_ranges(found: xarray.Dataset, ranges: Mapping[str, tuple[float, float]], scale: float) -> list[_Bar]:
-    rates = _derivatives(found)
-    values = dict(zip(found.input.values.tolist(), found.value.values.tolist(), strict=True))
+    places = {path: place for place, path in enumerate(found.input.values.tolist())}
     for path in ranges:
-        if path not in rates:
-            raise InputError("ranges", path, unknown_name(path, rates, "input"))
+        if path not in places:
+            raise InputError("ranges", path, unknown_name(path, places, "input"))
+    rates, values = found.derivative.values.reshape(-1), found.value.values
     return [
-        _Bar(path, *(scale * rates[path] * (end - values[path]) for end in ends))
+        _Bar(path, *(float(scale * rates[places[path]] * (end - values[places[path]])) for end in ends))
         for path, ends in ranges.items()
     ]
 
@@ -140,23 +129,17 @@ def _draw(ax: Axes, bars: list[_Bar], status: Mapping[str, str], *, both: bool) 
         values = [getattr(bar, end) for bar in bars]
         colours = [(DRIVES, DAMPS)[side if both else int(value >= 0)] for value in values]
         ax.barh(places, values, color=colours, hatch=hatches, **style)
-    for place, bar in zip(places.tolist(), bars, strict=True):
-        _tell(ax, place, sorted({bar.low, bar.high} - {0.0}))
-    ax.set_yticks(places, short_names([bar.input for bar in bars]), fontsize=LABEL_SIZE)
+    for place, bar in enumerate(bars):
+        _write_changes(ax, place, sorted({bar.low, bar.high} - {0.0}))
+    name_bars(ax, short_names([bar.input for bar in bars]))
     ax.set_ylim(-0.6, len(bars) - 0.4)
-    grid(ax)
-    ax.grid(visible=False, axis="y")
 
 
-def _tell(ax: Axes, place: int, values: list[float]) -> None:
-    """Numbers beside the ends of a bar; of two ends on the same side, both beside the farther one."""
-    for right in (False, True):
-        own = [value for value in values if (value > 0) == right]
+def _write_changes(ax: Axes, place: int, values: list[float]) -> None:
+    """Write the changes of a bar beside its ends; two changes of the same sign both stand beside the farther end."""
+    for own in ([value for value in values if value < 0], [value for value in values if value > 0]):
         if own:
-            farthest = max(own, key=abs)
-            style: dict[str, Any] = {"fontsize": 7, "va": "center", "ha": "left" if right else "right"}
-            style |= {"textcoords": "offset points", "xytext": (3 if right else -3, 0)}
-            ax.annotate(", ".join(signed(value) for value in own), (farthest, place), **style)
+            write_beside(ax, place, max(own, key=abs), ", ".join(map(signed, own)))
 
 
 def _legend(ax: Axes, statuses: set[str], *, both: bool) -> None:

@@ -1,13 +1,22 @@
-"""The report on a case: one page with all that was found and all that it rests on, as HTML or PDF.
+"""The report on a case: one page with all results and everything that they rest on, as HTML or PDF.
 
-`analyses` finds the numbers, `content` puts them into the words, tables and pictures of a `document`, and `page` and
-`typeset` lay that out. The same deck gives the same file, but for the date.
+In come a case, airspeeds and options; out goes the content of a file. Each step takes what the step before returns.
+
+    analyses        what a report needs to know: `analyse` returns `Findings`
+    content         the findings in words, tables and pictures: `report_document` returns a `Document`
+    pictures        the plots of a report, as SVG
+    document        what a document consists of, whatever its layout
+    page            a document as HTML, by the template page.html
+    typeset         a document as PDF, by the layout page.typ and Typst (extra `report`)
+
+The same deck gives the same file, except for the date. This room may import the rooms above it, from `errors` to
+`plots`.
 """
 
 from proprotor.report.analyses import Findings, analyse
 from proprotor.report.content import report_document
 from proprotor.report.document import Document
 from proprotor.report.page import html_of
-from proprotor.report.typeset import pdf_of
+from proprotor.report.typeset import check_typesetter, pdf_of
 
-__all__ = ["Document", "Findings", "analyse", "html_of", "pdf_of", "report_document"]
+__all__ = ["Document", "Findings", "analyse", "check_typesetter", "html_of", "pdf_of", "report_document"]

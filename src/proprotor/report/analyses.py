@@ -1,4 +1,4 @@
-"""The analyses that a report tells of."""
+"""The analyses behind a report."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """What a report tells.
+    """Results of the analyses behind a report.
 
     Attributes
     ----------
     sweep : xarray.Dataset
-        Of `Case.sweep`.
+        Result of `Case.sweep`.
     trim : Trim
-        At the airspeeds of the sweep.
+        Steady state at the airspeeds of the sweep.
     flutter : FlutterPoint
     speed, mode : float, str
-        Where causes are looked at: the flutter point, or the mode that is damped least at the highest airspeed that
-        could be analysed. NaN and "" where there is none.
+        Airspeed (m/s) and mode of which the report shows the causes: the flutter point, or the mode that is damped
+        least at the highest airspeed that could be analysed. NaN and "" if no airspeed could be analysed.
     causes : Causes, optional
-        None where they could not be found, with the reason in `no_causes`.
+        None if the causes could not be found; `no_causes` says why.
     no_causes : str
     """
 
@@ -49,12 +49,12 @@ class Findings:
 
     @property
     def flutters(self) -> bool:
-        """Whether anything becomes unstable."""
+        """Whether a mode becomes unstable."""
         return bool(np.isfinite(self.flutter.speed))
 
     @property
     def warning(self) -> str:
-        """What makes the point at which causes are looked at doubtful; empty where nothing does."""
+        """What makes the point of the causes doubtful; empty if nothing does."""
         if self.flutters:
             return self.flutter.warning
         return str(self.causes.attribution.warning.item()) if self.causes else ""
@@ -62,7 +62,7 @@ class Findings:
 
 @dataclass(frozen=True, eq=False)
 class Causes:
-    """Datasets on one mode at one airspeed: its modes, `Case.sensitivity` and `Case.attribution`."""
+    """Datasets at one airspeed: the modes, and of one mode the sensitivities and the attribution."""
 
     modes: xarray.Dataset
     sensitivity: xarray.Dataset
@@ -70,15 +70,15 @@ class Causes:
 
 
 def analyse(case: Case, airspeeds: Array | None, options: Mapping[str, Any]) -> Findings:
-    """All that a report tells of a case.
+    """Run all analyses of a report.
 
     Parameters
     ----------
     case : Case
     airspeeds : array (points,), optional
-        m/s; those of `Case.flutter_point` by default.
+        m/s; the airspeeds of `Case.flutter_point` by default.
     options : mapping
-        See `proprotor.rotor.options.Options`.
+        Options of the model, see `proprotor.rotor.options.Options`.
 
     Raises
     ------
@@ -90,17 +90,17 @@ def analyse(case: Case, airspeeds: Array | None, options: Mapping[str, Any]) -> 
     trim = case.linearize(speeds, **options).trim
     found = flutter_point(case, speeds, **options)
     speed, mode = (found.speed, found.mode) if found.mode else _damped_least(sweep)
-    if not mode:
-        return Findings(sweep, trim, found, speed, mode, None, "no airspeed could be analysed")
-    try:
-        causes = _causes(case, speed, mode, bool(found.mode), speeds, options)
-    except InputError as error:
-        return Findings(sweep, trim, found, speed, mode, None, str(error))
-    return Findings(sweep, trim, found, speed, mode, causes)
+    causes, no_causes = None, "" if mode else "no airspeed could be analysed"
+    if mode:
+        try:
+            causes = _causes(case, speed, mode, bool(found.mode), speeds, options)
+        except InputError as error:
+            no_causes = str(error)
+    return Findings(sweep, trim, found, speed, mode, causes, no_causes)
 
 
 def _damped_least(sweep: xarray.Dataset) -> tuple[float, str]:
-    """The highest airspeed that could be analysed, and the mode that is damped least there."""
+    """Return the highest airspeed that could be analysed, and the mode that is damped least at this airspeed."""
     works = np.flatnonzero(sweep.reason.values == "")
     if not len(works):
         return np.nan, ""

@@ -1,10 +1,11 @@
-"""What a report says: sentences, tables and pictures of what was found."""
+"""The content of a report: the findings in sentences, tables and pictures."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,8 +20,13 @@ from proprotor.model.provenance import doubtful_inputs, reservations
 from proprotor.report import pictures
 from proprotor.report.analyses import Findings
 from proprotor.report.document import Document, Section, Table, Text
-from proprotor.stability.flutter_messages import boundary_record, mechanism_message, verdict
-from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records
+from proprotor.stability.flutter_messages import boundary_record, boundary_row, verdict
+from proprotor.tables.sensitivity_summary import (
+    NEARLY_DEFECTIVE,
+    READ_IN,
+    sensitivity_records,
+    sensitivity_row,
+)
 from proprotor.tables.sweep_table import SweepTable, heading
 from proprotor.typing import Array
 from proprotor.units import factor_to_si
@@ -28,17 +34,17 @@ from proprotor.units import factor_to_si
 if TYPE_CHECKING:
     from proprotor.case import Case
 
-_SPEEDS = 9  # in the tables of modes and of trim
+_SPEEDS = 9  # airspeeds in the tables of modes and of trim
 _ANGLES = ("collective", "coning", "lag", "elastic_pitch")  # of the trim
 _PAIRS = 5  # stations in a row of a distribution
 
-CONVENTIONS = (
+_CONVENTIONS = (
     "Inputs are converted to SI units; hub axes have z along the shaft, which is the direction of flight.",
     "Flap is positive towards thrust, lag against the rotation, pitch nose up at 0.75 R.",
     "Eigenvalues s = −ζω ± iω√(1 − ζ²). Damping is −Re s/|s| in percent of critical, negative where a mode is "
     "unstable. Frequency is |Im s|; per revolution (/rev) means divided by the rotor speed.",
     "Airloads are quasi-steady strip theory at cruise inflow: no induced velocity and no stall.",
-    "A point that has no trim is left out with its reason, and spoils no other.",
+    "A point without trim is left out with its reason; it does not affect the other points.",
 )
 
 
@@ -51,33 +57,33 @@ def report_document(
     date: str,
     unit: str = "kt",
 ) -> Document:
-    """The report on a case.
+    """Return the report on a case.
 
     Parameters
     ----------
     case : Case
     found : Findings
-        Of `proprotor.report.analyse`.
+        Result of `proprotor.report.analyse`.
     settings : mapping
-        The fields set for this run, as they were given.
+        Fields set for this run, with their values as text.
     deck_hash : str
-        Of the deck as it was read.
+        Hash of the deck as it was read.
     date : str
-        ISO 8601, of the day.
+        Day of the report, ISO 8601.
     unit : str
-        Of airspeeds.
+        Unit of airspeeds.
 
     Raises
     ------
     InputError
-        When the unit is not one of speed.
+        If the unit is no unit of speed.
     """
     factor = factor_to_si(unit, unit, "m/s")
     table = SweepTable(found.sweep, float(case.operation.rotor_speed), unit)
     sections = (
         Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),
         Section("What was analysed", tuple(_model(case, table, settings))),
-        Section("Conventions", (Text(CONVENTIONS),)),
+        Section("Conventions", (Text(_CONVENTIONS),)),
         Section("Frequency and damping", tuple(_sweep(case, found, unit))),
         Section(f"Causes {_where(found, unit, factor)}".strip(), tuple(_causes(found, unit, factor))),
         Section("Modes", tuple(_modes(table))),
@@ -97,6 +103,7 @@ def report_document(
 
 
 def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> Iterator[str]:
+    """Yield the sentences at the top of the report: the flutter speed, and what else the search found."""
     if table.failed.all():
         yield "No airspeed could be analysed."
         return
@@ -113,26 +120,27 @@ def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> It
 
 
 def _failures(table: SweepTable) -> Iterator[str]:
+    """Yield a sentence on each range of airspeeds that could not be analysed, with the reason."""
     for first, last, reason in _runs(table.sweep.reason.values.tolist()):
         yield f"Not analysed {_range(table, first, last)}: {reason}."
 
 
 def _runs(texts: Sequence[str]) -> Iterator[tuple[int, int, str]]:
-    """First and last place of each run of one text that is not empty."""
-    start = 0
-    for place in range(1, len(texts) + 1):
-        if place == len(texts) or texts[place] != texts[start]:
-            if texts[start]:
-                yield start, place - 1, texts[start]
-            start = place
+    """Yield first place, last place and text of each run of equal texts that are not empty."""
+    for text, run in groupby(enumerate(texts), key=lambda entry: entry[1]):
+        places = [place for place, _ in run]
+        if text:
+            yield places[0], places[-1], text
 
 
 def _range(table: SweepTable, first: int, last: int) -> str:
+    """Return the airspeeds between two points as text."""
     ends = f"{table.airspeed[first]:.4g} {table.unit}", f"{table.airspeed[last]:.4g} {table.unit}"
     return f"at {ends[0]}" if first == last else f"from {ends[0]} to {ends[1]}"
 
 
 def _where(found: Findings, unit: str, factor: float) -> str:
+    """Return the end of the heading of the causes: at which airspeed they are."""
     if not found.mode:
         return ""
     at = _at(found, unit, factor)
@@ -147,6 +155,7 @@ def _at(found: Findings, unit: str, factor: float) -> str:
 
 
 def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterator[Table | Text]:
+    """Yield the table of all boundaries, with the range that was searched."""
     low, high = (
         marked(f"{at / factor:.4g}", doubt_at(found.flutter.doubts, at)) for at in found.flutter.searched
     )
@@ -160,25 +169,15 @@ def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterat
     columns = (f"airspeed, {unit}", "m/s", "Hz", "/rev", "mode", "kind", "instability", "mechanism")
     rows = []
     for boundary in found.flutter.boundaries:
-        record = boundary_record(boundary, case)
-        rows.append(
-            (
-                marked(f"{boundary.position / factor:.2f}", boundary.warning),
-                marked(f"{boundary.position:.3f}", boundary.warning),
-                f"{record['frequency (Hz)']:.3f}",
-                f"{record['frequency (per rev)']:.3f}",
-                boundary.mode,
-                boundary.kind,
-                "begins" if boundary.onset else "ends",
-                mechanism_message(boundary.mechanism),
-            )
-        )
+        speed, *others = boundary_row(boundary_record(boundary, case), factor)
+        rows.append((speed, marked(f"{boundary.position:.3f}", boundary.warning), *others))
     yield Table("Boundaries by airspeed", columns, tuple(rows), frozenset(columns[:4]))
     if doubts := tuple(f"{MARK} {line}" for line in footnotes(found.flutter.doubts, unit, factor)):
         yield Text(doubts, warning=True)
 
 
 def _model(case: Case, table: SweepTable, settings: Mapping[str, str]) -> Iterator[Table | Text]:
+    """Yield the airspeeds, the options of the model and the fields that were set."""
     paragraphs = (case.description, f"{len(table.airspeed)} airspeeds, {_range(table, 0, -1)[5:]}.")
     yield Text(tuple(filter(None, paragraphs)))
     every = options_in_result(table.sweep.attrs)
@@ -194,20 +193,22 @@ def _model(case: Case, table: SweepTable, settings: Mapping[str, str]) -> Iterat
 
 
 def _sweep(case: Case, found: Findings, unit: str) -> Iterator[Any]:
+    """Yield the pictures of frequency, damping and root locus."""
     if found.mode:
         yield from pictures.of_sweep(case, found, unit)
 
 
 def _causes(found: Findings, unit: str, factor: float) -> Iterator[Any]:
+    """Yield the pictures of the causes, or why there are none."""
     if found.causes is None:
         yield Text((f"Causes could not be found: {found.no_causes}.",))
         return
     at = _at(found, unit, factor)
     if not found.flutters:
-        told = (
-            f"{found.mode}, the mode that is damped least {at}, the highest airspeed that could be analysed"
+        shown = f"{found.mode}, the mode that is damped least {at}"
+        yield Text(
+            (f"Nothing becomes unstable. Shown for {shown}, the highest airspeed that could be analysed.",)
         )
-        yield Text((f"Nothing becomes unstable. Shown for {told}.",))
     yield from pictures.of_causes(found.causes, found.mode, at, unit)
 
 
@@ -215,13 +216,14 @@ def _causes(found: Findings, unit: str, factor: float) -> Iterator[Any]:
 
 
 def _some(working: Array) -> list[int]:
-    """Places of a few points, the first and the last that work included."""
+    """Return a few points that work, evenly spread, with the first and the last of them."""
     places = np.flatnonzero(working)
     chosen = np.linspace(0, len(places) - 1, min(_SPEEDS, len(places))).round().astype(int)
     return places[chosen].tolist() if len(places) else []
 
 
 def _modes(table: SweepTable) -> Iterator[Table | Text]:
+    """Yield tables of frequency and damping at a few airspeeds."""
     at = _some(~table.failed)
     if not at:
         return
@@ -246,6 +248,7 @@ def _cell(value: float, form: str, marked: bool = False) -> str:
 
 
 def _sensitivities(case: Case, found: Findings, unit: str, factor: float) -> Iterator[Table | Text]:
+    """Yield the table of derivatives by all inputs."""
     if found.causes is None:
         return
     rates = found.causes.sensitivity
@@ -253,37 +256,22 @@ def _sensitivities(case: Case, found: Findings, unit: str, factor: float) -> Ite
         rates = rates.isel(mode=0)
     of = "flutter_speed" if found.flutters else "damping"
     read_in = READ_IN[of][0]
-    records = sensitivity_records(case, rates, of)
-    what = (
-        "flutter speed" if found.flutters else f"damping of {found.mode} at {found.speed / factor:.2f} {unit}"
-    )
+    damping = f"damping of {found.mode} at {found.speed / factor:.2f} {unit}"
+    caption = f"Exact derivatives of the {'flutter speed' if found.flutters else damping}, trim included"
     columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %", "status")
-    rows = tuple(
-        (
-            record["input"],
-            record["value"],
-            marked(f"{record[f'derivative ({read_in} per unit)']:+.4g}", record["warning"]),
-            record["unit"],
-            "–"
-            if record[f"for +1 % ({read_in})"] is None
-            else marked(f"{record[f'for +1 % ({read_in})']:+.3g}", record["warning"]),
-            record["status"],
-        )
-        for record in records
-    )
-    yield Table(
-        f"Exact derivatives of the {what}, trim included", columns, rows, frozenset((columns[2], columns[4]))
-    )
+    rows = []
+    for record in sensitivity_records(case, rates, of):
+        *cells, change = sensitivity_row(record, read_in)
+        rows.append((*cells, change or "–", record["status"]))
+    yield Table(caption, columns, tuple(rows), frozenset((columns[2], columns[4])))
     if doubt := rates.warning.item():
         yield Text((f"{MARK} Doubtful: {doubt}.",), warning=True)
     if bool(rates.nearly_defective):
-        yield Text(
-            ("The mode nearly falls into one with another: derivatives hold in a small range only.",),
-            warning=True,
-        )
+        yield Text((NEARLY_DEFECTIVE,), warning=True)
 
 
 def _trim(found: Findings, table: SweepTable) -> Iterator[Table | Text]:
+    """Yield the steady state at a few airspeeds, and the airspeeds that could not be analysed."""
     trim, degree = found.trim, math.pi / 180
     columns = (
         f"airspeed, {table.unit}",
@@ -322,6 +310,7 @@ def _trim(found: Findings, table: SweepTable) -> Iterator[Table | Text]:
 
 
 def _inputs(case: Case) -> Iterator[Table | Text]:
+    """Yield the table of all inputs with their sources, and a table for each distribution along the blade."""
     doubtful = doubtful_inputs(case)
     yield Text(
         (f"{len(doubtful)} of {len(case.sources)} inputs were not read in a source; they are marked *.",)
@@ -344,6 +333,7 @@ def _inputs(case: Case) -> Iterator[Table | Text]:
 
 
 def _si(number: Datum) -> str:
+    """Return the SI value of an input as text."""
     if number.r_over_R is not None:
         low, high = min(number.si), max(number.si)
         return f"{low:.6g} to {high:.6g} {number.unit}".strip() + ", see below"
@@ -355,19 +345,19 @@ def _si(number: Datum) -> str:
 
 
 def _distribution(path: str, number: Datum) -> Table:
+    """Return the table of a distribution along the blade, several stations in a row."""
     stations = list(zip(number.r_over_R or (), number.si, strict=True))
     count = math.ceil(len(stations) / _PAIRS)
     pair = ("r/R", number.unit or "value")
     rows = []
     for place in range(count):
-        cells: list[str] = []
-        for station in stations[place::count]:
-            cells += [f"{station[0]:.4g}", f"{station[1]:.6g}"]
+        cells = [text for r, value in stations[place::count] for text in (f"{r:.4g}", f"{value:.6g}")]
         rows.append(tuple(cells + [""] * (2 * _PAIRS - len(cells))))
     return Table(f"{path} along the blade", pair * _PAIRS, tuple(rows), frozenset(pair))
 
 
 def _reproduction(case: Case, deck_hash: str, date: str) -> Table:
+    """Return the table of what one needs to make the same report again."""
     rows = (
         ("proprotor", version("proprotor")),
         ("case", case.name),

@@ -1,4 +1,4 @@
-"""What a report is made of, whatever it is laid out in."""
+"""What a report consists of, whatever its layout."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import ClassVar
 
 @dataclass(frozen=True)
 class Text:
-    """Paragraphs; as a warning they are set apart."""
+    """Paragraphs; a layout sets warnings apart."""
 
     kind: ClassVar[str] = "text"
     paragraphs: tuple[str, ...]
@@ -17,7 +17,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Table:
-    """A table whose first column names the rows.
+    """A table; the first column names the rows.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Table:
     rows : tuple of tuple of str
         A cell for each column.
     numbers : frozenset of str
-        Columns set to the right.
+        Columns of numbers, which a layout aligns to the right.
     """
 
     kind: ClassVar[str] = "table"
@@ -38,7 +38,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A plot, with what it shows in words for those who do not see it, and its share of the width of a sheet."""
+    """A plot with its caption, a description for readers who cannot see it, and its share of the width of a sheet."""
 
     kind: ClassVar[str] = "picture"
     name: str
@@ -50,14 +50,14 @@ class Picture:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what stands below it."""
+    """A heading and the blocks below the heading."""
 
     title: str
     blocks: tuple[Text | Table | Picture, ...]
 
     @property
     def anchor(self) -> str:
-        """What a link to the section points to."""
+        """The name to which a link to the section points."""
         return "-".join("".join(c if c.isalnum() else " " for c in self.title.lower()).split())
 
 
@@ -71,9 +71,9 @@ class Document:
     date : str
         ISO 8601.
     verdict : tuple of str
-        What was found, in sentences.
+        Sentences on the results.
     caution : tuple of str
-        What it rests on.
+        Sentences on what the results rest on.
     sections : tuple of Section
     """
 

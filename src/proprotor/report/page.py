@@ -1,4 +1,4 @@
-"""A document as one HTML file that needs nothing else."""
+"""A document as one HTML file that needs no other file."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from proprotor.report.document import Document
 
 
 def html_of(document: Document) -> str:
-    """The document as HTML: pictures inside, no script, nothing from a network; all text is escaped."""
-    import jinja2  # here, because only a report needs it
+    """Return the document as HTML, with pictures inside and no scripts, and nothing from a network.
+
+    All text is escaped.
+    """
+    import jinja2  # here, because only a report needs jinja2
 
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("proprotor.report", "templates"),

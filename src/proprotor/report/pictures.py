@@ -1,4 +1,4 @@
-"""The plots of a report as SVG."""
+"""The plots of a report, as SVG."""
 
 from __future__ import annotations
 
@@ -6,6 +6,15 @@ import io
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from proprotor.plots import (
+    plot_attribution,
+    plot_damping,
+    plot_frequency,
+    plot_participation,
+    plot_root_locus,
+    plot_sensitivity,
+)
+from proprotor.plots.headless import drawn
 from proprotor.report.document import Picture
 
 if TYPE_CHECKING:
@@ -14,32 +23,23 @@ if TYPE_CHECKING:
     from proprotor.case import Case
     from proprotor.report.analyses import Causes, Findings
 
-_SHARE = 0.75  # of the width of a sheet, for bars
-# Names within the file would else be drawn by lot, and a dollar in the name of a mode begin a formula.
+_SHARE = 0.75  # share of the width of a sheet, for plots of bars
+# Without a salt the names within an SVG are random; with math text a dollar in the name of a mode begins a formula.
 _FIXED: Any = {"svg.hashsalt": "proprotor", "text.parse_math": False}
 
 
-def svg_of(draw: Callable[[], Axes]) -> bytes:
-    """A plot as SVG, the same each time."""
-    import matplotlib
+def _svg_of(draw: Callable[[], Axes]) -> bytes:
+    """Return a plot as SVG; the same plot gives the same bytes."""
+    import matplotlib  # here, because matplotlib takes long to import
 
-    matplotlib.use("Agg")  # no window, and no display needed
-    from matplotlib import pyplot
-
-    with matplotlib.rc_context(_FIXED):
-        figure = draw().get_figure(root=True)
-        if figure is None:
-            raise RuntimeError("axes without a figure")
-        file = io.BytesIO()
+    file = io.BytesIO()
+    with matplotlib.rc_context(_FIXED), drawn(draw) as (_, figure):
         figure.savefig(file, format="svg", bbox_inches="tight", metadata={"Date": None})
-        pyplot.close(figure)
     return file.getvalue()
 
 
 def of_sweep(case: Case, found: Findings, unit: str) -> Iterator[Picture]:
-    """Frequency, damping and root locus."""
-    from proprotor.plots import plot_damping, plot_frequency, plot_root_locus
-
+    """Yield the plots of frequency and damping, and the root locus."""
     omega = float(case.operation.rotor_speed)
     low, high = (f"{speed:.4g} m/s" for speed in found.flutter.searched)
     across = f"from {low} to {high}; the tables of modes have the numbers."
@@ -49,47 +49,45 @@ def of_sweep(case: Case, found: Findings, unit: str) -> Iterator[Picture]:
         "frequency",
         f"Frequency of each mode over airspeed. {broad}",
         f"Line plot of the frequency, per revolution, of the modes {names}, {across}",
-        svg_of(lambda: plot_frequency(found.sweep, rotor_speed=omega, unit=unit)),
+        _svg_of(lambda: plot_frequency(found.sweep, rotor_speed=omega, unit=unit)),
     )
     yield Picture(
         "damping",
         "Damping of each mode over airspeed; below zero a mode is unstable. "
         "Circles are interpolated between the airspeeds drawn, the boundaries of the summary are exact.",
         f"Line plot of the damping, in percent of critical, of the modes {names}, {across}",
-        svg_of(lambda: plot_damping(found.sweep, unit=unit)),
+        _svg_of(lambda: plot_damping(found.sweep, unit=unit)),
     )
     yield Picture(
         "root-locus",
         "Root locus: growth across, frequency up; right of zero a mode is unstable.",
         f"Roots of the modes {names} in the plane of growth and frequency, {across}",
-        svg_of(lambda: plot_root_locus(found.sweep, rotor_speed=omega, unit=unit)),
+        _svg_of(lambda: plot_root_locus(found.sweep, rotor_speed=omega, unit=unit)),
         0.85,
     )
 
 
 def of_causes(causes: Causes, mode: str, where: str, unit: str) -> Iterator[Picture]:
-    """Participation, attribution and tornado of one mode at one airspeed."""
-    from proprotor.plots import plot_attribution, plot_participation, plot_sensitivity
-
+    """Yield the plots of participation, attribution and sensitivity of one mode at one airspeed."""
     if mode in causes.modes.mode.values:
         yield Picture(
             "participation",
             f"Coordinates that take part in {mode} {where}.",
             f"Bars of the share of each coordinate in {mode} {where}.",
-            svg_of(lambda: plot_participation(causes.modes, mode, unit=unit)),
+            _svg_of(lambda: plot_participation(causes.modes, mode, unit=unit)),
             _SHARE,
         )
     yield Picture(
         "attribution",
         f"What drives and what damps {mode} {where}, by the physical origin of the terms.",
         f"Bars of the change of damping of {mode} {where} per origin of the terms; hatched bars drive it.",
-        svg_of(lambda: plot_attribution(causes.attribution)),
+        _svg_of(lambda: plot_attribution(causes.attribution)),
         _SHARE,
     )
     yield Picture(
         "sensitivity",
         "What each input moves if it grows by 1 % of itself; hatches tell inputs that were not read in a source.",
         "Tornado of the inputs that move it most; the table of sensitivities has the numbers.",
-        svg_of(lambda: plot_sensitivity(causes.sensitivity, unit=unit)),
+        _svg_of(lambda: plot_sensitivity(causes.sensitivity, unit=unit)),
         _SHARE,
     )

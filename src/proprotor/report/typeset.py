@@ -1,10 +1,10 @@
-"""A document as PDF, set by Typst (extra `report`)."""
+"""A document as PDF, by Typst (extra `report`)."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import is_dataclass
+from dataclasses import fields, is_dataclass
 from datetime import date
 from importlib import resources
 from typing import Any
@@ -14,26 +14,26 @@ from proprotor.report.document import Document, Picture
 
 
 def check_typesetter() -> None:
-    """Refuse a PDF before anything is analysed.
+    """Refuse to make a PDF without Typst; call this function before an analysis.
 
     Raises
     ------
     InputError
-        When Typst is not installed.
+        If Typst is not installed.
     """
     need("typst", "--pdf", "a PDF", "report")
 
 
 def pdf_of(document: Document) -> bytes:
-    """The document as PDF. Text is handed over as data, so that nothing in it is taken for a command.
+    """Return the document as PDF. Typst reads all text as data, so that no text can act as a command.
 
     Raises
     ------
     InputError
-        When Typst is not installed.
+        If Typst is not installed.
     """
     check_typesetter()
-    import typst
+    import typst  # here, because only a PDF needs typst
 
     pictures = {
         f"{block.name}.svg": block.svg
@@ -44,19 +44,17 @@ def pdf_of(document: Document) -> bytes:
     layout = resources.files("proprotor.report") / "templates" / "page.typ"
     files = {"main.typ": layout.read_bytes(), "document.json": json.dumps(_plain(document)).encode()}
     noon = 86_400 * (date.fromisoformat(document.date) - date(1970, 1, 1)).days + 43_200
-    compiled: Callable[..., bytes] = typst.compile  # whose types leave out a mapping of files
+    compiled: Callable[..., bytes] = typst.compile  # the types of typst leave out a mapping of files
     return compiled({**files, **pictures}, timestamp=noon, ignore_system_fonts=True)
 
 
-def _plain(it: Any) -> Any:
-    """Nested records as JSON has them; of a picture the name of its file."""
-    if isinstance(it, tuple):
-        return [_plain(entry) for entry in it]
-    if isinstance(it, frozenset):
-        return sorted(it)
-    if not is_dataclass(it) or isinstance(it, type):
-        return it
-    if isinstance(it, Picture):
-        return {"kind": it.kind, "name": it.name, "caption": it.caption, "alt": it.alt, "share": it.share}
-    told = {name: _plain(getattr(it, name)) for name in it.__dataclass_fields__}
-    return told | ({"kind": it.kind} if hasattr(it, "kind") else {})
+def _plain(part: Any) -> Any:
+    """Return a part of a document as plain data for JSON; a picture without its content, which is a file by itself."""
+    if isinstance(part, tuple):
+        return [_plain(entry) for entry in part]
+    if isinstance(part, frozenset):
+        return sorted(part)
+    if not is_dataclass(part) or isinstance(part, type):
+        return part
+    names = [field.name for field in fields(part) if field.name != "svg"] + ["kind"] * hasattr(part, "kind")
+    return {name: _plain(getattr(part, name)) for name in names}

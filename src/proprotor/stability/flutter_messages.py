@@ -47,6 +47,22 @@ def boundary_record(boundary: Boundary, case: Configuration) -> dict[str, Any]:
     return dict(zip(COLUMNS, values, strict=True))
 
 
+def boundary_row(record: dict[str, Any], factor: float) -> tuple[str, ...]:
+    """Return a boundary's airspeed, Hz, /rev, mode, kind, "begins" or "ends", and mechanism as cells of a table.
+
+    The airspeed is in a unit of `factor` m/s.
+    """
+    return (
+        marked(f"{record['airspeed (m/s)'] / factor:.2f}", record["warning"]),
+        f"{record['frequency (Hz)']:.3f}",
+        f"{record['frequency (per rev)']:.3f}",
+        record["mode"],
+        record["kind"],
+        "begins" if record["onset"] else "ends",
+        mechanism_message(record["mechanism"]),
+    )
+
+
 def modes_beyond(found: FlutterPoint, airspeed: float) -> int | None:
     """Return how many modes are beyond the level at an airspeed; None outside the range that was searched."""
     low, high = found.searched

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from proprotor.datum import deck_unit
+from proprotor.model.doubts import marked
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 # For each quantity: the unit that people read, and how many SI units one such unit is.
 READ_IN = {"flutter_speed": ("kt", KNOT), "damping": ("% of critical", 0.01)}
+NEARLY_DEFECTIVE = "The mode nearly coincides with another: derivatives hold in a small range only."
 
 
 def sensitivity_records(case: Case, found: xarray.Dataset, of: str) -> list[dict[str, Any]]:
@@ -53,3 +55,18 @@ def sensitivity_records(case: Case, found: xarray.Dataset, of: str) -> list[dict
             }
         )
     return sorted(records, key=lambda record: -abs(record[f"for +1 % ({read_in})"] or 0.0))
+
+
+def sensitivity_row(record: dict[str, Any], read_in: str) -> tuple[str, ...]:
+    """Return an input, its value, derivative, unit and change for +1 % as cells of a table; "" for no change.
+
+    `read_in` is the unit of the quantity, from `READ_IN`.
+    """
+    change = record[f"for +1 % ({read_in})"]
+    return (
+        record["input"],
+        record["value"],
+        marked(f"{record[f'derivative ({read_in} per unit)']:+.4g}", record["warning"]),
+        record["unit"],
+        "" if change is None else marked(f"{change:+.3g}", record["warning"]),
+    )

@@ -1,0 +1,29 @@
+"""Drawing for a file: no window opens, and no display is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+@contextmanager
+def drawn(draw: Callable[[], Axes | Figure]) -> Iterator[tuple[Axes | Figure, Figure]]:
+    """Call a function that draws; yield the axes or figure that it returns, and their figure. Close it afterwards."""
+    import matplotlib  # here, because matplotlib takes long to import
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    plot = draw()
+    figure = plot.get_figure(root=True)
+    if figure is None:
+        raise RuntimeError("axes without a figure")
+    try:
+        yield plot, figure
+    finally:
+        pyplot.close(figure)

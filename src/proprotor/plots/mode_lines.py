@@ -1,0 +1,37 @@
+"""Lines of the modes of a sweep along airspeeds or one input, and the names of the lines beside the axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proprotor.plots.canvas import grid
+from proprotor.plots.line_of_sweep import Positions, with_gaps
+from proprotor.plots.style import mode_styles
+from proprotor.tables.sweep_summary import leaps
+from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+
+def draw_modes(ax: Axes, sweep: xarray.Dataset, values: Array, line: Positions) -> list[Line2D]:
+    """Draw a line for each mode through values (points, modes), and return the lines.
+
+    Points of the sweep that could not be analysed are gaps, with a cross on the axis.
+    """
+    spacing, gaps = max(1, len(line.values) // 7), leaps(sweep)
+    lines: list[Line2D] = []
+    for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
+        markers: dict[str, Any] = {"markevery": (3 * place % spacing, spacing), "markersize": 5}
+        x, y = with_gaps(gaps[:, place], line.values, values[:, place])
+        lines += ax.plot(x, y, label=mode, **markers, **style._asdict())
+    failed = line.values[sweep.reason.values != ""]
+    on_the_axis: dict[str, Any] = {"transform": ax.get_xaxis_transform(), "clip_on": False}
+    ax.plot(failed, np.zeros(len(failed)), "x", color="0.4", **on_the_axis)
+    ax.set_xlabel(line.label + (", x where it could not be analysed" if len(failed) else ""))
+    grid(ax)
+    return lines
