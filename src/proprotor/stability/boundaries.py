@@ -151,7 +151,7 @@ def find_crossings(
 
 def _rising(line: ParameterLine) -> ParameterLine:
     """Return the line with each of its positions once, from the lowest to the highest."""
-    return replace(line, positions=np.unique(np.asarray(line.positions, dtype=float)), end=None)
+    return replace(line, positions=np.unique(np.asarray(line.positions, dtype=float)))
 
 
 def _search(line: ParameterLine, level: float) -> Search:

@@ -27,7 +27,7 @@ class Boundary:
     kind : "flutter" or "divergence"
         A pair, or a real root.
     onset : bool
-        Whether damping falls through the level as the position grows; otherwise it rises through the level.
+        Whether damping falls through the level as the position grows; otherwise damping rises through the level.
     eigenvalue : complex
         rad/s.
     rate : float
@@ -40,7 +40,7 @@ class Boundary:
         Dimensionless: 1 for a well-separated mode, large where the mode nearly falls into one with another
         (`proprotor.stability.eigenvalue_derivatives.defect`).
     eigen_solves : int
-        Spent on this crossing beyond those that bracketed it.
+        Eigen-solves for this crossing beyond those that bracketed it.
     branch : str
         The exact root that crosses, by what moves in it where branches are named (`proprotor.stability.branches`).
     warning : str

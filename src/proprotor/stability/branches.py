@@ -113,7 +113,8 @@ def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStat
     leg, last = follow(near, approach, held), len(approach.positions) - 1
     if not len(leg.points) or [leg.points[0], leg.points[-1]] != [0, last]:
         return None
-    nearest = int(np.argmin(np.abs(branches.positions[branches.points] - approach.end)))
+    end = approach.positions[-1] if approach.end is None else approach.end
+    nearest = int(np.argmin(np.abs(branches.positions[branches.points] - end)))
     here = branches.spectrum.at([int(branches.points[nearest])])
     at_anchor = names_of(some_points(near, [0]), leg.spectrum.at([0]))[leg.places[0]]
     ends = leg.spectrum.at([last]).joined(with_azimuth(here, near.dofs, n + len(held)))

@@ -50,8 +50,8 @@ class ParameterLine:
     name, units : str
         Name and SI unit of the input.
     end : float, optional
-        Of an approach: the position at which the approach ends, on the line that it leads to; its last position by
-        default.
+        Of an approach: the position at which the approach ends, on the line that it leads to; the last position of the
+        approach by default.
     inputs : callable, optional
         Of a line of a case: takes positions (k,) and returns the inputs there by name, the airspeed among them.
     model : LinearModel, optional
@@ -65,10 +65,6 @@ class ParameterLine:
     end: float | None = None
     inputs: _Inputs | None = None
     model: LinearModel | None = None
-
-    def __post_init__(self) -> None:
-        if self.end is None and np.size(self.positions):
-            object.__setattr__(self, "end", float(np.asarray(self.positions)[-1]))
 
     def models(self, positions: Array | None = None) -> LinearModel:
         """Return models at positions (k,) on the line or between its points; at its own points by default.
@@ -207,7 +203,7 @@ def _approach(
     tip = tip_speed(case)
     if line.name == AIRSPEED:
         end = _nearest(reachable, start)
-        return replace(line, positions=np.linspace(start, end, _points_over(abs(end - start), tip)), end=end)
+        return replace(line, positions=np.linspace(start, end, _points_over(abs(end - start), tip)))
     assert line.inputs is not None  # of a line of a case
     speed = float(line.inputs(reachable[:1])[AIRSPEED][0])
     own = float(design_inputs(case)[line.name].si)

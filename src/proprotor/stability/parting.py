@@ -20,9 +20,9 @@ from proprotor.stability.steps import Steps
 from proprotor.typing import Array
 
 _UNSEEN = 0.5  # of the bend: error of a cubic that nothing was compared with
-_SEEN = 0.1  # and after it was
+_SEEN = 0.1  # of the bend: least error of a cubic that was compared with a point within its step
 _FOR_NAMES = 7  # halvings of a step whose roots cannot be told apart: of 5 kt, to 0.04 kt
-_NEAR_LEVEL = 15  # and where one of them comes near the level: of 70 kt, to 0.002 kt
+_NEAR_LEVEL = 15  # halvings where such a root comes near the level: of 70 kt, to 0.002 kt
 _GRID = np.linspace(0.0, 1.0, 17)[1:-1]
 _DEEPEST_JOINT = 12  # partings of a step to find where two real roots join
 _EDGE = 0.04  # of a step: a new point stays that far from its ends
@@ -179,7 +179,8 @@ def _squares(steps: Steps, points: Points) -> tuple[Array, Array]:
 def _most_parted(square: Array, width: Array) -> Array:
     """Return how far (steps, states) real roots may part from each other's mean where a pair becomes real in a step.
 
-    A cubic leaves the straight line between its ends by at most 4/27 of the sum of what its slopes differ from it.
+    A cubic leaves the straight line between its ends by at most 4/27 of the sum of the differences between its slopes
+    and the line's.
     """
     rise = square[1] - square[0]
     bend = 4 / 27 * (np.abs(square[2] - rise) + np.abs(square[3] - rise))

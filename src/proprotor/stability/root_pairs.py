@@ -1,9 +1,9 @@
-"""Two roots that cannot be told apart over a step: how near they come to the level all the same.
+"""Two roots that cannot be told apart over a step, or that join in it: how near they come to the level all the same.
 
 Where two roots meet or veer, each moves like a square root, and which is which may not be known. Their sum s and the
-square of their difference d = (λ1 - λ2)² do not depend on it, and are as smooth as the matrices: polynomials give them
-over the step, in a band of their likely error, and (s ± √d)/2 are the roots. A pair of conjugates that parts into two
-real roots is one case of it.
+square of their difference d = (λ1 - λ2)² are the same for either choice, and are as smooth as the matrices: polynomials
+give s and d over the step, in a band of their likely error, and the roots are (s ± √d)/2. A pair of conjugates that
+parts into two real roots is such a case.
 """
 
 from __future__ import annotations
