@@ -20,7 +20,7 @@ from proprotor.explore.curves import curves
 from proprotor.explore.inputs import first_inputs, slider_input
 from proprotor.explore.page import ExplorePage
 from proprotor.rotor.options import CHOICES, Options
-from proprotor.stability.flutter import scan_speeds
+from proprotor.stability.boundaries import scan_speeds
 from proprotor.tables.sweep_summary import leaps
 from tests.explore_server import serving
 
