@@ -63,7 +63,11 @@ def core_in_force(kernel: str) -> str:
 def main(arguments: list[str] | None = None) -> int:
     """Run the tests under every kernel that there is; further arguments are those of pytest."""
     given = sys.argv[1:] if arguments is None else arguments
-    files = [str(path) for name in NUMERICAL for path in (ROOT / "tests").glob(f"*/test_{name}.py")]
+    files = [
+        path.relative_to(ROOT).as_posix()
+        for name in NUMERICAL
+        for path in (ROOT / "tests").glob(f"*/test_{name}.py")
+    ]
     failed, run = [], []
     for kernel in KERNELS:
         if (core := core_in_force(kernel)) != kernel:

@@ -9,7 +9,6 @@ import click
 
 from proprotor.commands import arguments, output
 from proprotor.deck.file import list_cases, read_tables
-from proprotor.deck.template import deck_text
 from proprotor.errors import InputError
 
 
@@ -39,7 +38,8 @@ def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None
       proprotor new wing.toml --from xv15-wing
       proprotor new stiffer.toml --variant
     """
-    from proprotor.deck.validation import validate  # here, because pydantic takes long to import
+    from proprotor.deck.template import deck_text  # here, because pydantic takes long to import
+    from proprotor.deck.validation import validate
 
     place = Path(file)
     if place.suffix != ".toml":

@@ -12,7 +12,6 @@ import click
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.deck.file import read_tables
-from proprotor.deck.settings import with_settings
 from proprotor.deck.written import FilePath
 from proprotor.errors import InputError
 from proprotor.files.fingerprint import fingerprint
@@ -119,6 +118,8 @@ def _date() -> str:
 
 def _deck_hash(case: Case, request: arguments.Request) -> str:
     """Return the SHA-256 of a deck with its base, the fields of `--set`, and the content of the files in the deck."""
+    from proprotor.deck.settings import with_settings  # here, because pydantic takes long to import
+
     numbers = {
         path: Path(number.si).read_bytes() if isinstance(number.si, FilePath) else number.si
         for path, number in case.given.items()

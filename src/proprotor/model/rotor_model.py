@@ -115,7 +115,7 @@ def _flat(target: Target, shape: tuple[int, ...]) -> Target:
 
 
 def _reactionless(rotor: Rotor, options: Options) -> int | None:
-    """Return the number of blades whose reactionless motions the options keep, or None if the options leave them out."""
+    """Return the number of blades whose reactionless motions the options keep; None if the options keep none."""
     if not options.reactionless:
         return None
     if np.ndim(rotor.n_blades):

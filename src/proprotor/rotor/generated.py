@@ -71,6 +71,7 @@ def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matri
     try:
         given = {name: quantities[name] for name in names}
     except KeyError as missing:
-        message = f"{function.__module__}.{function.__name__} takes {missing}, which nothing gives; a field of Rotor does"
+        where = f"{function.__module__}.{function.__name__}"
+        message = f"{where} takes {missing}, which nothing gives; a field of Rotor does"
         raise KeyError(message) from None
     return function(*matrices, **given)

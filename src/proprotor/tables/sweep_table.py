@@ -204,7 +204,7 @@ class SweepTable:
             "frequency (per rev)": self.frequency,
             "damping (% of critical)": self.damping,
             "Re s (rad/s)": eigenvalue.real,
-            "Im s (rad/s)": eigenvalue.imag,
+            "Im s (rad/s)": np.where(np.isnan(eigenvalue), np.nan, eigenvalue.imag),
         }
         for i in range(len(self.airspeed)):
             for j in range(modes) if modes else [None]:
