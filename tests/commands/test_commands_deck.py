@@ -17,8 +17,10 @@ from proprotor.case import load_case
 from proprotor.commands.main import main
 from proprotor.datum import Datum
 from proprotor.deck import build
-from proprotor.deck.describe import deck_fields, find_fields, markdown
+from proprotor.deck.describe import deck_fields, find_fields
+from proprotor.deck.fields_page import markdown
 from proprotor.deck.file import list_cases, read_tables
+from proprotor.deck.numbers import numbers_of
 from proprotor.deck.schema import deck_schema
 from proprotor.deck.settings import with_settings
 from proprotor.deck.template import case_name, deck_text, example
@@ -227,7 +229,7 @@ def test_defaults_are_those_of_the_objects():
             for part in field.path.split(".")[1:-1]:
                 section = section[part]
             section.pop(field.path.rpartition(".")[2], None)
-            without = build.assemble(deck := validate(tables), dict(build._numbers(deck)), kind=pp.Case)
+            without = build.assemble(deck := validate(tables), numbers_of(deck), kind=pp.Case)
             name = field.path.removeprefix("rotor.").removeprefix("airfoil.")
             source = "airfoil" if "airfoil" in field.path else None
             given, left_out = (getattr(c.rotor, source) if source else c.rotor for c in (case, without))
