@@ -136,9 +136,8 @@ def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], of:
     read_in, factor = READ_IN[of]
     mode, airspeed, value = _point(found, of)
     number = marked(f"{value / factor:.4g}", found.warning.item())
-    what = "Flutter speed" if of == "flutter_speed" else "Damping"
-    at = "" if of == "flutter_speed" else f" at {airspeed / KNOT:.4g} kt"
-    out.print(f"{what} {number} {read_in}{at} ({mode})", style="bold")
+    at = f" at {airspeed / KNOT:.4g} kt" if of == "damping" else ""
+    out.print(f"{of.replace('_', ' ').capitalize()} {number} {read_in}{at} ({mode})", style="bold")
     shown = records[: top or None]
     columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %")
     rows = (sensitivity_row(record, read_in) for record in shown)
