@@ -191,8 +191,8 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: 
 
     No cell is cut off. The last column, if it is text, is wrapped to the width of the terminal.
     """
-    table = [tuple(columns), *map(tuple, rows)]
-    widths = [max(len(row[place]) for row in table) for place in range(len(columns))]
+    table = [columns, *rows]
+    widths = [max(map(len, cells)) for cells in zip(*table, strict=True)]
     out = console()
     indent = sum(widths[:-1]) + 2 * (len(widths) - 1)
     room = max(_NARROWEST, out.width - indent) if columns[-1] in text else 10_000
@@ -262,7 +262,7 @@ def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes
 def _write_plot(path: str, draw: Callable[[], Axes | Figure]) -> None:
     """Write the figure of `--plot`.
 
-    Axes are cut out of their figure close to what is drawn; a whole figure keeps its margins.
+    A figure that was made for single axes is cut close to the drawing; a whole figure keeps its margins.
     """
     with waiting("Drawing"), drawn(draw) as (plot, figure):
         box = None if plot is figure else "tight"

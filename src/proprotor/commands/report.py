@@ -42,8 +42,8 @@ _SUFFIXES = (".html", ".pdf")
 def report(request: arguments.Request, speed: str | None, out: str | None, pdf: bool, as_json: bool) -> None:
     """Write a report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
 
-    CASE is a bundled case or a TOML file. The report is one file that needs no other: send it, print it, keep it. Its
-    first page says what the numbers rest on. The same deck and options give the same file, except for the date;
+    CASE is a bundled case or a TOML file. The report is one file that needs no other file. Its first page has
+    the reservations about the numbers. The same deck and options give the same file, except for the date;
     the environment variable SOURCE_DATE_EPOCH (seconds since 1970) sets the date.
 
     \b

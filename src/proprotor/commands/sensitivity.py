@@ -89,7 +89,7 @@ def sensitivity(
 
 
 def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[str, Any]:
-    """Return the arguments of `Case.sensitivity` that say at which airspeed, or between which, the quantity is."""
+    """Return the arguments of `Case.sensitivity` that give the airspeed, or the range of the search for flutter."""
     if of == "damping":
         for option, given in (("--scan", scan), ("--level", level or None)):
             if given is not None:
@@ -98,12 +98,12 @@ def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[s
             raise InputError("--speed", None, 'must be given for the damping, such as "300 kt"')
         return {"airspeed": arguments.one_speed(speed)}
     if speed is not None:
-        raise InputError("--speed", speed, "goes with --of damping; --scan is where flutter is looked for")
+        raise InputError("--speed", speed, "goes with --of damping; --scan is the range of the search")
     return {"airspeed": None if scan is None else speeds(scan, "--scan"), "level": level}
 
 
 def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
-    """Return the part of the dataset on the mode that is damped least, where it has several."""
+    """Return the part of the dataset on the mode that is damped least, if the dataset has several modes."""
     if "mode" not in found.dims:
         return found
     return found.isel(mode=int(np.nanargmin(found.damping.values)))

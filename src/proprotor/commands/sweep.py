@@ -17,8 +17,6 @@ from proprotor.tables.sweep_table import CONVENTION, SweepTable, heading
 from proprotor.units import speeds
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from proprotor.case import Case
 
 
@@ -55,7 +53,13 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
         document=lambda: output.about(case, request) | _document(table),
         table=lambda: _print(case, table, all_modes),
         csv=table.csv,
-        plot=lambda: _figure(case, table),
+        plot=lambda: plot_sweep(
+            found,
+            rotor_speed=table.rotor_speed,
+            unit=table.unit,
+            title=heading(case),
+            footer=" ".join(reservations(case)),
+        ),
     )
     if table.failed.all():
         raise click.exceptions.Exit(1)
@@ -94,13 +98,3 @@ def _print(case: Case, table: SweepTable, all_modes: bool) -> None:
 def _shortened(text: str, case: Case, width: int) -> str:
     """Return about two lines of a warning, and the command that prints the whole warning."""
     return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")
-
-
-def _figure(case: Case, table: SweepTable) -> Figure:
-    return plot_sweep(
-        table.sweep,
-        rotor_speed=table.rotor_speed,
-        unit=table.unit,
-        title=heading(case),
-        footer=" ".join(reservations(case)),
-    )

@@ -62,7 +62,7 @@ def altered_deck(
     """
     changed = dict(settings or {}) | _settings_of_values(case, values)
     tables = as_one_file(with_settings(read_tables(base), changed))
-    lines = ["# Made by `proprotor explore`: what stands here replaces what the base has."]
+    lines = ["# Made by `proprotor explore`: the fields below replace those of the base."]
     chosen = {name: value for name, value in (options or {}).items() if name in CHOICES}
     flags = [_flag(name, value) for name, value in chosen.items() if value != default_choice(name, chosen)]
     if flags:

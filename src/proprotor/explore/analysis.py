@@ -38,11 +38,11 @@ class LiveModes:
     eigenvalue : array (points, modes)
         rad/s; NaN at failed points.
     reason, warning : array (points,) of str
-        Why a point failed, or is doubtful; empty for all other points.
+        Reasons for which a point failed, or is doubtful; empty for all other points.
     unstable : list of UnstableRange
         Unstable ranges of airspeed, with ends interpolated between the points.
     leaps : array (points - 1, modes) of bool
-        Where a name passes to a root that lies elsewhere, see `proprotor.tables.sweep_summary.leaps`.
+        True where a name passes to a root that lies elsewhere, see `proprotor.tables.sweep_summary.leaps`.
     """
 
     airspeed: Array

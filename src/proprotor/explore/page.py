@@ -121,7 +121,7 @@ class ExplorePage:
         try:
             found = live_modes(self.case, self.airspeeds, self.values, **self.options)
         except InputError as error:
-            self.message.text = _alert(f"{error}. Drawn is what was before.")
+            self.message.text = _alert(f"{error}. The curves are those of the settings before.")
             return
         rotor_speed = self.values.get("operation.rotor_speed", float(self.case.operation.rotor_speed))
         self.lines.data = columns = curves(found, rotor_speed, KNOT)

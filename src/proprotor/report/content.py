@@ -103,7 +103,7 @@ def report_document(
 
 
 def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> Iterator[str]:
-    """Yield the sentences at the top of the report: the flutter speed, and what else the search found."""
+    """Yield the sentences at the top of the report: the flutter speed, and other results of the search."""
     if table.failed.all():
         yield "No airspeed could be analysed."
         return
@@ -140,7 +140,7 @@ def _range(table: SweepTable, first: int, last: int) -> str:
 
 
 def _where(found: Findings, unit: str, factor: float) -> str:
-    """Return the end of the heading of the causes: at which airspeed they are."""
+    """Return the end of the heading of the causes: the airspeed to which the causes belong."""
     if not found.mode:
         return ""
     at = _at(found, unit, factor)
@@ -160,11 +160,11 @@ def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterat
         marked(f"{at / factor:.4g}", doubt_at(found.flutter.doubts, at)) for at in found.flutter.searched
     )
     if not math.isfinite(found.flutter.searched[0]):
-        yield Text(("No airspeed could be analysed, so nothing is known of boundaries.",))
+        yield Text(("No airspeed could be analysed, so boundaries are not known.",))
         return
     yield Text((f"Crossings of zero damping between {low} and {high} {unit}, to rounding.",))
     if not found.flutter.boundaries:
-        yield Text(("There is none.",))
+        yield Text(("No mode crosses zero damping.",))
         return
     columns = (f"airspeed, {unit}", "m/s", "Hz", "/rev", "mode", "kind", "instability", "mechanism")
     rows = []
@@ -193,7 +193,7 @@ def _model(case: Case, table: SweepTable, settings: Mapping[str, str]) -> Iterat
 
 
 def _causes(found: Findings, unit: str, factor: float) -> Iterator[Any]:
-    """Yield the pictures of the causes, or why there are none."""
+    """Yield the pictures of the causes, or the reason why the causes could not be found."""
     if found.causes is None:
         yield Text((f"Causes could not be found: {found.no_causes}.",))
         return
