@@ -1,6 +1,6 @@
 """The command line: a module for each command of `proprotor`, and modules that the commands share.
 
-In comes what the user types; out go tables, JSON, CSV and figures. The commands only read arguments, call an analysis
+In come arguments and options; out go tables, JSON, CSV and figures. The commands only read arguments, call an analysis
 and show its result; they compute nothing themselves.
 
     main        the command `proprotor`: the list of commands, and the messages with which an error ends a command

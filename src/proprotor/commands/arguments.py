@@ -139,7 +139,7 @@ def _numbers_of_case(ctx: click.Context) -> tuple[str, ...]:
 
 
 def case_argument(command: Command) -> Command:
-    """Add CASE and `--set` to a command that has `model_options`; the command gets all of them as `request`."""
+    """Add CASE and `--set` to a command that has `model_options`; the command gets all three as `request`."""
 
     @wraps(command)
     def with_request(*, case: str, settings: tuple[str, ...], **given: Any) -> Any:

@@ -34,7 +34,7 @@ class LiveModes:
     airspeed : array (points,)
         m/s.
     names : list of str
-        Names of the modes, in the order of the coordinates that move most in them.
+        Names of the modes, in the order of the coordinates after which the modes are named.
     eigenvalue : array (points, modes)
         rad/s; NaN at failed points.
     reason, warning : array (points,) of str

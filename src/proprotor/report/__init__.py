@@ -1,6 +1,6 @@
 """The report on a case: one page with all results, and every input with its source, as HTML or PDF.
 
-In come a case, airspeeds and options; out goes the content of a file. Each step takes what the step before returns.
+In come a case, airspeeds and options; out goes the content of a file. Each step takes the result of the step before.
 
     analyses        the results that a report shows: `analyse` returns `Findings`
     content         the findings in words, tables and pictures: `report_document` returns a `Document`

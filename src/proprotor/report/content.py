@@ -301,7 +301,7 @@ def _inputs(case: Case) -> Iterator[Table | Text]:
         for path, number in case.sources.items()
     )
     columns = ("field", "as written", "SI", "status", "source")
-    yield Table("All inputs, and what follows from them", columns, rows)
+    yield Table("All inputs, and the numbers that follow from the inputs", columns, rows)
     for path, number in case.sources.items():
         if number.r_over_R is not None:
             yield _distribution(path, number)
