@@ -18,7 +18,6 @@ import numpy as np
 
 import proprotor as pp
 from proprotor.commands.main import main
-from proprotor.commands.terminal import print_case
 from tests.fuzz import airfoils, supports
 from tests.fuzz.mutation import NUMBERS, TEXTS, UNITS, other_lines, other_number, several, spoiled_bytes
 
@@ -115,7 +114,7 @@ def use(folder: Path, linearized: bool, swept: bool, airspeed: float) -> None:
                 assert np.isfinite(getattr(model, name)).all(), f"{name} is not finite"
         model.modes()
         with contextlib.redirect_stdout(io.StringIO()):
-            print_case(case)
+            main(["cases", str(folder / "deck.toml")], standalone_mode=False)
     if swept:
         arguments = [
             "sweep",

@@ -1,16 +1,17 @@
-"""The command line: a module for each command of `proprotor`, and what the commands share.
+"""The command line: a module for each command of `proprotor`, and modules that the commands share.
 
-In comes what the user types; out go tables, JSON, CSV and figures. The commands only read arguments, call an analysis
+In come arguments and options; out go tables, JSON, CSV and figures. The commands only read arguments, call an analysis
 and show its result; they compute nothing themselves.
 
-    main        the command `proprotor`: the list of commands, and how an error ends one
+    main        the command `proprotor`: the list of commands, and the messages with which an error ends a command
     arguments   arguments and options that several commands share; `Request`, the case and options a user asks for
-    output      what commands print and write; `Outputs`, the files a user asks for
+    output      tables, JSON, files and figures; `Outputs`, the files a user asks for
+    terminal    the console on which commands print
     waiting     a spinner while a step takes more than a second
 
     cases new describe                              decks
     sweep flutter stability_map sensitivity attribution study    analyses of a case
-    report explore                                  a page on a case
+    report explore                                  a page on a case, as a file and with sliders
 
 This room may import all others, and no room imports this one. Packages that are slow to import (rich, pydantic,
 matplotlib, bokeh) wait until a command needs them, so that ``--help`` and completion answer at once.

@@ -1,6 +1,7 @@
 """Arguments and options that several commands share, so that an option is the same in every command.
 
-`case_argument` and `model_options` go together: what the user chose with them reaches the command as one `Request`.
+`case_argument` and `model_options` go together: the command gets the case, the fields of `--set` and the options of the
+model as one `Request`.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def command(name: str | None = None, **settings: Any) -> Callable[[Command], cli
 
 
 class Request(NamedTuple):
-    """Which case a command shall analyse, and how.
+    """The case that a command shall analyse, with the choices of the user.
 
     name : of a bundled case, or of a TOML file; settings : fields of `--set` with their values, as text; options : of
     the model, see `proprotor.rotor.options.Options`
@@ -138,18 +139,18 @@ def _numbers_of_case(ctx: click.Context) -> tuple[str, ...]:
 
 
 def case_argument(command: Command) -> Command:
-    """Add CASE and `--set` to a command that has `model_options`; the command gets all of them as `request`."""
+    """Add CASE and `--set` to a command that has `model_options`; the command gets all three as `request`."""
 
     @wraps(command)
     def with_request(*, case: str, settings: tuple[str, ...], **given: Any) -> Any:
-        options = _in_order({name: given.pop(name) for name in _MODEL})
+        options = _with_defaults({name: given.pop(name) for name in _MODEL})
         return command(request=Request(case, settings_of(settings), options), **given)
 
     return click.argument("case", type=CaseName())(set_option(with_request))
 
 
 def set_option(command: Command) -> Command:
-    """Add `--set` to a command; `settings_of` reads what it gives."""
+    """Add `--set` to a command; `settings_of` reads the texts that the user gave."""
     return click.option(
         "--set",
         "settings",
@@ -172,19 +173,38 @@ def settings_of(texts: tuple[str, ...]) -> dict[str, str]:
     """
     found: dict[str, str] = {}
     for text in texts:
-        path, equals, value = (part.strip() for part in text.partition("="))
-        if not equals or not path or not value:
-            raise InputError("--set", text, 'must be a field and its value, such as rotor.precone="1.5 deg"')
+        path, value = name_and_value(
+            "--set", text, 'must be a field and its value, such as rotor.precone="1.5 deg"'
+        )
         if path in found:
             raise InputError("--set", text, "must not set a field twice")
         found[path] = value
     return found
 
 
+def name_and_value(option: str, text: str, rule: str) -> tuple[str, str]:
+    """Return the two sides of NAME=VALUE, without spaces around the sides.
+
+    Raises
+    ------
+    InputError
+        With the rule, if a side or the sign is missing.
+    """
+    name, _, value = (part.strip() for part in text.partition("="))
+    if not name or not value:
+        raise InputError(option, text, rule)
+    return name, value
+
+
 def scan_option(command: Command) -> Command:
-    """Add `--scan`, the airspeeds between which boundaries are looked for."""
+    """Add `--scan`, the airspeeds between which a command searches for boundaries."""
     scan_help = 'Airspeeds between which to search: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed.'
     return click.option("--scan", metavar="RANGE", help=scan_help)(command)
+
+
+def range_option(meaning: str, *, required: bool = False) -> Option:
+    """Return `--speed` for a command that takes a range of airspeeds; `meaning` is the help."""
+    return click.option("--speed", required=required, metavar="RANGE", help=meaning)
 
 
 def level_option(command: Command) -> Command:
@@ -238,12 +258,8 @@ def unit_of(text: str) -> str:
 def model_options(command: Command) -> Command:
     """Add a flag for each option of the model; names, choices and help are those of `proprotor.rotor.options`."""
     meanings = _meanings(Options)
-    locked: dict[str, Any] = {
-        "multiple": True,
-        "type": click.Choice(LOCKABLE),
-        "help": f"{meanings['locked']} Repeatable.",
-    }
-    command = click.option("--locked", **locked)(command)
+    locked_help = f"{meanings['locked']} Repeatable."
+    command = click.option("--locked", multiple=True, type=click.Choice(LOCKABLE), help=locked_help)(command)
     for name in reversed(_NUMBERS):
         command = click.option(f"--{name.replace('_', '-')}", type=float, help=meanings[name])(command)
     for name, choices in reversed(CHOICES.items()):
@@ -251,20 +267,20 @@ def model_options(command: Command) -> Command:
     return command
 
 
-def _in_order(found: dict[str, Any]) -> dict[str, Any]:
-    """Return the options of the model with what they mean when they are not given.
+def _with_defaults(found: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of the model, with defaults in place of some options that are not given.
 
-    A structure that is not given is left out, so that the deck chooses it. Section damping that is not given gets the
-    value that the model would take, so that results print and write this value.
+    Section damping that is not given gets the value that the model would take, so that results print and write this
+    value. Other options that are not given are left out: the deck chooses the structure, the model the couplings.
     """
     if found["section_damping"] is None:
         found["section_damping"] = default_choice("section_damping", found)
-    return {name: value for name, value in found.items() if name != "structure" or value is not None}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def _model_option(name: str, choices: tuple[Any, ...], meaning: str) -> Option:
-    flag = name.replace("_", "-")
     """Return the option of the command line for one option of the model."""
+    flag = name.replace("_", "-")
     declared: dict[str, Any] = {"default": choices[0], "show_default": True, "help": meaning}
     if name == "structure":
         declared |= {"default": None, "show_default": "coupled; tabulated where the deck has frequencies"}
@@ -276,7 +292,7 @@ def _model_option(name: str, choices: tuple[Any, ...], meaning: str) -> Option:
 
 
 def _meanings(documented: type) -> dict[str, str]:
-    """Return what a docstring says on each parameter; "" for all in a Python that drops docstrings (-OO)."""
+    """Return the text of a docstring on each parameter; "" for all in a Python that drops docstrings (-OO)."""
     lines = inspect.getdoc(documented) or ""
     found = re.findall(r"^([\w, ]+) : .*\n((?:    .*\n)+)", lines, re.MULTILINE)
     meanings = {name: " ".join(text.split()) for names, text in found for name in names.split(", ")}

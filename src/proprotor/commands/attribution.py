@@ -41,7 +41,7 @@ def attribution(request: arguments.Request, outputs: output.Outputs, speed: str,
     """
     airspeed, case = arguments.one_speed(speed), request.load()
     with waiting("Analysing"):
-        found = _one_mode(case.attribution(airspeed, mode, **request.options))
+        found = _least_damped(case.attribution(airspeed, mode, **request.options))
     records = _records(found)
     outputs.write(
         document=lambda: output.about(case, request) | _document(found, records, airspeed),
@@ -51,7 +51,7 @@ def attribution(request: arguments.Request, outputs: output.Outputs, speed: str,
     )
 
 
-def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
+def _least_damped(found: xarray.Dataset) -> xarray.Dataset:
     """Return the part of the dataset on the mode that is damped least."""
     value = found.eigenvalue.values
     return found.isel(mode=[int((-value.real / abs(value)).argmin())])
@@ -61,11 +61,9 @@ def _records(found: xarray.Dataset) -> list[dict[str, Any]]:
     """Return a record of `_COLUMNS` for each origin, the largest change of growth first."""
     changes = found.contribution.values[:, 0]
     damping = 100 * damping_rate(found.eigenvalue.values, changes)
-    numbers = zip(changes.real.tolist(), changes.imag.tolist(), damping.tolist(), strict=True)
-    records = [
-        dict(zip(_COLUMNS, (origin, *of_origin, found.warning.item()), strict=True))
-        for origin, of_origin in zip(found.origin.values.tolist(), numbers, strict=True)
-    ]
+    columns = (found.origin.values, changes.real, changes.imag, damping)
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    records = [dict(zip(_COLUMNS, (*row, found.warning.item()), strict=True)) for row in rows]
     return sorted(records, key=lambda record: -abs(record["growth (1/s)"]))
 
 
@@ -90,11 +88,10 @@ def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], spe
     damping = f"damping {marked(f'{-100 * value.real / abs(value):.3g}', doubt)} % of critical"
     frequency = f"{marked(f'{abs(value.imag) / float(case.operation.rotor_speed):.3f}', doubt)} per rev"
     out.print(f"{found.mode.values[0]} at {speed.strip()}: {frequency}, {damping}", style="bold")
-    rows = []
-    for origin, *numbers, _ in map(dict.values, records):
-        rows.append(
-            (origin, *(marked(f"{n:+.4f}", doubt) for n in numbers), "drives" if numbers[0] > 0 else "damps")
-        )
+    rows = (
+        (origin, *(marked(f"{n:+.4f}", doubt) for n in numbers), "drives" if numbers[0] > 0 else "damps")
+        for origin, *numbers, _ in map(dict.values, records)
+    )
     columns = ("origin", "growth, 1/s", "frequency, rad/s", "damping, %", "")
     output.print_table(columns, rows, text=("origin", ""))
     output.print_doubts(doubts_along(found.attrs["airspeed"], found.warning.values))

@@ -1,4 +1,4 @@
-"""The command `proprotor cases`: the bundled cases, and what the numbers of a case rest on."""
+"""The command `proprotor cases`: the bundled cases, and the sources of the numbers of a case."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from proprotor.case import Case, list_cases
 from proprotor.commands import arguments, output
 from proprotor.deck.file import read_tables
 from proprotor.errors import InputError
+from proprotor.model.provenance import doubtful_inputs, reservations
 
 
 @arguments.command(short_help="List the bundled cases, or show one case.")
@@ -18,7 +19,7 @@ from proprotor.errors import InputError
 @arguments.set_option
 @output.json_option
 def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
-    """List the bundled cases, or show what one case is and which of its inputs are doubtful.
+    """List the bundled cases, or describe one case and show which of its inputs are doubtful.
 
     CASE is a bundled case or a TOML file. With --json the command prints every number of the case: its value as
     written and in SI units, its status and its source.
@@ -39,9 +40,18 @@ def cases(name: str | None, settings: tuple[str, ...], as_json: bool) -> None:
     if as_json:
         output.print_json(_document(case, request))
     else:
-        from proprotor.commands.terminal import print_case  # here, because rich takes long to import
+        _print(case)
 
-        print_case(case)
+
+def _print(case: Case) -> None:
+    """Print the description of a case, and each input that was not read in a source."""
+    out = output.console()
+    warnings = (f"Warning: {text}" for text in case.warnings)
+    for paragraph in filter(None, (case.title, case.description, *reservations(case), *warnings)):
+        out.print(f"{paragraph}\n")
+    for path, number in doubtful_inputs(case).items():
+        out.print(f"{number.status:<11} {path} = {number.written}", soft_wrap=True)
+        out.print(f"{'':<11} {number.source}", soft_wrap=True)
 
 
 def _list(as_json: bool) -> None:

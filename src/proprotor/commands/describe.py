@@ -41,7 +41,7 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
     if sum((schema, markdown, as_json)) > 1:
         raise InputError("--schema", None, "must not be given with --markdown or --json")
     if field is not None and (schema or markdown):
-        raise InputError("FIELD", field, "goes with the table or --json; a schema or page is of all fields")
+        raise InputError("FIELD", field, "goes with the table or --json; a schema or page has all fields")
     if schema:
         output.print_json(deck_schema())
         return
@@ -78,4 +78,4 @@ def _print_table(found: tuple[DeckField, ...]) -> None:
             if field.kind == kind
         ]
         output.print_table(_COLUMNS, rows, text=("field", "SI unit", "meaning"))
-    out.print("* must be given, or one of its alternatives. `proprotor describe FIELD` tells all of one.")
+    out.print("* must be given, or one of its alternatives. `proprotor describe FIELD` shows one in full.")

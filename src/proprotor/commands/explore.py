@@ -21,12 +21,10 @@ if TYPE_CHECKING:
 _POINTS = 60  # airspeeds by default
 
 
-@arguments.command(short_help="Move sliders on the inputs, and see at once what they do.")
+@arguments.command(short_help="Move sliders on the inputs, and see the modes follow.")
 @arguments.case_argument
-@click.option(
-    "--speed",
-    metavar="RANGE",
-    help='Airspeeds to draw: "100:400:5kt"; by default 60 airspeeds from 0.2 to 1.2 of the tip speed.',
+@arguments.range_option(
+    'Airspeeds to draw: "100:400:5kt"; by default 60 airspeeds from 0.2 to 1.2 of the tip speed.'
 )
 @click.option(
     "--port",
@@ -53,8 +51,8 @@ def explore(
       proprotor explore my.toml --speed 100:350:5kt --pitch coupling
       proprotor explore my.toml --port 0 --no-browser
     """
-    need("bokeh", "explore", "the page", "explore")
-    need("tornado", "explore", "the page", "explore")
+    for package in ("bokeh", "tornado"):
+        need(package, "explore", "the page", "explore")
     airspeeds = None if speed is None else np.unique(speeds(speed, "--speed"))
     if airspeeds is not None and len(airspeeds) < 2:
         raise InputError("--speed", speed, "must be a range of airspeeds")

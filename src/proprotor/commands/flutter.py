@@ -72,7 +72,7 @@ def flutter(
 
 
 def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | None) -> dict[str, Any]:
-    document = {
+    document: dict[str, Any] = {
         "level (damping ratio)": found.level,
         "searched (m/s)": list(found.searched),
         "not analysed": failed_records(found),
@@ -91,14 +91,13 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
         "doubts": output.doubts_as_data(found.doubts),
         "eigen-solves": found.eigen_solves,
     }
-    if at is None:
-        return document
-    margin = {
-        "airspeed (m/s)": at,
-        "margin": found.margin(at),
-        "modes beyond the level": modes_beyond(found, at),
-    }
-    return document | {"at": margin}
+    if at is not None:
+        document["at"] = {
+            "airspeed (m/s)": at,
+            "margin": found.margin(at),
+            "modes beyond the level": modes_beyond(found, at),
+        }
+    return document
 
 
 def _print(
@@ -108,8 +107,8 @@ def _print(
     factor = factor_to_si(unit, unit, "m/s")
     if not math.isfinite(found.searched[0]):
         output.console().print("No airspeed could be analysed.", style="bold")
-        for line in (stretch.message(unit, factor) for stretch in found.failed):
-            output.console().print(line)
+        for stretch in found.failed:
+            output.console().print(stretch.message(unit, factor))
         return
     if records:
         columns = (unit, "Hz", "/rev", "mode", "kind", "", "mechanism")

@@ -1,4 +1,4 @@
-"""The command `proprotor`: the group of all commands, and how an error ends one."""
+"""The command `proprotor`: the group of all commands, and the messages with which an error ends a command."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What commands print and write: JSON, tables, files and figures."""
+"""The output of commands: JSON, tables, files and figures."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from proprotor.model.provenance import reservations
 from proprotor.plots import rests_on
 from proprotor.plots.headless import drawn
 from proprotor.rotor.options import CHOICES, parse_options
+from proprotor.tables.sweep_table import heading
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
@@ -96,13 +97,13 @@ class Outputs(NamedTuple):
 
 
 def json_option(command: Command) -> Command:
-    """Add `--json` to a command, which gets it as `as_json`."""
+    """Add `--json` to a command; the command gets the flag as `as_json`."""
     json_help = "Print everything as JSON instead of the table."
     return click.option("--json", "as_json", is_flag=True, help=json_help)(command)
 
 
 def output_options(*, csv: str, plot: str = "") -> Option:
-    """Add `--json`, `--csv` and, if `plot` says what it shows, `--plot` to a command, which gets all as `outputs`."""
+    """Add `--json`, `--csv` and, if `plot` describes the figure, `--plot` to a command, which gets all as `outputs`."""
 
     def declare(command: Command) -> Command:
         @wraps(command)
@@ -163,16 +164,14 @@ def console() -> PlainConsole:
 
 
 def print_head(case: Case, found: Mapping[Any, Any]) -> None:
-    """Print the case, the options that are no defaults, and what the numbers rest on."""
-    from proprotor.tables.sweep_table import heading
-
+    """Print the case, the options that are no defaults, and the reservations about the numbers."""
     out = console()
     for line in (heading(case), *stamp.unusual_options(found), *reservations(case), ""):
         out.print(line)
 
 
 def print_footnotes(sentences: Iterable[str]) -> None:
-    """Print what the question marks in a table mean, a line for each doubt."""
+    """Print the sentences that explain the question marks in a table, a line for each."""
     for sentence in sentences:
         console().print(f"{MARK} {sentence}", style="yellow")
 
@@ -192,21 +191,19 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: 
 
     No cell is cut off. The last column, if it is text, is wrapped to the width of the terminal.
     """
-    table = [tuple(columns), *map(tuple, rows)]
-    widths = [max(len(row[place]) for row in table) for place in range(len(columns))]
+    table = [columns, *rows]
+    widths = [max(map(len, cells)) for cells in zip(*table, strict=True)]
     out = console()
     indent = sum(widths[:-1]) + 2 * (len(widths) - 1)
     room = max(_NARROWEST, out.width - indent) if columns[-1] in text else 10_000
     for number, row in enumerate(table):
-        cells = [
+        *cells, last = (
             cell.ljust(width) if name in text else cell.rjust(width)
-            for cell, width, name in zip(row[:-1], widths, columns, strict=False)
-        ]
-        last = row[-1] if columns[-1] in text else row[-1].rjust(widths[-1])
-        wrapped = textwrap.wrap(last, room, drop_whitespace=columns[-1] in text) or [""]
-        lines = ["  ".join([*cells, wrapped[0]]), *(" " * indent + line for line in wrapped[1:])]
-        for line in lines:
-            out.print(line.rstrip(), style="" if number else "dim", soft_wrap=True)
+            for cell, width, name in zip(row, widths, columns, strict=True)
+        )
+        wrapped = textwrap.wrap(last.rstrip(), room, drop_whitespace=columns[-1] in text)
+        line = "  ".join([*cells, ("\n" + " " * indent).join(wrapped)])
+        out.print(line.rstrip(), style="" if number else "dim", soft_wrap=True)
     out.print()
 
 
@@ -239,7 +236,7 @@ def check_writable(option: str, path: str | None) -> None:
 
 @contextmanager
 def _named(option: str, path: str) -> Iterator[None]:
-    """Have errors about a path name the option that gave it."""
+    """Turn errors about a path into errors that name the option of the path."""
     try:
         with one_message(option, path):
             yield
@@ -265,16 +262,14 @@ def write(option: str, path: str, content: Callable[[IO[bytes]], object] | bytes
 def _write_plot(path: str, draw: Callable[[], Axes | Figure]) -> None:
     """Write the figure of `--plot`.
 
-    Axes are cut out of their figure close to what is drawn; a whole figure keeps its margins.
+    A figure that was made for single axes is cut close to the drawing; a whole figure keeps its margins.
     """
     with waiting("Drawing"), drawn(draw) as (plot, figure):
-        close: dict[str, Any] = {} if plot is figure else {"bbox_inches": "tight"}
+        box = None if plot is figure else "tight"
         form = Path(path).suffix.removeprefix(".").lower()
-        write("--plot", path, lambda file: figure.savefig(file, format=form, dpi=160, **close))
+        write("--plot", path, lambda file: figure.savefig(file, format=form, dpi=160, bbox_inches=box))
 
 
 def with_origin(axes: Axes, case: Case) -> Axes:
-    """Write beneath a plot which case it shows, and what the numbers rest on; return the axes."""
-    from proprotor.tables.sweep_table import heading
-
+    """Write the case of a plot and the reservations about its numbers beneath the plot; return the axes."""
     return rests_on(axes, case, f"{heading(case)}.")

@@ -27,10 +27,8 @@ _SUFFIXES = (".html", ".pdf")
 
 @arguments.command(short_help="Write all results on a case as one page, HTML or PDF.")
 @arguments.case_argument
-@click.option(
-    "--speed",
-    metavar="RANGE",
-    help='Airspeeds to analyse: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed, in knots.',
+@arguments.range_option(
+    'Airspeeds to analyse: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed, in knots.'
 )
 @click.option(
     "--out",
@@ -43,8 +41,8 @@ _SUFFIXES = (".html", ".pdf")
 def report(request: arguments.Request, speed: str | None, out: str | None, pdf: bool, as_json: bool) -> None:
     """Write a report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
 
-    CASE is a bundled case or a TOML file. The report is one file that needs no other: send it, print it, keep it. Its
-    first page says what the numbers rest on. The same deck and options give the same file, except for the date;
+    CASE is a bundled case or a TOML file. The report is one file that needs no other file. Its first page has
+    the reservations about the numbers. The same deck and options give the same file, except for the date;
     the environment variable SOURCE_DATE_EPOCH (seconds since 1970) sets the date.
 
     \b
@@ -53,7 +51,8 @@ def report(request: arguments.Request, speed: str | None, out: str | None, pdf: 
       proprotor report my.toml --out my.pdf
       proprotor report my.toml --speed 100:400:5kt --set rotor.precone="1.5 deg" --pdf
     """
-    from proprotor.report import analyse, report_document  # here, because rich takes long to import
+    # Here, because the packages behind a report take long to import.
+    from proprotor.report import analyse, html_of, pdf_of, report_document
 
     date, airspeeds = _date(), None if speed is None else speeds(speed, "--speed")
     case = request.load()
@@ -71,7 +70,9 @@ def report(request: arguments.Request, speed: str | None, out: str | None, pdf: 
             date=date,
             unit=arguments.unit_of(speed or "kt"),
         )
-        contents = {place: _content(document, place) for place in places}
+        contents = {
+            place: pdf_of(document) if _is_pdf(place) else html_of(document).encode() for place in places
+        }
     for place, content in contents.items():
         output.write("--out", place, content)
     if as_json:
@@ -91,18 +92,13 @@ def _places(out: str, pdf: bool) -> list[str]:
     place = Path(out)
     if place.suffix.lower() not in _SUFFIXES:
         raise InputError("--out", out, f"must end in {' or '.join(_SUFFIXES)}")
-    places = [out]
-    if pdf and place.suffix.lower() != ".pdf":
-        places.append(str(place.with_suffix(".pdf")))
-    if any(Path(name).suffix.lower() == ".pdf" for name in places):
+    if pdf or _is_pdf(out):
         check_typesetter()
-    return places
+    return [out, str(place.with_suffix(".pdf"))] if pdf and not _is_pdf(out) else [out]
 
 
-def _content(document: Document, place: str) -> bytes:
-    from proprotor.report import html_of, pdf_of
-
-    return pdf_of(document) if Path(place).suffix.lower() == ".pdf" else html_of(document).encode()
+def _is_pdf(place: str) -> bool:
+    return place.lower().endswith(".pdf")
 
 
 def _date() -> str:

@@ -89,7 +89,7 @@ def sensitivity(
 
 
 def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[str, Any]:
-    """Return the arguments of `Case.sensitivity` that say at which airspeed, or between which, the quantity is."""
+    """Return the arguments of `Case.sensitivity` that give the airspeed, or the range of the search for flutter."""
     if of == "damping":
         for option, given in (("--scan", scan), ("--level", level or None)):
             if given is not None:
@@ -98,12 +98,12 @@ def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[s
             raise InputError("--speed", None, 'must be given for the damping, such as "300 kt"')
         return {"airspeed": arguments.one_speed(speed)}
     if speed is not None:
-        raise InputError("--speed", speed, "goes with --of damping; --scan is where flutter is looked for")
+        raise InputError("--speed", speed, "goes with --of damping; --scan is the range of the search")
     return {"airspeed": None if scan is None else speeds(scan, "--scan"), "level": level}
 
 
 def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
-    """Return the part of the dataset on the mode that is damped least, where it has several."""
+    """Return the part of the dataset on the mode that is damped least, if the dataset has several modes."""
     if "mode" not in found.dims:
         return found
     return found.isel(mode=int(np.nanargmin(found.damping.values)))
@@ -136,9 +136,8 @@ def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], of:
     read_in, factor = READ_IN[of]
     mode, airspeed, value = _point(found, of)
     number = marked(f"{value / factor:.4g}", found.warning.item())
-    what = "Flutter speed" if of == "flutter_speed" else "Damping"
-    at = "" if of == "flutter_speed" else f" at {airspeed / KNOT:.4g} kt"
-    out.print(f"{what} {number} {read_in}{at} ({mode})", style="bold")
+    at = f" at {airspeed / KNOT:.4g} kt" if of == "damping" else ""
+    out.print(f"{of.replace('_', ' ').capitalize()} {number} {read_in}{at} ({mode})", style="bold")
     shown = records[: top or None]
     columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %")
     rows = (sensitivity_row(record, read_in) for record in shown)

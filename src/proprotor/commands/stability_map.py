@@ -35,22 +35,18 @@ class _Axis(NamedTuple):
     factor: float  # the unit in SI units
 
 
+def _axis_option(name: str, meaning: str) -> arguments.Option:
+    """Return the option of one axis; `meaning` is the help."""
+    values = arguments.InputValues()
+    return click.option(name, required=True, type=values, metavar="INPUT=RANGE", help=meaning)
+
+
 @arguments.command("map", short_help="Show where in the plane of two inputs a case is stable.")
 @arguments.case_argument
-@click.option(
-    "--x",
-    required=True,
-    type=arguments.InputValues(),
-    metavar="INPUT=RANGE",
-    help=f'Input on the axis across, by deck path, and its values: {_EXAMPLE} or "airspeed=100:400:10kt".',
+@_axis_option(
+    "--x", f'Input on the axis across, by deck path, and its values: {_EXAMPLE} or "airspeed=100:400:10kt".'
 )
-@click.option(
-    "--y",
-    required=True,
-    type=arguments.InputValues(),
-    metavar="INPUT=RANGE",
-    help="Input on the axis up, and its values, likewise.",
-)
+@_axis_option("--y", "Input on the axis up, and its values, likewise.")
 @click.option("--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 kt".')
 @arguments.level_option
 @output.output_options(
@@ -94,9 +90,9 @@ def stability_map(
 
 def _axis(option: str, text: str, case: Case) -> _Axis:
     """Return the axis of ``INPUT=RANGE``."""
-    path, equals, given = (part.strip() for part in text.partition("="))
-    if not equals or not given:
-        raise InputError(option, text, f"must be an input and its values, such as {_EXAMPLE}")
+    path, given = arguments.name_and_value(
+        option, text, f"must be an input and its values, such as {_EXAMPLE}"
+    )
     designs = grid({path: given}).resolve(design_inputs(case))
     values = designs.values[path]
     if len(values) < 2:
@@ -141,13 +137,14 @@ def _lines(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[tuple[list[
 
 
 def _document(found: xarray.Dataset, axes: tuple[_Axis, _Axis], airspeed: float | None) -> dict[str, Any]:
+    lines = _lines(found, axes)
     return {
         "level (damping ratio)": float(found.attrs["level"]),
         "airspeed (m/s)": airspeed,
         "x": _label(axes[0]),
         "y": _label(axes[1]),
-        "boundary": [line for line, _ in _lines(found, axes)],
-        "boundary warnings": [warnings for _, warnings in _lines(found, axes)],
+        "boundary": [line for line, _ in lines],
+        "boundary warnings": [warnings for _, warnings in lines],
         "points": _records(found, axes),
         "eigen-solves": int(found.attrs["eigen_solves"]),
     }

@@ -40,12 +40,7 @@ _REASONS = 5  # most frequent reasons of failures that are printed
     help='Input that varies, by deck path, and its values: "rotor.precone=1:4:0.5 deg" or "=1 deg, 2 deg"; with '
     '--sample its limits: "=1:4 deg" or "=0.9:1.1 of deck". Repeatable.',
 )
-@click.option(
-    "--speed",
-    required=True,
-    metavar="RANGE",
-    help='Airspeeds with their unit: "160:460:20kt" or "300 kt".',
-)
+@arguments.range_option('Airspeeds with their unit: "160:460:20kt" or "300 kt".', required=True)
 @click.option("--out", metavar="FILE", help="Write the results: a .nc file (netCDF).")
 @click.option(
     "--sample", type=click.Choice(_SAMPLES), help="Draw a sample of the inputs instead of all combinations."
@@ -94,7 +89,7 @@ def study(
             (*DEFAULT_QUANTITIES, *["flutter"] * flutter),
             workers=workers,
             checkpoint=checkpoint,
-            **{name: value for name, value in request.options.items() if value is not None},
+            **request.options,
         )
     if out:
         with output.one_message("--out", out):
@@ -112,14 +107,12 @@ def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> 
     """Return the grid or sample of the inputs of `--vary`."""
     inputs = {}
     for text in varied:
-        path, equals, values = text.partition("=")
-        if not equals or not values.strip():
-            rule = 'must be an input and its values, such as "rotor.precone=1:4:0.5 deg"'
-            raise InputError("--vary", text, rule)
-        if path.strip() in inputs:
+        rule = 'must be an input and its values, such as "rotor.precone=1:4:0.5 deg"'
+        path, values = arguments.name_and_value("--vary", text, rule)
+        if path in inputs:
             raise InputError("--vary", text, "must not vary an input twice")
         listed = [value.strip() for value in values.split(",")]
-        inputs[path.strip()] = _limits(text, values) if sample else listed if len(listed) > 1 else listed[0]
+        inputs[path] = _limits(text, values) if sample else listed if len(listed) > 1 else listed[0]
     if sample is None:
         return sampling.grid(inputs)
     draw: Callable[..., sampling.Plan] = getattr(sampling, sample.replace("-", "_"))
@@ -136,8 +129,7 @@ def _limits(whole: str, text: str) -> Any:
             return sampling.Relative(float(low), float(high))
         except ValueError:
             raise InputError("--vary", whole, 'must have two factors, such as "0.9:1.1 of deck"') from None
-    unit = high.strip().lstrip("0123456789.+-eE").strip()
-    return f"{low.strip()} {unit}", high.strip()
+    return f"{low.strip()} {arguments.unit_of(high)}", high.strip()
 
 
 def _print(results: xarray.Dataset) -> None:

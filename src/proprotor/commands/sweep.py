@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
+from proprotor.model.options_in_force import options_in_result, options_text
 from proprotor.model.provenance import reservations
 from proprotor.plots import plot_sweep
 from proprotor.tables.sweep_summary import unstable_ranges
-from proprotor.tables.sweep_table import CONVENTION, SweepTable
+from proprotor.tables.sweep_table import CONVENTION, SweepTable, heading
 from proprotor.units import speeds
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from proprotor.case import Case
 
 
 @arguments.command()
 @arguments.case_argument
-@click.option(
-    "--speed",
+@arguments.range_option(
+    'Airspeeds with their unit: "50:400:5kt" is 50 to 400 kt by 5 kt; also "300 kt", "25:200:2.5 m/s".',
     required=True,
-    metavar="RANGE",
-    help='Airspeeds with their unit: "50:400:5kt" is 50 to 400 kt by 5 kt; also "300 kt", "25:200:2.5 m/s".',
 )
 @click.option("--all-modes", is_flag=True, help="Show all modes, not only as many as fit into one table.")
 @output.output_options(csv="Write a row for each airspeed and mode.", plot="Draw frequency and damping")
@@ -55,7 +53,13 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
         document=lambda: output.about(case, request) | _document(table),
         table=lambda: _print(case, table, all_modes),
         csv=table.csv,
-        plot=lambda: _figure(case, table),
+        plot=lambda: plot_sweep(
+            found,
+            rotor_speed=table.rotor_speed,
+            unit=table.unit,
+            title=heading(case),
+            footer=" ".join(reservations(case)),
+        ),
     )
     if table.failed.all():
         raise click.exceptions.Exit(1)
@@ -70,13 +74,27 @@ def _document(table: SweepTable) -> dict[str, Any]:
 
 
 def _print(case: Case, table: SweepTable, all_modes: bool) -> None:
-    from proprotor.commands.terminal import print_sweep
+    """Print the case with its reservations, the table of a sweep, and where modes are unstable."""
+    out = output.console()
+    warnings = [_shortened(f"Warning: {text}", case, out.width) for text in case.warnings]
+    for line in (
+        heading(case),
+        f"Model: {options_text(options_in_result(table.sweep.attrs))}.",
+        CONVENTION,
+        *reservations(case),
+        *warnings,
+        "",
+    ):
+        out.print(line)
+    for row in table.lines(out.width, all_modes):
+        out.print(row, soft_wrap=True)
+    output.print_footnotes(table.doubts())
+    if mixed := table.mixed():
+        out.print(mixed)
+    for line in table.verdict():
+        out.print(line, style="bold")
 
-    print_sweep(case, table, all_modes)
 
-
-def _figure(case: Case, table: SweepTable) -> Figure:
-    from proprotor.tables.sweep_table import heading
-
-    shown: dict[str, Any] = {"rotor_speed": table.rotor_speed, "unit": table.unit}
-    return plot_sweep(table.sweep, **shown, title=heading(case), footer=" ".join(reservations(case)))
+def _shortened(text: str, case: Case, width: int) -> str:
+    """Return about two lines of a warning, and the command that prints the whole warning."""
+    return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")

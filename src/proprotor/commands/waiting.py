@@ -11,7 +11,7 @@ _PATIENCE = 1.0  # seconds
 
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
-    """Show a spinner and `what` the command does, once it takes more than a second; only on a terminal."""
+    """Show a spinner beside the text `what` once a step takes more than a second; only on a terminal."""
     from rich.console import Console  # here, because rich takes long to import
     from rich.text import Text
 

@@ -1,6 +1,6 @@
-"""The page of `proprotor explore`: sliders on the inputs of a deck, and at once what they do to the modes.
+"""The page of `proprotor explore`: sliders on the inputs of a deck, and modes that follow the sliders.
 
-In come a case and what a reader sets on the page; out go curves and sentences on the page, and a deck to keep.
+In come a case and the settings of a reader; out go curves and sentences on the page, and a deck to keep.
 
     analysis        the modes of the case with other inputs, fast enough for a slider
     inputs          the sliders: which inputs have one, and the range of each

@@ -1,7 +1,9 @@
-"""A deck with the settings of the page, so that they are not lost."""
+"""A deck with the settings of the page, so that a reader can keep the settings."""
 
 from __future__ import annotations
 
+import functools
+import operator
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -51,7 +53,7 @@ def altered_deck(
     settings : mapping of str to str, optional
         Fields that were set before, on the command line.
     options : mapping, optional
-        Options of the model. A deck holds no options, so a comment lists those that are no default.
+        Options of the model. A deck holds no options, so a comment lists the options that are no default.
 
     Raises
     ------
@@ -60,36 +62,31 @@ def altered_deck(
     """
     changed = dict(settings or {}) | _settings_of_values(case, values)
     tables = as_one_file(with_settings(read_tables(base), changed))
-    lines = ["# Made by `proprotor explore`: what stands here replaces what the base has."]
+    lines = ["# Made by `proprotor explore`: the fields below replace those of the base."]
     chosen = {name: value for name, value in (options or {}).items() if name in CHOICES}
     flags = [_flag(name, value) for name, value in chosen.items() if value != default_choice(name, chosen)]
     if flags:
         lines.append(f"# Explored with {' '.join(flags)}")
-    lines += [f"base = {toml(base)}", "", "[case]", f"name = {toml(_name(case.name))}"]
+    lines += [f"base = {toml(base)}", "", "[case]", f"name = {toml(explored_name(case))}"]
     lines.append(f"title = {toml(tables['case'].get('title', case.name))}")
     sections: dict[str, list[str]] = {}
     for path in changed:
         section, _, name = path.rpartition(".")
         if "[" not in path and section != "case":
-            sections.setdefault(section, []).append(f"{name} = {toml(_at(tables, path))}")
+            value = functools.reduce(operator.getitem, path.split("."), tables)
+            sections.setdefault(section, []).append(f"{name} = {toml(value)}")
     for section, entries in sorted(sections.items()):
         lines += ["", f"[{section}]", *entries]
-    if any(
-        "[" in path for path in changed
-    ):  # a list replaces the list of the base, so all entries are written
+    # A list replaces the list of the base, so all entries are written.
+    if any("[" in path for path in changed):
         for mode in tables["support"]["modes"]:
             lines += ["", "[[support.modes]]", *(f"{name} = {toml(value)}" for name, value in mode.items())]
     return "\n".join(lines) + "\n"
 
 
-def _at(tables: Any, path: str) -> Any:
-    for name in path.split("."):
-        tables = tables[name]
-    return tables
-
-
-def _name(name: str) -> str:
-    return f"{name.removesuffix('-explored')}-explored"
+def explored_name(case: Case) -> str:
+    """Return the name of the deck with the settings of the page."""
+    return f"{case.name.removesuffix('-explored')}-explored"
 
 
 def _flag(name: str, value: Any) -> str:

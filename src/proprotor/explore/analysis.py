@@ -15,7 +15,7 @@ from proprotor.stability.following import Branches, follow
 from proprotor.stability.mode_names import moving
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.root_error import error_near_zero
-from proprotor.stability.sweep import mode_columns
+from proprotor.stability.sweep import at_columns, mode_columns
 from proprotor.tables.sweep_summary import UnstableRange, leaps, unstable_ranges
 from proprotor.typing import Array
 
@@ -34,15 +34,15 @@ class LiveModes:
     airspeed : array (points,)
         m/s.
     names : list of str
-        Names of the modes, in the order of the coordinates that move most in them.
+        Names of the modes, in the order of the coordinates after which the modes are named.
     eigenvalue : array (points, modes)
         rad/s; NaN at failed points.
     reason, warning : array (points,) of str
-        Why a point failed, or is doubtful; empty for all other points.
+        Reasons for which a point failed, or is doubtful; empty for all other points.
     unstable : list of UnstableRange
         Unstable ranges of airspeed, with ends interpolated between the points.
     leaps : array (points - 1, modes) of bool
-        Where a name passes to a root that lies elsewhere, see `proprotor.tables.sweep_summary.leaps`.
+        True where a name passes to a root that lies elsewhere, see `proprotor.tables.sweep_summary.leaps`.
     """
 
     airspeed: Array
@@ -101,13 +101,13 @@ def live_modes(
     branches = follow(model, line)
     followed = branch_labels(branches, _named(branches, line, within), len(positions))
     roots, right, left = branches.spectrum.at(shown).all_modes
-    columns, names = mode_columns(moving(some_points(model, shown), roots, left, right), roots)
-    places = np.maximum(columns, 0)
-    found = np.where(columns >= 0, np.take_along_axis(roots, places, 1), np.nan)
-    labels = np.where(columns >= 0, np.take_along_axis(followed.label[shown], places, 1), "")
+    at_points = some_points(model, shown)
+    columns, names = mode_columns(moving(at_points, roots, left, right), roots)
+    found, labels, error = (
+        at_columns(values, columns)
+        for values in (roots, followed.label[shown], error_near_zero(at_points, roots))
+    )
     reason, warning = model.trim.reason[shown], model.trim.warning[shown]
-    error = error_near_zero(some_points(model, shown), roots)
-    error = np.where(columns >= 0, np.take_along_axis(error, places, 1), np.nan)
     sweep = _as_sweep(airspeeds, names, found, labels, error)
     return LiveModes(airspeeds, names, found, reason, warning, unstable_ranges(sweep), leaps(sweep))
 

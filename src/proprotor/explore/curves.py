@@ -29,7 +29,7 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
     speed_unit : float
         Unit of the axis of airspeed, in m/s.
     """
-    count = len(found.names)
+    places = range(len(found.names))
     turns = found.eigenvalue / rotor_speed
     unstable = {one.mode for one in found.unstable}
     broad = [name in unstable or name.removesuffix(SECOND) not in _ROTOR_NAMES for name in found.names]
@@ -39,14 +39,14 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
     return {
         "mode": found.names,
         **{axis: [line[place].astype(np.float32) for line in lines] for place, axis in enumerate(axes)},
-        "colour": [COLOURS[place % len(COLOURS)] for place in range(count)],
-        "dash": [_DASHES[place // len(COLOURS) % len(_DASHES)] for place in range(count)],
+        "colour": [COLOURS[place % len(COLOURS)] for place in places],
+        "dash": [_DASHES[place // len(COLOURS) % len(_DASHES)] for place in places],
         "width": [3.0 if one else 1.5 for one in broad],
     }
 
 
 def ends(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:
-    """Return the end of each root locus, at the highest airspeed that works: a marker that shows which way roots go."""
+    """Return the end of each root locus, at the highest airspeed that could be analysed: a marker for the reader."""
     growth, frequency = [], []
     for real, imaginary in zip(columns["growth"], columns["frequency"], strict=True):
         works = np.flatnonzero(np.isfinite(real))

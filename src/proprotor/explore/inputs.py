@@ -81,7 +81,7 @@ class SliderInput:
 
 
 def first_inputs(case: Case) -> list[str]:
-    """Return the paths of the inputs that have sliders at first: those that engineers vary most often."""
+    """Return the paths of the inputs that have sliders at first: the inputs that engineers vary most often."""
     known = design_inputs(case)
     of_support = [
         path

@@ -16,7 +16,7 @@ from bokeh.plotting import figure
 
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
-from proprotor.explore.altered_deck import altered_deck
+from proprotor.explore.altered_deck import altered_deck, explored_name
 from proprotor.explore.analysis import LiveModes, live_modes
 from proprotor.explore.curves import curves, ends
 from proprotor.explore.inputs import SliderInput, first_inputs, slider_input
@@ -33,15 +33,7 @@ if TYPE_CHECKING:
 
     from proprotor.case import Case
 
-_SWITCHES = (
-    "equations",
-    "pitch",
-    "structure",
-    "airloads",
-    "compressibility",
-    "section_damping",
-    "rotor_speed",
-)
+_SWITCHES = tuple(name for name in CHOICES if name != "reactionless")
 _TOGETHER = 15  # ms: several moves within this time cause one analysis
 _DAMPING, _FREQUENCY, _GROWTH = (-5, 20), (0, 4.5), (-0.3, 0.15)
 _SIDE, _HEIGHT = 330, 560  # pixels
@@ -97,9 +89,7 @@ class ExplorePage:
         self.foot = Div(name="reservations", width=850)
         self.side = column(name="sliders", width=_SIDE)
         self.guide = Div(name="help", width=_SIDE)
-        self.deck = ColumnDataSource(
-            name="deck"
-        )  # its text goes to the browser when the reader saves the deck
+        self.deck = ColumnDataSource(name="deck")  # the browser gets the text when the reader saves the deck
         self.choice = MultiChoice(
             title="Inputs with a slider (type to find others)",
             options=list(design_inputs(case)),
@@ -131,10 +121,10 @@ class ExplorePage:
         try:
             found = live_modes(self.case, self.airspeeds, self.values, **self.options)
         except InputError as error:
-            self.message.text = _alert(f"{error}. Drawn is what was before.")
+            self.message.text = _alert(f"{error}. The curves are those of the settings before.")
             return
-        columns = curves(found, self._rotor_speed(), KNOT)
-        self.lines.data = columns
+        rotor_speed = self.values.get("operation.rotor_speed", float(self.case.operation.rotor_speed))
+        self.lines.data = columns = curves(found, rotor_speed, KNOT)
         self.dots.data = ends(columns)
         self.readout.text = readout(found, self.values, self.inputs)
         self.message.text = messages(found)
@@ -189,9 +179,10 @@ class ExplorePage:
             return
         try:
             given = slider_input(self.case, path)
-            number = written.removesuffix("/rev") if given.unit == "/rev" else written
-            unit = "" if given.unit == "/rev" and number != written else design_inputs(self.case)[path].unit
-            value = to_si(number, unit) / (1.0 if unit == "" and given.unit == "/rev" else given.factor)
+            if given.unit == "/rev" and written.endswith("/rev"):
+                value = to_si(written.removesuffix("/rev"), "")
+            else:
+                value = to_si(written, design_inputs(self.case)[path].unit) / given.factor
         except InputError as error:
             self.message.text = _alert(f"{error if error.field else error.within(path)}.")
             return
@@ -222,9 +213,6 @@ class ExplorePage:
         self._waiting = True
         self.document.add_timeout_callback(self.update, _TOGETHER)
 
-    def _rotor_speed(self) -> float:
-        return self.values.get("operation.rotor_speed", float(self.case.operation.rotor_speed))
-
     # Layout and plots -------------------------------------------------------------------------------------------
 
     def _layout(self) -> Any:
@@ -232,22 +220,18 @@ class ExplorePage:
         reset.on_click(self._reset)
         save = Button(label="Save as a deck", name="save", button_type="primary", width=150)
         save.on_click(self._save)
-        name = f"{self.case.name.removesuffix('-explored')}-explored.toml"
-        self.deck.js_on_change("data", CustomJS(args={"name": name}, code=_DOWNLOAD))
-        more = column(self.exact, self.choice)
-        model = column(*self.switches.values())
-        tabs = (
-            ("Inputs", self.side),
-            ("More inputs", more),
-            ("Model", model),
-            ("Help", self.guide),
-        )
-        panels = Tabs(tabs=[TabPanel(title=name, child=child) for name, child in tabs], name="tabs")
+        file = {"name": f"{explored_name(self.case)}.toml"}
+        self.deck.js_on_change("data", CustomJS(args=file, code=_DOWNLOAD))
+        tabs = {
+            "Inputs": self.side,
+            "More inputs": column(self.exact, self.choice),
+            "Model": column(*self.switches.values()),
+            "Help": self.guide,
+        }
+        panels = Tabs(tabs=[TabPanel(title=name, child=child) for name, child in tabs.items()], name="tabs")
         side = column(row(reset, save), panels, width=_SIDE + 20)
-        title = Div(
-            text=f"<h1 style='font-size:18px;margin:4px 0'>{escape(self.case.title or self.case.name)}</h1>",
-            width=850,
-        )
+        heading = escape(self.case.title or self.case.name)
+        title = Div(text=f"<h1 style='font-size:18px;margin:4px 0'>{heading}</h1>", width=850)
         plots = row(self._damping(), self._root_locus())
         return row(side, column(title, self.readout, plots, self.message, self.foot), spacing=8)
 
@@ -301,14 +285,10 @@ def _figure(title: str, width: int, across: tuple[str, Any], up: tuple[str, Any]
 
 def _switch(case: Case, name: str, value: Any) -> Select:
     """Return a widget that chooses an option of the model."""
-    kept = [choice for choice in CHOICES[name] if choice is not None]
-    if case.frequencies is None and "tabulated" in kept:
-        kept.remove("tabulated")
-    choices: list[Any] = [_word(choice) for choice in kept]
-    label = name.replace("_", " ")
-    return Select(
-        title=label[:1].upper() + label[1:], value=_word(value), options=choices, width=_SIDE - 20, name=name
-    )
+    lacking = (None, "tabulated") if case.frequencies is None else (None,)
+    choices: list[Any] = [_word(choice) for choice in CHOICES[name] if choice not in lacking]
+    label = name.replace("_", " ").capitalize()
+    return Select(title=label, value=_word(value), options=choices, width=_SIDE - 20, name=name)
 
 
 def _word(value: Any) -> str:
@@ -338,9 +318,8 @@ def readout(found: LiveModes, values: Mapping[str, float], inputs: Mapping[str, 
     if already:
         verdict += f" Already unstable at {low} kt: {escape(', '.join(already))}."
     changed = [
-        f"{inputs[path].name} {value / inputs[path].factor:.4g} {inputs[path].unit} "
-        f"(deck {inputs[path].value:.4g})"
-        for path, value in values.items()
+        f"{given.name} {value / given.factor:.4g} {given.unit} (deck {given.value:.4g})"
+        for given, value in ((inputs[path], value) for path, value in values.items())
     ]
     set_to = "Changed: " + "; ".join(changed) if changed else "All inputs as in the deck."
     return f'<div aria-live="polite"><b style="font-size:16px">{verdict}</b><br>{escape(set_to)}</div>'

@@ -1,11 +1,11 @@
-"""The report on a case: one page with all results and everything that they rest on, as HTML or PDF.
+"""The report on a case: one page with all results, and every input with its source, as HTML or PDF.
 
-In come a case, airspeeds and options; out goes the content of a file. Each step takes what the step before returns.
+In come a case, airspeeds and options; out goes the content of a file. Each step takes the result of the step before.
 
-    analyses        what a report needs to know: `analyse` returns `Findings`
+    analyses        the results that a report shows: `analyse` returns `Findings`
     content         the findings in words, tables and pictures: `report_document` returns a `Document`
     pictures        the plots of a report, as SVG
-    document        what a document consists of, whatever its layout
+    document        the parts of a document, the same for every layout
     page            a document as HTML, by the template page.html
     typeset         a document as PDF, by the layout page.typ and Typst (extra `report`)
 

@@ -54,7 +54,7 @@ class Findings:
 
     @property
     def warning(self) -> str:
-        """What makes the point of the causes doubtful; empty if nothing does."""
+        """The reasons for which the point of the causes is doubtful; empty without a doubt."""
         if self.flutters:
             return self.flutter.warning
         return str(self.causes.attribution.warning.item()) if self.causes else ""
@@ -62,7 +62,7 @@ class Findings:
 
 @dataclass(frozen=True, eq=False)
 class Causes:
-    """Datasets at one airspeed: the modes, and of one mode the sensitivities and the attribution."""
+    """Datasets at one airspeed: all modes, and the sensitivities and the attribution of one mode."""
 
     modes: xarray.Dataset
     sensitivity: xarray.Dataset

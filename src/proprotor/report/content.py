@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -84,7 +84,7 @@ def report_document(
         Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),
         Section("What was analysed", tuple(_model(case, table, settings))),
         Section("Conventions", (Text(_CONVENTIONS),)),
-        Section("Frequency and damping", tuple(_sweep(case, found, unit))),
+        Section("Frequency and damping", tuple(pictures.of_sweep(case, found, unit) if found.mode else ())),
         Section(f"Causes {_where(found, unit, factor)}".strip(), tuple(_causes(found, unit, factor))),
         Section("Modes", tuple(_modes(table))),
         Section("Sensitivities", tuple(_sensitivities(case, found, unit, factor))),
@@ -103,7 +103,7 @@ def report_document(
 
 
 def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> Iterator[str]:
-    """Yield the sentences at the top of the report: the flutter speed, and what else the search found."""
+    """Yield the sentences at the top of the report: the flutter speed, and other results of the search."""
     if table.failed.all():
         yield "No airspeed could be analysed."
         return
@@ -121,16 +121,16 @@ def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> It
 
 def _failures(table: SweepTable) -> Iterator[str]:
     """Yield a sentence on each range of airspeeds that could not be analysed, with the reason."""
-    for first, last, reason in _runs(table.sweep.reason.values.tolist()):
-        yield f"Not analysed {_range(table, first, last)}: {reason}."
+    for airspeeds, _, reason in _failed(table):
+        yield f"Not analysed {airspeeds}: {reason}."
 
 
-def _runs(texts: Sequence[str]) -> Iterator[tuple[int, int, str]]:
-    """Yield first place, last place and text of each run of equal texts that are not empty."""
-    for text, run in groupby(enumerate(texts), key=lambda entry: entry[1]):
+def _failed(table: SweepTable) -> Iterator[tuple[str, str, str]]:
+    """Yield the airspeeds, the number of points and the reason of each range that could not be analysed, as text."""
+    for reason, run in groupby(enumerate(table.sweep.reason.values.tolist()), key=lambda point: point[1]):
         places = [place for place, _ in run]
-        if text:
-            yield places[0], places[-1], text
+        if reason:
+            yield _range(table, places[0], places[-1]), str(len(places)), reason
 
 
 def _range(table: SweepTable, first: int, last: int) -> str:
@@ -140,7 +140,7 @@ def _range(table: SweepTable, first: int, last: int) -> str:
 
 
 def _where(found: Findings, unit: str, factor: float) -> str:
-    """Return the end of the heading of the causes: at which airspeed they are."""
+    """Return the end of the heading of the causes: the airspeed to which the causes belong."""
     if not found.mode:
         return ""
     at = _at(found, unit, factor)
@@ -155,16 +155,16 @@ def _at(found: Findings, unit: str, factor: float) -> str:
 
 
 def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterator[Table | Text]:
-    """Yield the table of all boundaries, with the range that was searched."""
+    """Yield the range that was searched, and the table of all boundaries in this range."""
     low, high = (
         marked(f"{at / factor:.4g}", doubt_at(found.flutter.doubts, at)) for at in found.flutter.searched
     )
     if not math.isfinite(found.flutter.searched[0]):
-        yield Text(("No airspeed could be analysed, so nothing is known of boundaries.",))
+        yield Text(("No airspeed could be analysed, so boundaries are not known.",))
         return
     yield Text((f"Crossings of zero damping between {low} and {high} {unit}, to rounding.",))
     if not found.flutter.boundaries:
-        yield Text(("There is none.",))
+        yield Text(("No mode crosses zero damping.",))
         return
     columns = (f"airspeed, {unit}", "m/s", "Hz", "/rev", "mode", "kind", "instability", "mechanism")
     rows = []
@@ -192,23 +192,17 @@ def _model(case: Case, table: SweepTable, settings: Mapping[str, str]) -> Iterat
         yield Table("Fields set for this run", ("field", "value"), tuple(settings.items()))
 
 
-def _sweep(case: Case, found: Findings, unit: str) -> Iterator[Any]:
-    """Yield the pictures of frequency, damping and root locus."""
-    if found.mode:
-        yield from pictures.of_sweep(case, found, unit)
-
-
 def _causes(found: Findings, unit: str, factor: float) -> Iterator[Any]:
-    """Yield the pictures of the causes, or why there are none."""
+    """Yield the pictures of the causes, or the reason why the causes could not be found."""
     if found.causes is None:
         yield Text((f"Causes could not be found: {found.no_causes}.",))
         return
     at = _at(found, unit, factor)
     if not found.flutters:
-        shown = f"{found.mode}, the mode that is damped least {at}"
-        yield Text(
-            (f"Nothing becomes unstable. Shown for {shown}, the highest airspeed that could be analysed.",)
+        shown = (
+            f"{found.mode}, the mode that is damped least {at}, the highest airspeed that could be analysed"
         )
+        yield Text((f"Nothing becomes unstable. Shown for {shown}.",))
     yield from pictures.of_causes(found.causes, found.mode, at, unit)
 
 
@@ -216,7 +210,7 @@ def _causes(found: Findings, unit: str, factor: float) -> Iterator[Any]:
 
 
 def _some(working: Array) -> list[int]:
-    """Return a few points that work, evenly spread, with the first and the last of them."""
+    """Return a few places of True, evenly spread, with the first place and the last place."""
     places = np.flatnonzero(working)
     chosen = np.linspace(0, len(places) - 1, min(_SPEEDS, len(places))).round().astype(int)
     return places[chosen].tolist() if len(places) else []
@@ -243,8 +237,8 @@ def _modes(table: SweepTable) -> Iterator[Table | Text]:
         yield Text((mixed,))
 
 
-def _cell(value: float, form: str, marked: bool = False) -> str:
-    return f"{value:{form}}{'*' if marked else ''}" if math.isfinite(value) else "–"
+def _cell(value: float, form: str, unstable: bool) -> str:
+    return f"{value:{form}}{'*' if unstable else ''}" if math.isfinite(value) else "–"
 
 
 def _sensitivities(case: Case, found: Findings, unit: str, factor: float) -> Iterator[Table | Text]:
@@ -273,16 +267,8 @@ def _sensitivities(case: Case, found: Findings, unit: str, factor: float) -> Ite
 def _trim(found: Findings, table: SweepTable) -> Iterator[Table | Text]:
     """Yield the steady state at a few airspeeds, and the airspeeds that could not be analysed."""
     trim, degree = found.trim, math.pi / 180
-    columns = (
-        f"airspeed, {table.unit}",
-        "collective, deg",
-        "coning, deg",
-        "lag, deg",
-        "elastic pitch, deg",
-        "thrust, N",
-        "torque, N·m",
-        "doubt",
-    )
+    angles = (f"{name.replace('_', ' ')}, deg" for name in _ANGLES)
+    columns = (f"airspeed, {table.unit}", *angles, "thrust, N", "torque, N·m", "doubt")
     rows = [
         (
             marked(f"{table.airspeed[point]:.4g}", trim.warning[point]),
@@ -295,13 +281,9 @@ def _trim(found: Findings, table: SweepTable) -> Iterator[Table | Text]:
     ]
     if rows:
         yield Table("Steady state at some airspeeds", columns, tuple(rows), frozenset(columns[:-1]))
-    failed = [
-        (_range(table, first, last), str(last - first + 1), reason)
-        for first, last, reason in _runs(table.sweep.reason.values.tolist())
-    ]
-    if failed:
+    if failed := tuple(_failed(table)):
         head = ("airspeeds", "points", "reason")
-        yield Table("Airspeeds that could not be analysed", head, tuple(failed), frozenset(("points",)))
+        yield Table("Airspeeds that could not be analysed", head, failed, frozenset(("points",)))
     else:
         yield Text(("Every airspeed could be analysed.",))
 
@@ -312,21 +294,14 @@ def _trim(found: Findings, table: SweepTable) -> Iterator[Table | Text]:
 def _inputs(case: Case) -> Iterator[Table | Text]:
     """Yield the table of all inputs with their sources, and a table for each distribution along the blade."""
     doubtful = doubtful_inputs(case)
-    yield Text(
-        (f"{len(doubtful)} of {len(case.sources)} inputs were not read in a source; they are marked *.",)
-    )
+    counts = f"{len(doubtful)} of {len(case.sources)} inputs"
+    yield Text((f"{counts} were not read in a source; they are marked *.",))
     rows = tuple(
-        (
-            path,
-            number.written,
-            _si(number),
-            number.status + ("*" if path in doubtful else ""),
-            number.source or "–",
-        )
+        (path, number.written, _si(number), number.status + "*" * (path in doubtful), number.source or "–")
         for path, number in case.sources.items()
     )
     columns = ("field", "as written", "SI", "status", "source")
-    yield Table("All inputs, and what follows from them", columns, rows)
+    yield Table("All inputs, and the numbers that follow from the inputs", columns, rows)
     for path, number in case.sources.items():
         if number.r_over_R is not None:
             yield _distribution(path, number)
@@ -357,7 +332,7 @@ def _distribution(path: str, number: Datum) -> Table:
 
 
 def _reproduction(case: Case, deck_hash: str, date: str) -> Table:
-    """Return the table of what one needs to make the same report again."""
+    """Return the table of all that one needs to make the same report again."""
     rows = (
         ("proprotor", version("proprotor")),
         ("case", case.name),

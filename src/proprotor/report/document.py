@@ -1,4 +1,4 @@
-"""What a report consists of, whatever its layout."""
+"""The parts of a report, the same for every layout."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Document:
     verdict : tuple of str
         Sentences on the results.
     caution : tuple of str
-        Sentences on what the results rest on.
+        Reservations about the results, a sentence each.
     sections : tuple of Section
     """
 

@@ -80,14 +80,14 @@ def of_causes(causes: Causes, mode: str, where: str, unit: str) -> Iterator[Pict
     yield Picture(
         "attribution",
         f"What drives and what damps {mode} {where}, by the physical origin of the terms.",
-        f"Bars of the change of damping of {mode} {where} per origin of the terms; hatched bars drive it.",
+        f"Bars of the change of damping of {mode} {where} per origin of the terms; hatched bars drive the mode.",
         _svg_of(lambda: plot_attribution(causes.attribution)),
         _SHARE,
     )
     yield Picture(
         "sensitivity",
-        "What each input moves if it grows by 1 % of itself; hatches tell inputs that were not read in a source.",
-        "Tornado of the inputs that move it most; the table of sensitivities has the numbers.",
+        "Change if an input grows by 1 % of itself; hatches mark inputs that were not read in a source.",
+        "Tornado of the inputs with the largest changes; the table of sensitivities has the numbers.",
         _svg_of(lambda: plot_sensitivity(causes.sensitivity, unit=unit)),
         _SHARE,
     )

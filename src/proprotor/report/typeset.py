@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
+from dataclasses import fields
 from datetime import date
 from importlib import resources
 from typing import Any
@@ -42,19 +42,15 @@ def pdf_of(document: Document) -> bytes:
         if isinstance(block, Picture)
     }
     layout = resources.files("proprotor.report") / "templates" / "page.typ"
-    files = {"main.typ": layout.read_bytes(), "document.json": json.dumps(_plain(document)).encode()}
+    files = {"main.typ": layout.read_bytes(), "document.json": json.dumps(document, default=_plain).encode()}
     noon = 86_400 * (date.fromisoformat(document.date) - date(1970, 1, 1)).days + 43_200
     compiled: Callable[..., bytes] = typst.compile  # the types of typst leave out a mapping of files
     return compiled({**files, **pictures}, timestamp=noon, ignore_system_fonts=True)
 
 
 def _plain(part: Any) -> Any:
-    """Return a part of a document as plain data for JSON; a picture without its content, which is a file by itself."""
-    if isinstance(part, tuple):
-        return [_plain(entry) for entry in part]
+    """Return a part of a document as data for JSON; a picture without its content, which is a file by itself."""
     if isinstance(part, frozenset):
         return sorted(part)
-    if not is_dataclass(part) or isinstance(part, type):
-        return part
     names = [field.name for field in fields(part) if field.name != "svg"] + ["kind"] * hasattr(part, "kind")
-    return {name: _plain(getattr(part, name)) for name in names}
+    return {name: getattr(part, name) for name in names}

@@ -63,7 +63,7 @@ from proprotor.stability.modes import (
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.root_error import error_near_zero
 from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
-from proprotor.stability.sweep import mode_columns, sweep, sweep_case
+from proprotor.stability.sweep import at_columns, mode_columns, sweep, sweep_case
 
 __all__ = [
     "ANCHORS",
@@ -84,6 +84,7 @@ __all__ = [
     "Search",
     "Spectrum",
     "at_boundary",
+    "at_columns",
     "attribution",
     "boundaries",
     "boundary_lines",

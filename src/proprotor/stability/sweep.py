@@ -81,7 +81,7 @@ def sweep(
         ("branch", labels.label, "exact root, by what moves in it where branches are named"),
         ("tracking_quality", labels.trust, "trust in the steps from there to the point"),
     ):
-        data[name] = by_mode, _at_columns(values, columns), {"long_name": meaning}
+        data[name] = by_mode, at_columns(values, columns), {"long_name": meaning}
     data["branch"] = data.branch.astype(str)
     data["warning"] = data.warning.dims, _joined(data.warning.values, labels.doubt), data.warning.attrs
     data.attrs |= {"eigen_solves": len(branches.points) + named.eigen_solves, "named_at": named.where}
@@ -98,14 +98,14 @@ def _by_motion(
     values = np.where(there, modes.values, np.nan)
     shapes = coordinate_motion(held, n, values, modes.right)
     shares = np.where(there[:, None, :], coordinate_shares(held, n, modes.left, modes.right), np.nan)
-    data = mode_dataset(model, values, _at_columns(error, columns), shapes, shares, line)
+    data = mode_dataset(model, values, at_columns(error, columns), shapes, shares, line)
     sense = np.where(there, whirl(model, modes.values, modes.left, modes.right), np.nan)
     meaning = {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
     data["whirl"] = data.eigenvalue.dims, sense, meaning
     return data
 
 
-def _at_columns(values: Array, columns: Array) -> Array:
+def at_columns(values: Array, columns: Array) -> Array:
     """Return values (points, states) of the states in the columns of each point; nothing where a column is empty."""
     nothing = "" if values.dtype == object else np.nan
     return np.where(columns >= 0, np.take_along_axis(values, np.maximum(columns, 0), 1), nothing)
