@@ -18,7 +18,7 @@ from proprotor.deck import sections as deck
 from proprotor.deck import support_sections
 from proprotor.deck.fields import Reading, Section
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
-from proprotor.deck.sections import section_places, sections_at
+from proprotor.deck.sections import section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.drive_train import DriveTrain
@@ -89,7 +89,14 @@ class DeckField:
 @cache
 def deck_fields() -> tuple[DeckField, ...]:
     """Return every field of every section, in the order of a deck; the fields of [support] kind by kind."""
-    return tuple(_fields())
+    return tuple(
+        field
+        for place in section_places()
+        for kind, section in sections_at(place).items()
+        for field in _of_section(
+            section, ".".join(place).replace("support.modes", "support.modes[NAME]"), kind
+        )
+    )
 
 
 def find_fields(path: str) -> tuple[DeckField, ...]:
@@ -127,16 +134,6 @@ def plain_path(path: str) -> str:
     return "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
 
 
-def _fields() -> Iterator[DeckField]:
-    """Yield every field of every section."""
-    for place in section_places():
-        if not place:
-            continue
-        for kind, section in sections_at(place).items():
-            prefix = ".".join(place).replace("support.modes", "support.modes[NAME]")
-            yield from _of_section(section, prefix, kind)
-
-
 def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[DeckField]:
     """Yield the fields of a section, with a prefix to their names."""
     defaults = _defaults(section)
@@ -145,7 +142,7 @@ def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[Deck
         takes = _takes(field, reading)
         if not takes:  # a section
             continue
-        others = _instead_of(section, name)
+        is_one_side = any(name in side for choice in section.alternatives for side in choice)
         yield DeckField(
             path=f"{prefix}.{name}",
             kind=kind,
@@ -153,9 +150,9 @@ def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[Deck
             takes=takes,
             unit="" if reading is None else _unit(reading),
             range="" if reading is None else _range(reading),
-            required=field.is_required() or name in section.needed_unless_replaced,
+            required=field.is_required() or (is_one_side and name not in section.may_lack),
             default=_default(field, reading, defaults.get(name, MISSING)),
-            instead_of=others,
+            instead_of=_instead_of(section, name),
             form=_form(field) if reading is None else reading.form,
         )
 
@@ -188,11 +185,9 @@ def _takes_plain(annotation: Any) -> str:
         return _PLAIN[annotation]
     if get_origin(annotation) is Literal:
         return " or ".join(f'"{choice}"' for choice in get_args(annotation))
-    if get_origin(annotation) is list:
-        return "a list of texts" if _is_text_list(annotation) else ""
-    if any(get_origin(choice) is dict for choice in get_args(annotation)):
-        return "a table of texts"
-    return "" if annotation is not Any else '"windmill", or a table with one of the fields below'
+    if sections_of(annotation):
+        return '"windmill", or a table with one of the fields below' if str in get_args(annotation) else ""
+    return "a list of texts" if get_origin(annotation) is list else "a table of texts"
 
 
 def _form(field: FieldInfo) -> str:
@@ -203,11 +198,6 @@ def _form(field: FieldInfo) -> str:
         return "list"
     is_table = any(get_origin(choice) is dict for choice in get_args(field.annotation))
     return "table" if is_table else ""
-
-
-def _is_text_list(annotation: Any) -> bool:
-    inner = get_args(annotation)[0]
-    return inner is str or (get_args(inner) or (None,))[0] is str
 
 
 def _unit(reading: Reading) -> str:

@@ -201,9 +201,7 @@ class Section(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     alternatives: ClassVar[tuple[Sides, ...]] = ()  # choices of which a deck gives one side
-    needed_unless_replaced: ClassVar[
-        tuple[str, ...]
-    ] = ()  # fields that a deck must have, or their alternatives
+    may_lack: ClassVar[tuple[str, ...]] = ()  # fields of these choices that a deck may leave out
 
 
 def needed(meaning: str) -> Any:

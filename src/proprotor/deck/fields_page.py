@@ -42,7 +42,7 @@ def markdown() -> str:
 
 def _sections() -> Iterator[str]:
     for place in section_places():
-        for kind, section in sections_at(place).items() if place else ():
+        for kind, section in sections_at(place).items():
             name = ".".join(place)
             own = [
                 field

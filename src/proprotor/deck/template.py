@@ -11,6 +11,7 @@ from typing import Any
 
 from proprotor.deck.describe import DeckField, deck_fields
 from proprotor.deck.per_revolution import as_one_file
+from proprotor.deck.sections import section_places
 from proprotor.deck.written import FileName
 from proprotor.units import meaning
 
@@ -25,16 +26,6 @@ _HEAD = """\
 #   proprotor flutter {file}
 #   proprotor sweep {file} --speed 50:400:5kt --plot damping.png
 """
-_SECTIONS = (
-    "case",
-    "rotor",
-    "rotor.airfoil",
-    "rotor.frequencies",
-    "operation",
-    "drive_train",
-    "support",
-    "support.wing_aerodynamics",
-)
 _EXAMPLE = re.compile(r'such as ("[^"]*"|\S+?)(?:,| or|$)')
 _EXAMPLES = {
     "": '""',
@@ -70,8 +61,9 @@ def deck_text(
     parts = [_HEAD.format(origin=f", made from {base}" if base else "", file=place.name)]
     if variant:
         parts.append(f"# A variant: what stands here replaces what the base has.\nbase = {toml(base)}\n")
-    for section in _SECTIONS:
-        parts.append("\n".join(_section(section, tables, place, variant)))
+    for section in map(".".join, section_places()):
+        if section not in ("operation.trim", "support.modes"):  # the trim is a value, the modes follow
+            parts.append("\n".join(_section(section, tables, place, variant)))
     modes = tables.get("support", {}).get("modes")
     for mode in modes if isinstance(modes, list) else ():
         parts.append("\n".join(_mode(mode, place, variant)))

@@ -6,8 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from proprotor.deck.sections import SECTIONS, Deck, in_the_deck
-from proprotor.deck.support_sections import SUPPORT_KINDS
+from proprotor.deck.sections import SECTIONS, SUPPORT_KINDS, Deck, in_the_deck
 from proprotor.deck.text import plain_text
 from proprotor.errors import InputError, unknown_name
 
