@@ -16,7 +16,7 @@ from pydantic.fields import FieldInfo
 
 from proprotor.deck import sections as deck
 from proprotor.deck import support_sections
-from proprotor.deck.fields import Reading, Section
+from proprotor.deck.fields import AfterChoice, Reading, Section
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.deck.sections import section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
@@ -45,6 +45,8 @@ _FORMS = {
     "rising list": "{ value = [...], unit = ... }",
 }
 _PLAIN = {bool: "true or false", str: "text"}
+# Forms of fields that are no numbers, by their possible values.
+_PLAIN_FORMS = {"true or false": "bool", "a list of texts": "list", "a table of texts": "table"}
 
 
 @dataclass(frozen=True)
@@ -153,7 +155,7 @@ def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[Deck
             required=field.is_required() or (is_one_side and name not in section.may_lack),
             default=_default(field, reading, defaults.get(name, MISSING)),
             instead_of=_instead_of(section, name),
-            form=_form(field) if reading is None else reading.form,
+            form=_PLAIN_FORMS.get(takes, "") if reading is None else reading.form,
         )
 
 
@@ -170,10 +172,9 @@ def _takes(field: FieldInfo, reading: Reading | None) -> str:
         return _FORMS[reading.form]
     if reading.form == "choice":
         return list_choices(reading.choices)
-    by_angle = getattr(reading, "of_angle", None)
     values = meaning(reading.unit)
-    if by_angle is not None:
-        values = f"of a length {values}; of an angle {meaning(by_angle)}"
+    if isinstance(reading, AfterChoice):
+        values = f"of a length {values}; of an angle {meaning(reading.other_unit)}"
     if reading.form == "frequency":
         values += ', or "0.42/rev"'
     return f"{values}; {_ALONG[reading.form]}" if reading.form in _ALONG else values
@@ -190,22 +191,11 @@ def _takes_plain(annotation: Any) -> str:
     return "a list of texts" if get_origin(annotation) is list else "a table of texts"
 
 
-def _form(field: FieldInfo) -> str:
-    """Return the form of a field that is no number."""
-    if field.annotation is bool:
-        return "bool"
-    if get_origin(field.annotation) is list:
-        return "list"
-    is_table = any(get_origin(choice) is dict for choice in get_args(field.annotation))
-    return "table" if is_table else ""
-
-
 def _unit(reading: Reading) -> str:
     """Return the SI unit, or both units of a field with two."""
-    if of_speed := getattr(reading, "of_speed", ""):
-        return f"{reading.unit} or {of_speed}"
-    by_angle = getattr(reading, "of_angle", None)
-    return reading.unit if by_angle is None else f"{reading.unit or '1'} or {by_angle or '1'}"
+    if isinstance(reading, AfterChoice):
+        return f"{reading.unit or '1'} or {reading.other_unit or '1'}"
+    return reading.unit
 
 
 def _range(reading: Reading) -> str:

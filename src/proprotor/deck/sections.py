@@ -284,7 +284,7 @@ def sections_of(annotation: Any) -> list[type[Section]]:
 def _places(
     section: type[Section], place: tuple[str, ...] = ()
 ) -> Iterator[tuple[tuple[str, ...], type[Section]]]:
-    """Yield a section and the sections inside, each with its place; a place has the kind of a support, as in pydantic."""
+    """Yield a section and the sections inside, each with its place; below [support] the place has the kind."""
     yield place, section
     for name, field in section.model_fields.items():
         for inner in sections_of(field.annotation):
