@@ -76,7 +76,7 @@ def read_column(raw: Any, unit: str, bound: Bound, radius: float, beyond: str) -
     if not isinstance(column, str) or not column:
         raise InputError("column", column, "must be the name of a column")
     try:
-        found = read_stations(file.si, column, unit, radius=radius, holds=bound.holds, rule=bound.rule)
+        found = read_stations(file.si, column, unit, radius=radius, bound=bound)
     except InputError as error:
         raise InputError(error.field, file.written, error.rule) from None
     written = f"{len(found.values)} values of {column} in {file.written}"
