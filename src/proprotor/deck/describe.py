@@ -185,7 +185,7 @@ def _takes_plain(annotation: Any) -> str:
     if annotation in _PLAIN:
         return _PLAIN[annotation]
     if get_origin(annotation) is Literal:
-        return " or ".join(f'"{choice}"' for choice in get_args(annotation))
+        return list_choices(get_args(annotation))
     if sections_of(annotation):
         return '"windmill", or a table with one of the fields below' if str in get_args(annotation) else ""
     return "a list of texts" if get_origin(annotation) is list else "a table of texts"
@@ -233,10 +233,8 @@ def _default(field: FieldInfo, reading: Reading | None, constructed: Any) -> str
         return ""
     if isinstance(constructed, int | float) and not isinstance(constructed, bool):
         return f"{constructed:g}" + (f" {reading.unit}" if reading and reading.unit else "")
-    value = field.default
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) and value else ""
+    is_word = isinstance(field.default, bool | str) and field.default != ""
+    return list_choices((field.default,)) if is_word else ""
 
 
 def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:

@@ -94,18 +94,17 @@ _TABLES = {
 
 def _value_schema(reading: Reading) -> _Schema:
     """Return the schema of a field: of a plain value, or of a table with its provenance."""
-    if reading.form == "distribution":
-        return {"anyOf": [_distribution(reading), _with_beyond(_COLUMN, reading)]}
     if reading.form == "rising list":
         return _table({"value": _NUMBERS, "unit": {"type": "string"}})
     value = _value(reading)
-    table = _table({"value": value})
-    choices = [*value["anyOf"], table] if "anyOf" in value else [value, table]
+    choices = (
+        [] if reading.form == "distribution" else [*value.get("anyOf", [value]), _table({"value": value})]
+    )
     if reading.form == "curve":
         choices.append(_table({"value": _NUMBERS}))
     if reading.form in _STATIONS:
         choices.append(_distribution(reading))
-    if reading.form == "along the blade":
+    if reading.form in ("along the blade", "distribution"):
         choices.append(_with_beyond(_COLUMN, reading))
     return {"anyOf": choices}
 
