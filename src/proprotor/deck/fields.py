@@ -66,7 +66,7 @@ class Reading:
     def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
         """Return the number of a field, given the fields of its section that were read before.
 
-        None where the unit follows from an earlier field that is itself malformed, and reported.
+        Return None where the unit follows from an earlier field that is malformed: that error is reported already.
         """
         return self.read(raw)
 
@@ -193,10 +193,10 @@ class Section(BaseModel):
 
 
 def needed(meaning: str) -> Any:
-    """Return a field that a deck must give, it or one of its alternatives, with its meaning."""
+    """Return a field that a deck must give, unless the deck gives an alternative, with the meaning of the field."""
     return Field(description=meaning)
 
 
 def optional(meaning: str, default: Any = None) -> Any:
-    """Return a field that a deck may leave out, with its meaning."""
+    """Return a field that a deck may leave out, with the meaning of the field."""
     return Field(default=default, description=meaning)

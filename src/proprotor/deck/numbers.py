@@ -39,7 +39,7 @@ def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
 
 
 def _per_second(number: Datum, rotor_speed: float) -> Datum:
-    """Return a frequency per revolution in rad/s: n per revolution are n Ω, with the Ω of the file it is written in."""
+    """Return a frequency per revolution in rad/s: n per revolution are n Ω, with the Ω of the frequency's file."""
     if number.unit != PER_REV:
         return number
     own = rotor_speed if number.rotor_speed is None else number.rotor_speed

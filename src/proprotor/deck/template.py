@@ -16,9 +16,9 @@ from proprotor.deck.written import FileName
 from proprotor.units import meaning
 
 _HEAD = """\
-# A deck of proprotor{origin}. Every number with a dimension carries its unit, US or SI as you like:
+# A deck of proprotor{origin}. Every number with a dimension has its unit, US or SI:
 #   radius = "12.5 ft"
-# or says as well where it comes from, which results then repeat:
+# or is a table that also names the source, which results then repeat:
 #   radius = {{ value = "12.5 ft", status = "published", source = "report, table" }}
 # with a status of published, derived, recalled, calibrated or assumed.
 #
@@ -60,7 +60,7 @@ def deck_text(
     tables = tables if variant else as_one_file(dict(tables))
     parts = [_HEAD.format(origin=f", made from {base}" if base else "", file=place.name)]
     if variant:
-        parts.append(f"# A variant: what stands here replaces what the base has.\nbase = {toml(base)}\n")
+        parts.append(f"# A variant: a field that is given here replaces the field of the base.\nbase = {toml(base)}\n")
     for section in map(".".join, section_places()):
         if section not in ("operation.trim", "support.modes"):  # the trim is a value, the modes follow
             parts.append("\n".join(_section(section, tables, place, variant)))

@@ -42,7 +42,7 @@ def validate(tables: dict[str, Any]) -> Deck:
 
 
 def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
-    """Return an error of pydantic with the field's name in the deck and our rule."""
+    """Return an error of pydantic with the field's name in the deck and a rule in the words of this package."""
     place, kind = problem["loc"], problem["type"]
     field = _field_name(in_the_deck(place), tables)
     if kind == "value_error":

@@ -101,7 +101,7 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
 
 
 def _at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
-    """Return an array of many designs, whose last `own` axes are not those of the batch, at each point of a batch."""
+    """Return an array of many designs, whose last `own` axes are not axes of the batch, at each point of a batch."""
     if values is None:
         return None
     return np.broadcast_to(values, (*shape, *values.shape[values.ndim - own :]))

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
 _RECORDS = {"frequencies": BladeFrequencies, "drive_train": DriveTrain}
-_ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling")  # text for what could not be written out
+_ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling")  # a text in place of functions and large arrays
 
 
 def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str, Any]) -> dict[str, Any]:

@@ -62,7 +62,7 @@ def model_quantities(
 
 
 def of_rotor(rotor: Rotor) -> dict[str, Any]:
-    """Return the rotor's own numbers, without what is distributed along the blade."""
+    """Return the rotor's own numbers, without the properties that are distributed along the blade."""
     names = [entry.name for entry in fields(rotor) if entry.name not in _ALONG_THE_BLADE]
     return {name: getattr(rotor, name) for name in (*names, *_HINGE_INERTIAS)}
 

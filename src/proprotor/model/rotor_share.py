@@ -34,7 +34,7 @@ def _how_held(support: NormalModes, mass_at_rest: Array) -> str:
 
 
 def rotor_share(mass_at_rest: ArrayLike, held: str, shaft: str = "held") -> Array:
-    """Return what a rotor adds to the mass at its hub.
+    """Return the mass that a rotor adds at its hub.
 
     Parameters
     ----------
@@ -173,7 +173,9 @@ def _refusal(left: Array, given: Array, names: Sequence[str], held: str) -> str:
 def spring_warnings(
     support: NormalModes, mass_at_rest: Array, gimbal_stiffness: ArrayLike
 ) -> tuple[str, ...]:
-    """Warn of modes found on a gimbal whose frequencies a hub spring changes, because a spring is no mass.
+    """Return a warning of modes whose frequencies the hub spring of a gimballed rotor changes, or no warning.
+
+    The rotor's share is that of a gimbal without spring, because a spring has no mass.
 
     Parameters
     ----------
