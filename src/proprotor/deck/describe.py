@@ -140,34 +140,28 @@ def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[Deck
     """Yield the fields of a section, with a prefix to their names."""
     defaults = _defaults(section)
     for name, field in section.model_fields.items():
-        reading = _reading(field)
-        takes = _takes(field, reading)
+        number = next((part for part in field.metadata if isinstance(part, Reading)), None)
+        takes = _takes_plain(field.annotation) if number is None else _takes(number)
         if not takes:  # a section
             continue
+        reading = number or Reading(_PLAIN_FORMS.get(takes, ""))
         is_one_side = any(name in side for choice in section.alternatives for side in choice)
         yield DeckField(
             path=f"{prefix}.{name}",
             kind=kind,
             meaning=field.description or "",
             takes=takes,
-            unit="" if reading is None else _unit(reading),
-            range="" if reading is None else _range(reading),
+            unit=_unit(reading),
+            range=_range(reading),
             required=field.is_required() or (is_one_side and name not in section.may_lack),
             default=_default(field, reading, defaults.get(name, MISSING)),
             instead_of=_instead_of(section, name),
-            form=_PLAIN_FORMS.get(takes, "") if reading is None else reading.form,
+            form=reading.form,
         )
 
 
-def _reading(field: FieldInfo) -> Reading | None:
-    """Return how a number is read; None for a field that is no number."""
-    return next((part for part in field.metadata if isinstance(part, Reading)), None)
-
-
-def _takes(field: FieldInfo, reading: Reading | None) -> str:
-    """Return the possible values of a field in words; "" for a section."""
-    if reading is None:
-        return _takes_plain(field.annotation)
+def _takes(reading: Reading) -> str:
+    """Return the possible values of a field that is a number, in words."""
     if reading.form in _FORMS:
         return _FORMS[reading.form]
     if reading.form == "choice":
@@ -227,12 +221,12 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
     return {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
 
 
-def _default(field: FieldInfo, reading: Reading | None, constructed: Any) -> str:
+def _default(field: FieldInfo, reading: Reading, constructed: Any) -> str:
     """Return the default of a field as a deck would have it; "" without one."""
     if field.is_required():
         return ""
     if isinstance(constructed, int | float) and not isinstance(constructed, bool):
-        return f"{constructed:g}" + (f" {reading.unit}" if reading and reading.unit else "")
+        return f"{constructed:g} {reading.unit}".strip()
     is_word = isinstance(field.default, bool | str) and field.default != ""
     return list_choices((field.default,)) if is_word else ""
 

@@ -60,7 +60,7 @@ def deck_text(
     tables = tables if variant else as_one_file(dict(tables))
     parts = [_HEAD.format(origin=f", made from {base}" if base else "", file=place.name)]
     if variant:
-        parts.append(f"# A variant: a field that is given here replaces the field of the base.\nbase = {toml(base)}\n")
+        parts.append(f"# A variant: each field replaces the same field of the base.\nbase = {toml(base)}\n")
     for section in map(".".join, section_places()):
         if section not in ("operation.trim", "support.modes"):  # the trim is a value, the modes follow
             parts.append("\n".join(_section(section, tables, place, variant)))

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
 _RECORDS = {"frequencies": BladeFrequencies, "drive_train": DriveTrain}
-_ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling")  # a text in place of functions and large arrays
+# Options whose plain data are a text in place of functions and large arrays.
+_ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling")
 
 
 def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str, Any]) -> dict[str, Any]:
