@@ -220,5 +220,5 @@ def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
 
 
 def _side_by_side(values: Iterable[Any]) -> Array:
-    """Return the numbers of the modes along a last axis; leading axes are those of many designs."""
+    """Return the numbers of the modes along a last axis; leading axes are the axes of many designs."""
     return np.stack(np.broadcast_arrays(*values), axis=-1)

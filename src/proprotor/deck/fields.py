@@ -96,12 +96,12 @@ class AfterChoice(Reading):
     Parameters
     ----------
     unit : str
-        SI unit after the word `usual`.
+        SI unit where the earlier field has the word `usual`.
     choice : str
         Name of the earlier field.
     usual : str
     other_unit : str
-        SI unit after another word.
+        SI unit where the earlier field has another word.
     """
 
     choice: str = ""

@@ -44,17 +44,16 @@ def _sections() -> Iterator[str]:
     for place in section_places():
         for kind, section in sections_at(place).items():
             name = ".".join(place)
-            own = [
-                field
-                for field in deck_fields()
-                if field.kind == kind and plain_path(field.path).rpartition(".")[0] == name
-            ]
             brackets = f"[[{name}]]" if name == "support.modes" else f"[{name}]"
             yield f"## {brackets}{f' of kind {kind}' if kind else ''}\n"
             yield f"{' '.join((section.__doc__ or '').split())}\n"
             yield "| field | meaning | takes | range | default | instead of |"
             yield "|---|---|---|---|---|---|"
-            yield from map(_row, own)
+            yield from (
+                _row(field)
+                for field in deck_fields()
+                if field.kind == kind and plain_path(field.path).rpartition(".")[0] == name
+            )
             yield ""
 
 

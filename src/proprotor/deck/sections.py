@@ -13,7 +13,7 @@ linear between its stations; chord, twist and mass_distribution may also be a co
 ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
 
 Stations of chord and twist reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
-values hold there. Those of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to the
+values hold there. Stations of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to the
 tip, or their table says ``beyond = "nothing"``: no mass there.
 
 ``base``
@@ -316,7 +316,7 @@ def in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
 
 
 def _one_side(section: Section, choice: Sides) -> None:
-    """Refuse a section that does not give exactly one side of a choice, with all fields but those it may lack."""
+    """Refuse a section that does not give exactly one side of a choice, with all fields but the fields it may lack."""
     given = section.model_fields_set
     sides = [side for side in choice if given.intersection(side)]
     both = " or ".join(_listed(side) for side in choice)

@@ -140,7 +140,7 @@ def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:
 
 
 def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
-    """Return the model at every point of a batch that has more axes, those of the supports."""
+    """Return the model at every point of a batch that has more axes, the axes of the supports."""
     if model.M.shape[:-2] == shape:
         return model
     matrices: dict[str, Any] = {name: _at_points(matrix, shape, 2) for name, matrix in model.matrices.items()}

@@ -1,6 +1,6 @@
 """Model a rigid propeller with published whirl derivatives, in place of a rotor, on the six hub coordinates.
 
-The derivatives are those of NASA TN D-659 (Reed and Bland, 1961), in axes X forward along the shaft, Y to
+The derivatives have the definitions of NASA TN D-659 (Reed and Bland, 1961), in axes X forward along the shaft, Y to
 the right and Z down, the propeller turning about +X:
 
     F_Z  = ½ρV²S ( C_Zθ θ̄ + C_Zψ ψ̄ + C_Zr ψ̇R/V)        M_Y = ρV²SR ( C_mψ ψ̄ + C_mq θ̇R/V)

@@ -18,7 +18,7 @@ from proprotor.rotor.motions import HUB, check_distinct
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
-# A mirror across the plane of I and K reverses y and, among the rotations (axial vectors), those about x and z.
+# A mirror across the plane of I and K reverses y and, because rotations are axial vectors, the rotations about x and z.
 _MIRROR = np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 
 

@@ -117,10 +117,8 @@ def state_space(model: LinearModel) -> StateSpace:
     acceleration_by_input = np.linalg.solve(mass, model.B)
     inputs = np.zeros((*system.shape[:-1], len(INPUTS)))
     inputs[..., rates, :] = acceleration_by_input
-    displacement = np.zeros((n, system.shape[-1]))
-    displacement[held, np.arange(len(held))] = 1
-    rate = np.zeros((n, system.shape[-1]))
-    rate[:, rates] = np.eye(n)
+    displacement = np.pad(np.eye(n)[:, held], ((0, 0), (0, n)))
+    rate = np.pad(np.eye(n), ((0, 0), (len(held), 0)))
     motion = (displacement, rate, system[..., rates, :])
     names, rows, feedthrough = _outputs(model, motion, acceleration_by_input)
     free, failed = lack_azimuth(model), ~np.isfinite(mass).all(axis=(-2, -1))
