@@ -13,8 +13,8 @@ linear between its stations; chord, twist and mass_distribution may also be a co
 ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
 
 Stations of chord and twist reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
-values hold there. Stations of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to the
-tip, or their table says ``beyond = "nothing"``: no mass there.
+values hold there. Stations of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to
+the tip, or their table says ``beyond = "nothing"``: no mass there.
 
 ``base``
     Above all sections: the deck that this deck alters, a bundled name or a file in the same folder. A field of this
