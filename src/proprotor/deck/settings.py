@@ -6,7 +6,7 @@ import difflib
 import re
 import tomllib
 from collections.abc import Mapping
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Literal, get_origin
 
 from proprotor.deck.alternatives import altered
 from proprotor.deck.describe import deck_fields
@@ -94,7 +94,8 @@ def _value(text: str, place: _Place) -> Any:
         value = text
     if field is None:
         return value
-    if _is_text(field.annotation) and not isinstance(value, str):
+    is_text = field.annotation is str or get_origin(field.annotation) is Literal
+    if is_text and not isinstance(value, str):
         return text
     is_number = any(isinstance(part, Reading) for part in field.metadata)
     if isinstance(value, dict) or not is_number:
@@ -107,12 +108,6 @@ def _field(names: list[str]) -> Any:
     *outer, last = names
     sections = sections_at(tuple(outer)).values()
     return next((section.model_fields[last] for section in sections if last in section.model_fields), None)
-
-
-def _is_text(annotation: Any) -> bool:
-    return annotation is str or (
-        get_origin(annotation) is Literal and all(isinstance(choice, str) for choice in get_args(annotation))
-    )
 
 
 def _put(changes: dict[str, Any], place: _Place, value: Any) -> None:

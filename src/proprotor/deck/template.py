@@ -111,15 +111,11 @@ def _section(section: str, tables: Mapping[str, Any], place: Path, variant: bool
         name = _name(field)
         if section == "case" and name == "name":
             yield from _entry(field, toml(case_name(place)), "")
-        elif name in entries and not _is_list_of_tables(entries[name]):
+        elif name in entries:
             keep = not variant or (section, name) == ("case", "title")
             yield from _entry(field, toml(_from(entries[name], place)), "" if keep else "# ")
-        elif not (variant or name == "warnings" or name in entries):
+        elif not (variant or name == "warnings"):
             yield from _entry(field, example(field), "# ")
-
-
-def _is_list_of_tables(value: Any) -> bool:
-    return isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
 
 
 def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
