@@ -95,9 +95,7 @@ def deck_fields() -> tuple[DeckField, ...]:
         field
         for place in section_places()
         for kind, section in sections_at(place).items()
-        for field in _of_section(
-            section, ".".join(place).replace("support.modes", "support.modes[NAME]"), kind
-        )
+        for field in _of_section(section, ".".join(place), kind)
     )
 
 
@@ -136,8 +134,8 @@ def plain_path(path: str) -> str:
     return "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
 
 
-def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[DeckField]:
-    """Yield the fields of a section, with a prefix to their names."""
+def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckField]:
+    """Yield the fields of a section at a place of the deck."""
     defaults = _defaults(section)
     for name, field in section.model_fields.items():
         number = next((part for part in field.metadata if isinstance(part, Reading)), None)
@@ -147,7 +145,7 @@ def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[Deck
         reading = number or Reading(_PLAIN_FORMS.get(takes, ""))
         is_one_side = any(name in side for choice in section.alternatives for side in choice)
         yield DeckField(
-            path=f"{prefix}.{name}",
+            path=f"{place}.{name}".replace("support.modes.", "support.modes[NAME]."),
             kind=kind,
             meaning=field.description or "",
             takes=takes,
