@@ -22,8 +22,8 @@ __all__ = ["Case", "list_cases", "load_case"]
 class Case(Configuration):
     """A rotor, its operation and its support, with the analyses as methods.
 
-    The attributes are those of `proprotor.model.configuration.Configuration`. Each analysis is a function of the engine
-    whose first argument is a case.
+    The attributes are described in `proprotor.model.configuration.Configuration`. Each analysis is a function of the
+    engine whose first argument is a case.
     """
 
     vary = vary

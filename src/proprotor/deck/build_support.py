@@ -57,7 +57,6 @@ def build_support(
 def _normal_modes(section: support_sections.NormalModesSection, numbers: Mapping[str, Datum]) -> NormalModes:
     """Return the support of normal modes."""
     names = [mode.name for mode in section.modes]
-    own = _values(numbers, "support")
     modes = [_values(numbers, f"support.modes[{name}]") for name in names]
     hub = [_side_by_side(mode.get(axis, 0.0) for mode in modes) for axis in HUB_AXES]
     support = NormalModes.from_frequencies(
@@ -66,7 +65,7 @@ def _normal_modes(section: support_sections.NormalModesSection, numbers: Mapping
         frequency=_side_by_side(mode["frequency"] for mode in modes),
         damping_ratio=_side_by_side(mode["damping_ratio"] for mode in modes),
         hub=np.stack(np.broadcast_arrays(*hub), axis=-2),
-        **own,
+        **_values(numbers, "support"),
     )
     return _with_assumed_airloads(support, section, numbers)
 
@@ -75,30 +74,21 @@ def _pivot(section: support_sections.PivotSection, numbers: Mapping[str, Datum])
     """Return the support of a shaft on a pivot."""
     given = _values(numbers, "support")
     pairs: dict[str, Any] = {
-        name: _side_by_side(given.get(f"{axis}_{name}", 0.0) for axis in ("pitch", "yaw"))
+        name: _side_by_side(given.pop(f"{axis}_{name}", 0.0) for axis in ("pitch", "yaw"))
         for name in ("inertia", "stiffness", "damping")
     }
-    held: dict[str, Any] = {name: given[name] for name in ("includes_rotor", "shaft") if name in given}
-    return two_axis_pivot(given["distance"], **pairs, **held)
-
-
-def _matrices(section: support_sections.MatricesSection, numbers: Mapping[str, Datum]) -> NormalModes:
-    read = read_matrix_market if section.file is None else read_npz
-    return _from_files(read, section, numbers)
-
-
-def _nastran(section: support_sections.NastranSection, numbers: Mapping[str, Datum]) -> NormalModes:
-    return _from_files(nastran_modes, section, numbers)
+    return two_axis_pivot(**given, **pairs)
 
 
 def _from_files(
-    read: Callable[..., NormalModes],
-    section: support_sections.MatricesSection | support_sections.NastranSection,
-    numbers: Mapping[str, Datum],
+    section: support_sections.MatricesSection | support_sections.NastranSection, numbers: Mapping[str, Datum]
 ) -> NormalModes:
-    """Return the support that a function reads from the files of a section."""
+    """Return the support in the files of a section."""
     given = _values(numbers, "support")
     _must_be_real(given)
+    read: Callable[..., NormalModes] = nastran_modes
+    if section.kind == "matrices":
+        read = read_matrix_market if section.file is None else read_npz
     return _with_assumed_airloads(read(**given, hub=section.hub), section, numbers)
 
 
@@ -142,8 +132,8 @@ def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[
 
 _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
     "normal-modes": _normal_modes,
-    "matrices": _matrices,
-    "nastran": _nastran,
+    "matrices": _from_files,
+    "nastran": _from_files,
     "pivot": _pivot,
     "rigid": lambda section, numbers: rigid_support(),
 }
@@ -230,5 +220,5 @@ def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:
 
 
 def _side_by_side(values: Iterable[Any]) -> Array:
-    """Return the numbers of the modes along a last axis; leading axes are those of many designs."""
+    """Return the numbers of the modes along a last axis; leading axes are the axes of many designs."""
     return np.stack(np.broadcast_arrays(*values), axis=-1)

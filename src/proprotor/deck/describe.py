@@ -16,9 +16,9 @@ from pydantic.fields import FieldInfo
 
 from proprotor.deck import sections as deck
 from proprotor.deck import support_sections
-from proprotor.deck.fields import Reading, Section
+from proprotor.deck.fields import AfterChoice, Reading, Section
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
-from proprotor.deck.sections import section_places, sections_at
+from proprotor.deck.sections import section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.drive_train import DriveTrain
@@ -45,6 +45,8 @@ _FORMS = {
     "rising list": "{ value = [...], unit = ... }",
 }
 _PLAIN = {bool: "true or false", str: "text"}
+# Forms of fields that are no numbers, by their possible values.
+_PLAIN_FORMS = {"true or false": "bool", "a list of texts": "list", "a table of texts": "table"}
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,12 @@ class DeckField:
 @cache
 def deck_fields() -> tuple[DeckField, ...]:
     """Return every field of every section, in the order of a deck; the fields of [support] kind by kind."""
-    return tuple(_fields())
+    return tuple(
+        field
+        for place in section_places()
+        for kind, section in sections_at(place).items()
+        for field in _of_section(section, ".".join(place), kind)
+    )
 
 
 def find_fields(path: str) -> tuple[DeckField, ...]:
@@ -127,56 +134,39 @@ def plain_path(path: str) -> str:
     return "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
 
 
-def _fields() -> Iterator[DeckField]:
-    """Yield every field of every section."""
-    for place in section_places():
-        if not place:
-            continue
-        for kind, section in sections_at(place).items():
-            prefix = ".".join(place).replace("support.modes", "support.modes[NAME]")
-            yield from _of_section(section, prefix, kind)
-
-
-def _of_section(section: type[Section], prefix: str, kind: str) -> Iterator[DeckField]:
-    """Yield the fields of a section, with a prefix to their names."""
+def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckField]:
+    """Yield the fields of a section at a place of the deck."""
     defaults = _defaults(section)
     for name, field in section.model_fields.items():
-        reading = _reading(field)
-        takes = _takes(field, reading)
+        number = next((part for part in field.metadata if isinstance(part, Reading)), None)
+        takes = _takes_plain(field.annotation) if number is None else _takes(number)
         if not takes:  # a section
             continue
-        others = _instead_of(section, name)
+        reading = number or Reading(_PLAIN_FORMS.get(takes, ""))
+        is_one_side = any(name in side for choice in section.alternatives for side in choice)
         yield DeckField(
-            path=f"{prefix}.{name}",
+            path=f"{place}.{name}".replace("support.modes.", "support.modes[NAME]."),
             kind=kind,
             meaning=field.description or "",
             takes=takes,
-            unit="" if reading is None else _unit(reading),
-            range="" if reading is None else _range(reading),
-            required=field.is_required() or name in section.needed_unless_replaced,
+            unit=_unit(reading),
+            range=_range(reading),
+            required=field.is_required() or (is_one_side and name not in section.may_lack),
             default=_default(field, reading, defaults.get(name, MISSING)),
-            instead_of=others,
-            form=_form(field) if reading is None else reading.form,
+            instead_of=_instead_of(section, name),
+            form=reading.form,
         )
 
 
-def _reading(field: FieldInfo) -> Reading | None:
-    """Return how a number is read; None for a field that is no number."""
-    return next((part for part in field.metadata if isinstance(part, Reading)), None)
-
-
-def _takes(field: FieldInfo, reading: Reading | None) -> str:
-    """Return the possible values of a field in words; "" for a section."""
-    if reading is None:
-        return _takes_plain(field.annotation)
+def _takes(reading: Reading) -> str:
+    """Return the possible values of a field that is a number, in words."""
     if reading.form in _FORMS:
         return _FORMS[reading.form]
     if reading.form == "choice":
         return list_choices(reading.choices)
-    by_angle = getattr(reading, "of_angle", None)
     values = meaning(reading.unit)
-    if by_angle is not None:
-        values = f"of a length {values}; of an angle {meaning(by_angle)}"
+    if isinstance(reading, AfterChoice):
+        values = f"of a length {values}; of an angle {meaning(reading.other_unit)}"
     if reading.form == "frequency":
         values += ', or "0.42/rev"'
     return f"{values}; {_ALONG[reading.form]}" if reading.form in _ALONG else values
@@ -187,35 +177,17 @@ def _takes_plain(annotation: Any) -> str:
     if annotation in _PLAIN:
         return _PLAIN[annotation]
     if get_origin(annotation) is Literal:
-        return " or ".join(f'"{choice}"' for choice in get_args(annotation))
-    if get_origin(annotation) is list:
-        return "a list of texts" if _is_text_list(annotation) else ""
-    if any(get_origin(choice) is dict for choice in get_args(annotation)):
-        return "a table of texts"
-    return "" if annotation is not Any else '"windmill", or a table with one of the fields below'
-
-
-def _form(field: FieldInfo) -> str:
-    """Return the form of a field that is no number."""
-    if field.annotation is bool:
-        return "bool"
-    if get_origin(field.annotation) is list:
-        return "list"
-    is_table = any(get_origin(choice) is dict for choice in get_args(field.annotation))
-    return "table" if is_table else ""
-
-
-def _is_text_list(annotation: Any) -> bool:
-    inner = get_args(annotation)[0]
-    return inner is str or (get_args(inner) or (None,))[0] is str
+        return list_choices(get_args(annotation))
+    if sections_of(annotation):
+        return '"windmill", or a table with one of the fields below' if str in get_args(annotation) else ""
+    return "a list of texts" if get_origin(annotation) is list else "a table of texts"
 
 
 def _unit(reading: Reading) -> str:
     """Return the SI unit, or both units of a field with two."""
-    if of_speed := getattr(reading, "of_speed", ""):
-        return f"{reading.unit} or {of_speed}"
-    by_angle = getattr(reading, "of_angle", None)
-    return reading.unit if by_angle is None else f"{reading.unit or '1'} or {by_angle or '1'}"
+    if isinstance(reading, AfterChoice):
+        return f"{reading.unit or '1'} or {reading.other_unit or '1'}"
+    return reading.unit
 
 
 def _range(reading: Reading) -> str:
@@ -247,16 +219,14 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
     return {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
 
 
-def _default(field: FieldInfo, reading: Reading | None, constructed: Any) -> str:
+def _default(field: FieldInfo, reading: Reading, constructed: Any) -> str:
     """Return the default of a field as a deck would have it; "" without one."""
     if field.is_required():
         return ""
     if isinstance(constructed, int | float) and not isinstance(constructed, bool):
-        return f"{constructed:g}" + (f" {reading.unit}" if reading and reading.unit else "")
-    value = field.default
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) and value else ""
+        return f"{constructed:g} {reading.unit}".strip()
+    is_word = isinstance(field.default, bool | str) and field.default != ""
+    return list_choices((field.default,)) if is_word else ""
 
 
 def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:

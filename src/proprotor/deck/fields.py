@@ -7,7 +7,8 @@ walk the fields and ask the `Reading` of each.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
@@ -65,7 +66,7 @@ class Reading:
     def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
         """Return the number of a field, given the fields of its section that were read before.
 
-        None where the unit follows from an earlier field that is itself malformed, and reported.
+        Return None where the unit follows from an earlier field that is malformed: that error is reported already.
         """
         return self.read(raw)
 
@@ -83,53 +84,36 @@ _READERS: dict[str, Callable[[Any, Reading], Datum]] = {
     ),
     "along the wing": lambda raw, field: reading_lists.read_spanwise(raw, field.unit, field.bound),
     "curve": lambda raw, field: reading_lists.read_curve(raw, field.unit, field.bound),
-    "rising list": lambda raw, field: reading_lists.read_list(raw, field.unit, field.bound),
+    "rising list": lambda raw, field: reading_lists.read_list(raw, field.unit, field.bound, rising=True),
     "file": lambda raw, field: reading.read_file(raw),
 }
 
 
 @dataclass(frozen=True)
-class _ByCoordinate(Reading):
-    """A quantity whose unit follows from the mode's coordinate, an earlier field.
+class AfterChoice(Reading):
+    """A number or a list whose unit follows from a choice, an earlier field.
 
     Parameters
     ----------
     unit : str
-        SI unit where the coordinate is a length.
-    of_angle : str
-        SI unit where the coordinate is an angle.
+        SI unit where the earlier field has the word `usual`.
+    choice : str
+        Name of the earlier field.
+    usual : str
+    other_unit : str
+        SI unit where the earlier field has another word.
     """
 
-    of_angle: str = ""
+    choice: str = ""
+    usual: str = ""
+    other_unit: str = ""
 
     def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
-        """Return the number in the unit that follows from the earlier field."""
-        if "coordinate" not in before:
+        """Return the value in the unit that follows from the earlier field."""
+        if self.choice not in before:
             return None
-        length = before["coordinate"] == "length"
-        return reading.read_quantity(raw, self.unit if length else self.of_angle, self.bound)
-
-
-@dataclass(frozen=True)
-class _ByAbscissa(Reading):
-    """The abscissa of a curve, whose unit follows from the quantity that the curve is against, an earlier field.
-
-    Parameters
-    ----------
-    unit : str
-        SI unit against the collective.
-    of_speed : str
-        SI unit against the airspeed.
-    """
-
-    of_speed: str = ""
-
-    def read_after(self, raw: Any, before: Mapping[str, Any]) -> Datum | None:
-        """Return the number in the unit that follows from the earlier field."""
-        if "against" not in before:
-            return None
-        unit = self.unit if before["against"] == "collective" else self.of_speed
-        return reading_lists.read_list(raw, unit, self.bound, rising=True)
+        unit = self.unit if before[self.choice] == self.usual else self.other_unit
+        return replace(self, unit=unit).read(raw)
 
 
 class _AlongTheBlade(Reading):
@@ -175,14 +159,18 @@ MassDistribution = Annotated[
 ]
 TemperatureDifference = Annotated[Datum | None, Reading("number", "K")]
 CurvePerRev = Annotated[Datum | None, Reading("curve", "", POSITIVE)]
-Abscissa = Annotated[Datum | None, _ByAbscissa("rising list", "rad", of_speed="m/s")]
+Abscissa = Annotated[
+    Datum | None,
+    AfterChoice("rising list", "rad", choice="against", usual="collective", other_unit="m/s"),
+]
 File = Annotated[Datum | None, Reading("file")]
 IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
 Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
 
-GeneralizedMass = Annotated[Datum | None, _ByCoordinate("number", "kg", POSITIVE, of_angle="kg*m**2")]
-HubDisplacement = Annotated[Datum | None, _ByCoordinate("number", "", of_angle="m/rad")]
-HubRotation = Annotated[Datum | None, _ByCoordinate("number", "rad/m", of_angle="")]
+_of_mode = partial(AfterChoice, "number", choice="coordinate", usual="length")
+GeneralizedMass = Annotated[Datum | None, _of_mode("kg", POSITIVE, other_unit="kg*m**2")]
+HubDisplacement = Annotated[Datum | None, _of_mode("", other_unit="m/rad")]
+HubRotation = Annotated[Datum | None, _of_mode("rad/m", other_unit="")]
 
 BendingStiffness = Annotated[Datum | None, Reading("along the wing", "N*m**2", POSITIVE)]
 AxialStiffness = Annotated[Datum | None, Reading("along the wing", "N", POSITIVE)]
@@ -201,16 +189,14 @@ class Section(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     alternatives: ClassVar[tuple[Sides, ...]] = ()  # choices of which a deck gives one side
-    needed_unless_replaced: ClassVar[
-        tuple[str, ...]
-    ] = ()  # fields that a deck must have, or their alternatives
+    may_lack: ClassVar[tuple[str, ...]] = ()  # fields of these choices that a deck may leave out
 
 
 def needed(meaning: str) -> Any:
-    """Return a field that a deck must give, it or one of its alternatives, with its meaning."""
+    """Return a field that a deck must give, unless the deck gives an alternative, with the meaning of the field."""
     return Field(description=meaning)
 
 
 def optional(meaning: str, default: Any = None) -> Any:
-    """Return a field that a deck may leave out, with its meaning."""
+    """Return a field that a deck may leave out, with the meaning of the field."""
     return Field(default=default, description=meaning)

@@ -12,18 +12,18 @@ _HEAD = """# Fields of a deck
 Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py` and
 `support_sections.py`.
 
-A deck is a TOML file. A number with a dimension is text with its unit, `radius = "12.5 ft"`, US and SI units as one
-likes; a plain number has none. Either may be a table that says where it comes from:
+A deck is a TOML file. A number with a dimension is text with its unit, US or SI, `radius = "12.5 ft"`; a number without
+a dimension is plain. Either may be a table that names its source:
 
     radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
 
 with a status of published, derived, recalled, calibrated or assumed. `base = "xv15"` above all sections alters another
 deck: a field given replaces the base's and its alternatives.
 
-A frequency per revolution, `"0.42/rev"`, is one of the rotor speed that is written in the same file, or in its base
-where the file gives none. Another rotor speed, by `--set`, `vary`, a study, a map, a slider or a deck that alters this
-one, leaves it its hertz: a wing does not know how fast the rotor turns. A frequency that is set in /rev is one of the
-deck's own rotor speed too.
+A frequency per revolution, `"0.42/rev"`, refers to the rotor speed that is written in the same file, or in its base if
+the file gives none. The frequency is then fixed in hertz, because the frequencies of a wing do not depend on the rotor:
+`--set`, `vary`, a study, a map, a slider or a deck that alters this deck changes the rotor speed and not the frequency.
+A frequency that is set in /rev also refers to the deck's own rotor speed.
 
     proprotor new my.toml --from xv15                       # a commented deck that runs as it is
     proprotor describe rotor.precone                        # one field
@@ -42,19 +42,18 @@ def markdown() -> str:
 
 def _sections() -> Iterator[str]:
     for place in section_places():
-        for kind, section in sections_at(place).items() if place else ():
+        for kind, section in sections_at(place).items():
             name = ".".join(place)
-            own = [
-                field
-                for field in deck_fields()
-                if field.kind == kind and plain_path(field.path).rpartition(".")[0] == name
-            ]
             brackets = f"[[{name}]]" if name == "support.modes" else f"[{name}]"
             yield f"## {brackets}{f' of kind {kind}' if kind else ''}\n"
             yield f"{' '.join((section.__doc__ or '').split())}\n"
             yield "| field | meaning | takes | range | default | instead of |"
             yield "|---|---|---|---|---|---|"
-            yield from map(_row, own)
+            yield from (
+                _row(field)
+                for field in deck_fields()
+                if field.kind == kind and plain_path(field.path).rpartition(".")[0] == name
+            )
             yield ""
 
 

@@ -67,9 +67,8 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
         raise InputError("base", base, "must be the name or path of a deck")
     if str(file) in altered_by:
         raise InputError("base", base, "must not lead back to the deck itself")
-    inherited = without(
-        _tables(base, folder, (*altered_by, str(file))), ("case", "name")
-    )  # a name is one deck's own
+    # The name of a case belongs to one deck, so a base does not pass its own on.
+    inherited = without(_tables(base, folder, (*altered_by, str(file))), ("case", "name"))
     whole = altered(inherited, tables)
     return per_revolution_of(whole, whole)
 

@@ -21,9 +21,8 @@ def numbers_of(deck: Deck) -> dict[str, Datum]:
 
 def own_numbers(numbers: Mapping[str, Datum], section: str) -> dict[str, Datum]:
     """Return the numbers of a section by field, without the numbers of sections inside."""
-    start = f"{section}."
-    own = {path.removeprefix(start): number for path, number in numbers.items() if path.startswith(start)}
-    return {name: number for name, number in own.items() if "." not in name}
+    places = {path: path.rpartition(".") for path in numbers}
+    return {name: numbers[path] for path, (outer, _, name) in places.items() if outer == section}
 
 
 def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
@@ -40,7 +39,7 @@ def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
 
 
 def _per_second(number: Datum, rotor_speed: float) -> Datum:
-    """Return a frequency per revolution in rad/s: n per revolution are n Ω, with the Ω of the file it is written in."""
+    """Return a frequency per revolution in rad/s: n per revolution are n Ω, with the Ω of the frequency's file."""
     if number.unit != PER_REV:
         return number
     own = rotor_speed if number.rotor_speed is None else number.rotor_speed

@@ -76,7 +76,7 @@ def read_column(raw: Any, unit: str, bound: Bound, radius: float, beyond: str) -
     if not isinstance(column, str) or not column:
         raise InputError("column", column, "must be the name of a column")
     try:
-        found = read_stations(file.si, column, unit, radius=radius, holds=bound.holds, rule=bound.rule)
+        found = read_stations(file.si, column, unit, radius=radius, bound=bound)
     except InputError as error:
         raise InputError(error.field, file.written, error.rule) from None
     written = f"{len(found.values)} values of {column} in {file.written}"
@@ -101,7 +101,7 @@ def _along_the_blade(
 
 
 def read_curve(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
-    """Return one number, or the list in ``{ value, unit, status, source }``; without a unit if it has no dimension."""
+    """Return one number, or the list in ``{ value, unit, status, source }``; a list without dimension has no unit."""
     if not isinstance(raw, dict) or not isinstance(raw.get("value"), list):
         return read_quantity(raw, unit, bound)
     return read_list(raw, unit, bound)
@@ -161,7 +161,7 @@ def _check_stations(stations: Any) -> None:
 
 
 def _check_numbers(key: str, values: Any) -> None:
-    """Refuse what is no list of finite numbers."""
+    """Refuse anything but a list of finite numbers."""
     if not isinstance(values, list) or not all(is_number(value) for value in values):
         raise InputError(key, values, "must be a list of numbers")
     if len(values) > _MOST_STATIONS:

@@ -8,9 +8,9 @@ from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import CoreSchema
 
 from proprotor.datum import STATUSES
-from proprotor.deck.fields import Reading
+from proprotor.deck.fields import AfterChoice, Reading
 from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
-from proprotor.deck.sections import Deck
+from proprotor.deck.sections import Deck, TrimSection
 from proprotor.units import meaning
 
 _Schema = dict[str, Any]
@@ -94,18 +94,17 @@ _TABLES = {
 
 def _value_schema(reading: Reading) -> _Schema:
     """Return the schema of a field: of a plain value, or of a table with its provenance."""
-    if reading.form == "distribution":
-        return {"anyOf": [_distribution(reading), _with_beyond(_COLUMN, reading)]}
     if reading.form == "rising list":
         return _table({"value": _NUMBERS, "unit": {"type": "string"}})
     value = _value(reading)
-    table = _table({"value": value})
-    choices = [*value["anyOf"], table] if "anyOf" in value else [value, table]
+    choices = (
+        [] if reading.form == "distribution" else [*value.get("anyOf", [value]), _table({"value": value})]
+    )
     if reading.form == "curve":
         choices.append(_table({"value": _NUMBERS}))
     if reading.form in _STATIONS:
         choices.append(_distribution(reading))
-    if reading.form == "along the blade":
+    if reading.form in ("along the blade", "distribution"):
         choices.append(_with_beyond(_COLUMN, reading))
     return {"anyOf": choices}
 
@@ -120,8 +119,8 @@ def _value(reading: Reading) -> _Schema:
         return {"enum": list(reading.choices)}
     text = {"type": "string", "pattern": _NUMBER, "description": _description(reading)}
     plain = {"type": "number", **_LIMITS.get(reading.bound, {})}
-    dimensional = reading.unit and getattr(reading, "of_angle", reading.unit)
-    return text if dimensional else {"anyOf": [text, plain]}
+    may_be_plain = not reading.unit or (isinstance(reading, AfterChoice) and not reading.other_unit)
+    return {"anyOf": [text, plain]} if may_be_plain else text
 
 
 def _description(reading: Reading) -> str:
@@ -145,12 +144,7 @@ def _with_beyond(table: _Schema, reading: Reading) -> _Schema:
     return table | {"properties": table["properties"] | {"beyond": {"const": reading.beyond}}}
 
 
-def _table(properties: _Schema) -> _Schema:
-    """Return the schema of a table with some required properties and a provenance."""
-    return _object(properties, _PROVENANCE)
-
-
-def _object(required: _Schema, optional: _Schema) -> _Schema:
+def _table(required: _Schema, optional: _Schema = _PROVENANCE) -> _Schema:
     """Return the schema of a table with required and optional properties, and no others."""
     return {
         "type": "object",
@@ -163,9 +157,8 @@ def _object(required: _Schema, optional: _Schema) -> _Schema:
 def _target(name: str) -> _Schema:
     """Return the schema of a trim with one target."""
     value: _Schema = {"type": ["string", "number"]}
-    return _object({name: {"anyOf": [value, _table({"value": value})]}}, {})
+    return _table({name: {"anyOf": [value, _table({"value": value})]}}, {})
 
 
 _COLUMN = _table({name: {"type": "string", "minLength": 1} for name in ("file", "column")})
-_TARGETS = ("collective", "thrust_coefficient", "power_coefficient")
-_TRIM_SCHEMA: _Schema = {"anyOf": [{"const": "windmill"}, *map(_target, _TARGETS)]}
+_TRIM_SCHEMA: _Schema = {"anyOf": [{"const": "windmill"}, *map(_target, TrimSection.model_fields)]}

@@ -13,8 +13,8 @@ linear between its stations; chord, twist and mass_distribution may also be a co
 ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
 
 Stations of chord and twist reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
-values hold there. Those of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to the
-tip, or their table says ``beyond = "nothing"``: no mass there.
+values hold there. Stations of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to
+the tip, or their table says ``beyond = "nothing"``: no mass there.
 
 ``base``
     Above all sections: the deck that this deck alters, a bundled name or a file in the same folder. A field of this
@@ -48,7 +48,8 @@ also refers to the deck's own rotor speed. `proprotor.units` lists the units.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import Field, PlainValidator, model_validator
 
@@ -61,7 +62,7 @@ from proprotor.deck.alternatives import (
 )
 from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.deck.reading import read_quantity
-from proprotor.deck.support_sections import SUPPORT_TABLES, SupportSection
+from proprotor.deck.support_sections import SupportSection
 from proprotor.errors import InputError, unknown_name
 
 
@@ -81,7 +82,7 @@ class AirfoilSection(Section):
     """Sections of the blade: a straight lift line with constant drag and moment, or a table."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = AIRFOIL_ALTERNATIVES
-    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("lift_slope", "table")
+    may_lack: ClassVar[tuple[str, ...]] = ("zero_lift_angle", "drag", "moment")
 
     lift_slope: fields.Slope = optional("Slope of the lift coefficient with the angle of attack.")
     zero_lift_angle: fields.Angle = optional("Angle of attack without lift.")
@@ -126,9 +127,6 @@ class RotorSection(Section):
     """The rotor: the arguments of `proprotor.Rotor`, and numbers from which some of them may follow."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = ALTERNATIVES
-    needed_unless_replaced: ClassVar[tuple[str, ...]] = tuple(
-        name for choice in ALTERNATIVES for side in choice for name in side
-    )
 
     n_blades: fields.Count = needed("Number of blades.")
     radius: fields.PositiveLength = needed("Radius, from the centre of rotation to the tip.")
@@ -203,11 +201,6 @@ class TrimSection(Section):
     """The target of the trim, instead of windmilling."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = TRIM_ALTERNATIVES
-    needed_unless_replaced: ClassVar[tuple[str, ...]] = (
-        "collective",
-        "thrust_coefficient",
-        "power_coefficient",
-    )
 
     collective: fields.Angle = optional("Collective pitch at 0.75 R.")
     thrust_coefficient: fields.Number = optional("C_T = T/(ρπR²(ΩR)²).")
@@ -240,7 +233,7 @@ class OperationSection(Section):
     """The operation of the rotor, and the air."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = AIR_ALTERNATIVES
-    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("density", "speed_of_sound", "altitude")
+    may_lack: ClassVar[tuple[str, ...]] = ("temperature_offset",)
 
     rotor_speed: fields.RotorSpeed = needed("Rotor speed Ω.")
     density: fields.Density = optional("Air density; 0 for a vacuum.")
@@ -249,7 +242,7 @@ class OperationSection(Section):
     temperature_offset: fields.TemperatureDifference = optional(
         "Air temperature above the standard temperature at the altitude; none by default."
     )
-    trim: Annotated[Any, PlainValidator(_read_trim)] = optional(
+    trim: Annotated[str | TrimSection, PlainValidator(_read_trim)] = optional(
         '"windmill" for the collective without torque, or one target: { collective = "30 deg" }, '
         "{ thrust_coefficient = 0.008 } or { power_coefficient = 0.01 }.",
         "windmill",
@@ -257,7 +250,7 @@ class OperationSection(Section):
 
     @model_validator(mode="after")
     def _given_air_or_standard(self) -> OperationSection:
-        _one_side(self, AIR_ALTERNATIVES[0], may_lack="temperature_offset")
+        _one_side(self, AIR_ALTERNATIVES[0])
         return self
 
 
@@ -281,17 +274,26 @@ class Deck(Section):
     support: SupportSection = needed("The support of the rotor.")
 
 
-SECTIONS: dict[tuple[str, ...], type[Section]] = {
-    (): Deck,
-    ("case",): CaseSection,
-    ("rotor",): RotorSection,
-    ("rotor", "airfoil"): AirfoilSection,
-    ("rotor", "frequencies"): FrequenciesSection,
-    ("operation",): OperationSection,
-    ("operation", "trim"): TrimSection,
-    ("drive_train",): DriveTrainSection,
-    **{("support", *place): section for place, section in SUPPORT_TABLES.items()},
-}
+def sections_of(annotation: Any) -> list[type[Section]]:
+    """Return the sections that a field with an annotation may hold; none for a field that is no section."""
+    if isinstance(annotation, type):
+        return [annotation] if issubclass(annotation, Section) else []
+    return [section for choice in get_args(annotation) for section in sections_of(choice)]
+
+
+def _places(
+    section: type[Section], place: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], type[Section]]]:
+    """Yield a section and the sections inside, each with its place; below [support] the place has the kind."""
+    yield place, section
+    for name, field in section.model_fields.items():
+        for inner in sections_of(field.annotation):
+            kind = get_args(inner.model_fields["kind"].annotation) if "kind" in inner.model_fields else ()
+            yield from _places(inner, (*place, name, *kind))
+
+
+SECTIONS = dict(_places(Deck))
+SUPPORT_KINDS = tuple(place[1] for place in SECTIONS if place[:1] == ("support",) and len(place) == 2)
 
 
 def sections_at(place: tuple[str, ...]) -> dict[str, type[Section]]:
@@ -304,8 +306,8 @@ def sections_at(place: tuple[str, ...]) -> dict[str, type[Section]]:
 
 
 def section_places() -> list[tuple[str, ...]]:
-    """Return every place of a section in a deck, the deck itself first."""
-    return list(dict.fromkeys(tuple(map(str, in_the_deck(known))) for known in SECTIONS))
+    """Return every place of a section in a deck, without the deck itself."""
+    return list(dict.fromkeys(tuple(map(str, in_the_deck(known))) for known in SECTIONS if known))
 
 
 def in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
@@ -313,8 +315,8 @@ def in_the_deck(place: tuple[str | int, ...]) -> tuple[str | int, ...]:
     return (place[0], *place[2:]) if place[:1] == ("support",) and len(place) > 1 else place
 
 
-def _one_side(section: Section, choice: Sides, may_lack: str = "") -> None:
-    """Refuse a section that does not give exactly one side of a choice, with all fields but one that it may lack."""
+def _one_side(section: Section, choice: Sides) -> None:
+    """Refuse a section that does not give exactly one side of a choice, with all fields but the fields it may lack."""
     given = section.model_fields_set
     sides = [side for side in choice if given.intersection(side)]
     both = " or ".join(_listed(side) for side in choice)
@@ -324,7 +326,7 @@ def _one_side(section: Section, choice: Sides, may_lack: str = "") -> None:
         twice = next(name for name in sides[1] if name in given)
         raise InputError(twice, None, f"must not be given twice over; give {both}")
     for name in sides[0]:
-        if name not in given and name != may_lack:
+        if name not in given and name not in section.may_lack:
             raise InputError(name, None, "is missing")
 
 

@@ -6,7 +6,7 @@ import difflib
 import re
 import tomllib
 from collections.abc import Mapping
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Literal, get_origin
 
 from proprotor.deck.alternatives import altered
 from proprotor.deck.describe import deck_fields
@@ -16,7 +16,6 @@ from proprotor.deck.sections import Deck, sections_at
 from proprotor.errors import InputError, unknown_name
 
 _STEP = re.compile(r"([^.\[\]]+)(?:\[([^\[\]]+)\])?(?:\.|$)")
-_SOURCE = "set for this run"
 _LONGEST_TITLE = 300  # characters of settings that a title repeats
 
 
@@ -49,32 +48,31 @@ def with_settings(tables: Mapping[str, Any], settings: Mapping[str, str]) -> dic
     entries: list[tuple[_Place, Any]] = []
     changes: dict[str, Any] = {}
     for path, text in settings.items():
-        steps = _steps(path, text)
-        value = _value(text, steps)
-        if any(entry for _, entry in steps):
-            entries.append((_place(steps), value))
+        place = _place(path, text)
+        value = _value(text, place)
+        if any(isinstance(part, _Entry) for part in place):
+            entries.append((place, value))
         else:
-            _put(changes, tuple(name for name, _ in steps), value)
+            _put(changes, place, value)
     result = altered(dict(tables), changes)
     for place, value in entries:
         result = _replaced(result, place, value, "")
     return _titled(per_revolution_of(tables, result), settings)
 
 
-def _steps(path: str, text: str) -> list[tuple[str, str]]:
-    """Return a place as names, each with an entry of a list or ""."""
-    found = [match.groups(default="") for match in _STEP.finditer(path)]
-    if "".join(match[0] for match in _STEP.finditer(path)) != path or path.endswith("."):
+def _place(path: str, text: str) -> _Place:
+    """Return the names and entries of a path, one after the other."""
+    steps = list(_STEP.finditer(path))
+    if "".join(step[0] for step in steps) != path or path.endswith("."):
         raise InputError(path, text, "must be a field of a deck, such as rotor.precone")
-    steps = [(name.strip(), entry.strip()) for name, entry in found]
-    if not steps or steps[0][0] not in Deck.model_fields:
+    place: list[str] = []
+    for step in steps:
+        place.append(step[1].strip())
+        if entry := (step[2] or "").strip():
+            place.append(_Entry(entry))
+    if not place or place[0] not in Deck.model_fields:
         raise InputError(path, text, _nearest(path))
-    return steps
-
-
-def _place(steps: list[tuple[str, str]]) -> _Place:
-    """Return the names and entries of steps, one after the other."""
-    return tuple(part for name, entry in steps for part in ((name, _Entry(entry)) if entry else (name,)))
+    return tuple(place)
 
 
 def _nearest(path: str) -> str:
@@ -86,9 +84,9 @@ def _nearest(path: str) -> str:
     return unknown_name(path.partition(".")[0], Deck.model_fields)
 
 
-def _value(text: str, steps: list[tuple[str, str]]) -> Any:
+def _value(text: str, place: _Place) -> Any:
     """Return text as a TOML value if possible, with a provenance for a field that is a number."""
-    field = _field([name for name, _ in steps])
+    field = _field([part for part in place if not isinstance(part, _Entry)])
     try:
         read = tomllib.loads(f"value = {text}")
         value = read["value"] if set(read) == {"value"} else text
@@ -96,33 +94,23 @@ def _value(text: str, steps: list[tuple[str, str]]) -> Any:
         value = text
     if field is None:
         return value
-    if _is_text(field.annotation) and not isinstance(value, str):
+    is_text = field.annotation is str or get_origin(field.annotation) is Literal
+    if is_text and not isinstance(value, str):
         return text
     is_number = any(isinstance(part, Reading) for part in field.metadata)
-    return value if isinstance(value, dict) or not is_number else _assumed(value)
+    if isinstance(value, dict) or not is_number:
+        return value
+    return {"value": value, "status": "assumed", "source": "set for this run"}
 
 
 def _field(names: list[str]) -> Any:
     """Return the definition of a field, for [support] of the first kind that has it; None for an unknown field."""
-    found = [
-        section.model_fields[names[-1]]
-        for section in sections_at(tuple(names[:-1])).values()
-        if names[-1] in section.model_fields
-    ]
-    return found[0] if found else None
+    *outer, last = names
+    sections = sections_at(tuple(outer)).values()
+    return next((section.model_fields[last] for section in sections if last in section.model_fields), None)
 
 
-def _is_text(annotation: Any) -> bool:
-    return annotation is str or (
-        get_origin(annotation) is Literal and all(isinstance(choice, str) for choice in get_args(annotation))
-    )
-
-
-def _assumed(value: Any) -> dict[str, Any]:
-    return {"value": value, "status": "assumed", "source": _SOURCE}
-
-
-def _put(changes: dict[str, Any], place: tuple[str, ...], value: Any) -> None:
+def _put(changes: dict[str, Any], place: _Place, value: Any) -> None:
     """Put a value into nested tables."""
     *outer, last = place
     for name in outer:

@@ -17,10 +17,11 @@ import csv
 import math
 import os
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from proprotor.deck.reading import ANY, Bound
 from proprotor.errors import InputError, printable, unknown_name
 from proprotor.files.text import read_text
 from proprotor.units import factor_to_si
@@ -38,12 +39,11 @@ _ROUNDING = 1e-9  # relative to the radius: a tip at 150 inch equals one at 12.5
 class _Distribution(NamedTuple):
     """A column of a file, along the blade.
 
-    r_over_R : stations (n,), increasing; values : (n,) in SI; unit : as the file has it
+    r_over_R : stations (n,), increasing; values : (n,) in SI
     """
 
     r_over_R: tuple[float, ...]
     values: tuple[float, ...]
-    unit: str
 
 
 class _Head(NamedTuple):
@@ -65,8 +65,7 @@ def read_stations(
     unit: str,
     *,
     radius: float | None = None,
-    holds: Callable[[float], bool] = lambda value: True,
-    rule: str = "",
+    bound: Bound = ANY,
 ) -> _Distribution:
     """Return one column of a file of blade stations.
 
@@ -79,8 +78,8 @@ def read_stations(
         SI unit of the returned values; ``""`` for plain numbers.
     radius : float, optional
         m; needed where the stations are ``r``.
-    holds, rule : callable and str
-        A condition on each SI value, and its rule for a message.
+    bound : Bound
+        A condition on each SI value, with its rule for a message.
 
     Raises
     ------
@@ -90,9 +89,8 @@ def read_stations(
     try:
         heads, rows = _table(read_text(Path(path), "file", Path(path).name, _LARGEST))
         stations, values = _stations_head(heads), _head(heads, column)
-        to_si = _factor(values, unit)
-        scale = _scale(stations, radius)
-        return _distribution(rows, stations, values, scale, to_si, holds, rule)
+        to_si, scale = _factor(values, unit), _scale(stations, radius)
+        return _distribution(rows, stations, scale, values, to_si, bound)
     except _Fault as fault:
         raise InputError("file", Path(path).name, str(fault)) from None
 
@@ -181,11 +179,10 @@ def _scale(head: _Head, radius: float | None) -> float:
 def _distribution(
     rows: Iterator[tuple[int, list[str]]],
     stations: _Head,
-    values: _Head,
     scale: float,
+    values: _Head,
     to_si: float,
-    holds: Callable[[float], bool],
-    rule: str,
+    bound: Bound,
 ) -> _Distribution:
     """Return the stations and values of all lines; refuse a station or value that breaks a rule."""
     r_over_R: list[float] = []
@@ -197,15 +194,15 @@ def _distribution(
         value = _number(number, cells, values) * to_si
         if not math.isfinite(value):
             raise _at(number, values, "must be finite")
-        if not holds(value):
-            raise _at(number, values, rule)
+        if not bound.holds(value):
+            raise _at(number, values, bound.rule)
         r_over_R.append(r)
         found.append(value)
         if len(found) > _MOST_STATIONS:
             raise _Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
     if len(found) < 2:
         raise _Fault("must have two stations or more")
-    return _Distribution(tuple(r_over_R), tuple(found), values.unit)
+    return _Distribution(tuple(r_over_R), tuple(found))
 
 
 def _on_the_blade(number: int, head: _Head, r: float) -> float:

@@ -111,7 +111,6 @@ class BeamWingSection(Section):
     """A cantilever wing of beam elements with a rigid pylon."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = DAMPING_ALTERNATIVES
-    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("damping_ratio", "loss_factor")
 
     kind: Literal["beam-wing"] = needed("A wing of beam elements.")
     span: fields.PositiveLength = needed("Span, from the mount outboard to the pylon.")
@@ -165,7 +164,7 @@ class MatricesSection(Section):
     """Mass, stiffness and damping matrices of any finite-element code."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = FILE_ALTERNATIVES
-    needed_unless_replaced: ClassVar[tuple[str, ...]] = ("file", "mass", "stiffness", "dofs")
+    may_lack: ClassVar[tuple[str, ...]] = ("damping",)
 
     kind: Literal["matrices"] = needed("Matrices from files.")
     file: fields.File = optional("An .npz file with mass, stiffness, dofs and perhaps damping.")
@@ -247,22 +246,6 @@ SupportSection = Annotated[
     NormalModesSection | BeamWingSection | MatricesSection | NastranSection | PivotSection | RigidSection,
     Field(discriminator="kind"),
 ]
-
-# The sections of each kind of support by their place in [support].
-SUPPORT_TABLES: dict[tuple[str, ...], type[Section]] = {
-    ("normal-modes",): NormalModesSection,
-    ("normal-modes", "modes"): ModeSection,
-    ("normal-modes", "wing_aerodynamics"): AssumedShapeSection,
-    ("beam-wing",): BeamWingSection,
-    ("beam-wing", "wing_aerodynamics"): WingAerodynamicsSection,
-    ("matrices",): MatricesSection,
-    ("matrices", "wing_aerodynamics"): AssumedShapeSection,
-    ("nastran",): NastranSection,
-    ("nastran", "wing_aerodynamics"): AssumedShapeSection,
-    ("pivot",): PivotSection,
-    ("rigid",): RigidSection,
-}
-SUPPORT_KINDS = tuple(place[0] for place in SUPPORT_TABLES if len(place) == 1)
 
 
 def _exactly_one(section: Section, one: str, other: str) -> None:

@@ -11,13 +11,14 @@ from typing import Any
 
 from proprotor.deck.describe import DeckField, deck_fields
 from proprotor.deck.per_revolution import as_one_file
+from proprotor.deck.sections import section_places
 from proprotor.deck.written import FileName
 from proprotor.units import meaning
 
 _HEAD = """\
-# A deck of proprotor{origin}. Every number with a dimension carries its unit, US or SI as you like:
+# A deck of proprotor{origin}. Every number with a dimension has its unit, US or SI:
 #   radius = "12.5 ft"
-# or says as well where it comes from, which results then repeat:
+# or is a table that also names the source, which results then repeat:
 #   radius = {{ value = "12.5 ft", status = "published", source = "report, table" }}
 # with a status of published, derived, recalled, calibrated or assumed.
 #
@@ -25,16 +26,6 @@ _HEAD = """\
 #   proprotor flutter {file}
 #   proprotor sweep {file} --speed 50:400:5kt --plot damping.png
 """
-_SECTIONS = (
-    "case",
-    "rotor",
-    "rotor.airfoil",
-    "rotor.frequencies",
-    "operation",
-    "drive_train",
-    "support",
-    "support.wing_aerodynamics",
-)
 _EXAMPLE = re.compile(r'such as ("[^"]*"|\S+?)(?:,| or|$)')
 _EXAMPLES = {
     "": '""',
@@ -69,9 +60,10 @@ def deck_text(
     tables = tables if variant else as_one_file(dict(tables))
     parts = [_HEAD.format(origin=f", made from {base}" if base else "", file=place.name)]
     if variant:
-        parts.append(f"# A variant: what stands here replaces what the base has.\nbase = {toml(base)}\n")
-    for section in _SECTIONS:
-        parts.append("\n".join(_section(section, tables, place, variant)))
+        parts.append(f"# A variant: each field replaces the same field of the base.\nbase = {toml(base)}\n")
+    for section in map(".".join, section_places()):
+        if section not in ("operation.trim", "support.modes"):  # the trim is a value, the modes follow
+            parts.append("\n".join(_section(section, tables, place, variant)))
     modes = tables.get("support", {}).get("modes")
     for mode in modes if isinstance(modes, list) else ():
         parts.append("\n".join(_mode(mode, place, variant)))
@@ -119,15 +111,11 @@ def _section(section: str, tables: Mapping[str, Any], place: Path, variant: bool
         name = _name(field)
         if section == "case" and name == "name":
             yield from _entry(field, toml(case_name(place)), "")
-        elif name in entries and not _is_list_of_tables(entries[name]):
+        elif name in entries:
             keep = not variant or (section, name) == ("case", "title")
             yield from _entry(field, toml(_from(entries[name], place)), "" if keep else "# ")
-        elif not (variant or name == "warnings" or name in entries):
+        elif not (variant or name == "warnings"):
             yield from _entry(field, example(field), "# ")
-
-
-def _is_list_of_tables(value: Any) -> bool:
-    return isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
 
 
 def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:

@@ -6,8 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from proprotor.deck.sections import SECTIONS, Deck, in_the_deck
-from proprotor.deck.support_sections import SUPPORT_KINDS
+from proprotor.deck.sections import SECTIONS, SUPPORT_KINDS, Deck, in_the_deck
 from proprotor.deck.text import plain_text
 from proprotor.errors import InputError, unknown_name
 
@@ -43,7 +42,7 @@ def validate(tables: dict[str, Any]) -> Deck:
 
 
 def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
-    """Return an error of pydantic with the field's name in the deck and our rule."""
+    """Return an error of pydantic with the field's name in the deck and a rule in the words of this package."""
     place, kind = problem["loc"], problem["type"]
     field = _field_name(in_the_deck(place), tables)
     if kind == "value_error":

@@ -15,7 +15,6 @@ from proprotor.units import has_own_unit
 
 if TYPE_CHECKING:
     from proprotor.datum import Datum
-    from proprotor.deck.sections import Deck
 
 _FIXED = (str, int, tuple)  # files, whole numbers and lists, which have no range
 
@@ -41,7 +40,8 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
     InputError
         When the case was not built from a deck.
     """
-    _deck_of(case)
+    if case.deck is None:
+        raise InputError("case", case.name, "must be made from a deck, whose numbers may then vary")
     return {
         path: number
         for path, number in case.given.items()
@@ -83,15 +83,7 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
         number = _number(path, value, known[path].unit)
         written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
         numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
-    return assemble(_deck_of(case), numbers, tuple(case.support.names), kind=type(case))
-
-
-def _deck_of(case: Configuration) -> Deck:
-    """Return the deck of a case; refuse a case without a deck."""
-    if case.deck is None:
-        raise InputError("case", case.name, "must be made from a deck, whose numbers may then vary")
-    deck: Deck = case.deck
-    return deck
+    return assemble(case.deck, numbers, tuple(case.support.names), kind=type(case))
 
 
 def _number(path: str, value: Any, unit: str) -> np.ndarray:

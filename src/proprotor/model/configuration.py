@@ -43,7 +43,7 @@ class Configuration:
         value as written, its SI value and unit, status and source. Numbers that follow from numbers of the deck,
         such as a stiffness from a frequency, are included.
     frequencies : BladeFrequencies, optional
-        Frequencies of the blades; with them the model has structure="tabulated" unless an option says otherwise.
+        Frequencies of the blades; a case that has some has structure="tabulated" unless an option says otherwise.
     drive_train : DriveTrain, optional
         Drive train on the rotor's azimuth, unless an option says otherwise.
     deck : Deck, optional
@@ -126,7 +126,7 @@ class Configuration:
 
 
 def _held(support: NormalModes) -> str:
-    """Return how the rotor was held when the modes of the support were found, if it was on."""
+    """Return how the rotor was held when the modes of the support were found, if the rotor was on."""
     if not support.includes_rotor:
         return ""
     shaft = "" if support.includes_rotor == "mass only" else f", shaft {support.shaft}"

@@ -1,4 +1,4 @@
-"""A short text that identifies the deck of a case, and whatever else cannot be written out."""
+"""A short text that identifies the deck of a case, or a value that cannot be written out."""
 
 from __future__ import annotations
 

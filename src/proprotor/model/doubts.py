@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray
 
 MARK = "?"
-_SHARE = re.compile(r"\d+(?=%)")  # differs from point to point for the same reason
+_SHARE = re.compile(r"\d+(?=%)")  # a percentage, which differs from point to point for the same reason
 
 
 class Doubt(NamedTuple):

@@ -108,9 +108,7 @@ def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]
 def lack_azimuth(model: LinearModel) -> Array:
     """Return which points (...) lack the azimuth among their states, while other points of the batch have it."""
     holds = model.shaft_holds_azimuth
-    if not holds.any():
-        return np.zeros(holds.shape, dtype=bool)
-    return np.asarray(~holds & np.isfinite(model.K).all(axis=(-2, -1)))
+    return np.asarray(holds.any() & ~holds & np.isfinite(model.K).all(axis=(-2, -1)))
 
 
 def missing_roots(model: LinearModel, states: int | None = None) -> Array:

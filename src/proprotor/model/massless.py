@@ -1,6 +1,6 @@
 """Find motions that move no mass, such as flapping about the centre of rotation against the tilt of a gimbal.
 
-Such coordinates describe one motion twice. Their mass matrix has no inverse, though rounding may hide that, so the
+Such coordinates describe one motion twice. Their mass matrix has no inverse, though rounding may hide this, so the
 motion has no eigenvalue.
 """
 

@@ -44,17 +44,13 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
         When the model does not begin with the hub coordinates, a coordinate of the support has the name of a coordinate
         of the rotor, the mass at rest is needed and missing, or a single support has no mass without the rotor.
     """
-    if rotor_alone.dofs[: len(HUB)] != HUB:
-        raise InputError("dofs", ", ".join(rotor_alone.dofs), f"must begin with {', '.join(HUB)}")
+    check_hub("dofs", rotor_alone)
     own = rotor_alone.dofs[len(HUB) :]
     _check_names(support.names, own)
     mass, refusal = without_rotors(support, [(support.hub, rotor_alone.mass_at_rest)])
     additions = {"M": mass, "C": support.damping, "K": support.stiffness}
-    shape = np.broadcast_shapes(
-        rotor_alone.M.shape[:-2],
-        support.hub.shape[:-2],
-        *(matrix.shape[:-2] for matrix in additions.values()),
-    )
+    parts = (rotor_alone.M, support.hub, *additions.values())
+    shape = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in parts))
     rotor_alone = _broadcast(rotor_alone, shape)
     matrices: dict[str, Any] = {
         name: _on_support(getattr(rotor_alone, name), support.hub, addition)
@@ -77,6 +73,12 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     return refused_where(refusal, with_reasons(coupled), support)
 
 
+def check_hub(field: str, model: LinearModel) -> None:
+    """Refuse a model of a rotor alone that does not begin with the hub coordinates."""
+    if model.dofs[: len(HUB)] != HUB:
+        raise InputError(field, ", ".join(model.dofs), f"must begin with {', '.join(HUB)}")
+
+
 def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> LinearModel:
     """Return the model with NaN and the reason at each point whose support has no mass without its rotors.
 
@@ -85,8 +87,7 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
     InputError
         When one refusal holds for all points.
     """
-    if not refusal.ndim:
-        refuse(refusal, support)
+    refuse(refusal, support)
     everywhere = np.broadcast_to(refusal, model.M.shape[:-2])
     if not (refused := everywhere != "").any():
         return model
@@ -100,7 +101,7 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
 
 
 def _at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
-    """Return an array of many designs, whose last `own` axes are not those of the batch, at each point of a batch."""
+    """Return an array of many designs, whose last `own` axes are not axes of the batch, at each point of a batch."""
     if values is None:
         return None
     return np.broadcast_to(values, (*shape, *values.shape[values.ndim - own :]))
@@ -139,7 +140,7 @@ def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:
 
 
 def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
-    """Return the model at every point of a batch that has more axes, those of the supports."""
+    """Return the model at every point of a batch that has more axes, the axes of the supports."""
     if model.M.shape[:-2] == shape:
         return model
     matrices: dict[str, Any] = {name: _at_points(matrix, shape, 2) for name, matrix in model.matrices.items()}

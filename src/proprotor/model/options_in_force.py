@@ -17,7 +17,7 @@ _LISTED = 24  # largest array that is written out; a larger one is replaced by i
 
 
 def in_force(options: Options) -> dict[str, Any]:
-    """Return every option in force as plain data, with a fingerprint in place of what cannot be written out."""
+    """Return every option in force as plain data, with a fingerprint in place of a value that cannot be written out."""
     return {entry.name: plain(getattr(options, entry.name)) for entry in fields(options)}
 
 

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
 _RECORDS = {"frequencies": BladeFrequencies, "drive_train": DriveTrain}
-_ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling")  # text for what could not be written out
+# Options whose plain data are a text in place of functions and large arrays.
+_ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling")
 
 
 def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -42,7 +43,10 @@ def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str
     """
     own = check_options(found, case, given)
     return {
-        name: _keyword(case, name, value, given) for name, value in own.items() if not _follows(name, value)
+        name: _keyword(case, name, value, given)
+        for name, value in own.items()
+        if value is not None
+        or name == "drive_train"  # without None here, the drive train of the case would count
     }
 
 
@@ -73,11 +77,6 @@ def check_options(found: Mapping[Any, Any], case: Configuration, given: Mapping[
 
 def _written(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def _follows(name: str, value: Any) -> bool:
-    """Return whether an option is at its default; None for the drive train is not, because the case may have one."""
-    return value is None and name != "drive_train"
 
 
 def _keyword(case: Configuration, name: str, value: Any, given: Mapping[str, Any]) -> Any:

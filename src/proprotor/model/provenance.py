@@ -19,8 +19,7 @@ def doubtful_inputs(case: Configuration) -> dict[str, Datum]:
 
 def reservations(case: Configuration) -> list[str]:
     """Return the sentences to show with every result of the case: on doubtful inputs, and on the calibration."""
-    doubtful = doubtful_inputs(case)
-    counts = Counter(number.status for number in doubtful.values())
+    counts = Counter(number.status for number in doubtful_inputs(case).values())
     sentences = []
     if counts:
         counted = ", ".join(f"{count} {status}" for status, count in sorted(counts.items()))

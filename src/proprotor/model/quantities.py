@@ -47,27 +47,22 @@ def flat(value: Any, shape: tuple[int, ...]) -> Any:
 def model_quantities(
     rotor: Rotor, operation: Operation, options: Options, airspeed: Array, shape: tuple[int, ...]
 ) -> dict[str, Any]:
-    """Return `rotor_quantities` and the numbers that the options give: couplings, drive train, section damping."""
-    given = {name: getattr(options, name) for name in COUPLINGS}
-    given |= {} if options.drive_train is None else vars(options.drive_train)
-    given = {name: flat(value, shape) for name, value in given.items() if value is not None}
-    given["section_damping"] = float(bool(options.section_damping))
-    return rotor_quantities(rotor, operation, airspeed, shape) | given
+    """Return the quantities of rotor, operation, options and airspeed: numbers, or arrays flattened over the batch.
 
-
-def rotor_quantities(
-    rotor: Rotor, operation: Operation, airspeed: Array, shape: tuple[int, ...]
-) -> dict[str, Any]:
-    """Return the quantities of rotor, operation and airspeed: numbers, or arrays flattened over the batch."""
+    The options give couplings, drive train and section damping.
+    """
     given = of_rotor(rotor) | {name: getattr(operation, name) for name in _AIR}
     softest = _SOFTEST_SPRING * np.maximum(np.maximum(rotor.flap_stiffness, rotor.lag_stiffness), 1.0)
     given |= {name: np.maximum(given[name], softest) for name in ("flap_stiffness", "lag_stiffness")}
     given |= {"propeller_moment": float(rotor.propeller_moment), "airspeed": airspeed}
+    given |= {name: value for name in COUPLINGS if (value := getattr(options, name)) is not None}
+    given |= {} if options.drive_train is None else vars(options.drive_train)
+    given["section_damping"] = float(bool(options.section_damping))
     return {name: flat(value, shape) for name, value in given.items()}
 
 
 def of_rotor(rotor: Rotor) -> dict[str, Any]:
-    """Return the rotor's own numbers, without what is distributed along the blade."""
+    """Return the rotor's own numbers, without the properties that are distributed along the blade."""
     names = [entry.name for entry in fields(rotor) if entry.name not in _ALONG_THE_BLADE]
     return {name: getattr(rotor, name) for name in (*names, *_HINGE_INERTIAS)}
 

@@ -1,6 +1,6 @@
 """Model a rigid propeller with published whirl derivatives, in place of a rotor, on the six hub coordinates.
 
-The derivatives are those of NASA TN D-659 (Reed and Bland, 1961), in axes X forward along the shaft, Y to
+The derivatives have the definitions of NASA TN D-659 (Reed and Bland, 1961), in axes X forward along the shaft, Y to
 the right and Z down, the propeller turning about +X:
 
     F_Z  = ½ρV²S ( C_Zθ θ̄ + C_Zψ ψ̄ + C_Zr ψ̇R/V)        M_Y = ρV²SR ( C_mψ ψ̄ + C_mq θ̇R/V)
@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError
+from proprotor.errors import check_finite
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import HUB
 from proprotor.rotor.trim import Trim
@@ -109,8 +109,11 @@ def rigid_propeller(
         "polar_inertia": polar_inertia,
         "diametral_inertia": diametral_inertia,
     }
-    values = [_finite(name, value, not_negative=True) for name, value in given.items()]
-    values += [_finite(name, value) for name, value in derivatives._asdict().items()]
+    for name, value in given.items():
+        check_finite(name, value, "not negative")
+    for name, value in derivatives._asdict().items():
+        check_finite(name, value)
+    values = (np.asarray(value, dtype=float) for value in (*given.values(), *derivatives))
     speed, radius, omega, density, mass, polar, diametral, *numbers = np.broadcast_arrays(*values)
     damping, stiffness = _airloads(speed, radius, density, WhirlDerivatives(*numbers))
     inertia = _diagonal(mass, mass, mass, diametral, diametral, polar)
@@ -203,13 +206,3 @@ def _unloaded(shape: tuple[int, ...]) -> Trim:
         warning=np.full(shape, "", dtype=object),
         iterations=np.zeros(shape, dtype=int),
     )
-
-
-def _finite(name: str, value: ArrayLike, not_negative: bool = False) -> Array:
-    """Return a value as an array; refuse one that is not finite or, if asked, negative."""
-    array = np.asarray(value, dtype=float)
-    if not np.all(np.isfinite(array)):
-        raise InputError(name, value, "must be finite")
-    if not_negative and np.any(array < 0):
-        raise InputError(name, value, "must not be negative")
-    return array

@@ -31,7 +31,7 @@ from proprotor.rotor.section_loads import (
     load_moments,
     segment_quantities,
 )
-from proprotor.rotor.trim import Target, Trim, trim_target
+from proprotor.rotor.trim import Trim, trim_target
 from proprotor.rotor.trim_solver import Settled, solve_trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
@@ -70,7 +70,8 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     _check_memory(rotor, choice, points)
     quantities = model_quantities(rotor, operation, choice, speed, shape)
     sections, coarse = (BladeSections.of(rotor, shape, coarse) for coarse in (False, True))
-    target = _flat(trim_target(rotor, operation), shape)
+    target = trim_target(rotor, operation)
+    target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
     settled = solve_trim(sections, coarse, quantities, choice, target, points)
     reactionless = _reactionless(rotor, choice)
     coordinates = (*FIXED, *(reactionless_coordinates(reactionless) if reactionless else ()))
@@ -109,11 +110,6 @@ def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
     check_memory("airspeed", f"{points} points", size, "their matrices", "take fewer points at once")
 
 
-def _flat(target: Target, shape: tuple[int, ...]) -> Target:
-    """Return the target with its arrays flattened over the batch."""
-    return replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
-
-
 def _reactionless(rotor: Rotor, options: Options) -> int | None:
     """Return the number of blades whose reactionless motions the options keep; None if the options keep none."""
     if not options.reactionless:
@@ -125,11 +121,8 @@ def _reactionless(rotor: Rotor, options: Options) -> int | None:
 
 def _free_coordinates(options: Options, coordinates: tuple[Coordinate, ...]) -> tuple[str, ...]:
     """Return the names of the coordinates that the options neither lock nor hold."""
-    removed = set(options.locked)
-    if not options.pitch_is_free:
-        removed.add("pitch")
-    if options.rotor_speed == "constant":
-        removed.add(ROTOR_SPEED)
+    held = {"pitch": not options.pitch_is_free, ROTOR_SPEED: options.rotor_speed == "constant"}
+    removed = {*options.locked, *(angle for angle, is_held in held.items() if is_held)}
     return tuple(coordinate.name for coordinate in coordinates if coordinate.angle not in removed)
 
 
@@ -193,22 +186,18 @@ def _with_reactionless(
     found: Mapping[str, Array], blocks: Iterable[dict[str, Array]], n: int
 ) -> dict[str, Array]:
     """Return matrices with blocks of reactionless coordinates, which couple with no others and have no inputs."""
-    whole = {
-        name: _filled(matrix, n, n if name in _KINDS else matrix.shape[-1]) for name, matrix in found.items()
-    }
     start = len(FIXED_COORDINATES)
+    none, more = (0, 0), (0, n - start)
+    whole = {
+        name: np.pad(matrix, [none] * (matrix.ndim - 2) + [more, more if name in _KINDS else none])
+        for name, matrix in found.items()
+    }
     for block in blocks:
         end = start + block["M"].shape[-1]
         for name, matrix in block.items():
             whole[name][..., start:end, start:end] = matrix
         start = end
     return whole
-
-
-def _filled(matrix: Array, rows: int, columns: int) -> Array:
-    """Return the matrix with zeros below and beside its entries."""
-    missing = [(0, 0)] * (matrix.ndim - 2) + [(0, rows - matrix.shape[-2]), (0, columns - matrix.shape[-1])]
-    return np.pad(matrix, missing)
 
 
 def _segments(

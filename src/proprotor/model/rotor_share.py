@@ -34,7 +34,7 @@ def _how_held(support: NormalModes, mass_at_rest: Array) -> str:
 
 
 def rotor_share(mass_at_rest: ArrayLike, held: str, shaft: str = "held") -> Array:
-    """Return what a rotor adds to the mass at its hub.
+    """Return the mass that a rotor adds at its hub.
 
     Parameters
     ----------
@@ -125,22 +125,21 @@ def settled(support: NormalModes, mass_at_rest: Array) -> NormalModes:
         When the share of the rotor leaves no mass; the rule names includes_rotor and the units.
     """
     _, refusal = without_rotors(support, [(support.hub, mass_at_rest)])
-    if not refusal.ndim:
-        refuse(refusal, support)
+    refuse(refusal, support)
     if support.includes_rotor is not True:
         return support
     return replace(support, includes_rotor=_how_held(support, mass_at_rest))
 
 
 def refuse(refusal: Array, support: NormalModes) -> None:
-    """Raise an error if a single design is refused."""
-    if reason := str(refusal[()]):
+    """Raise an error if a single design is refused; of many designs, each fails alone."""
+    if not refusal.ndim and (reason := str(refusal[()])):
         raise InputError("support.includes_rotor", support.includes_rotor, reason)
 
 
 def _all_positive(left: Array, given: Array) -> bool:
     """Return whether no remaining mass is negative, but for rounding: all have a Cholesky factor."""
-    scaled = _scaled(np.real(left), np.real(given))
+    scaled, _ = _scaled(np.real(left), np.real(given))
     try:
         np.linalg.cholesky(scaled + _ROUNDING * np.eye(scaled.shape[-1]))
     except np.linalg.LinAlgError:
@@ -148,21 +147,20 @@ def _all_positive(left: Array, given: Array) -> bool:
     return True
 
 
-def _scaled(left: Array, given: Array) -> Array:
-    """Return the remaining mass in units of the diagonal of the given mass, which stays above zero."""
+def _scaled(left: Array, given: Array) -> tuple[Array, Array]:
+    """Return the remaining mass for coordinates with a unit diagonal of the given mass, and the scale of each."""
     diagonal = np.diagonal(given, axis1=-2, axis2=-1) + np.abs(np.diagonal(left, axis1=-2, axis2=-1))
     size = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
-    scaled: Array = left / size[..., :, None] / size[..., None, :]
-    return scaled
+    return left / size[..., :, None] / size[..., None, :], size
 
 
 def _refusal(left: Array, given: Array, names: Sequence[str], held: str) -> str:
     """Return the motion of one design in which the rotor's share exceeds the whole mass, in words; "" without one."""
-    values, motions = np.linalg.eigh(_scaled(left, given))
+    scaled, size = _scaled(left, given)
+    values, motions = np.linalg.eigh(scaled)
     if values[0] >= -_ROUNDING:
         return ""
-    size = np.sqrt(np.diagonal(given) + np.abs(np.diagonal(left)))
-    motion = motions[:, 0] / np.where(size > 0, size, 1.0)
+    motion = motions[:, 0] / size
     whole, rest = motion @ given @ motion, motion @ left @ motion
     most = names[int(np.argmax(np.abs(motions[:, 0])))]
     times = f"{1 - rest / whole:.3g} times" if whole > 0 else "more than"
@@ -175,7 +173,9 @@ def _refusal(left: Array, given: Array, names: Sequence[str], held: str) -> str:
 def spring_warnings(
     support: NormalModes, mass_at_rest: Array, gimbal_stiffness: ArrayLike
 ) -> tuple[str, ...]:
-    """Warn of modes found on a gimbal whose frequencies a hub spring changes, because a spring is no mass.
+    """Return a warning of modes whose frequencies the hub spring of a gimballed rotor changes, or no warning.
+
+    The rotor's share is that of a gimbal without spring, because a spring has no mass.
 
     Parameters
     ----------

@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
-from proprotor.model.mount import refused_where
+from proprotor.model.mount import check_hub, refused_where
 from proprotor.model.rotor_share import without_rotors
 from proprotor.rotor.motions import HUB, check_distinct
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
-# A mirror across the plane of I and K reverses y and, among the rotations (axial vectors), those about x and z.
+# A mirror across the plane of I and K reverses y and, because rotations are axial vectors, the rotations about x and z.
 _MIRROR = np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 
 
@@ -77,9 +77,8 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
     mass, refusal = without_rotors(
         support, [(hubs[name], model.mass_at_rest) for name, model in models.items()]
     )
-    shape = np.broadcast_shapes(
-        *(matrix.shape[:-2] for matrix in (support.mass, mass, *(model.M for model in models.values())))
-    )
+    masses = (support.mass, mass, *(model.M for model in models.values()))
+    shape = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in masses))
     matrices: dict[str, Any] = {}
     for kind, of_support in {"M": mass, "C": support.damping, "K": support.stiffness}.items():
         whole = np.zeros((*shape, len(names), len(names)))
@@ -115,10 +114,7 @@ def _to_rotor(hub: Array, own: list[int], count: int) -> Array:
 
 def _hub_of(name: str, rotor: MountedRotor, n: int) -> Array:
     """Return the hub motion in the axes of the rotor's own model."""
-    if rotor.model.dofs[: len(HUB)] != HUB:
-        raise InputError(
-            f"rotors[{name}].model", ", ".join(rotor.model.dofs), f"must begin with {', '.join(HUB)}"
-        )
+    check_hub(f"rotors[{name}].model", rotor.model)
     hub = np.asarray(rotor.hub, dtype=float)
     if hub.shape != (len(HUB), n) or not np.isfinite(hub).all():
         raise InputError(

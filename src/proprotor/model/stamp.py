@@ -66,7 +66,7 @@ def line(found: Mapping[Any, Any]) -> str:
 
 
 def unusual_options(found: Mapping[Any, Any]) -> list[str]:
-    """Return a sentence with the options that are not defaults, in a list that is empty if there are none."""
+    """Return a sentence with the options that are not defaults, in a list that is empty if all are defaults."""
     own = chosen(options_in_result(found)) if "options" in found else {}
     return [f"Options: {options_text(own)}."] if own else []
 

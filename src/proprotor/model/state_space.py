@@ -24,9 +24,8 @@ if TYPE_CHECKING:
     import control
 
 _Rows = tuple[Array, Array, Array]  # displacements, rates and accelerations per unit of each state
-_Block = tuple[
-    tuple[str, ...], Array, Array | None
-]  # names of outputs, their rows of C and of D, None for zeros
+# Names of outputs with their rows of C and of D, None for zeros.
+_Block = tuple[tuple[str, ...], Array, Array | None]
 
 LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 
@@ -118,10 +117,8 @@ def state_space(model: LinearModel) -> StateSpace:
     acceleration_by_input = np.linalg.solve(mass, model.B)
     inputs = np.zeros((*system.shape[:-1], len(INPUTS)))
     inputs[..., rates, :] = acceleration_by_input
-    displacement = np.zeros((n, system.shape[-1]))
-    displacement[held, np.arange(len(held))] = 1
-    rate = np.zeros((n, system.shape[-1]))
-    rate[:, rates] = np.eye(n)
+    displacement = np.pad(np.eye(n)[:, held], ((0, 0), (0, n)))
+    rate = np.pad(np.eye(n), ((0, 0), (len(held), 0)))
     motion = (displacement, rate, system[..., rates, :])
     names, rows, feedthrough = _outputs(model, motion, acceleration_by_input)
     free, failed = lack_azimuth(model), ~np.isfinite(mass).all(axis=(-2, -1))
@@ -140,11 +137,11 @@ def _outputs(
     model: LinearModel, motion: _Rows, acceleration_by_input: Array
 ) -> tuple[tuple[str, ...], Array, Array]:
     """Return the names of the outputs and their rows of C and D."""
-    hub = np.eye(len(HUB), len(model.dofs)) if model.hub is None else model.hub
-    rotor = model if model.rotor is None else model.rotor
+    rotor, to_rotor = _rotor_alone(model)
+    hub = to_rotor[..., : len(HUB), :]
     own = [place for place, name in enumerate(model.dofs) if name in rotor.dofs[len(HUB) :]]
     displacement, rate, acceleration = motion
-    loads, loads_by_input = _hub_loads(model, motion, acceleration_by_input)
+    loads, loads_by_input = _hub_loads(rotor, to_rotor, motion, acceleration_by_input)
     shape = acceleration.shape[:-2]
     blocks: list[_Block] = [
         (HUB, hub @ displacement, None),
@@ -175,17 +172,17 @@ def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: A
     ]
 
 
-def _hub_loads(model: LinearModel, motion: _Rows, acceleration_by_input: Array) -> tuple[Array, Array]:
+def _hub_loads(
+    rotor: LinearModel, to_rotor: Array, motion: _Rows, acceleration_by_input: Array
+) -> tuple[Array, Array]:
     """Return the perturbation of the rotor's loads on the hub by states and inputs.
 
     These loads are minus the hub rows of the rotor alone, plus the hub rows of its inputs.
     """
-    rotor = model if model.rotor is None else model.rotor
     if rotor.dofs[: len(HUB)] != HUB:
         raise InputError(
             "dofs", ", ".join(rotor.dofs), "must begin with the hub's, from which its loads follow"
         )
-    to_rotor = np.eye(len(model.dofs)) if model.rotor is None else _to_rotor(model)
     rows = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
     displacement, rate, acceleration = motion
     loads = -(rows["M"] @ acceleration + rows["C"] @ rate + rows["K"] @ displacement)
@@ -193,12 +190,14 @@ def _hub_loads(model: LinearModel, motion: _Rows, acceleration_by_input: Array) 
     return loads, rotor.B[..., : len(HUB), :] - rows["M"] @ acceleration_by_input
 
 
-def _to_rotor(model: LinearModel) -> Array:
-    """Return the coordinates of the rotor alone per unit of each coordinate of the mounted model."""
-    assert model.rotor is not None and model.hub is not None  # a mounted model has both
+def _rotor_alone(model: LinearModel) -> tuple[LinearModel, Array]:
+    """Return the rotor alone, and its coordinates per unit of each coordinate of a model that may be mounted."""
+    if model.rotor is None or model.hub is None:
+        return model, np.eye(len(model.dofs))
     own = model.rotor.dofs[len(HUB) :]
     rows = np.zeros((len(own), len(model.dofs)))
     for place, name in enumerate(own):
         if name in model.dofs:  # a coordinate that a submodel leaves out stays at zero
             rows[place, model.dofs.index(name)] = 1
-    return np.concatenate([model.hub, np.broadcast_to(rows, (*model.hub.shape[:-2], *rows.shape))], axis=-2)
+    rows = np.broadcast_to(rows, (*model.hub.shape[:-2], *rows.shape))
+    return model.rotor, np.concatenate([model.hub, rows], axis=-2)

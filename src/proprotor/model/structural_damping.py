@@ -34,7 +34,7 @@ def neutral_damping(model: LinearModel, springs: ArrayLike) -> NeutralDamping:
     """Return all structural dampings g of the springs S at which a mode is neutrally stable, without iteration.
 
     With s = iω the equations are (A + igS) u = 0, A = K - ω²M + iωC. For a real g the conjugate equations have
-    the same g, which both together eliminate: (A ⊗ S + S ⊗ A*)(u ⊗ u*) = 0, or
+    the same g, and both together give equations without g: (A ⊗ S + S ⊗ A*)(u ⊗ u*) = 0, or
 
         s² (M ⊗ S + S ⊗ M) + s (C ⊗ S - S ⊗ C) + (K ⊗ S + S ⊗ K) = 0
 
