@@ -116,13 +116,12 @@ class Analysis:
     def _find_flutter(self, found: dict[str, Array], batch: Batch) -> None:
         refused = self._refusals(batch)
         found["reason"][:], found["flutter_note"][:] = refused[:, None], refused
-        rows = np.flatnonzero(refused == "")
-        if len(rows):
 
-            def models(line: Array, speeds: Array) -> LinearModel:
-                numbers = {name: values[:, 0] for name, values in batch.some(line).numbers.items()}
-                return self._varied(numbers).linearize(speeds, **self.options)
+        def models(rows: Array, speeds: Array) -> LinearModel:
+            numbers = {name: values[rows, 0] for name, values in batch.numbers.items()}
+            return self._varied(numbers).linearize(speeds, **self.options)
 
+        if len(rows := np.flatnonzero(refused == "")):
             put_flutter_speeds(found, batch, rows, models, self.states, self.tolerance)
 
     def _find_at_points(self, found: dict[str, Array], batch: Batch) -> None:
@@ -189,14 +188,13 @@ class Analysis:
         return self.case.vary(numbers) if numbers else self.case
 
     def _points(self, batch: Batch) -> dict[str, Array]:
-        """Return the variables of the points of a batch."""
+        """Return the variables of the points of a batch, and perhaps variables that nobody asked for."""
         shape = np.broadcast_shapes(np.shape(batch.speeds), (batch.shape[0], 1))
         speeds = np.broadcast_to(batch.speeds, shape)
         model = self._varied(batch.numbers).linearize(speeds, **self.options)
-        found: dict[str, Array] = {name: getattr(model.trim, name) for name in ("reason", "warning")}
+        of_trim = ("reason", "warning", *VARIABLES["trim"])
+        found: dict[str, Array] = {name: getattr(model.trim, name) for name in of_trim}
         found["missing"] = missing_roots(model, self.states)
-        if "trim" in self.quantities:
-            found |= {name: getattr(model.trim, name) for name in VARIABLES["trim"]}
         found |= self._roots(model)
         if "modes" in self.quantities:
             found["warning"] = doubted(found["warning"], found["mode_quality"])

@@ -20,7 +20,7 @@ AIRSPEED = "airspeed"
 _DESIGN = "design"  # the dimension of a list or a sample
 _SPEED = Datum("", None, "m/s")  # airspeed is no number of the deck
 _FACTOR = Datum("", 1.0, "")  # on several numbers of the deck, which vary together
-_MOST__DESIGNS = 100_000_000
+_MOST_DESIGNS = 100_000_000
 # Of each design, while designs are laid out: the number drawn, its value, and a copy of both.
 _BYTES_OF_INPUT = 32
 
@@ -48,7 +48,7 @@ class Designs:
     sample: dict[str, Any] = field(default_factory=dict)
 
     def __len__(self) -> int:
-        return int(np.prod(self.shape, dtype=int))
+        return math.prod(self.shape)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -194,8 +194,8 @@ def _units(values: Mapping[str, Array], known: Mapping[str, Datum]) -> dict[str,
 
 def check_size(field: str, given: object, designs: int, inputs: int) -> None:
     """Refuse more designs than there is memory for their inputs, before any are laid out."""
-    if designs > _MOST__DESIGNS:
-        raise InputError(field, given, f"must be at most {_MOST__DESIGNS} designs")
+    if designs > _MOST_DESIGNS:
+        raise InputError(field, given, f"must be at most {_MOST_DESIGNS} designs")
     size = float(_BYTES_OF_INPUT * designs * max(1, inputs))
     check_memory(field, given, size, f"the inputs of {designs:.4g} designs")
 

@@ -20,9 +20,8 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     from proprotor.study.batch import Batch
 
-_Models = Callable[
-    [Array, Array], LinearModel
-]  # rows of a batch, and an airspeed for each, to the models there
+# From rows of a batch, and an airspeed for each row, to the models of these designs at these airspeeds.
+_Models = Callable[[Array, Array], LinearModel]
 
 
 def put_flutter_speeds(
@@ -58,7 +57,8 @@ def put_flutter_speeds(
     if search.scanned.points is None:
         return
     brackets = Brackets(search, tolerance)
-    first = _lowest(brackets.close())
+    downwards = sorted(brackets.close(), key=lambda one: one.position, reverse=True)
+    first = {one.line: one for one in downwards}  # the lowest onset of each design that has one
     for place, why in brackets.lost.items():
         if brackets.line[place] not in first:
             found["flutter_note"][brackets.line[place]] = f"the search for its boundary failed: {why}"
@@ -87,20 +87,16 @@ def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: 
 
 def _notes(reason: Array, batch: Batch, search: Search) -> Array:
     """Return a sentence on each design before any boundary is known."""
-    note = np.full(len(reason), "", dtype=object)
-    works, unstable = np.zeros(len(reason), dtype=bool), np.zeros(len(reason), dtype=bool)
+    notes = np.array([why[0] or "no airspeed could be analysed" for why in reason], dtype=object)
     if search.scanned.points is not None:
         points = search.first_points
         order = np.lexsort((points.position, points.line))
         lines, place = np.unique(points.line[order], return_index=True)
         first = order[place]
-        works[lines], unstable[lines] = True, (points.growth[first] > points.error[first]).any(axis=1)
-    for row, why in enumerate(reason):
-        if not works[row]:
-            note[row] = why[0] or "no airspeed could be analysed"
-        else:
-            note[row] = UNSTABLE if unstable[row] else STABLE + _beyond(batch.speeds, why)
-    return note
+        grows = (points.growth[first] > points.error[first]).any(axis=1)
+        for line, unstable in zip(lines, grows, strict=True):
+            notes[line] = UNSTABLE if unstable else STABLE + _beyond(batch.speeds, reason[line])
+    return notes
 
 
 def _beyond(airspeed: Array, reason: Array) -> str:
@@ -109,11 +105,6 @@ def _beyond(airspeed: Array, reason: Array) -> str:
     if not len(failed):
         return ""
     return f"; {len(failed)} airspeeds failed, at {airspeed[failed[0]]:.6g} m/s: {reason[failed[0]]}"
-
-
-def _lowest(found: list[Crossing]) -> dict[int, Crossing]:
-    """Return the lowest onset of each design that has one."""
-    return {one.line: one for one in sorted(found, key=lambda one: one.position, reverse=True)}
 
 
 def _put_least_damping(found: dict[str, Array], search: Search) -> None:

@@ -18,14 +18,7 @@ from proprotor.rotor.options import parse_options
 from proprotor.study.batch import Analysis, Batch
 from proprotor.study.designs import AIRSPEED, Designs, Plan
 from proprotor.study.sampling import as_plan
-from proprotor.study.variables import (
-    ALONG_AIRSPEEDS,
-    POINT,
-    QUANTITIES,
-    bytes_of,
-    shape_of,
-    variables,
-)
+from proprotor.study.variables import ALONG_AIRSPEEDS, POINT, QUANTITIES, bytes_of, shape_of, variables
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
@@ -69,6 +62,7 @@ class Request:
         from importlib.metadata import version
 
         analysis = self.analysis
+        packages = ("proprotor", "numpy", "scipy", "pystran", "fluids")
         parts = {
             "case": analysis.case,
             "inputs": [self.designs.values, self.designs.axes],
@@ -77,9 +71,7 @@ class Request:
             "options": dict(analysis.options),
             "tolerance": analysis.tolerance,
             "code": analysis.code,
-            "versions": [
-                version(package) for package in ("proprotor", "numpy", "scipy", "pystran", "fluids")
-            ],
+            "versions": [version(package) for package in packages],
         }
         return {name: fingerprint(part, name) for name, part in parts.items()}
 
@@ -87,11 +79,9 @@ class Request:
     def size(self) -> float:
         """Bytes of all results at most, before the coordinates are known."""
         dofs = _most_coordinates(self.analysis.case, self.analysis.options)
+        found = variables(self.analysis.quantities).values()
         return float(
-            sum(
-                math.prod(shape_of(one, self.shape, 2 * dofs, dofs)) * bytes_of(one)
-                for one in variables(self.analysis.quantities).values()
-            )
+            sum(math.prod(shape_of(one, self.shape, 2 * dofs, dofs)) * bytes_of(one) for one in found)
         )
 
     def batch(self, block: tuple[slice, slice]) -> Batch:
