@@ -64,13 +64,10 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
     content = _of_model(results) if isinstance(results, LinearModel) else _of_dataset(results)
     for name, entry in content.items():
         if getattr(entry, "nbytes", 0) > _LARGEST:
-            raise InputError(
-                "results", name, "must be below 2 GB in a .mat file: proprotor.save_results takes more"
-            )
-    write_whole(
-        path,
-        lambda file: savemat(file, content, long_field_names=True, do_compression=True, oned_as="column"),
-    )
+            rule = "must be below 2 GB in a .mat file: proprotor.save_results takes more"
+            raise InputError("results", name, rule)
+    settings: dict[str, Any] = {"long_field_names": True, "do_compression": True, "oned_as": "column"}
+    write_whole(path, lambda file: savemat(file, content, **settings))
 
 
 def matlab_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, str]:
@@ -139,10 +136,9 @@ def _of_dataset(data: xarray.Dataset) -> dict[str, Any]:
 
 def _attributes(attrs: Mapping[Any, Any]) -> dict[str, Any]:
     names = matlab_names(map(str, attrs))
+    numbers = int | float | complex | np.ndarray
     return {
-        names[str(name)]: _plain(value)
-        if isinstance(value, int | float | complex | np.ndarray)
-        else str(value)
+        names[str(name)]: _plain(value) if isinstance(value, numbers) else str(value)
         for name, value in attrs.items()
     }
 

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,12 +29,11 @@ import numpy as np
 try:
     import openmdao.api as om
 except ImportError as missing:
-    raise ImportError(
-        'proprotor.exchange.openmdao needs OpenMDAO: pip install "proprotor[openmdao]"'
-    ) from missing
+    hint = 'proprotor.exchange.openmdao needs OpenMDAO: pip install "proprotor[openmdao]"'
+    raise ImportError(hint) from missing
 
 from proprotor.case import Case, load_case
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.flutter import flutter_point
@@ -172,10 +172,8 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             case = self._varied(inputs)
             if self.options["flutter_speed"]:
                 boundary = self._boundary(case)
-                outputs["flutter_speed"], outputs["flutter_frequency"] = (
-                    boundary.position,
-                    boundary.frequency,
-                )
+                outputs["flutter_speed"] = boundary.position
+                outputs["flutter_frequency"] = boundary.frequency
                 self._found = {self._key(inputs): boundary}
             if self._damping:
                 modes = self._modes_at(case, inputs["airspeed"])
@@ -228,8 +226,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         paths = dict(given) if isinstance(given, Mapping) else {variable_name(path): path for path in given}
         known = self._numbers
         for path in paths.values():
-            if path not in known:
-                raise InputError("inputs", path, unknown_name(path, known, "input"))
+            check_known("inputs", path, known, "input")
         return paths
 
     def _modes(self) -> tuple[str, ...]:
@@ -276,9 +273,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
 
     def _airspeed_partials(self, case: Case, speeds: NDArray[np.float64], partials: Any) -> None:
         named = self._modes_at(case, speeds).sel(mode=list(self._damping.values()))
-        model, changes = with_changes(
-            lambda positions: case.linearize(positions, **self._model_options), np.asarray(speeds)
-        )
+        model, changes = with_changes(partial(case.linearize, **self._model_options), np.asarray(speeds))
         spectrum = decomposition(model)
         apart = np.abs(spectrum.values[:, None, :] - named.eigenvalue.values[:, :, None])
         modes = spectrum.modes(apart.argmin(axis=-1))
@@ -295,8 +290,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
                 raise InputError("airspeed", f"{speed:.6g} m/s", str(reason))
         names = found.mode.values.tolist()
         for mode in self._damping.values():
-            if mode not in names:
-                raise InputError("damping", mode, unknown_name(mode, names, "mode"))
+            check_known("damping", mode, names, "mode")
             missing = ~np.isfinite(found.damping_ratio.sel(mode=mode).values)
             if missing.any():
                 raise InputError("damping", mode, f"is no mode at {line[missing][0]:.6g} m/s")

@@ -63,9 +63,14 @@ def note(ax: Axes, text: str) -> None:
     ax.set_title(notes, loc="left", fontsize=LABEL_SIZE, color="0.3", parse_math=False)
 
 
+def origin_of(attributes: Mapping[Any, Any], doubts: Iterable[str]) -> str:
+    """Return the case of the numbers, its options, and a sentence for each doubt about the numbers."""
+    return " ".join((stamp.line(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
+
+
 def say_origin(ax: Axes, attributes: Mapping[Any, Any], doubts: Iterable[str] = ()) -> None:
-    """Write in small print beneath the axes the case, its options, and a sentence for each doubt about the numbers."""
-    text = " ".join((stamp.line(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
+    """Write `origin_of` the numbers in small print beneath the axes."""
+    text = origin_of(attributes, doubts)
     figure = ax.get_figure(root=True)
     if not text or figure is None:
         return
@@ -111,14 +116,13 @@ def add_footer(figure: Figure | None, text: str) -> None:
     width, height = figure.get_size_inches()
     lines = textwrap.wrap(text, max(20, int(_LETTERS_PER_INCH * (width - 0.4))))
     share = ((len(lines) + 1) * _INCHES) / (height + (len(lines) + 1) * _INCHES)
+    figure.set_size_inches(width, height / (1 - share))
     engine: Any = figure.get_layout_engine()
     if engine is None:
         kept = figure.subplotpars
         bottom, top = (share + (1 - share) * part for part in (kept.bottom, kept.top))
-        figure.set_size_inches(width, height / (1 - share))
         figure.subplots_adjust(bottom=bottom, top=top)
     else:
-        figure.set_size_inches(width, height / (1 - share))
         engine.set(rect=(0, share, 1, 1 - share))
     style: dict[str, Any] = {"fontsize": _NOTE_SIZE, "va": "bottom", "color": GREY, "parse_math": False}
     figure.text(0.2 / width, 0.5 * _INCHES * (1 - share) / height, "\n".join(lines), **style)

@@ -20,14 +20,8 @@ LABEL_SIZE = 8  # points
 _DASHES = ("-", "--", ":")
 _MARKERS = "s^DvP<>"  # on broad lines, because their colours alone do not differ on a grey print
 
-# Hatches of bars by the status of a number; a number that was read in a source has none.
-STATUS_HATCHES = {
-    "published": "",
-    "derived": "",
-    "recalled": "////",
-    "assumed": "xxxx",
-    "calibrated": "....",
-}
+# Hatches of bars by the status of a number; the bar of a number that was read in a source has no hatch.
+STATUS_HATCHES = {"recalled": "////", "assumed": "xxxx", "calibrated": "...."}
 
 
 class ModeStyle(NamedTuple):

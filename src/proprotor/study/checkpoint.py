@@ -44,7 +44,9 @@ class Checkpoint:
 
     @contextmanager
     def open(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-        """Hold the folder, and begin a study in the folder or go on with its batches; the hold ends with the process or earlier.
+        """Hold the folder, and begin a study in it or go on with the batches of a study that was killed.
+
+        The folder is free again at the end of the ``with`` block, or when the process ends before.
 
         Parameters
         ----------
@@ -149,7 +151,9 @@ class Checkpoint:
             if self._digest(number, payload) == digest:
                 with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
                     arrays = dict(stored)
-                texts = {name: array.astype(object) for name, array in arrays.items() if array.dtype.kind == "U"}
+                texts = {
+                    name: array.astype(object) for name, array in arrays.items() if array.dtype.kind == "U"
+                }
                 yield number, arrays | texts
             else:
                 warn(f"{place} is damaged: the batch is computed again", stacklevel=2)
@@ -157,4 +161,3 @@ class Checkpoint:
 
     def _place(self, number: int) -> Path:
         return self.folder / f"batch-{number:08d}"
-

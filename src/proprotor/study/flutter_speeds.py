@@ -93,7 +93,7 @@ def _notes(reason: Array, batch: Batch, search: Search) -> Array:
         order = np.lexsort((points.position, points.line))
         lines, place = np.unique(points.line[order], return_index=True)
         first = order[place]
-        grows = (points.growth[first] > points.error[first]).any(axis=1)
+        grows = np.any(points.growth[first] > points.error[first], axis=1)
         for line, unstable in zip(lines, grows, strict=True):
             notes[line] = UNSTABLE if unstable else STABLE + _beyond(batch.speeds, reason[line])
     return notes

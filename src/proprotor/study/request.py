@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
 from proprotor.rotor.motions import HUB, ROTOR_SPEED
@@ -155,7 +155,9 @@ def requested(
             _check_range(speeds, name)
     analysis = Analysis(case, quantities, options, code=code)
     if tolerance is not None:
-        analysis = replace(analysis, tolerance=_above_zero("tolerance", tolerance))
+        if not isinstance(tolerance, int | float) or not tolerance > 0:
+            raise InputError("tolerance", tolerance, "must be a number above zero")
+        analysis = replace(analysis, tolerance=float(tolerance))
     line = None if speeds is None else np.atleast_1d(speeds)
     return Request(analysis, designs, line, speeds is not None and not speeds.ndim)
 
@@ -164,8 +166,7 @@ def _known_quantities(quantities: str | Sequence[str]) -> tuple[str, ...]:
     """Return the quantities in their own order, each once."""
     chosen = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     for name in chosen:
-        if name not in QUANTITIES:
-            raise InputError("quantities", name, unknown_name(str(name), QUANTITIES, "quantity"))
+        check_known("quantities", name, QUANTITIES, "quantity")
     if not chosen:
         raise InputError("quantities", None, f"must be of {', '.join(QUANTITIES)}")
     return tuple(name for name in QUANTITIES if name in chosen)
@@ -175,12 +176,6 @@ def _check_range(speeds: Array | None, quantity: str) -> None:
     if speeds is None or speeds.ndim != 1 or speeds.size < 2 or not np.all(np.diff(speeds) > 0):
         given = "among the inputs" if speeds is None else np.array2string(speeds, threshold=4)
         raise InputError(AIRSPEED, given, f'must be a range of increasing speeds for quantities="{quantity}"')
-
-
-def _above_zero(name: str, value: Any) -> float:
-    if not isinstance(value, int | float) or not value > 0:
-        raise InputError(name, value, "must be a number above zero")
-    return float(value)
 
 
 # Coordinates of the model -------------------------------------------------------------------------
@@ -216,7 +211,6 @@ def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple
         if model.trim.converged.any():
             break
     if model.M.shape[:-2] != tried.shape:
-        raise InputError(
-            "options", ", ".join(options), "must not hold arrays: vary the case's inputs instead"
-        )
+        rule = "must not hold arrays: vary the case's inputs instead"
+        raise InputError("options", ", ".join(options), rule)
     return model.dofs

@@ -206,16 +206,14 @@ def _draw(engine: str, inputs: int, size: int, seed: int) -> Array:
     """Return shares (size, inputs) drawn by an engine of scipy.stats.qmc."""
     from scipy.stats import qmc
 
-    shares: Array = getattr(qmc, engine)(inputs, rng=seed).random(size)
-    return shares
+    return np.asarray(getattr(qmc, engine)(inputs, rng=seed).random(size))
 
 
 def _draw_saltelli(inputs: int, size: int, seed: int, second_order: bool) -> Array:
     from SALib.sample import sobol as salib_sobol
 
     unit = {"num_vars": inputs, "names": [str(place) for place in range(inputs)], "bounds": [[0, 1]] * inputs}
-    shares: Array = salib_sobol.sample(unit, size, calc_second_order=second_order, seed=seed)
-    return shares
+    return np.asarray(salib_sobol.sample(unit, size, calc_second_order=second_order, seed=seed))
 
 
 def _check_power_of_two(size: int) -> None:

@@ -110,10 +110,7 @@ _lock = Lock()
 def idle_workers() -> int:
     """Return the number of workers that wait for a study."""
     with _lock:
-        for worker in [worker for worker in _idle if not worker.lives]:
-            _idle.remove(worker)
-            worker.end()
-        return len(_idle)
+        return sum(worker.lives for worker in _idle)
 
 
 def process_ids() -> list[int]:

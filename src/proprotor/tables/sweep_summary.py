@@ -77,11 +77,8 @@ def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
 def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[int, float, float, bool, bool]]:
     """Yield the first unstable point of each range, its start and stop, and whether these are ends of the sweep."""
     unstable = np.concatenate([[False], growth > 0, [False]])
-    starts, ends = (
-        np.flatnonzero(~unstable[:-1] & unstable[1:]),
-        np.flatnonzero(unstable[:-1] & ~unstable[1:]),
-    )
-    for first, after in zip(starts.tolist(), ends.tolist(), strict=True):
+    changes = np.flatnonzero(unstable[:-1] != unstable[1:])  # to unstable and back to stable, in turn
+    for first, after in changes.reshape(-1, 2).tolist():
         open_start, open_stop = first == 0, after == len(growth)
         start = airspeed[0] if open_start else _zero(airspeed, growth, first - 1)
         stop = airspeed[-1] if open_stop else _zero(airspeed, growth, after - 1)
@@ -122,5 +119,4 @@ def support_coordinates(sweep: xarray.Dataset) -> list[str]:
 def support_share(sweep: xarray.Dataset) -> Array:
     """Return how much each mode (mode,) moves the support: the largest participation along the sweep, 0 to 1."""
     share = sweep.participation.sel(dof=support_coordinates(sweep)).sum("dof").values
-    largest: Array = np.nanmax(share, axis=0, initial=0)
-    return largest
+    return np.asarray(np.nanmax(share, axis=0, initial=0))
