@@ -84,14 +84,14 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
     flutter_speed : bool
         Whether flutter_speed and flutter_frequency are outputs.
     search : airspeeds in m/s, text such as "100:400:5kt", or pint quantity
-        Range in which the flutter speed is searched; 0.2 to 1.2 of the tip speed by default.
+        Airspeeds among which the flutter speed is searched; 0.2 to 1.2 of the tip speed by default.
     mode : str
-        The first boundary of this mode, instead of the lowest onset of any.
+        A mode whose first boundary is the flutter speed, instead of the lowest onset of any mode.
     level : float
-        Damping ratio that counts as the boundary.
+        Damping ratio at which a mode counts as unstable, dimensionless.
     damping : sequence of str
         Modes whose damping is an output.
-    airspeed : as search
+    airspeed : airspeeds as for `search`
         First values of the input airspeed.
     model_options : mapping
         See `proprotor.rotor.options.Options`.
@@ -282,7 +282,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             partials[output, "airspeed"] = rates[:, place]
 
     def _modes_at(self, case: Case, speeds: NDArray[np.float64]) -> xarray.Dataset:
-        """Return the modes at the airspeeds; refuse an airspeed that failed and a wanted mode that is not there."""
+        """Return the modes at the airspeeds; refuse an airspeed that failed and a wanted mode that does not exist."""
         line, places = np.unique(speeds, return_inverse=True)
         found = case.sweep(line, **self._model_options)
         for speed, reason in zip(line, found.reason.values, strict=True):

@@ -101,7 +101,7 @@ def title_of(motion: ModeMotion) -> str:
 
 
 def _frames(motion: ModeMotion, count: int, dpi: int) -> list[Image]:
-    """Return the pictures of one cycle. The trim state is drawn once, and the moving lines over copies of it."""
+    """Return the pictures of one cycle. The trim state is drawn once, and the moving lines over copies of the state."""
     from PIL import Image  # here, because PIL takes long to import
 
     canvas, axes = _still(motion, dpi)

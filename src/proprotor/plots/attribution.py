@@ -1,4 +1,4 @@
-"""Bars of what drives a mode and what damps it, by the physical origin of the terms."""
+"""Bars of the terms of the equations that drive or damp a mode, by the physical origin of the terms."""
 
 from __future__ import annotations
 
@@ -77,6 +77,7 @@ def plot_attribution(
 
 
 def _draw(ax: Axes, bars: list[tuple[str, float]]) -> None:
+    """Draw a bar for each origin, in the colour of terms that drive or of terms that damp."""
     places, values = np.arange(len(bars)), np.array([value for _, value in bars])
     for drives, colour, hatch, label in ((True, DRIVES, "////", "drives it"), (False, DAMPS, "", "damps it")):
         chosen = (values < 0) == drives

@@ -1,4 +1,4 @@
-"""The axes of a plot, and the notes around them: above, what is not drawn; beneath, what the numbers rest on."""
+"""The axes of a plot, and the notes around them: lines that are not drawn above, the origin of the numbers beneath."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SMALL_LETTERS_PER_INCH = 26.0
 def axes_or_new(ax: Axes | None, *, size: tuple[float, float] = (8, 5), labels_beside: bool = False) -> Axes:
     """Return the given axes, or the axes of a new figure whose size is in inches.
 
-    With `labels_beside` the new axes leave room for labels to their right; else margins follow what is drawn.
+    With `labels_beside` the new axes leave room for labels to their right; otherwise the margins fit the texts.
     """
     if ax is not None:
         return ax
@@ -89,12 +89,12 @@ def along(results: xarray.Dataset, line: Positions) -> Iterator[str]:
 
 
 def rests_on(ax: Axes, case: Case, *more: str) -> Axes:
-    """Write beneath a figure what the numbers of a case rest on: doubtful inputs and calibration.
+    """Write beneath a figure how far the numbers of a case can be trusted: doubtful inputs and calibration.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes
-        Axes of the figure. The figure grows by the lines of the note; what is drawn keeps its size.
+        Axes of the figure. The figure grows by the lines of the note; the plots keep their size.
     case : Case
         The note counts the doubtful inputs of the case and says how the case was calibrated.
     *more : str

@@ -141,7 +141,7 @@ def plot_sweep(
     damping_limits : (float, float)
         Ends of the damping axis, percent of critical.
     title, footer : str
-        Texts above and below the plots. The footer is the place for what the numbers rest on.
+        Texts above and below the plots. The footer is the place for reservations about the numbers.
 
     Returns
     -------

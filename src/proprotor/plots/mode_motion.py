@@ -1,6 +1,6 @@
 """Motion of wing, mast and blades in a mode, as points in space: the numbers behind a picture of the mode.
 
-Positions are those of the derivation: a straight blade with a flap and a lag hinge on precone, in its trim state, on
+Positions are as in the derivation: a straight blade with a flap and a lag hinge on precone, in its trim state, on
 a gimbal. Motions are linear in the coordinates. Coordinates of the fixed frame give the deflection of the blade that
 passes an azimuth, β(ψ) = β_0 + β_1c cos ψ + β_1s sin ψ. Therefore blades are drawn at azimuths that stand still, and
 the path of the tips is a closed line.

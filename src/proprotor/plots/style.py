@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish; without the yellow, which is too pale on white.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-DRIVES, DAMPS = "#D55E00", "#0072B2"  # of bars that lower stability, and of bars that raise it
+DRIVES, DAMPS = "#D55E00", "#0072B2"  # of bars that lower stability, and of bars that raise stability
 STABLE = "#D8EEE6"  # a light green that prints as a light grey
 UNSTABLE = "#FBE9DF"
 GREY = "0.35"

@@ -120,6 +120,7 @@ def _of_ranges(found: xarray.Dataset, ranges: Mapping[str, tuple[float, float]],
 
 
 def _draw(ax: Axes, bars: list[_Bar], status: Mapping[str, str], *, both: bool) -> None:
+    """Draw the bars with their hatches, names and changes: both ends of a range, or one change."""
     places = np.arange(len(bars))
     style: dict[str, Any] = {"height": 0.7, "edgecolor": "white", "linewidth": 0.0}
     hatches = [STATUS_HATCHES.get(status[bar.input], "") for bar in bars]
@@ -141,6 +142,7 @@ def _write_changes(ax: Axes, place: int, values: list[float]) -> None:
 
 
 def _legend(ax: Axes, statuses: set[str], *, both: bool) -> None:
+    """Name the colours of the bars, and the hatches of the statuses that occur."""
     from matplotlib.patches import Patch
 
     names = ("lower end of the range", "upper end") if both else ("lowers it", "raises it")

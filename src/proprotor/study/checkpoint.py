@@ -138,7 +138,7 @@ class Checkpoint:
         return digest.digest()
 
     def finished(self, count: int) -> Iterator[tuple[int, dict[str, Array]]]:
-        """Yield those of the first `count` batches that were kept, with their numbers.
+        """Yield the kept batches among the first `count`, with their numbers.
 
         A batch whose bytes are not the ones that this study has written is removed and left out, with a warning.
         """

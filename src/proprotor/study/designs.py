@@ -76,11 +76,12 @@ class Plan:
     Parameters
     ----------
     inputs : mapping
-        As they were given, by deck path, or by the tuple of paths that vary together by one factor.
+        The values or distributions as the user gave them, by deck path, or by the tuple of paths that vary together by
+        one factor.
     lay_out : callable
-        Designs from the values that were read, and from the numbers of the deck by path.
+        Returns the designs, from the inputs that were read and the numbers of the deck by path.
     read : callable
-        A value in SI from an input's label, what was given, and the number of the deck.
+        Returns an input in SI, from its label, the value or distribution of the user, and the number of the deck.
     """
 
     inputs: Mapping[Any, Any]
@@ -93,7 +94,7 @@ class Plan:
         Parameters
         ----------
         known : mapping
-            The inputs that may vary, such as `proprotor.design_inputs(case)`; ``airspeed`` always may.
+            The numbers of the inputs that may vary, such as `proprotor.design_inputs(case)`; ``airspeed`` always may.
 
         Returns
         -------
@@ -193,7 +194,7 @@ def _units(values: Mapping[str, Array], known: Mapping[str, Datum]) -> dict[str,
 
 
 def check_size(field: str, given: object, designs: int, inputs: int) -> None:
-    """Refuse more designs than there is memory for their inputs, before any are laid out."""
+    """Refuse designs whose inputs do not fit into memory, before the designs are laid out."""
     if designs > _MOST_DESIGNS:
         raise InputError(field, given, f"must be at most {_MOST_DESIGNS} designs")
     size = float(_BYTES_OF_INPUT * designs * max(1, inputs))

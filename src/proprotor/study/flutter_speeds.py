@@ -32,15 +32,16 @@ def put_flutter_speeds(
     Parameters
     ----------
     found : dict of array
-        The variables of the batch, with the reasons of designs that cannot be.
+        The variables of the batch, with the reasons of designs that the case refuses.
     batch : Batch
     rows : array of int
         The designs to search.
     models : callable
+        From rows of the batch and an airspeed for each row, to the models.
     states : int
-        Of the model; 0 where they are not known.
+        Number of eigenvalues of the model; 0 if the number is not known.
     tolerance : float
-        On a flutter speed, m/s.
+        Tolerance of a flutter speed, m/s.
     """
     speeds = batch.shape[1]
     search = Search(
@@ -68,7 +69,7 @@ def put_flutter_speeds(
 
 
 def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: _Models) -> None:
-    """Put the lowest onset of each design that has one in its place, with what moves there."""
+    """Put the lowest onset of each design in its place, with the name and the main coordinate of the mode."""
     rows, onsets = np.array(list(first)), list(first.values())
     model = models(rows, np.array([one.position for one in onsets]))
     spectra = (np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right"))
@@ -110,7 +111,7 @@ def _beyond(airspeed: Array, reason: Array) -> str:
 def _put_least_damping(found: dict[str, Array], search: Search) -> None:
     """Put the lowest damping ratio of each design at the airspeeds of the range in its place."""
     scanned = search.scanned.points
-    assert scanned is not None  # of a search with points
+    assert scanned is not None  # because the search has points
     values, size = scanned.spectrum.values, np.abs(scanned.spectrum.values)
     with np.errstate(all="ignore"):
         ratio = np.where(size > scanned.error, -values.real / size, np.inf).min(axis=1)

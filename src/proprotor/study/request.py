@@ -38,10 +38,10 @@ class Request:
     Parameters
     ----------
     analysis : Analysis
-        Of each batch.
+        The analysis of each batch.
     designs : Designs
     airspeed : array (speeds,) or None
-        m/s, of every design; None where airspeed is among the inputs.
+        m/s, the same for every design; None if airspeed is among the inputs.
     scalar_airspeed : bool
         Whether one airspeed was given as a number, so that the results have no axis of airspeeds.
     """
@@ -77,7 +77,7 @@ class Request:
 
     @property
     def size(self) -> float:
-        """Bytes of all results at most, before the coordinates are known."""
+        """Bytes of all results at most, estimated before the coordinates are known."""
         dofs = _most_coordinates(self.analysis.case, self.analysis.options)
         found = variables(self.analysis.quantities).values()
         return float(
@@ -89,7 +89,7 @@ class Request:
         return Batch(self.designs.values, self.airspeed).some(*block)
 
     def with_coordinates(self) -> Request:
-        """Return the same request with the coordinates of the model, for which a few points are analysed."""
+        """Return the same request with the coordinates of the model, found by the analysis of a few points."""
         case, options = self.analysis.case, self.analysis.options
         tried = self.designs.values[AIRSPEED] if self.airspeed is None else self.airspeed
         dofs = _coordinates(case, tried, options)

@@ -44,9 +44,9 @@ def distribution(
     Returns
     -------
     xarray.Dataset
-        ``value`` over ``percentile``, and how many designs are ``known``, ``above`` or ``below`` the range, ``failed``,
-        and how many known ones are ``doubtful``; the attribute ``doubts`` says why. Other attributes say the case and
-        its options.
+        ``value`` over ``percentile``, and the numbers of designs that are ``known``, ``above`` or ``below`` the range,
+        ``failed``, or ``doubtful``; the attribute ``doubts`` gives the reasons for doubt. Other attributes say the case
+        and its options.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed"
     Raises
     ------
     InputError
-        As `distribution`; and when designs beyond the range of the study leave it open.
+        As `distribution`; and when designs beyond the airspeeds of the study may lie on either side of the limit.
     """
     values, above, below = _one_a_design(results, of)
     known = np.isfinite(values)
@@ -137,7 +137,7 @@ def sobol_indices(
     confidence : float
         Level of the intervals, dimensionless, from 0 to 1.
     resamples : int
-        Of the bootstrap that finds the intervals.
+        Number of resamples of the bootstrap that finds the intervals.
 
     Returns
     -------

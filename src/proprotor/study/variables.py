@@ -1,4 +1,4 @@
-"""The quantities of a study, their variables, and the arrays that hold these."""
+"""The quantities of a study, the variables of each quantity, and arrays for variables that are not found yet."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def blank(
     shape : tuple of int
         Designs and airspeeds.
     states, coordinates : int
-        Of the model.
+        Number of eigenvalues and of coordinates of the model.
     """
     return {
         name: np.full(shape_of(one, shape, states, coordinates), *_nothing(one))

@@ -148,7 +148,7 @@ def check_loadable(analysis: Analysis) -> None:
     Raises
     ------
     NotLoadable
-        When the case holds an object that only this process knows, such as a function of a script.
+        When the case holds an object that exists in this process only, such as a function of a script.
     """
     worker = _take()
     try:

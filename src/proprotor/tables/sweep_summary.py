@@ -91,7 +91,7 @@ def _zero(airspeed: Array, growth: Array, i: int) -> float:
 
 
 def leaps(sweep: xarray.Dataset) -> Array:
-    """Return where a name passes to a root that lies elsewhere (points - 1, mode), so that a line across is no root.
+    """Return where a name passes to a distant root (points - 1, mode), so that a line between the points is no root.
 
     Two roots that veer and exchange their motions are near each other: from one point to the next, the name goes no
     farther than twice as far as both roots do, or than 2 % of the root. Then the line of the name goes on.
@@ -117,6 +117,6 @@ def support_coordinates(sweep: xarray.Dataset) -> list[str]:
 
 
 def support_share(sweep: xarray.Dataset) -> Array:
-    """Return how much each mode (mode,) moves the support: the largest participation along the sweep, 0 to 1."""
+    """Return the largest participation of the support in each mode (mode,) along the sweep, 0 to 1."""
     share = sweep.participation.sel(dof=support_coordinates(sweep)).sum("dof").values
     return np.asarray(np.nanmax(share, axis=0, initial=0))
