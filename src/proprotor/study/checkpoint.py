@@ -151,10 +151,8 @@ class Checkpoint:
             if self._digest(number, payload) == digest:
                 with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
                     arrays = dict(stored)
-                texts = {
-                    name: array.astype(object) for name, array in arrays.items() if array.dtype.kind == "U"
-                }
-                yield number, arrays | texts
+                texts = [name for name, array in arrays.items() if array.dtype.kind == "U"]
+                yield number, arrays | {name: arrays[name].astype(object) for name in texts}
             else:
                 warn(f"{place} is damaged: the batch is computed again", stacklevel=2)
                 place.unlink()

@@ -31,9 +31,8 @@ def modes_along(model: LinearModel, spectrum: Spectrum) -> dict[str, Array]:
     shares = coordinate_shares(held_coordinates(model), len(model.dofs), modes.left, modes.right)
     support = [place for place, name in enumerate(model.dofs) if name not in FIXED_COORDINATES]
     designs = np.arange(len(places))
-    main = np.take_along_axis(
-        np.nan_to_num(shares[designs, first]).argmax(axis=-2), places[designs, first], -1
-    )
+    largest = np.nan_to_num(shares[designs, first]).argmax(axis=-2)
+    main = np.take_along_axis(largest, places[designs, first], -1)
     none = np.isnan(followed[designs, first])
     return {
         "mode_eigenvalue": followed,

@@ -282,8 +282,7 @@ def on_cluster(analysis: Analysis, batches: Numbered, client: Client) -> Found:
 
 def threads_of(client: Client) -> int:
     """Return the number of batches that a cluster analyses at once."""
-    threads: dict[str, int] = client.nthreads()
-    return max(1, sum(threads.values()))
+    return max(1, int(sum(client.nthreads().values())))
 
 
 def _numbered(analysis: Analysis, number: int, batch: Batch) -> tuple[int, dict[str, Any]]:
