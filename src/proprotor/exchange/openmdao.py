@@ -126,7 +126,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         case = self.options["case"]
         self._case = case if isinstance(case, Case) else load_case(case)
         self._paths = self._paths_by_name()
-        self._damping = {f"damping_{variable_name(mode)}": mode for mode in self._modes()}
+        self._damping = {f"damping_{variable_name(mode)}": mode for mode in self._listed("damping", "modes")}
         self._found: dict[tuple[float, ...], Boundary] = {}  # by the inputs of the last flutter search
         if not (self.options["flutter_speed"] or self._damping):
             raise InputError("damping", None, "must name a mode, or flutter_speed must be true")
@@ -220,19 +220,18 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
 
     def _paths_by_name(self) -> dict[str, str]:
         """Return the paths of the inputs by the names of their variables."""
-        given = self.options["inputs"]
-        if isinstance(given, str):
-            raise InputError("inputs", given, "must be a list of paths")
+        given = self._listed("inputs", "paths")
         paths = dict(given) if isinstance(given, Mapping) else {variable_name(path): path for path in given}
         known = self._numbers
         for path in paths.values():
             check_known("inputs", path, known, "input")
         return paths
 
-    def _modes(self) -> tuple[str, ...]:
-        if isinstance(self.options["damping"], str):
-            raise InputError("damping", self.options["damping"], "must be a list of modes")
-        return tuple(self.options["damping"])
+    def _listed(self, option: str, names: str) -> Any:
+        """Return an option that lists names of a kind; refuse a text, which would be a list of its letters."""
+        if isinstance(given := self.options[option], str):
+            raise InputError(option, given, f"must be a list of {names}")
+        return given
 
     def _varied(self, inputs: Mapping[str, NDArray[np.float64]]) -> Case:
         return self._case.vary({path: inputs[name].item() for name, path in self._paths.items()})

@@ -167,7 +167,7 @@ def mode_motion(
     model = case.linearize(speed[0], **options)
     sketch = wing or sketch_of(case)
     coordinates = dict(zip(model.dofs, shape.tolist(), strict=True))
-    hub = _hub_motion(model, shape)
+    hub = shape[:6] if model.hub is None else model.hub @ shape  # displacement and rotation
     parts, largest_angle = _parts(case, model, coordinates, hub, sketch)
     scale = _scale(parts, largest_angle, float(case.rotor.radius))
     return ModeMotion(
@@ -207,13 +207,6 @@ def sketch_of(case: Case) -> WingSketch:
             sweep = given.get(f"{section}sweep", 0.0)
             return WingSketch(float(span), float(mast), float(chord), float(sweep))
     return WingSketch(_SPAN * radius, _MAST * radius, _CHORD * radius, assumed=True)
-
-
-def _hub_motion(model: LinearModel, shape: Array) -> Array:
-    """Return the displacement and rotation (6,) of the hub."""
-    if model.hub is None:
-        return np.asarray(shape[:6])
-    return np.asarray(model.hub @ shape).astype(complex)
 
 
 def _parts(
@@ -293,7 +286,8 @@ class _Blade:
         by_lag = z * (cosine * i - sine * d2)
         motion = _at_azimuth("flap", azimuth, coordinates) * by_flap
         motion = motion + _at_azimuth("lag", azimuth, coordinates) * by_lag
-        return points, motion + _carried(points, coordinates, hub)
+        carried = hub[:3] + np.cross(_turn(coordinates, hub), points)  # by hub, gimbal and azimuth
+        return points, motion + carried
 
     def outline(self, azimuth: float, coordinates: dict[str, complex], hub: Array) -> tuple[Array, Array]:
         """Return the closed outline (2 k + 1, 3), leading edge outwards and trailing edge back, and its motion."""
@@ -341,8 +335,3 @@ def _turn(coordinates: dict[str, complex], hub: Array) -> Array:
     """Return the rotation (3,) of the whole rotor: hub, gimbal g = β_GS I - β_GC J, and azimuth."""
     gimbal = coordinates.get("gimbal_1s", 0.0), -coordinates.get("gimbal_1c", 0.0)
     return np.array([hub[3] + gimbal[0], hub[4] + gimbal[1], hub[5] + coordinates.get("azimuth", 0.0)])
-
-
-def _carried(points: Array, coordinates: dict[str, complex], hub: Array) -> Array:
-    """Return the motion of points that hub, gimbal and azimuth carry along."""
-    return np.asarray(hub[:3] + np.cross(_turn(coordinates, hub), points))
