@@ -57,7 +57,7 @@ def _follow(spectrum: Spectrum) -> tuple[Array, Array, Array]:
     places : array (designs, speeds, states) of int
         Place of each followed state at each airspeed; states by their frequency at the design's first good airspeed.
     quality : array (designs, speeds, states)
-        Trust in the step from the good airspeed before, see `proprotor.stability.matching.match_modes`: NaN at the
+        Trust in the step from the good airspeed before, see `proprotor.stability.matching.match_modes`; NaN at the
         first good airspeed and at failed points.
     first : array (designs,) of int
         Place of the first good airspeed, -1 where there is none.
