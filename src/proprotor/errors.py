@@ -124,6 +124,18 @@ def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
     return f"unknown {what} {_on_one_line(name)!r}; {hint}"
 
 
+def check_known(field: str, name: object, known: Collection[str], what: str) -> None:
+    """Refuse a name that is not among the known names; `what` says what it should be the name of, such as "mode".
+
+    Raises
+    ------
+    InputError
+        With the nearest known name or, without a near name, all names.
+    """
+    if name not in known:
+        raise InputError(field, name, unknown_name(str(name), known, what))
+
+
 def is_choice(value: Any, choices: tuple[bool | str, ...]) -> bool:
     """Return whether a value is one of the choices, which are words, true or false; 1 is not true."""
     return isinstance(value, bool | str) and value in choices

@@ -1,7 +1,7 @@
 """Results in files of MATLAB (``.mat``, version 5), which Octave and SciPy read as well.
 
 Names that MATLAB does not take are altered (``rotor.precone`` to ``rotor_precone``), and ``names`` in the file keeps
-the names of before. Lists of text are cell arrays, logical values stay logical, complex numbers complex. Axes of a
+the original names. Lists of text are cell arrays, logical values stay logical, complex numbers complex. Axes of a
 batch of models come last, as pages: M(:, :, k) is the mass matrix of the k-th point. A dataset keeps its order of axes,
 which ``dims`` names.
 """
@@ -34,7 +34,7 @@ _KEYWORDS = frozenset([
     "otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "while",
 ])
 # fmt: on
-_OWN = ("dims", "units", "names", "attributes")  # fields of a dataset's struct that are no variables
+_OWN = ("dims", "units", "names", "attributes")  # variables of the file that are no variables of the dataset
 
 
 def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[str]) -> None:
@@ -64,17 +64,14 @@ def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[s
     content = _of_model(results) if isinstance(results, LinearModel) else _of_dataset(results)
     for name, entry in content.items():
         if getattr(entry, "nbytes", 0) > _LARGEST:
-            raise InputError(
-                "results", name, "must be below 2 GB in a .mat file: proprotor.save_results takes more"
-            )
-    write_whole(
-        path,
-        lambda file: savemat(file, content, long_field_names=True, do_compression=True, oned_as="column"),
-    )
+            rule = "must be below 2 GB in a .mat file: proprotor.save_results takes more"
+            raise InputError("results", name, rule)
+    settings: dict[str, Any] = {"long_field_names": True, "do_compression": True, "oned_as": "column"}
+    write_whole(path, lambda file: savemat(file, content, **settings))
 
 
 def matlab_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, str]:
-    """Return a name that MATLAB takes for each name: a letter, then letters, digits and underscores, 63 at most.
+    """Return a name for MATLAB for each name: a letter, then letters, digits and underscores, 63 characters at most.
 
     Parameters
     ----------
@@ -105,6 +102,7 @@ def matlab_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, s
 
 
 def _of_model(model: LinearModel) -> dict[str, Any]:
+    """Return the variables of a file for a linear model."""
     content: dict[str, Any] = {name: _pages(getattr(model, name)) for name in "MCK"}
     content |= {"dofs": _cells(model.dofs), "airspeed": _plain(model.airspeed)}
     content["trim"] = {entry.name: _plain(getattr(model.trim, entry.name)) for entry in fields(model.trim)}
@@ -123,6 +121,7 @@ def _of_model(model: LinearModel) -> dict[str, Any]:
 
 
 def _of_dataset(data: xarray.Dataset) -> dict[str, Any]:
+    """Return the variables of a file for a dataset; refuse results of another type."""
     if not hasattr(data, "data_vars"):
         raise InputError("results", type(data).__name__, "must be a LinearModel or an xarray.Dataset")
     names = matlab_names(map(str, data.variables), _OWN)
@@ -139,10 +138,9 @@ def _of_dataset(data: xarray.Dataset) -> dict[str, Any]:
 
 def _attributes(attrs: Mapping[Any, Any]) -> dict[str, Any]:
     names = matlab_names(map(str, attrs))
+    numbers = int | float | complex | np.ndarray
     return {
-        names[str(name)]: _plain(value)
-        if isinstance(value, int | float | complex | np.ndarray)
-        else str(value)
+        names[str(name)]: _plain(value) if isinstance(value, numbers) else str(value)
         for name, value in attrs.items()
     }
 

@@ -1,4 +1,4 @@
-"""Results in netCDF files, which every reader opens: complex numbers are stored as real and imaginary parts."""
+"""Results in netCDF files: complex numbers are stored as real and imaginary parts, so that every reader opens them."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
 
 
 def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
-    """Return the dataset that `save_results` has written, with complex numbers made whole.
+    """Return the dataset that `save_results` has written, with complex numbers made of their two parts.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def _write(results: xarray.Dataset, path: str) -> None:
     try:
         with _ONE_AT_A_TIME:
             results.to_netcdf(path, engine="netcdf4", format="NETCDF4")
-    except RuntimeError as error:  # the library's error of a full disk
+    except RuntimeError as error:  # raised by the library when the disk is full
         raise OSError(errno.EIO, f"{error}: is the disk full?") from None
 
 

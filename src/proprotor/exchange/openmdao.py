@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,12 +29,11 @@ import numpy as np
 try:
     import openmdao.api as om
 except ImportError as missing:
-    raise ImportError(
-        'proprotor.exchange.openmdao needs OpenMDAO: pip install "proprotor[openmdao]"'
-    ) from missing
+    hint = 'proprotor.exchange.openmdao needs OpenMDAO: pip install "proprotor[openmdao]"'
+    raise ImportError(hint) from missing
 
 from proprotor.case import Case, load_case
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.flutter import flutter_point
@@ -84,14 +84,14 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
     flutter_speed : bool
         Whether flutter_speed and flutter_frequency are outputs.
     search : airspeeds in m/s, text such as "100:400:5kt", or pint quantity
-        Range in which the flutter speed is searched; 0.2 to 1.2 of the tip speed by default.
+        Airspeeds among which the flutter speed is searched; 0.2 to 1.2 of the tip speed by default.
     mode : str
-        The first boundary of this mode, instead of the lowest onset of any.
+        A mode whose first boundary is the flutter speed, instead of the lowest onset of any mode.
     level : float
-        Damping ratio that counts as the boundary.
+        Damping ratio at which a mode counts as unstable, dimensionless.
     damping : sequence of str
         Modes whose damping is an output.
-    airspeed : as search
+    airspeed : airspeeds as for `search`
         First values of the input airspeed.
     model_options : mapping
         See `proprotor.rotor.options.Options`.
@@ -126,7 +126,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         case = self.options["case"]
         self._case = case if isinstance(case, Case) else load_case(case)
         self._paths = self._paths_by_name()
-        self._damping = {f"damping_{variable_name(mode)}": mode for mode in self._modes()}
+        self._damping = {f"damping_{variable_name(mode)}": mode for mode in self._listed("damping", "modes")}
         self._found: dict[tuple[float, ...], Boundary] = {}  # by the inputs of the last flutter search
         if not (self.options["flutter_speed"] or self._damping):
             raise InputError("damping", None, "must name a mode, or flutter_speed must be true")
@@ -172,10 +172,8 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             case = self._varied(inputs)
             if self.options["flutter_speed"]:
                 boundary = self._boundary(case)
-                outputs["flutter_speed"], outputs["flutter_frequency"] = (
-                    boundary.position,
-                    boundary.frequency,
-                )
+                outputs["flutter_speed"] = boundary.position
+                outputs["flutter_frequency"] = boundary.frequency
                 self._found = {self._key(inputs): boundary}
             if self._damping:
                 modes = self._modes_at(case, inputs["airspeed"])
@@ -222,20 +220,18 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
 
     def _paths_by_name(self) -> dict[str, str]:
         """Return the paths of the inputs by the names of their variables."""
-        given = self.options["inputs"]
-        if isinstance(given, str):
-            raise InputError("inputs", given, "must be a list of paths")
+        given = self._listed("inputs", "paths")
         paths = dict(given) if isinstance(given, Mapping) else {variable_name(path): path for path in given}
         known = self._numbers
         for path in paths.values():
-            if path not in known:
-                raise InputError("inputs", path, unknown_name(path, known, "input"))
+            check_known("inputs", path, known, "input")
         return paths
 
-    def _modes(self) -> tuple[str, ...]:
-        if isinstance(self.options["damping"], str):
-            raise InputError("damping", self.options["damping"], "must be a list of modes")
-        return tuple(self.options["damping"])
+    def _listed(self, option: str, names: str) -> Any:
+        """Return an option that lists names of a kind; refuse a text, which would be a list of its letters."""
+        if isinstance(given := self.options[option], str):
+            raise InputError(option, given, f"must be a list of {names}")
+        return given
 
     def _varied(self, inputs: Mapping[str, NDArray[np.float64]]) -> Case:
         return self._case.vary({path: inputs[name].item() for name, path in self._paths.items()})
@@ -276,9 +272,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
 
     def _airspeed_partials(self, case: Case, speeds: NDArray[np.float64], partials: Any) -> None:
         named = self._modes_at(case, speeds).sel(mode=list(self._damping.values()))
-        model, changes = with_changes(
-            lambda positions: case.linearize(positions, **self._model_options), np.asarray(speeds)
-        )
+        model, changes = with_changes(partial(case.linearize, **self._model_options), np.asarray(speeds))
         spectrum = decomposition(model)
         apart = np.abs(spectrum.values[:, None, :] - named.eigenvalue.values[:, :, None])
         modes = spectrum.modes(apart.argmin(axis=-1))
@@ -287,7 +281,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             partials[output, "airspeed"] = rates[:, place]
 
     def _modes_at(self, case: Case, speeds: NDArray[np.float64]) -> xarray.Dataset:
-        """Return the modes at the airspeeds; refuse an airspeed that failed and a wanted mode that is not there."""
+        """Return the modes at the airspeeds; refuse an airspeed that failed and a wanted mode that does not exist."""
         line, places = np.unique(speeds, return_inverse=True)
         found = case.sweep(line, **self._model_options)
         for speed, reason in zip(line, found.reason.values, strict=True):
@@ -295,8 +289,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
                 raise InputError("airspeed", f"{speed:.6g} m/s", str(reason))
         names = found.mode.values.tolist()
         for mode in self._damping.values():
-            if mode not in names:
-                raise InputError("damping", mode, unknown_name(mode, names, "mode"))
+            check_known("damping", mode, names, "mode")
             missing = ~np.isfinite(found.damping_ratio.sel(mode=mode).values)
             if missing.any():
                 raise InputError("damping", mode, f"is no mode at {line[missing][0]:.6g} m/s")

@@ -1,14 +1,14 @@
 """Plots that specialists expect: each takes a dataset and, optionally, axes, and returns the axes.
 
-In come results of analyses; out go Matplotlib axes. Nothing is computed here but what a picture needs: limits, round
-numbers, and the motion of points in a mode.
+In come results of analyses; out come Matplotlib axes. This room computes nothing but the needs of a picture: limits,
+round numbers, and the motion of points in a mode.
 
     frequency_and_damping campbell root_locus participation mode_shape    a sweep, or one of its modes
     attribution tornado stability_map study_results                       what moves a mode or a boundary
     mode_motion         how wing, mast and blades move in a mode, as points in space
     animation           a mode in motion, as a GIF
 
-    canvas              the axes, and the notes around them: `rests_on` writes what the numbers of a case rest on
+    canvas              the axes, and the notes around them: `rests_on` writes the reservations about a case
     mode_lines          the lines of the modes of a sweep
     end_labels          names of lines beside the axes
     bars                what plots of bars have in common

@@ -101,7 +101,7 @@ def title_of(motion: ModeMotion) -> str:
 
 
 def _frames(motion: ModeMotion, count: int, dpi: int) -> list[Image]:
-    """Return the pictures of one cycle. The trim state is drawn once, and the moving lines over copies of it."""
+    """Return the pictures of one cycle. The trim state is drawn once, and the moving lines over copies of the state."""
     from PIL import Image  # here, because PIL takes long to import
 
     canvas, axes = _still(motion, dpi)
@@ -125,17 +125,14 @@ def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
 
     Matplotlib does not type the methods of the canvas.
     """
-    from matplotlib.backends.backend_agg import (
-        FigureCanvasAgg,
-    )  # here, because matplotlib takes long to import
-    from matplotlib.figure import Figure
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure  # both here, because matplotlib takes long to import
 
     figure = Figure(figsize=_SIZE, dpi=dpi)
     canvas: Any = FigureCanvasAgg(figure)
     axes: dict[str, Axes] = {}
     for view, place in _PLACES.items():
-        settings: dict[str, Any] = {"projection": "3d"} if view == "3d" else {}
-        axes[view] = ax = figure.add_axes(place, **settings)
+        axes[view] = ax = figure.add_axes(place, projection="3d" if view == "3d" else None)
         draw_still(ax, motion, view)
         ax.set_axis_off()
         ax.set_title(_TITLES[view], fontsize=8, color="0.3")

@@ -1,4 +1,4 @@
-"""Bars of what drives a mode and what damps it, by the physical origin of the terms."""
+"""Bars of the terms of the equations that drive or damp a mode, by the physical origin of the terms."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import check_known
 from proprotor.model.doubts import marked
 from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
 from proprotor.plots.canvas import axes_or_new, note, say_origin
@@ -55,17 +55,15 @@ def plot_attribution(
     names = found.mode.values.tolist()
     if mode is None and len(names) == 1:
         mode = names[0]
-    if mode not in names:
-        raise InputError("mode", mode, unknown_name(str(mode), names, "mode"))
+    check_known("mode", mode, names, "mode")
     chosen = found.sel(mode=mode)
     value = np.asarray(chosen.eigenvalue.values)
     changes = 100 * damping_rate(value, chosen.contribution.values)
-    bars = sorted(
-        zip(chosen.origin.values.tolist(), changes.tolist(), strict=True), key=lambda bar: -abs(bar[1])
-    )
+    bars = list(zip(chosen.origin.values.tolist(), changes.tolist(), strict=True))
+    bars.sort(key=lambda bar: -abs(bar[1]))
     if len(bars) > count:
         bars = [*bars[:count], (f"all {len(bars) - count} others", float(sum(x for _, x in bars[count:])))]
-    bars = sorted(bars, key=lambda bar: bar[1])
+    bars.sort(key=lambda bar: bar[1])
     ax = axes_or_new(ax, size=(8, 1.4 + 0.27 * len(bars)))
     _draw(ax, bars)
     ax.set_xlabel(f"Change of damping of {mode} per 100 % of the terms (% of critical)")
@@ -79,6 +77,7 @@ def plot_attribution(
 
 
 def _draw(ax: Axes, bars: list[tuple[str, float]]) -> None:
+    """Draw a bar for each origin, in the colour of terms that drive or of terms that damp."""
     places, values = np.arange(len(bars)), np.array([value for _, value in bars])
     for drives, colour, hatch, label in ((True, DRIVES, "////", "drives it"), (False, DAMPS, "", "damps it")):
         chosen = (values < 0) == drives

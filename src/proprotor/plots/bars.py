@@ -1,4 +1,4 @@
-"""What plots of bars have in common: the names of the bars, and numbers beside the ends of the bars."""
+"""Parts that all plots of bars share: the names of the bars, and numbers beside the ends of the bars."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The axes of a plot, and the notes around them: above, what is not drawn; beneath, what the numbers rest on."""
+"""The axes of a plot, and the notes around them: lines that are not drawn above, the origin of the numbers beneath."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SMALL_LETTERS_PER_INCH = 26.0
 def axes_or_new(ax: Axes | None, *, size: tuple[float, float] = (8, 5), labels_beside: bool = False) -> Axes:
     """Return the given axes, or the axes of a new figure whose size is in inches.
 
-    With `labels_beside` the new axes leave room for labels to their right; else margins follow what is drawn.
+    With `labels_beside` the new axes leave room for labels to their right; otherwise the margins fit the texts.
     """
     if ax is not None:
         return ax
@@ -63,9 +63,14 @@ def note(ax: Axes, text: str) -> None:
     ax.set_title(notes, loc="left", fontsize=LABEL_SIZE, color="0.3", parse_math=False)
 
 
+def origin_of(attributes: Mapping[Any, Any], doubts: Iterable[str]) -> str:
+    """Return the case of the numbers, its options, and a sentence for each doubt about the numbers."""
+    return " ".join((stamp.line(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
+
+
 def say_origin(ax: Axes, attributes: Mapping[Any, Any], doubts: Iterable[str] = ()) -> None:
-    """Write in small print beneath the axes the case, its options, and a sentence for each doubt about the numbers."""
-    text = " ".join((stamp.line(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
+    """Write `origin_of` the numbers in small print beneath the axes."""
+    text = origin_of(attributes, doubts)
     figure = ax.get_figure(root=True)
     if not text or figure is None:
         return
@@ -84,12 +89,12 @@ def along(results: xarray.Dataset, line: Positions) -> Iterator[str]:
 
 
 def rests_on(ax: Axes, case: Case, *more: str) -> Axes:
-    """Write beneath a figure what the numbers of a case rest on: doubtful inputs and calibration.
+    """Write beneath a figure how far the numbers of a case can be trusted: doubtful inputs and calibration.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes
-        Axes of the figure. The figure grows by the lines of the note; what is drawn keeps its size.
+        Axes of the figure. The figure grows by the lines of the note; the plots keep their size.
     case : Case
         The note counts the doubtful inputs of the case and says how the case was calibrated.
     *more : str
@@ -111,14 +116,13 @@ def add_footer(figure: Figure | None, text: str) -> None:
     width, height = figure.get_size_inches()
     lines = textwrap.wrap(text, max(20, int(_LETTERS_PER_INCH * (width - 0.4))))
     share = ((len(lines) + 1) * _INCHES) / (height + (len(lines) + 1) * _INCHES)
+    figure.set_size_inches(width, height / (1 - share))
     engine: Any = figure.get_layout_engine()
     if engine is None:
         kept = figure.subplotpars
         bottom, top = (share + (1 - share) * part for part in (kept.bottom, kept.top))
-        figure.set_size_inches(width, height / (1 - share))
         figure.subplots_adjust(bottom=bottom, top=top)
     else:
-        figure.set_size_inches(width, height / (1 - share))
         engine.set(rect=(0, share, 1, 1 - share))
     style: dict[str, Any] = {"fontsize": _NOTE_SIZE, "va": "bottom", "color": GREY, "parse_math": False}
     figure.text(0.2 / width, 0.5 * _INCHES * (1 - share) / height, "\n".join(lines), **style)

@@ -46,14 +46,14 @@ def label_lines(ax: Axes, lines: Sequence[Line2D], where: str, *, tie: bool = Tr
 
 def _is_seen(ax: Axes, line: Line2D) -> bool:
     """Return whether a point of a line lies within the axes."""
-    x, y = _in_axes(ax, line)
-    return bool(np.any((x >= 0) & (x <= 1) & (y >= 0) & (y <= 1)))
+    points = _in_axes(ax, line)
+    return bool(((points >= 0) & (points <= 1)).all(axis=0).any())
 
 
 def _leaves(ax: Axes, line: Line2D) -> bool:
     """Return whether a point of a line lies beyond the axes."""
-    x, y = _in_axes(ax, line)
-    return bool(np.any((x < 0) | (x > 1) | (y < 0) | (y > 1)))
+    points = _in_axes(ax, line)
+    return bool(((points < 0) | (points > 1)).any())
 
 
 def _in_axes(ax: Axes, line: Line2D) -> Array:

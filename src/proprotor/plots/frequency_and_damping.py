@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.model import stamp
-from proprotor.model.doubts import MARK
-from proprotor.plots.canvas import RIGHT, add_footer, along, axes_or_new, say_origin
+from proprotor.plots.canvas import RIGHT, add_footer, along, axes_or_new, origin_of, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions
 from proprotor.plots.mode_lines import draw_modes
@@ -143,7 +141,7 @@ def plot_sweep(
     damping_limits : (float, float)
         Ends of the damping axis, percent of critical.
     title, footer : str
-        Texts above and below the plots. The footer is the place for what the numbers rest on.
+        Texts above and below the plots. The footer is the place for reservations about the numbers.
 
     Returns
     -------
@@ -156,8 +154,8 @@ def plot_sweep(
     line = positions(sweep, unit)
     broad = "Broad lines: modes of the support, and modes that become unstable."
     broken = "Where a line is broken its motion passes to another root." if leaps(sweep).any() else ""
-    origin = (stamp.line(sweep.attrs), *(f"{MARK} {doubt}" for doubt in along(sweep, line)))
-    add_footer(figure, " ".join(filter(None, (broad, broken, footer, *origin))))
+    origin = origin_of(sweep.attrs, along(sweep, line))
+    add_footer(figure, " ".join(filter(None, (broad, broken, footer, origin))))
     _draw_frequency(above, sweep, line, rotor_speed)
     _draw_damping(below, sweep, line, damping_limits)
     above.set_xlabel("")

@@ -75,9 +75,8 @@ def axis_of(name: str, values: Array, si_unit: str, unit: str | None = None) -> 
 
 def _usual_unit(name: str, si_unit: str) -> str:
     """Return the unit that engineers use for an input with this SI unit; the SI unit if there is no other."""
-    last = name.rpartition(".")[2]
     if si_unit == "rad/s":
-        return next((unit for end, unit in _RATES.items() if last.endswith(end)), "rad/s")
+        return next((unit for end, unit in _RATES.items() if name.endswith(end)), "rad/s")
     return _USUAL.get(si_unit, si_unit)
 
 

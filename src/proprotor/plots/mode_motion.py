@@ -1,6 +1,6 @@
 """Motion of wing, mast and blades in a mode, as points in space: the numbers behind a picture of the mode.
 
-Positions are those of the derivation: a straight blade with a flap and a lag hinge on precone, in its trim state, on
+Positions are as in the derivation: a straight blade with a flap and a lag hinge on precone, in its trim state, on
 a gimbal. Motions are linear in the coordinates. Coordinates of the fixed frame give the deflection of the blade that
 passes an azimuth, β(ψ) = β_0 + β_1c cos ψ + β_1s sin ψ. Therefore blades are drawn at azimuths that stand still, and
 the path of the tips is a closed line.
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.model.stamp import Stamp, of_model
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
@@ -157,9 +157,7 @@ def mode_motion(
     found = case.sweep(speed, **options).isel(airspeed=0)
     if found.reason.item():
         raise InputError("airspeed", airspeed, found.reason.item())
-    names = found.mode.values.tolist()
-    if mode not in names:
-        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
+    check_known("mode", mode, found.mode.values.tolist(), "mode")
     chosen = found.sel(mode=mode)
     value, shape = complex(chosen.eigenvalue.item()), chosen["shape"].values
     if not value.imag:
@@ -169,7 +167,7 @@ def mode_motion(
     model = case.linearize(speed[0], **options)
     sketch = wing or sketch_of(case)
     coordinates = dict(zip(model.dofs, shape.tolist(), strict=True))
-    hub = _hub_motion(model, shape)
+    hub = shape[:6] if model.hub is None else model.hub @ shape  # displacement and rotation
     parts, largest_angle = _parts(case, model, coordinates, hub, sketch)
     scale = _scale(parts, largest_angle, float(case.rotor.radius))
     return ModeMotion(
@@ -211,19 +209,11 @@ def sketch_of(case: Case) -> WingSketch:
     return WingSketch(_SPAN * radius, _MAST * radius, _CHORD * radius, assumed=True)
 
 
-def _hub_motion(model: LinearModel, shape: Array) -> Array:
-    """Return the displacement and rotation (6,) of the hub."""
-    if model.hub is None:
-        return np.asarray(shape[:6])
-    hub = np.asarray(model.hub @ shape) if model.hub.size else np.zeros(6)
-    return hub.astype(complex)
-
-
 def _parts(
     case: Case, model: LinearModel, coordinates: dict[str, complex], hub: Array, wing: WingSketch
 ) -> tuple[list[Part], float]:
     """Return all lines with their motions, and the largest angle of any coordinate."""
-    blade = _Blade.of(case, model)
+    blade = _Blade(case, model)
     azimuths = 2 * np.pi * np.arange(int(case.rotor.n_blades)) / int(case.rotor.n_blades)
     parts = _wing(wing, hub)
     for number, azimuth in enumerate(azimuths.tolist(), start=1):
@@ -266,40 +256,22 @@ def _wing(wing: WingSketch, hub: Array) -> list[Part]:
     return [*parts, Part("wing", *around)]
 
 
-@dataclass(frozen=True)
 class _Blade:
-    """A blade in its trim state.
+    """A blade of a case, in the trim state of a model.
 
     r, flap_arm, lag_arm, chord : arrays (k,), m; pitch : of the sections (k,), rad; the others are angles in rad and a
     ratio of angles.
     """
 
-    r: Array
-    flap_arm: Array
-    lag_arm: Array
-    pitch: Array
-    chord: Array
-    precone: float
-    flap: float
-    lag: float
-    pitch_gimbal_coupling: float
-
-    @classmethod
-    def of(cls, case: Case, model: LinearModel) -> _Blade:
-        """Return the blade of a case, in the trim state of a model."""
+    def __init__(self, case: Case, model: LinearModel) -> None:
         rotor, trim = case.rotor, model.trim
-        r = np.linspace(float(rotor.root_cutout), float(rotor.radius), _PER_BLADE)
-        return cls(
-            r=r,
-            flap_arm=np.maximum(r - float(rotor.flap_hinge_offset), 0),
-            lag_arm=np.maximum(r - float(rotor.lag_hinge_offset), 0),
-            pitch=float(trim.pitch) + np.asarray(rotor.twist_at(r)),
-            chord=np.broadcast_to(rotor.chord_at(r), r.shape),
-            precone=float(rotor.precone),
-            flap=float(trim.coning),
-            lag=float(trim.lag),
-            pitch_gimbal_coupling=float(rotor.pitch_gimbal_coupling),
-        )
+        self.r = np.linspace(float(rotor.root_cutout), float(rotor.radius), _PER_BLADE)
+        self.flap_arm = np.maximum(self.r - float(rotor.flap_hinge_offset), 0)
+        self.lag_arm = np.maximum(self.r - float(rotor.lag_hinge_offset), 0)
+        self.pitch = float(trim.pitch) + np.asarray(rotor.twist_at(self.r))
+        self.chord = np.broadcast_to(rotor.chord_at(self.r), self.r.shape)
+        self.precone, self.flap, self.lag = float(rotor.precone), float(trim.coning), float(trim.lag)
+        self.pitch_gimbal_coupling = float(rotor.pitch_gimbal_coupling)
 
     def line(self, azimuth: float, coordinates: dict[str, complex], hub: Array) -> tuple[Array, Array]:
         """Return points (k, 3) of the reference line from the hub, and the motions of the points."""
@@ -314,7 +286,8 @@ class _Blade:
         by_lag = z * (cosine * i - sine * d2)
         motion = _at_azimuth("flap", azimuth, coordinates) * by_flap
         motion = motion + _at_azimuth("lag", azimuth, coordinates) * by_lag
-        return points, motion + _carried(points, coordinates, hub)
+        carried = hub[:3] + np.cross(_turn(coordinates, hub), points)  # by hub, gimbal and azimuth
+        return points, motion + carried
 
     def outline(self, azimuth: float, coordinates: dict[str, complex], hub: Array) -> tuple[Array, Array]:
         """Return the closed outline (2 k + 1, 3), leading edge outwards and trailing edge back, and its motion."""
@@ -329,14 +302,12 @@ class _Blade:
         roll = tilt[1] * np.cos(azimuth) - tilt[0] * np.sin(azimuth)
         pitch = _at_azimuth("pitch", azimuth, coordinates) - self.pitch_gimbal_coupling * flap - roll
         turn = _turn(coordinates, hub)
-        edges, moved = [], []
-        for share in (0.25, -0.75):  # of the chord, from the axis of pitch
-            offset = share * self.chord[:, None]
-            edges.append(points + offset * ahead)
-            moved.append(motion + offset * (pitch * turned + np.cross(turn, ahead)))
-        order = slice(None, None, -1)
-        outline = np.concatenate([edges[0], edges[1][order], edges[0][:1]])
-        return outline, np.concatenate([moved[0], moved[1][order], moved[0][:1]])
+        by_pitch = pitch * turned + np.cross(turn, ahead)
+        offsets = [share * self.chord[:, None] for share in (0.25, -0.75)]  # from the axis of pitch
+        edges = [points + offset * ahead for offset in offsets]
+        moved = [motion + offset * by_pitch for offset in offsets]
+        outline, motion = (np.concatenate([front, rear[::-1], front[:1]]) for front, rear in (edges, moved))
+        return outline, motion
 
 
 def _axes(azimuth: float) -> tuple[Array, Array, Array]:
@@ -353,9 +324,8 @@ def _at_azimuth(stem: str, azimuth: float, coordinates: dict[str, complex]) -> c
             continue
         found = _HARMONIC.fullmatch(name)
         if found is None:
-            raise InputError(
-                "coordinates", name, "is no motion of the fixed frame: leave reactionless=True out"
-            )
+            rule = "is no motion of the fixed frame: leave reactionless=True out"
+            raise InputError("coordinates", name, rule)
         n = int(found[3] or 0)
         total += value * (np.sin(n * azimuth) if found[4] == "s" else np.cos(n * azimuth))
     return total
@@ -365,8 +335,3 @@ def _turn(coordinates: dict[str, complex], hub: Array) -> Array:
     """Return the rotation (3,) of the whole rotor: hub, gimbal g = β_GS I - β_GC J, and azimuth."""
     gimbal = coordinates.get("gimbal_1s", 0.0), -coordinates.get("gimbal_1c", 0.0)
     return np.array([hub[3] + gimbal[0], hub[4] + gimbal[1], hub[5] + coordinates.get("azimuth", 0.0)])
-
-
-def _carried(points: Array, coordinates: dict[str, complex], hub: Array) -> Array:
-    """Return the motion of points that hub, gimbal and azimuth carry along."""
-    return np.asarray(hub[:3] + np.cross(_turn(coordinates, hub), points))

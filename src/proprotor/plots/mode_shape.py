@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.plots.canvas import say_origin
 from proprotor.plots.style import LABEL_SIZE
 from proprotor.typing import Array
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from proprotor.plots.mode_motion import ModeMotion
 
 
-class _View(NamedTuple):
-    across: tuple[int, float]  # 0, 1, 2 for x, y, z, and the sign of the coordinate
-    up: tuple[int, float]
-    labels: tuple[str, str]
-
-
-# x is up, y outboard, z along the shaft. Seen from ahead, outboard is to the left on a right wing.
-_VIEWS = {
-    "front": _View((1, -1.0), (0, 1.0), ("−y, inboard (radii)", "x, up (radii)")),
-    "side": _View((2, 1.0), (0, 1.0), ("z, along the shaft (radii)", "x, up (radii)")),
-    "top": _View((1, 1.0), (2, 1.0), ("y, outboard (radii)", "z, along the shaft (radii)")),
+# The axes of each view: 0, 1, 2 for x, y, z, and the sign of the coordinate. x is up, y outboard, z along the shaft.
+# Seen from ahead, outboard is to the left on a right wing; the perspective is right-handed with x up.
+_AXES = {
+    "front": ((1, -1.0), (0, 1.0)),
+    "side": ((2, 1.0), (0, 1.0)),
+    "top": ((1, 1.0), (2, 1.0)),
+    "3d": ((2, 1.0), (1, -1.0), (0, 1.0)),
 }
-_NAMES = (*_VIEWS, "3d")
+_LABELS = {
+    "front": ("−y, inboard (radii)", "x, up (radii)"),
+    "side": ("z, along the shaft (radii)", "x, up (radii)"),
+    "top": ("y, outboard (radii)", "z, along the shaft (radii)"),
+}
 _LINES = {
     "wing": ("#009E73", 1.6),
     "mast": ("#000000", 2.6),
@@ -65,8 +65,7 @@ def plot_mode_shape(
     InputError
         For an unknown view, or axes with another projection than the view needs.
     """
-    if view not in _NAMES:
-        raise InputError("view", view, unknown_name(view, _NAMES, "view"))
+    check_known("view", view, _AXES, "view")
     ax = _axes(ax, view)
     draw_still(ax, motion, view)
     draw_moving(ax, motion, view, phase)
@@ -80,8 +79,8 @@ def _axes(ax: Axes | None, view: str) -> Axes:
     if ax is None:
         import matplotlib.pyplot as plt  # here, because matplotlib takes long to import
 
-        settings = {"projection": "3d"} if solid else {}
-        return plt.figure(figsize=(6, 5.5), layout="constrained").add_subplot(**settings)
+        figure = plt.figure(figsize=(6, 5.5), layout="constrained")
+        return figure.add_subplot(projection="3d" if solid else None)
     if solid != (ax.name == "3d"):
         raise InputError("ax", ax.name, f'must have {"" if solid else "no "}projection "3d" for this view')
     return ax
@@ -103,34 +102,28 @@ def draw_still(ax: Axes, motion: ModeMotion, view: str) -> None:
     for points in still.values():
         ax.plot(*_seen(points, view), color="0.75", linewidth=0.8, zorder=1)
     every = np.concatenate(list(still.values()))
-    low, high = every.min(axis=0) - _MARGIN, every.max(axis=0) + _MARGIN
+    ends = every.min(axis=0) - _MARGIN, every.max(axis=0) + _MARGIN
+    limits = np.sort(_seen(np.array(ends), view), axis=1)
+    ax.set(**dict(zip(("xlim", "ylim", "zlim"), limits, strict=False)))
     if view == "3d":
-        _set_solid(ax, low, high)
+        _look_from_ahead(ax, np.ptp(limits, axis=1))
         return
-    chosen = _VIEWS[view]
-    for (axis, sign), limit in ((chosen.across, ax.set_xlim), (chosen.up, ax.set_ylim)):
-        limit(*sorted((sign * low[axis], sign * high[axis])))
+    across, up = _LABELS[view]
     ax.set_aspect("equal")
-    ax.set_xlabel(chosen.labels[0], fontsize=LABEL_SIZE)
-    ax.set_ylabel(chosen.labels[1], fontsize=LABEL_SIZE)
+    ax.set_xlabel(across, fontsize=LABEL_SIZE)
+    ax.set_ylabel(up, fontsize=LABEL_SIZE)
     ax.tick_params(labelsize=LABEL_SIZE - 1)
     ax.grid(color="0.92", linewidth=0.5)
     ax.set_axisbelow(True)
 
 
-def _set_solid(ax: Any, low: Array, high: Array) -> None:
-    """Set limits and a view from ahead, above and outboard, without the box of the axes."""
-    limits = [(low[2], high[2]), (-high[1], -low[1]), (low[0], high[0])]
-    for (start, stop), limit in zip(limits, (ax.set_xlim, ax.set_ylim, ax.set_zlim), strict=True):
-        limit(start, stop)
-    ax.set_box_aspect([stop - start for start, stop in limits], zoom=1.55)
+def _look_from_ahead(ax: Any, size: Array) -> None:
+    """Set a view from ahead, above and outboard on space of a size (3,), without the box of the axes."""
+    ax.set_box_aspect(size, zoom=1.55)
     ax.view_init(elev=22, azim=-40)
     ax.set_axis_off()
 
 
 def _seen(points: Array, view: str) -> tuple[Array, ...]:
-    """Return coordinates on the page, or z, -y and x for a right-handed perspective with x up."""
-    if view == "3d":
-        return points[:, 2], -points[:, 1], points[:, 0]
-    chosen = _VIEWS[view]
-    return tuple(sign * points[:, axis] for axis, sign in (chosen.across, chosen.up))
+    """Return the coordinates of points (k, 3) along the axes of a view."""
+    return tuple(sign * points[:, axis] for axis, sign in _AXES[view])

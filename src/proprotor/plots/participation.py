@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.plots.bars import name_bars
 from proprotor.plots.canvas import along, axes_or_new, say_origin
 from proprotor.plots.line_of_sweep import positions, written
@@ -56,9 +56,7 @@ def plot_participation(
     InputError
         For an unknown mode or unit, too many points, or a mode that exists at no point.
     """
-    names = sweep.mode.values.tolist()
-    if mode not in names:
-        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
+    check_known("mode", mode, sweep.mode.values.tolist(), "mode")
     line = positions(sweep, unit)
     chosen = sweep.participation.sel(mode=mode).values
     points = _nearest(line.values, np.isfinite(chosen).all(axis=-1), at)

@@ -137,18 +137,14 @@ def _draw(
         plain = style._replace(marker="")._asdict()
         where, across, up = with_gaps(gaps[:, place], line.values, real[:, place], imaginary[:, place])
         lines += ax.plot(across, up, label=mode, markersize=4, **plain)
-        x, y = (_at(where, part, at) for part in (across, up))
+        # Linear between the points of the sweep; NaN beside failed points and gaps.
+        order = np.argsort(where)
+        x, y = (np.interp(at, where[order], part[order]) for part in (across, up))
         more: dict[str, Any] = {"color": style.color, "zorder": 3, "linewidths": 0.6, "edgecolors": "white"}
         ax.scatter(x, y, s=sizes, **more)
         if mode in broad:
             _write_ends(ax, x, y, at)
     return lines
-
-
-def _at(positions: Array, values: Array, at: Array) -> Array:
-    """Return values at round positions, linear between the points of the sweep; NaN beside failed points and gaps."""
-    order = np.argsort(positions)
-    return np.interp(at, positions[order], values[order])
 
 
 def _write_ends(ax: Axes, x: Array, y: Array, at: Array) -> None:

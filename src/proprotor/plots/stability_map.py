@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from proprotor.stability.boundary_lines import BoundaryLine
 
 _DASHES = ("-", "--", "-.", ":")
+_Point = tuple[float, float]
+_Edge = tuple[int, int, int]  # row, column, and 0 for an edge along x or 1 for an edge along y
 _ROOM = 0.06  # a region that is narrower than this share of the axes has no name in it
 
 
@@ -99,12 +101,9 @@ def _shade(ax: Axes, x: Array, y: Array, growth: Array, vertices: Array) -> None
     ax.add_collection(PolyCollection(polygons, **style))
 
 
-_Edge = tuple[int, int, int]  # row, column, and 0 for an edge along x or 1 for an edge along y
-
-
-def _by_edge(x: Array, y: Array, vertices: Array) -> dict[_Edge, tuple[float, float]]:
+def _by_edge(x: Array, y: Array, vertices: Array) -> dict[_Edge, _Point]:
     """Return the crossings by the edge of the grid on which they lie."""
-    found: dict[_Edge, tuple[float, float]] = {}
+    found: dict[_Edge, _Point] = {}
     for here in vertices[np.isfinite(vertices).all(axis=1)]:
         off = [np.abs(axis - value) / np.ptp(axis) for axis, value in zip((x, y), here, strict=True)]
         along_x = off[1].min() <= off[0].min()  # on a line of equal y
@@ -118,18 +117,16 @@ def _by_edge(x: Array, y: Array, vertices: Array) -> dict[_Edge, tuple[float, fl
 
 
 def _stable_part(
-    x: Array, y: Array, growth: Array, crossings: Mapping[_Edge, tuple[float, float]], row: int, column: int
-) -> list[list[tuple[float, float]]]:
+    x: Array, y: Array, growth: Array, crossings: Mapping[_Edge, _Point], row: int, column: int
+) -> list[list[_Point]]:
     """Return the stable polygons of one cell; none if a corner could not be analysed."""
     corners = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
     values = [growth[corner] for corner in corners]
     if not np.isfinite(values).all():
         return []
     edges = [(row, column, 0), (row, column + 1, 1), (row + 1, column, 0), (row, column, 1)]
-    outline: list[tuple[float, float]] = []
-    own: list[
-        list[tuple[float, float]]
-    ] = []  # a polygon at each stable corner, for corners that are not joined
+    outline: list[_Point] = []
+    own: list[list[_Point]] = []  # a polygon at each stable corner, for corners that are not joined
     for place, (corner, value) in enumerate(zip(corners, values, strict=True)):
         after, before = crossings.get(edges[place]), crossings.get(edges[place - 1])
         if value <= 0:
@@ -148,8 +145,8 @@ def _draw_named(ax: Axes, lines: Sequence[BoundaryLine], x: Positions, y: Positi
         own = [line for line in lines if line.mode == mode]
         colour, dashes = COLOURS[place % len(COLOURS)], _DASHES[place % len(_DASHES)]
         style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 2.0, "zorder": 3}
-        for number, line in enumerate(own):
-            label = mode if number == 0 else f"_{mode}"
+        for line in own:
+            label = mode if line is own[0] else f"_{mode}"  # one label for all lines of a mode
             ax.plot(line.x / x.factor, line.y / y.factor, label=label, **style)
         longest = max(own, key=lambda line: float(_steps(line, x, y).sum()))
         at, offset = _beside(ax, longest, x, y)
@@ -166,22 +163,18 @@ def _steps(line: BoundaryLine, x: Positions, y: Positions) -> Array:
     return np.asarray(np.hypot(across, np.diff(line.y / y.factor) / np.ptp(y.values)))
 
 
-def _beside(
-    ax: Axes, line: BoundaryLine, x: Positions, y: Positions
-) -> tuple[tuple[float, float], tuple[float, float]]:
+def _beside(ax: Axes, line: BoundaryLine, x: Positions, y: Positions) -> tuple[_Point, _Point]:
     """Return the middle of a line, and an offset across the line, in points, towards the middle of the axes."""
     along = np.concatenate([[0.0], np.cumsum(_steps(line, x, y))])
     shares = np.clip(along[-1] * np.array([0.45, 0.5, 0.55]), 0, along[-1])
-    points = np.column_stack(
-        [np.interp(shares, along, part) for part in (line.x / x.factor, line.y / y.factor)]
-    )
+    ends = line.x / x.factor, line.y / y.factor
+    points = np.column_stack([np.interp(shares, along, part) for part in ends])
     before, middle, after = ax.transAxes.inverted().transform(ax.transData.transform(points))
     across = (after - before)[::-1] * (-1, 1) * ax.bbox.size[::-1]  # normal on the page
     size = np.hypot(*across)
     across = across / size if size > 0 else np.array([1.0, 0.0])
     inwards = np.sign(across @ (0.5 - middle)) or 1.0
-    offset = 9.0 * inwards * across
-    return (float(points[1, 0]), float(points[1, 1])), (float(offset[0]), float(offset[1]))
+    return tuple(points[1].tolist()), tuple((9.0 * inwards * across).tolist())
 
 
 def _name_regions(ax: Axes, x: Array, y: Array, growth: Array) -> None:

@@ -104,7 +104,7 @@ def plot_sobol(indices: xarray.Dataset, ax: Axes | None = None, *, count: int = 
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     count : int
-        Number of inputs at most, those with the largest total shares.
+        Number of inputs at most, the inputs with the largest total shares.
 
     Returns
     -------

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish; without the yellow, which is too pale on white.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-DRIVES, DAMPS = "#D55E00", "#0072B2"  # of bars that lower stability, and of bars that raise it
+DRIVES, DAMPS = "#D55E00", "#0072B2"  # of bars that lower stability, and of bars that raise stability
 STABLE = "#D8EEE6"  # a light green that prints as a light grey
 UNSTABLE = "#FBE9DF"
 GREY = "0.35"
@@ -20,14 +20,8 @@ LABEL_SIZE = 8  # points
 _DASHES = ("-", "--", ":")
 _MARKERS = "s^DvP<>"  # on broad lines, because their colours alone do not differ on a grey print
 
-# Hatches of bars by the status of a number; a number that was read in a source has none.
-STATUS_HATCHES = {
-    "published": "",
-    "derived": "",
-    "recalled": "////",
-    "assumed": "xxxx",
-    "calibrated": "....",
-}
+# Hatches of bars by the status of a number; the bar of a number that was read in a source has no hatch.
+STATUS_HATCHES = {"recalled": "////", "assumed": "xxxx", "calibrated": "...."}
 
 
 class ModeStyle(NamedTuple):

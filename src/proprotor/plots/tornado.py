@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.model.doubts import marked
 from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
 from proprotor.plots.canvas import axes_or_new, note, say_origin
@@ -100,20 +100,18 @@ def _scale(found: xarray.Dataset, unit: str) -> tuple[float, str]:
 
 
 def _of_percent(found: xarray.Dataset, percent: float, scale: float) -> list[_Bar]:
-    # The input grows in size: a twist of -2 grows to -2.02.
-    changes = found.derivative.values.reshape(-1) * found.value.values * percent / 100 * scale
-    paths = found.input[found.value.values != 0].values.tolist()
-    return [
-        _Bar(path, change, change)
-        for path, change in zip(paths, changes[found.value.values != 0], strict=True)
-    ]
+    """Return a bar for each input that is not zero: its growth in size, so that a twist of -2 grows to -2.02."""
+    values = found.value.values
+    changes = found.derivative.values.reshape(-1) * values * percent / 100 * scale
+    found_for = zip(found.input.values.tolist(), values, changes, strict=True)
+    return [_Bar(path, change, change) for path, value, change in found_for if value]
 
 
 def _of_ranges(found: xarray.Dataset, ranges: Mapping[str, tuple[float, float]], scale: float) -> list[_Bar]:
+    """Return a bar for each given range: the changes at both ends, from the present value of the input."""
     places = {path: place for place, path in enumerate(found.input.values.tolist())}
     for path in ranges:
-        if path not in places:
-            raise InputError("ranges", path, unknown_name(path, places, "input"))
+        check_known("ranges", path, places, "input")
     rates, values = found.derivative.values.reshape(-1), found.value.values
     return [
         _Bar(path, *(float(scale * rates[places[path]] * (end - values[places[path]])) for end in ends))
@@ -122,6 +120,7 @@ def _of_ranges(found: xarray.Dataset, ranges: Mapping[str, tuple[float, float]],
 
 
 def _draw(ax: Axes, bars: list[_Bar], status: Mapping[str, str], *, both: bool) -> None:
+    """Draw the bars with their hatches, names and changes: both ends of a range, or one change."""
     places = np.arange(len(bars))
     style: dict[str, Any] = {"height": 0.7, "edgecolor": "white", "linewidth": 0.0}
     hatches = [STATUS_HATCHES.get(status[bar.input], "") for bar in bars]
@@ -143,11 +142,12 @@ def _write_changes(ax: Axes, place: int, values: list[float]) -> None:
 
 
 def _legend(ax: Axes, statuses: set[str], *, both: bool) -> None:
+    """Name the colours of the bars, and the hatches of the statuses that occur."""
     from matplotlib.patches import Patch
 
     names = ("lower end of the range", "upper end") if both else ("lowers it", "raises it")
     handles = [Patch(color=colour, label=name) for colour, name in zip((DRIVES, DAMPS), names, strict=True)]
     for status, hatch in STATUS_HATCHES.items():
-        if hatch and status in statuses:
+        if status in statuses:
             handles.append(Patch(facecolor="0.45", edgecolor="white", hatch=hatch, linewidth=0, label=status))
     ax.legend(handles=handles, fontsize=7, loc="lower right", framealpha=0.95)

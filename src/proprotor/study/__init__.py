@@ -1,7 +1,7 @@
 """Studies of many designs.
 
-In come a case and a plan of how its inputs vary; out come datasets over the designs and airspeeds, and what they say
-together: distributions, shares of the variance, the damping of modes.
+In come a case and a plan of how its inputs vary; out come datasets over the designs and airspeeds, and the summaries of
+such a dataset: distributions, shares of the variance, the damping of modes.
 
 ==================  ====================================================================================
 study               `study`: from a case and a plan to a dataset, on all cores or a cluster
@@ -10,15 +10,14 @@ input_ranges        what an input may be: values, or a distribution of values, r
 designs             a plan, and the designs that it gives with the numbers of a deck
 request             the request that a study answers: its arguments, read and checked
 division            how many points a batch has, so that all batches at work fit into memory
-variables           the quantities of a study, their variables, and the arrays that hold these
+variables           the quantities of a study, their variables, and empty arrays for these
 batch               the analysis of one batch, with a reason for each design or point that fails
-roots               eigenvalues of a batch, vectors, the least stable mode
+roots               eigenvalues of a batch, mode shapes, the least stable mode
 followed_modes      modes of a batch, followed along the airspeeds of each design
 flutter_speeds      the flutter speed of each design of a batch
 workers             who analyses the batches: this process, other processes or a cluster
 worker              what a worker process does
 checkpoint          finished batches in a folder, from which a study that was killed goes on
-source_code         a fingerprint of the code that computes
 progress            the progress bar
 uncertainty         percentiles and Sobol indices of a result over a sample
 damping             damping of a mode of the support along the airspeeds

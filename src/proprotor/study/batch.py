@@ -1,6 +1,7 @@
-"""The analysis of one batch of designs, as a study, and each process that works for it, makes it.
+"""The analysis of one batch of designs, in the process of a study or in one of its worker processes.
 
-A design that cannot be, or a point that fails, has its reason and NaN; the rest of the batch is as if it were alone.
+A design that is not physical, or a point that cannot be analysed, has NaN and the reason in its places. The results of
+all other points are the same with and without such a design or point in the batch.
 """
 
 from __future__ import annotations
@@ -69,23 +70,23 @@ class Batch:
 
 @dataclass(frozen=True)
 class Analysis:
-    """What to find for any batch; the same everywhere in a study, and sent to each worker once.
+    """The analysis of a batch: the same for all batches of a study, and sent to each worker once.
 
     Parameters
     ----------
     case : Case
     quantities : tuple of str
-        Of `proprotor.study.variables.QUANTITIES`.
+        The quantities to find, of `proprotor.study.variables.QUANTITIES`.
     options : mapping
-        Of `Case.linearize`.
+        Options of `Case.linearize`.
     dofs : tuple of str
         Coordinates of the model.
     states : int
         Number of eigenvalues of the model.
     tolerance : float
-        On a flutter speed, m/s.
+        Tolerance of a flutter speed, m/s.
     code : str
-        Fingerprint of the code that must analyse; empty where any may.
+        Fingerprint of the code with which a process must analyse; empty if any code may.
     """
 
     case: Case
@@ -102,7 +103,7 @@ class Analysis:
         Raises
         ------
         InputError
-            When this process runs other code than it should.
+            When this process runs other code than `code`.
         """
         if self.code:
             check_code(self.code)
@@ -116,13 +117,12 @@ class Analysis:
     def _find_flutter(self, found: dict[str, Array], batch: Batch) -> None:
         refused = self._refusals(batch)
         found["reason"][:], found["flutter_note"][:] = refused[:, None], refused
-        rows = np.flatnonzero(refused == "")
-        if len(rows):
 
-            def models(line: Array, speeds: Array) -> LinearModel:
-                numbers = {name: values[:, 0] for name, values in batch.some(line).numbers.items()}
-                return self._varied(numbers).linearize(speeds, **self.options)
+        def models(rows: Array, speeds: Array) -> LinearModel:
+            numbers = {name: values[rows, 0] for name, values in batch.numbers.items()}
+            return self._varied(numbers).linearize(speeds, **self.options)
 
+        if len(rows := np.flatnonzero(refused == "")):
             put_flutter_speeds(found, batch, rows, models, self.states, self.tolerance)
 
     def _find_at_points(self, found: dict[str, Array], batch: Batch) -> None:
@@ -133,9 +133,9 @@ class Analysis:
             self._put_parts(found, batch, np.flatnonzero(refused == ""), columns)
 
     def _refusals(self, batch: Batch) -> Array:
-        """Return why each design cannot be, empty where it can.
+        """Return the reason for which the case refuses each design; empty for a design that it takes.
 
-        Designs that are refused together are halved until one stands alone.
+        A group of designs that is refused is halved until each refused design stands alone.
         """
         reasons = np.full(batch.shape[0], "", dtype=object)
         parts = [np.arange(batch.shape[0])] if batch.numbers else []
@@ -159,7 +159,7 @@ class Analysis:
         return " ".join(str(error).split("\n"))
 
     def _put(self, found: dict[str, Array], batch: Batch, rows: Array, columns: Array) -> Exception | None:
-        """Put the variables of some designs and airspeeds in their places, or return why they cannot be analysed."""
+        """Put the variables of some designs and airspeeds in their places, or return the error of their analysis."""
         try:
             points = self._points(batch.some(rows, columns))
         except _BAD_INPUT as error:
@@ -189,14 +189,13 @@ class Analysis:
         return self.case.vary(numbers) if numbers else self.case
 
     def _points(self, batch: Batch) -> dict[str, Array]:
-        """Return the variables of the points of a batch."""
+        """Return variables of the points of a batch: at least the variables of the chosen quantities."""
         shape = np.broadcast_shapes(np.shape(batch.speeds), (batch.shape[0], 1))
         speeds = np.broadcast_to(batch.speeds, shape)
         model = self._varied(batch.numbers).linearize(speeds, **self.options)
-        found: dict[str, Array] = {name: getattr(model.trim, name) for name in ("reason", "warning")}
+        of_trim = ("reason", "warning", *VARIABLES["trim"])
+        found: dict[str, Array] = {name: getattr(model.trim, name) for name in of_trim}
         found["missing"] = missing_roots(model, self.states)
-        if "trim" in self.quantities:
-            found |= {name: getattr(model.trim, name) for name in VARIABLES["trim"]}
         found |= self._roots(model)
         if "modes" in self.quantities:
             found["warning"] = doubted(found["warning"], found["mode_quality"])
@@ -219,7 +218,7 @@ class Analysis:
         return found
 
     def _with_all_states(self, name: str, found: Array) -> Array:
-        """Return an array over the states, which one batch may have fewer of, with room for the states of all."""
+        """Return an array (…, states) with all states of the study: NaN or "" for states that the batch has not."""
         more = self.states - found.shape[-1]
         if VARIABLE[name].dims[-1:] != ("state",) or not more:
             return found

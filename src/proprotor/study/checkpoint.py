@@ -30,10 +30,6 @@ _MANIFEST, _LOCK = "manifest.json", ".held"
 _DIGEST = hashlib.sha256().digest_size
 
 
-class _CorruptBatch(Exception):
-    """A stored batch whose bytes are not the ones that were written."""
-
-
 class Checkpoint:
     """The batches of one study in one folder.
 
@@ -48,7 +44,9 @@ class Checkpoint:
 
     @contextmanager
     def open(self, identity: Mapping[str, str], division: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-        """Hold the folder, and begin a study there or go on with its batches; it ends with the process or earlier.
+        """Hold the folder, and begin a study in it or go on with the batches of a study that was killed.
+
+        The folder is free again at the end of the ``with`` block, or when the process ends before.
 
         Parameters
         ----------
@@ -101,7 +99,6 @@ class Checkpoint:
         place = self.folder / _MANIFEST
         manifest = {"format": _FORMAT, "identity": dict(identity), "division": dict(division)}
         try:
-            self._check_ours()
             for unfinished in self.folder.glob(".*.tmp"):  # of a study that was killed
                 unfinished.unlink()
             if not place.exists():
@@ -111,8 +108,6 @@ class Checkpoint:
             differ = [name for name in identity if stored.get(name) != identity[name]]
         except OSError as error:
             raise self._unusable(error) from None
-        except InputError:
-            raise
         except (ValueError, KeyError, TypeError, AttributeError):
             rule = "cannot be read: delete the folder to begin again"
             raise InputError("checkpoint", place, rule) from None
@@ -129,8 +124,9 @@ class Checkpoint:
     def save(self, number: int, found: Mapping[str, Array]) -> None:
         """Keep a finished batch."""
         content = io.BytesIO()
-        arrays: dict[str, Any] = {name: _plain(array) for name, array in found.items()}
-        np.savez(content, **arrays)
+        # Texts have a fixed width in the file, which needs no pickle.
+        texts: Any = {name: array.astype(str) for name, array in found.items() if array.dtype == object}
+        np.savez(content, **dict(found) | texts)
         payload = content.getbuffer()
         digest = self._digest(number, payload)
         write_whole(self._place(number), lambda file: file.writelines((digest, payload)))
@@ -141,44 +137,25 @@ class Checkpoint:
         digest.update(payload)
         return digest.digest()
 
-    def load(self, number: int) -> dict[str, Array] | None:
-        """Return a batch that was kept before, or None.
-
-        Raises
-        ------
-        _CorruptBatch
-            When the bytes of the file are not the ones that this study has written.
-        """
-        try:
-            content = self._place(number).read_bytes()
-        except FileNotFoundError:
-            return None
-        digest, payload = content[:_DIGEST], memoryview(content)[_DIGEST:]
-        if self._digest(number, payload) != digest:
-            raise _CorruptBatch(str(self._place(number)))
-        with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
-            return {name: _as_objects(stored[name]) for name in stored.files}
-
     def finished(self, count: int) -> Iterator[tuple[int, dict[str, Array]]]:
-        """Yield the batches that were kept, of a number; warn of a damaged batch, remove it and leave it out."""
+        """Yield the kept batches among the first `count`, with their numbers.
+
+        A batch whose bytes are not the ones that this study has written is removed and left out, with a warning.
+        """
         for number in range(count):
-            try:
-                found = self.load(number)
-            except _CorruptBatch as error:
-                warn(f"{error} is damaged: the batch is computed again", stacklevel=2)
-                self._place(number).unlink()
+            place = self._place(number)
+            if not place.exists():
                 continue
-            if found is not None:
-                yield number, found
+            content = place.read_bytes()
+            digest, payload = content[:_DIGEST], memoryview(content)[_DIGEST:]
+            if self._digest(number, payload) == digest:
+                with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
+                    arrays = dict(stored)
+                texts = [name for name, array in arrays.items() if array.dtype.kind == "U"]
+                yield number, arrays | {name: arrays[name].astype(object) for name in texts}
+            else:
+                warn(f"{place} is damaged: the batch is computed again", stacklevel=2)
+                place.unlink()
 
     def _place(self, number: int) -> Path:
         return self.folder / f"batch-{number:08d}"
-
-
-def _plain(array: Array) -> Array:
-    """Return texts with a fixed width, which need no pickle."""
-    return array.astype(str) if array.dtype == object else array
-
-
-def _as_objects(array: Array) -> Array:
-    return array.astype(object) if array.dtype.kind == "U" else array

@@ -65,7 +65,7 @@ def mode_damping(
 
 
 def _named_points(results: xarray.Dataset, named_to: float | None) -> int:
-    """Return at how many airspeeds the name tells which mode is meant."""
+    """Return the number of airspeeds at which the name decides which root is the mode."""
     if named_to is None:
         return results.sizes["airspeed"] // 2 + 1
     return int((results.airspeed.values <= named_to).sum())
@@ -79,8 +79,8 @@ def _of_name(names: Array, values: Array, ratio: Array, mode: str, named: int) -
     names, values, ratio : array (..., airspeeds, states)
     mode : str
     named : int
-        Number of airspeeds at which the name tells; a design that failed at all of them has the name of its first
-        good one.
+        Number of airspeeds at which the name decides; for a design that failed at all these airspeeds, its first good
+        airspeed decides.
     """
     has_name = (names == mode) & (values.imag >= 0)
     if not has_name.any():

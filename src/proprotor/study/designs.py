@@ -20,7 +20,7 @@ AIRSPEED = "airspeed"
 _DESIGN = "design"  # the dimension of a list or a sample
 _SPEED = Datum("", None, "m/s")  # airspeed is no number of the deck
 _FACTOR = Datum("", 1.0, "")  # on several numbers of the deck, which vary together
-_MOST__DESIGNS = 100_000_000
+_MOST_DESIGNS = 100_000_000
 # Of each design, while designs are laid out: the number drawn, its value, and a copy of both.
 _BYTES_OF_INPUT = 32
 
@@ -48,7 +48,7 @@ class Designs:
     sample: dict[str, Any] = field(default_factory=dict)
 
     def __len__(self) -> int:
-        return int(np.prod(self.shape, dtype=int))
+        return math.prod(self.shape)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -76,11 +76,12 @@ class Plan:
     Parameters
     ----------
     inputs : mapping
-        As they were given, by deck path, or by the tuple of paths that vary together by one factor.
+        The values or distributions as the user gave them, by deck path, or by the tuple of paths that vary together by
+        one factor.
     lay_out : callable
-        Designs from the values that were read, and from the numbers of the deck by path.
+        Returns the designs, from the inputs that were read and the numbers of the deck by path.
     read : callable
-        A value in SI from an input's label, what was given, and the number of the deck.
+        Returns an input in SI, from its label, the value or distribution of the user, and the number of the deck.
     """
 
     inputs: Mapping[Any, Any]
@@ -93,7 +94,7 @@ class Plan:
         Parameters
         ----------
         known : mapping
-            The inputs that may vary, such as `proprotor.design_inputs(case)`; ``airspeed`` always may.
+            The numbers of the inputs that may vary, such as `proprotor.design_inputs(case)`; ``airspeed`` always may.
 
         Returns
         -------
@@ -193,9 +194,9 @@ def _units(values: Mapping[str, Array], known: Mapping[str, Datum]) -> dict[str,
 
 
 def check_size(field: str, given: object, designs: int, inputs: int) -> None:
-    """Refuse more designs than there is memory for their inputs, before any are laid out."""
-    if designs > _MOST__DESIGNS:
-        raise InputError(field, given, f"must be at most {_MOST__DESIGNS} designs")
+    """Refuse designs whose inputs do not fit into memory, before the designs are laid out."""
+    if designs > _MOST_DESIGNS:
+        raise InputError(field, given, f"must be at most {_MOST_DESIGNS} designs")
     size = float(_BYTES_OF_INPUT * designs * max(1, inputs))
     check_memory(field, given, size, f"the inputs of {designs:.4g} designs")
 

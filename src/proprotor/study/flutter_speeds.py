@@ -20,9 +20,8 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     from proprotor.study.batch import Batch
 
-_Models = Callable[
-    [Array, Array], LinearModel
-]  # rows of a batch, and an airspeed for each, to the models there
+# From rows of a batch, and an airspeed for each row, to the models of these designs at these airspeeds.
+_Models = Callable[[Array, Array], LinearModel]
 
 
 def put_flutter_speeds(
@@ -33,15 +32,16 @@ def put_flutter_speeds(
     Parameters
     ----------
     found : dict of array
-        The variables of the batch, with the reasons of designs that cannot be.
+        The variables of the batch, with the reasons of designs that the case refuses.
     batch : Batch
     rows : array of int
         The designs to search.
     models : callable
+        From rows of the batch and an airspeed for each row, to the models.
     states : int
-        Of the model; 0 where they are not known.
+        Number of eigenvalues of the model; 0 if the number is not known.
     tolerance : float
-        On a flutter speed, m/s.
+        Tolerance of a flutter speed, m/s.
     """
     speeds = batch.shape[1]
     search = Search(
@@ -58,7 +58,8 @@ def put_flutter_speeds(
     if search.scanned.points is None:
         return
     brackets = Brackets(search, tolerance)
-    first = _lowest(brackets.close())
+    downwards = sorted(brackets.close(), key=lambda one: one.position, reverse=True)
+    first = {one.line: one for one in downwards}  # the lowest onset of each design that has one
     for place, why in brackets.lost.items():
         if brackets.line[place] not in first:
             found["flutter_note"][brackets.line[place]] = f"the search for its boundary failed: {why}"
@@ -68,7 +69,7 @@ def put_flutter_speeds(
 
 
 def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: _Models) -> None:
-    """Put the lowest onset of each design that has one in its place, with what moves there."""
+    """Put the lowest onset of each design in its place, with the name and the main coordinate of the mode."""
     rows, onsets = np.array(list(first)), list(first.values())
     model = models(rows, np.array([one.position for one in onsets]))
     spectra = (np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right"))
@@ -87,20 +88,16 @@ def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: 
 
 def _notes(reason: Array, batch: Batch, search: Search) -> Array:
     """Return a sentence on each design before any boundary is known."""
-    note = np.full(len(reason), "", dtype=object)
-    works, unstable = np.zeros(len(reason), dtype=bool), np.zeros(len(reason), dtype=bool)
+    notes = np.array([why[0] or "no airspeed could be analysed" for why in reason], dtype=object)
     if search.scanned.points is not None:
         points = search.first_points
         order = np.lexsort((points.position, points.line))
         lines, place = np.unique(points.line[order], return_index=True)
         first = order[place]
-        works[lines], unstable[lines] = True, (points.growth[first] > points.error[first]).any(axis=1)
-    for row, why in enumerate(reason):
-        if not works[row]:
-            note[row] = why[0] or "no airspeed could be analysed"
-        else:
-            note[row] = UNSTABLE if unstable[row] else STABLE + _beyond(batch.speeds, why)
-    return note
+        grows = np.any(points.growth[first] > points.error[first], axis=1)
+        for line, unstable in zip(lines, grows, strict=True):
+            notes[line] = UNSTABLE if unstable else STABLE + _beyond(batch.speeds, reason[line])
+    return notes
 
 
 def _beyond(airspeed: Array, reason: Array) -> str:
@@ -111,15 +108,10 @@ def _beyond(airspeed: Array, reason: Array) -> str:
     return f"; {len(failed)} airspeeds failed, at {airspeed[failed[0]]:.6g} m/s: {reason[failed[0]]}"
 
 
-def _lowest(found: list[Crossing]) -> dict[int, Crossing]:
-    """Return the lowest onset of each design that has one."""
-    return {one.line: one for one in sorted(found, key=lambda one: one.position, reverse=True)}
-
-
 def _put_least_damping(found: dict[str, Array], search: Search) -> None:
     """Put the lowest damping ratio of each design at the airspeeds of the range in its place."""
     scanned = search.scanned.points
-    assert scanned is not None  # of a search with points
+    assert scanned is not None  # because the search has points
     values, size = scanned.spectrum.values, np.abs(scanned.spectrum.values)
     with np.errstate(all="ignore"):
         ratio = np.where(size > scanned.error, -values.real / size, np.inf).min(axis=1)

@@ -31,9 +31,8 @@ def modes_along(model: LinearModel, spectrum: Spectrum) -> dict[str, Array]:
     shares = coordinate_shares(held_coordinates(model), len(model.dofs), modes.left, modes.right)
     support = [place for place, name in enumerate(model.dofs) if name not in FIXED_COORDINATES]
     designs = np.arange(len(places))
-    main = np.take_along_axis(
-        np.nan_to_num(shares[designs, first]).argmax(axis=-2), places[designs, first], -1
-    )
+    largest = np.nan_to_num(shares[designs, first]).argmax(axis=-2)
+    main = np.take_along_axis(largest, places[designs, first], -1)
     none = np.isnan(followed[designs, first])
     return {
         "mode_eigenvalue": followed,
@@ -46,17 +45,17 @@ def modes_along(model: LinearModel, spectrum: Spectrum) -> dict[str, Array]:
 
 
 def _follow(spectrum: Spectrum) -> tuple[Array, Array, Array]:
-    """Follow the states of each design over its failed points.
+    """Follow the states of each design along its airspeeds, over its failed points.
 
     Parameters
     ----------
     spectrum : Spectrum
-        Of points (designs, speeds).
+        Eigenvalues and vectors of points (designs, speeds).
 
     Returns
     -------
     places : array (designs, speeds, states) of int
-        Where each followed state is at each airspeed; states by their frequency at the design's first good airspeed.
+        Place of each followed state at each airspeed; states by their frequency at the design's first good airspeed.
     quality : array (designs, speeds, states)
         Trust in the step from the good airspeed before, see `proprotor.stability.matching.match_modes`; NaN at the
         first good airspeed and at failed points.
@@ -82,7 +81,7 @@ def _follow(spectrum: Spectrum) -> tuple[Array, Array, Array]:
 
 
 def doubted(warning: Array, quality: Array) -> Array:
-    """Return warnings (designs, speeds) with one more at points to which a step of no quality leads."""
+    """Return warnings (designs, speeds), with a further warning at points to which a step of no quality leads."""
     joined = np.array(warning, dtype=object)
     lost = (quality <= 0).any(axis=-1)
     joined[lost] = [f"{text}; {NOT_TOLD}" if text else NOT_TOLD for text in joined[lost]]

@@ -32,17 +32,11 @@ def progress_bar(points: int, kept: int, shown: bool | None) -> Iterator[_Advanc
         yield lambda computed, failed: None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
     console = Console(stderr=True)
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[failed]}"),
-        TimeRemainingColumn(),
-        TextColumn("left"),
-    )
+    points_done = "{task.description}", BarColumn(), MofNCompleteColumn(), "{task.fields[failed]}"
+    columns = (*points_done, TimeRemainingColumn(), "left")
     disabled = shown is None and not console.is_terminal
     with Progress(*columns, console=console, speed_estimate_period=_LONG, disable=disabled) as progress:
         task = progress.add_task("Analysing", total=points, completed=kept, failed="")

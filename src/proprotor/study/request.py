@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
 from proprotor.rotor.motions import HUB, ROTOR_SPEED
@@ -18,14 +18,7 @@ from proprotor.rotor.options import parse_options
 from proprotor.study.batch import Analysis, Batch
 from proprotor.study.designs import AIRSPEED, Designs, Plan
 from proprotor.study.sampling import as_plan
-from proprotor.study.variables import (
-    ALONG_AIRSPEEDS,
-    POINT,
-    QUANTITIES,
-    bytes_of,
-    shape_of,
-    variables,
-)
+from proprotor.study.variables import ALONG_AIRSPEEDS, POINT, QUANTITIES, bytes_of, shape_of, variables
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
@@ -45,10 +38,10 @@ class Request:
     Parameters
     ----------
     analysis : Analysis
-        Of each batch.
+        The analysis of each batch.
     designs : Designs
     airspeed : array (speeds,) or None
-        m/s, of every design; None where airspeed is among the inputs.
+        m/s, the same for every design; None if airspeed is among the inputs.
     scalar_airspeed : bool
         Whether one airspeed was given as a number, so that the results have no axis of airspeeds.
     """
@@ -69,6 +62,7 @@ class Request:
         from importlib.metadata import version
 
         analysis = self.analysis
+        packages = ("proprotor", "numpy", "scipy", "pystran", "fluids")
         parts = {
             "case": analysis.case,
             "inputs": [self.designs.values, self.designs.axes],
@@ -77,21 +71,17 @@ class Request:
             "options": dict(analysis.options),
             "tolerance": analysis.tolerance,
             "code": analysis.code,
-            "versions": [
-                version(package) for package in ("proprotor", "numpy", "scipy", "pystran", "fluids")
-            ],
+            "versions": [version(package) for package in packages],
         }
         return {name: fingerprint(part, name) for name, part in parts.items()}
 
     @property
     def size(self) -> float:
-        """Bytes of all results at most, before the coordinates are known."""
+        """Bytes of all results at most, estimated before the coordinates are known."""
         dofs = _most_coordinates(self.analysis.case, self.analysis.options)
+        found = variables(self.analysis.quantities).values()
         return float(
-            sum(
-                math.prod(shape_of(one, self.shape, 2 * dofs, dofs)) * bytes_of(one)
-                for one in variables(self.analysis.quantities).values()
-            )
+            sum(math.prod(shape_of(one, self.shape, 2 * dofs, dofs)) * bytes_of(one) for one in found)
         )
 
     def batch(self, block: tuple[slice, slice]) -> Batch:
@@ -99,7 +89,7 @@ class Request:
         return Batch(self.designs.values, self.airspeed).some(*block)
 
     def with_coordinates(self) -> Request:
-        """Return the same request with the coordinates of the model, for which a few points are analysed."""
+        """Return the same request with the coordinates of the model, found by the analysis of a few points."""
         case, options = self.analysis.case, self.analysis.options
         tried = self.designs.values[AIRSPEED] if self.airspeed is None else self.airspeed
         dofs = _coordinates(case, tried, options)
@@ -165,7 +155,9 @@ def requested(
             _check_range(speeds, name)
     analysis = Analysis(case, quantities, options, code=code)
     if tolerance is not None:
-        analysis = replace(analysis, tolerance=_above_zero("tolerance", tolerance))
+        if not isinstance(tolerance, int | float) or not tolerance > 0:
+            raise InputError("tolerance", tolerance, "must be a number above zero")
+        analysis = replace(analysis, tolerance=float(tolerance))
     line = None if speeds is None else np.atleast_1d(speeds)
     return Request(analysis, designs, line, speeds is not None and not speeds.ndim)
 
@@ -174,8 +166,7 @@ def _known_quantities(quantities: str | Sequence[str]) -> tuple[str, ...]:
     """Return the quantities in their own order, each once."""
     chosen = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     for name in chosen:
-        if name not in QUANTITIES:
-            raise InputError("quantities", name, unknown_name(str(name), QUANTITIES, "quantity"))
+        check_known("quantities", name, QUANTITIES, "quantity")
     if not chosen:
         raise InputError("quantities", None, f"must be of {', '.join(QUANTITIES)}")
     return tuple(name for name in QUANTITIES if name in chosen)
@@ -185,12 +176,6 @@ def _check_range(speeds: Array | None, quantity: str) -> None:
     if speeds is None or speeds.ndim != 1 or speeds.size < 2 or not np.all(np.diff(speeds) > 0):
         given = "among the inputs" if speeds is None else np.array2string(speeds, threshold=4)
         raise InputError(AIRSPEED, given, f'must be a range of increasing speeds for quantities="{quantity}"')
-
-
-def _above_zero(name: str, value: Any) -> float:
-    if not isinstance(value, int | float) or not value > 0:
-        raise InputError(name, value, "must be a number above zero")
-    return float(value)
 
 
 # Coordinates of the model -------------------------------------------------------------------------
@@ -226,7 +211,6 @@ def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple
         if model.trim.converged.any():
             break
     if model.M.shape[:-2] != tried.shape:
-        raise InputError(
-            "options", ", ".join(options), "must not hold arrays: vary the case's inputs instead"
-        )
+        rule = "must not hold arrays: vary the case's inputs instead"
+        raise InputError("options", ", ".join(options), rule)
     return model.dofs

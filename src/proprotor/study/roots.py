@@ -1,4 +1,4 @@
-"""Eigenvalues of the points of a batch, the vectors of the modes, and the least stable mode."""
+"""Eigenvalues of the points of a batch, the shapes of the modes, and the least stable mode."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def vectors(model: LinearModel, spectrum: Spectrum) -> Array:
 
 
 def _largest_one(shapes: Array) -> Array:
-    """Divide columns by their largest component."""
+    """Return columns divided by their largest component."""
     size = np.nan_to_num(shapes.real**2 + shapes.imag**2)
     with np.errstate(all="ignore"):
         scaled: Array = shapes / np.take_along_axis(shapes, size.argmax(axis=-2)[..., None, :], -2)

@@ -25,14 +25,7 @@ from proprotor.study.designs import (
     paths_of,
     side_by_side,
 )
-from proprotor.study.input_ranges import (
-    LogRange,
-    Normal,
-    Range,
-    Relative,
-    read_distribution,
-    read_values,
-)
+from proprotor.study.input_ranges import LogRange, Normal, Range, Relative, read_distribution, read_values
 from proprotor.typing import Array
 
 __all__ = [
@@ -173,9 +166,8 @@ def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
         return inputs
     if isinstance(inputs, Mapping):
         return grid(inputs)
-    raise InputError(
-        "inputs", inputs, "must be a mapping of deck paths to values, or a plan of proprotor.sampling"
-    )
+    rule = "must be a mapping of deck paths to values, or a plan of proprotor.sampling"
+    raise InputError("inputs", inputs, rule)
 
 
 def _plan_of_values(inputs: Mapping[str, Any], lay_out: Callable[..., Designs]) -> Plan:
@@ -203,13 +195,9 @@ def _sampled(
 
     def lay_out(read: dict[Any, Any], known: Mapping[str, Datum]) -> Designs:
         shares = draw(len(read), int(size), seed, **extra)
-        sample = {
-            "method": method,
-            "size": int(size),
-            "seed": seed,
-            "inputs": [label_of(one) for one in read],
-        }
-        return drawn(read, known, shares, sample | extra)
+        labels = [label_of(name) for name in read]
+        sample = {"method": method, "size": int(size), "seed": seed, "inputs": labels} | extra
+        return drawn(read, known, shares, sample)
 
     return Plan(dict(inputs), lay_out, read_distribution)
 
@@ -218,16 +206,14 @@ def _draw(engine: str, inputs: int, size: int, seed: int) -> Array:
     """Return shares (size, inputs) drawn by an engine of scipy.stats.qmc."""
     from scipy.stats import qmc
 
-    shares: Array = getattr(qmc, engine)(inputs, rng=seed).random(size)
-    return shares
+    return np.asarray(getattr(qmc, engine)(inputs, rng=seed).random(size))
 
 
 def _draw_saltelli(inputs: int, size: int, seed: int, second_order: bool) -> Array:
     from SALib.sample import sobol as salib_sobol
 
     unit = {"num_vars": inputs, "names": [str(place) for place in range(inputs)], "bounds": [[0, 1]] * inputs}
-    shares: Array = salib_sobol.sample(unit, size, calc_second_order=second_order, seed=seed)
-    return shares
+    return np.asarray(salib_sobol.sample(unit, size, calc_second_order=second_order, seed=seed))
 
 
 def _check_power_of_two(size: int) -> None:

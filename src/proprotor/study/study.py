@@ -93,9 +93,8 @@ def study(
     check_needs(request, batch, workers, client)
     division = {"points": batch or points_at_once(request, workers, client)}
     with ExitStack() as held:
-        kept = None
-        if checkpoint is not None:
-            kept = Checkpoint(checkpoint)
+        kept = None if checkpoint is None else Checkpoint(checkpoint)
+        if kept:
             division = held.enter_context(kept.open(request.identity, division))
         request = request.with_coordinates()
         blocks = blocks_of(request, int(division["points"]))
@@ -156,12 +155,11 @@ def _analysed(
     if workers is None:
         small = points <= _SMALL and not study_workers.idle_workers()
         workers = 1 if small else study_workers.cores()
-    workers = min(workers, count)
-    if workers == 1:
-        return study_workers.here(analysis, batches)
-    try:
-        study_workers.check_loadable(analysis)
-    except study_workers.NotLoadable as error:
-        warn(f"one process analyses the study, because others cannot load the case: {error}", stacklevel=4)
-        return study_workers.here(analysis, batches)
-    return study_workers.in_processes(analysis, batches, workers)
+    if min(workers, count) > 1:
+        try:
+            study_workers.check_loadable(analysis)
+            return study_workers.in_processes(analysis, batches, min(workers, count))
+        except study_workers.NotLoadable as error:
+            reason = f"because others cannot load the case: {error}"
+            warn(f"one process analyses the study, {reason}", stacklevel=4)
+    return study_workers.here(analysis, batches)

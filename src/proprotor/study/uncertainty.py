@@ -44,9 +44,9 @@ def distribution(
     Returns
     -------
     xarray.Dataset
-        ``value`` over ``percentile``, and how many designs are ``known``, ``above`` or ``below`` the range, ``failed``,
-        and how many known ones are ``doubtful``; the attribute ``doubts`` says why. Other attributes say the case and
-        its options.
+        ``value`` over ``percentile``, and the numbers of designs that are ``known``, ``above`` or ``below`` the range,
+        ``failed``, or ``doubtful``; the attribute ``doubts`` gives the reasons for doubt. Other attributes say the case
+        and its options.
 
     Raises
     ------
@@ -68,18 +68,10 @@ def distribution(
     found = np.quantile(ordered, wanted / 100, method="inverted_cdf")
     warnings = _warnings(results, of)
     counts = {"known": known, "above": above, "below": below, "failed": failed, "doubtful": warnings != ""}
-    return xarray.Dataset(
-        {
-            "value": (
-                "percentile",
-                found,
-                {"units": results[of].attrs.get("units", "1"), "long_name": f"of {of}"},
-            )
-        }
-        | {name: ((), int(mask.sum())) for name, mask in counts.items()},
-        coords={"percentile": wanted},
-        attrs=_attributes(results, of, warnings),
-    )
+    own = {"units": results[of].attrs.get("units", "1"), "long_name": f"of {of}"}
+    table: dict[str, Any] = {"value": ("percentile", found, own)}
+    table |= {name: ((), int(mask.sum())) for name, mask in counts.items()}
+    return xarray.Dataset(table, {"percentile": wanted}, _attributes(results, of, warnings))
 
 
 def _warnings(results: xarray.Dataset, of: str) -> Array:
@@ -116,18 +108,18 @@ def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed"
     Raises
     ------
     InputError
-        As `distribution`; and when designs beyond the range of the study leave it open.
+        As `distribution`; and when designs beyond the airspeeds of the study may lie on either side of the limit.
     """
     values, above, below = _one_a_design(results, of)
     known = np.isfinite(values)
-    if not (known | above | below).any():
+    works = known | above | below
+    if not works.any():
         raise InputError(of, None, "has no value for any design")
     lowest, highest = _range(results)
     if (above.any() and limit > highest) or (below.any() and limit < lowest):
-        raise InputError(
-            "limit", limit, f"must lie in the airspeeds of the study, {lowest:g} to {highest:g} m/s"
-        )
-    return float((below.sum() + (values[known] < limit).sum()) / (known | above | below).sum())
+        rule = f"must lie in the airspeeds of the study, {lowest:g} to {highest:g} m/s"
+        raise InputError("limit", limit, rule)
+    return float((below.sum() + (values[known] < limit).sum()) / works.sum())
 
 
 def sobol_indices(
@@ -145,7 +137,7 @@ def sobol_indices(
     confidence : float
         Level of the intervals, dimensionless, from 0 to 1.
     resamples : int
-        Of the bootstrap that finds the intervals.
+        Number of resamples of the bootstrap that finds the intervals.
 
     Returns
     -------
@@ -181,7 +173,8 @@ def sobol_indices(
     }
     coordinates = {"input": names}
     if sample["second_order"]:
-        table["second"] = (("input", "other_input"), _both_ways(found["S2"]))
+        upper = found["S2"]  # SALib fills half of a symmetric table; its diagonal is NaN
+        table["second"] = (("input", "other_input"), np.where(np.isnan(upper), upper.T, upper))
         coordinates["other_input"] = names
     attributes = _attributes(results, of, warnings) | {"confidence": confidence}
     return xarray.Dataset(table, coordinates, attributes)
@@ -231,12 +224,14 @@ def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array
 
 
 def _range(results: xarray.Dataset) -> tuple[float, float]:
+    """Return the lowest and the highest airspeed of a study, m/s; infinite without a range."""
     if "airspeed" not in results.dims:
         return -np.inf, np.inf
     return float(results.airspeed.min()), float(results.airspeed.max())
 
 
 def _saltelli_of(results: xarray.Dataset) -> dict[str, Any]:
+    """Return how a Saltelli sample was drawn; refuse results of anything else."""
     sample: dict[str, Any] = json.loads(results.attrs.get("sample", "{}"))
     if sample.get("method") != "saltelli":
         raise InputError("results", sample.get("method"), "must be a study of proprotor.sampling.saltelli")
@@ -244,13 +239,9 @@ def _saltelli_of(results: xarray.Dataset) -> dict[str, Any]:
 
 
 def _check_left_out(of: str, whole: Array, beyond: int) -> None:
+    """Refuse indices of too few base samples, with the number of designs beyond the airspeeds as a hint."""
     left_out = len(whole) - whole.sum()
     if left_out > _MOST_LEFT_OUT * len(whole):
         hint = f"; {beyond} designs are stable or unstable throughout: widen the airspeeds" if beyond else ""
         count = f"no value in {left_out} of {len(whole)} base samples"
         raise InputError(of, count, f"must be known in {1 - _MOST_LEFT_OUT:.0%} of them{hint}")
-
-
-def _both_ways(upper: Array) -> Array:
-    """Return a symmetric table from the half that SALib fills; NaN on the diagonal."""
-    return np.where(np.isnan(upper), upper.T, upper)

@@ -1,4 +1,4 @@
-"""The quantities of a study, their variables, and the arrays that hold these."""
+"""The quantities of a study, the variables of each quantity, and arrays for variables that are not found yet."""
 
 from __future__ import annotations
 
@@ -18,80 +18,78 @@ POINT, _DESIGN = "point", "design"
 
 
 class _Variable(NamedTuple):
-    """A variable of the results: whether each point or each design has it, meaning, unit, further dimensions, type."""
+    """A variable of the results: meaning, unit, further dimensions, type, and whether points or designs have it."""
 
-    on: str
     meaning: str
     units: str = "1"
     dims: tuple[str, ...] = ()
     dtype: Any = float
+    on: str = POINT
 
 
-def _text(on: str, meaning: str, *dims: str) -> _Variable:
+def _text(meaning: str, *dims: str, on: str = POINT) -> _Variable:
     """Return a variable of texts, which have no unit."""
-    return _Variable(on, meaning, "", dims, str)
+    return _Variable(meaning, "", dims, str, on)
 
 
 VARIABLES: dict[str, dict[str, _Variable]] = {
     "eigenvalue": {
-        "eigenvalue": _Variable(POINT, "all eigenvalues, by frequency |Im s|", "rad/s", ("state",), complex),
+        "eigenvalue": _Variable("all eigenvalues, by frequency |Im s|", "rad/s", ("state",), complex),
     },
     "least_stable": {
-        "growth_rate": _Variable(POINT, "largest real part of all eigenvalues", "1/s"),
-        "damping_ratio": _Variable(POINT, "-Re s/|s| of the mode with the lowest damping ratio"),
-        "frequency": _Variable(POINT, "|Im s| of the mode with the lowest damping ratio", "rad/s"),
+        "growth_rate": _Variable("largest real part of all eigenvalues", "1/s"),
+        "damping_ratio": _Variable("-Re s/|s| of the mode with the lowest damping ratio"),
+        "frequency": _Variable("|Im s| of the mode with the lowest damping ratio", "rad/s"),
     },
     "trim": {
-        "collective": _Variable(POINT, "pitch at 0.75 R without the elastic pitch", "rad"),
-        "coning": _Variable(POINT, "trim flap angle beyond the precone", "rad"),
-        "lag": _Variable(POINT, "trim lag angle", "rad"),
-        "elastic_pitch": _Variable(POINT, "trim elastic pitch", "rad"),
-        "thrust": _Variable(POINT, "thrust of the airloads on the rotor", "N"),
-        "torque": _Variable(POINT, "torque of the airloads, positive where it speeds the rotor up", "N*m"),
+        "collective": _Variable("pitch at 0.75 R without the elastic pitch", "rad"),
+        "coning": _Variable("trim flap angle beyond the precone", "rad"),
+        "lag": _Variable("trim lag angle", "rad"),
+        "elastic_pitch": _Variable("trim elastic pitch", "rad"),
+        "thrust": _Variable("thrust of the airloads on the rotor", "N"),
+        "torque": _Variable("torque of the airloads, positive where it speeds the rotor up", "N*m"),
     },
     "flutter": {
         "flutter_speed": _Variable(
-            _DESIGN, "lowest airspeed of the range at which a mode becomes unstable", "m/s"
+            "lowest airspeed of the range at which a mode becomes unstable", "m/s", on=_DESIGN
         ),
         "flutter_frequency": _Variable(
-            _DESIGN, "|Im s| of the mode that becomes unstable; 0: divergence", "rad/s"
+            "|Im s| of the mode that becomes unstable; 0: divergence", "rad/s", on=_DESIGN
         ),
-        "flutter_mode": _text(_DESIGN, "what moves in that mode at that airspeed"),
-        "flutter_coordinate": _text(_DESIGN, "coordinate that takes most part in that mode"),
-        "flutter_warning": _text(_DESIGN, "what makes the flutter speed doubtful"),
+        "flutter_mode": _text("what moves in that mode at that airspeed", on=_DESIGN),
+        "flutter_coordinate": _text("coordinate that takes most part in that mode", on=_DESIGN),
+        "flutter_warning": _text("what makes the flutter speed doubtful", on=_DESIGN),
         "flutter_note": _text(
-            _DESIGN, "why there is no flutter speed, or that it is not the first instability"
+            "why there is no flutter speed, or that it is not the first instability", on=_DESIGN
         ),
         "flutter_least_damping": _Variable(
-            _DESIGN, "lowest -Re s/|s| of all modes at the airspeeds of the range"
+            "lowest -Re s/|s| of all modes at the airspeeds of the range", on=_DESIGN
         ),
     },
     "vectors": {
-        "vector": _Variable(
-            POINT, "motion of the coordinates; largest component 1", "", ("dof", "state"), complex
-        ),
+        "vector": _Variable("motion of the coordinates; largest component 1", "", ("dof", "state"), complex),
     },
     "modes": {
         "mode_eigenvalue": _Variable(
-            POINT, "eigenvalues, followed along the airspeeds", "rad/s", ("state",), complex
+            "eigenvalues, followed along the airspeeds", "rad/s", ("state",), complex
         ),
-        "mode_quality": _Variable(
-            POINT, "trust in the step from the airspeed before, 0 to 1", dims=("state",)
-        ),
-        "mode_name": _text(POINT, "what moves in the mode at the point", "state"),
+        "mode_quality": _Variable("trust in the step from the airspeed before, 0 to 1", dims=("state",)),
+        "mode_name": _text("what moves in the mode at the point", "state"),
         "mode_share": _Variable(
-            POINT, "participation of the motion that the mode is named after, 0 to 1", dims=("state",)
+            "participation of the motion that the mode is named after, 0 to 1", dims=("state",)
         ),
         "mode_support_share": _Variable(
-            POINT, "participation of the coordinates of the support, 0 to 1", dims=("state",)
+            "participation of the coordinates of the support, 0 to 1", dims=("state",)
         ),
-        "mode_coordinate": _text(_DESIGN, "coordinate that takes most part at the first airspeed", "state"),
+        "mode_coordinate": _text(
+            "coordinate that takes most part at the first airspeed", "state", on=_DESIGN
+        ),
     },
 }
 ALWAYS = {
-    "reason": _text(POINT, "why a point failed"),
-    "warning": _text(POINT, "what makes a point doubtful"),
-    "missing": _text(POINT, "why a point has fewer eigenvalues than others"),
+    "reason": _text("why a point failed"),
+    "warning": _text("what makes a point doubtful"),
+    "missing": _text("why a point has fewer eigenvalues than others"),
 }
 
 VARIABLE = {name: one for some in (*VARIABLES.values(), ALWAYS) for name, one in some.items()}
@@ -113,7 +111,7 @@ def blank(
     shape : tuple of int
         Designs and airspeeds.
     states, coordinates : int
-        Of the model.
+        Number of eigenvalues and of coordinates of the model.
     """
     return {
         name: np.full(shape_of(one, shape, states, coordinates), *_nothing(one))

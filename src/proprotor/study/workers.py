@@ -110,10 +110,7 @@ _lock = Lock()
 def idle_workers() -> int:
     """Return the number of workers that wait for a study."""
     with _lock:
-        for worker in [worker for worker in _idle if not worker.lives]:
-            _idle.remove(worker)
-            worker.end()
-        return len(_idle)
+        return sum(worker.lives for worker in _idle)
 
 
 def process_ids() -> list[int]:
@@ -151,7 +148,7 @@ def check_loadable(analysis: Analysis) -> None:
     Raises
     ------
     NotLoadable
-        When the case holds an object that only this process knows, such as a function of a script.
+        When the case holds an object that exists in this process only, such as a function of a script.
     """
     worker = _take()
     try:
@@ -285,8 +282,7 @@ def on_cluster(analysis: Analysis, batches: Numbered, client: Client) -> Found:
 
 def threads_of(client: Client) -> int:
     """Return the number of batches that a cluster analyses at once."""
-    threads: dict[str, int] = client.nthreads()
-    return max(1, sum(threads.values()))
+    return max(1, int(sum(client.nthreads().values())))
 
 
 def _numbered(analysis: Analysis, number: int, batch: Batch) -> tuple[int, dict[str, Any]]:

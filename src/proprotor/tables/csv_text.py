@@ -1,4 +1,4 @@
-"""Tables as CSV: lines that begin with # say which case and options the numbers come from, then a head and rows."""
+"""Tables as CSV: comments that begin with # name the case and the options of the numbers, then come head and rows."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _comments(found: Mapping[Any, Any]) -> Iterator[str]:
 
 
 def _cell(value: Any) -> Any:
-    """Return a value that a spreadsheet reads as it is meant: numbers as numbers, and text never as a formula."""
+    """Return a value as a cell: a spreadsheet must read a number as a number, and a text never as a formula."""
     if isinstance(value, float) and not math.isfinite(value):
         return None
     if isinstance(value, str):

@@ -27,7 +27,7 @@ def sensitivity_records(case: Case, found: xarray.Dataset, of: str) -> list[dict
     found : xarray.Dataset
         Of `Case.sensitivity`, for one boundary or mode.
     of : str
-        A key of `READ_IN`.
+        Quantity whose derivatives were found, a key of `READ_IN`.
 
     Returns
     -------

@@ -28,14 +28,14 @@ def study_summary(results: xarray.Dataset) -> dict[str, Any]:
         reservations; of flutter speeds how many were found and are doubtful, the lowest, median and highest in m/s;
         without flutter speeds how many points are unstable, and the lowest damping.
     """
-    reasons = Counter(str(text) for text in results.reason.values.ravel() if text)
+    reasons = _most_frequent(results.reason)
     summary: dict[str, Any] = {
         "title": results.title,
         "points": int(results.reason.size),
         "failed": sum(reasons.values()),
-        "reasons": dict(reasons.most_common()),
+        "reasons": reasons,
         "points doubtful": int((results.warning != "").sum()),
-        "doubts of points": _counted(results.warning.values),
+        "doubts of points": _doubts(results.warning),
         "reservations": results.attrs["reservations"],
     }
     if "flutter_speed" in results:
@@ -48,20 +48,25 @@ def study_summary(results: xarray.Dataset) -> dict[str, Any]:
     }
 
 
-def _counted(warnings: np.ndarray) -> dict[str, int]:
-    return {text: len(places) for text, places in reasons_for_doubt(warnings.ravel().tolist()).items()}
+def _most_frequent(texts: xarray.DataArray) -> dict[str, int]:
+    """Return how often each text stands in an array, the most frequent first; empty texts do not count."""
+    return dict(Counter(str(text) for text in texts.values.ravel() if text).most_common())
+
+
+def _doubts(warnings: xarray.DataArray) -> dict[str, int]:
+    """Return the number of warnings by reason."""
+    return {text: len(places) for text, places in reasons_for_doubt(warnings.values.ravel().tolist()).items()}
 
 
 def _of_flutter_speeds(results: xarray.Dataset) -> dict[str, Any]:
-    found = np.asarray(results.flutter_speed.values, dtype=float).ravel()
-    notes = Counter(str(text) for text in results.flutter_note.values.ravel() if text)
+    found = np.asarray(results.flutter_speed.values, dtype=float)
     speeds = np.sort(found[np.isfinite(found)])
     return {
         "flutter speeds found": len(speeds),
-        "flutter speeds doubtful": len([text for text in results.flutter_warning.values.ravel() if text]),
-        "doubts": _counted(results.flutter_warning.values),
+        "flutter speeds doubtful": int((results.flutter_warning != "").sum()),
+        "doubts": _doubts(results.flutter_warning),
         "lowest flutter speed (m/s)": float(speeds[0]) if len(speeds) else None,
         "median flutter speed (m/s)": float(np.median(speeds)) if len(speeds) else None,
         "highest flutter speed (m/s)": float(speeds[-1]) if len(speeds) else None,
-        "notes": dict(notes.most_common()),
+        "notes": _most_frequent(results.flutter_note),
     }

@@ -77,11 +77,8 @@ def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
 def _ranges(airspeed: Array, growth: Array) -> Iterator[tuple[int, float, float, bool, bool]]:
     """Yield the first unstable point of each range, its start and stop, and whether these are ends of the sweep."""
     unstable = np.concatenate([[False], growth > 0, [False]])
-    starts, ends = (
-        np.flatnonzero(~unstable[:-1] & unstable[1:]),
-        np.flatnonzero(unstable[:-1] & ~unstable[1:]),
-    )
-    for first, after in zip(starts.tolist(), ends.tolist(), strict=True):
+    changes = np.flatnonzero(unstable[:-1] != unstable[1:])  # to unstable and back to stable, in turn
+    for first, after in changes.reshape(-1, 2).tolist():
         open_start, open_stop = first == 0, after == len(growth)
         start = airspeed[0] if open_start else _zero(airspeed, growth, first - 1)
         stop = airspeed[-1] if open_stop else _zero(airspeed, growth, after - 1)
@@ -94,7 +91,7 @@ def _zero(airspeed: Array, growth: Array, i: int) -> float:
 
 
 def leaps(sweep: xarray.Dataset) -> Array:
-    """Return where a name passes to a root that lies elsewhere (points - 1, mode), so that a line across is no root.
+    """Return where a name passes to a distant root (points - 1, mode), so that a line between the points is no root.
 
     Two roots that veer and exchange their motions are near each other: from one point to the next, the name goes no
     farther than twice as far as both roots do, or than 2 % of the root. Then the line of the name goes on.
@@ -120,7 +117,6 @@ def support_coordinates(sweep: xarray.Dataset) -> list[str]:
 
 
 def support_share(sweep: xarray.Dataset) -> Array:
-    """Return how much each mode (mode,) moves the support: the largest participation along the sweep, 0 to 1."""
+    """Return the largest participation of the support in each mode (mode,) along the sweep, 0 to 1."""
     share = sweep.participation.sel(dof=support_coordinates(sweep)).sum("dof").values
-    largest: Array = np.nanmax(share, axis=0, initial=0)
-    return largest
+    return np.asarray(np.nanmax(share, axis=0, initial=0))

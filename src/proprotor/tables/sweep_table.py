@@ -87,14 +87,12 @@ class SweepTable:
     @cached_property
     def unstable(self) -> Array:
         """Whether a mode is unstable (airspeed, mode)."""
-        grows: Array = growth_rate(self.sweep) > 0
-        return grows
+        return np.asarray(growth_rate(self.sweep) > 0)
 
     @cached_property
     def failed(self) -> Array:
         """Whether a point could not be analysed (airspeed,)."""
-        failed: Array = self.sweep.reason.values != ""
-        return failed
+        return np.asarray(self.sweep.reason.values != "")
 
     def lines(self, width: int = 80, all_modes: bool = False) -> Iterator[Text]:
         """Yield the lines of one or more tables no wider than `width`, a row for each airspeed."""
@@ -120,14 +118,12 @@ class SweepTable:
         mixed = []
         for place in np.flatnonzero(low.any(axis=0)):
             speeds = self.airspeed[low[:, place]]
-            mixed.append(f"{self.sweep.mode.values[place]} {self._range(np.sort(speeds))}")
+            first, last = (f"{end:g} {self.unit}" for end in (speeds.min(), speeds.max()))
+            where = f"at {first}" if len(speeds) == 1 else f"from {first} to {last}"
+            mixed.append(f"{self.sweep.mode.values[place]} {where}")
         if not mixed:
             return ""
         return f"Mixed, less than a third of the mode is what its name says: {', '.join(mixed)}."
-
-    def _range(self, speeds: Array) -> str:
-        ends = f"{speeds[0]:g} {self.unit}", f"{speeds[-1]:g} {self.unit}"
-        return f"at {ends[0]}" if len(speeds) == 1 else f"from {ends[0]} to {ends[1]}"
 
     def _of_interest(self, count: int) -> list[int]:
         """Return unstable modes, the support's modes and other modes that move it most, in the order of the sweep."""
@@ -144,9 +140,8 @@ class SweepTable:
         names = [textwrap.wrap(str(self.sweep.mode.values[i]), _MODE_WIDTH - 2) for i in modes]
         for row in range(max(map(len, names), default=0)):
             cells = (name[row] if row < len(name) else "" for name in names)
-            yield Text(
-                " " * (_SPEED_WIDTH + 1) + "".join(f"{cell:>{_MODE_WIDTH - 1}} " for cell in cells), "bold"
-            )
+            line = "".join(f"{cell:>{_MODE_WIDTH - 1}} " for cell in cells)
+            yield Text(" " * (_SPEED_WIDTH + 1) + line, "bold")
         yield Text(f"{self.unit:>{_SPEED_WIDTH}} " + f"{'/rev':>6}{'%':>7} " * len(modes), "dim")
         for point in range(len(self.airspeed)):
             yield self._row(point, modes)
@@ -170,15 +165,12 @@ class SweepTable:
         if self.failed.all():
             return ["No airspeed could be analysed."]
         ranges = sorted(unstable_ranges(self.sweep), key=lambda found: found.start)
-        return [self._sentence(found) for found in ranges] or [
-            "No mode is unstable at the airspeeds analysed."
-        ]
+        stable = "No mode is unstable at the airspeeds analysed."
+        return [self._sentence(found) for found in ranges] or [stable]
 
     def _sentence(self, found: UnstableRange) -> str:
-        along = self.sweep.airspeed.values, self.sweep.warning.values
-        start, stop = (
-            marked(self._rounded(at), doubtful_near(*along, at)) for at in (found.start, found.stop)
-        )
+        along, ends = (self.sweep.airspeed.values, self.sweep.warning.values), (found.start, found.stop)
+        start, stop = (marked(self._rounded(at), doubtful_near(*along, at)) for at in ends)
         since = f"from about {start} (interpolated)"
         if found.open_start:
             since = f"at {self.airspeed[~self.failed][0]:g} {self.unit}, the lowest airspeed analysed"
