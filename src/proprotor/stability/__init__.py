@@ -51,14 +51,11 @@ from proprotor.stability.map import stability_map
 from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import (
-    Eigensystem,
     coordinate_motion,
     coordinate_shares,
     decomposition,
-    eigensystem,
     eigenvalues,
     modes,
-    participation,
 )
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.root_error import error_near_zero
@@ -76,7 +73,6 @@ __all__ = [
     "Branches",
     "Crossing",
     "Crossings",
-    "Eigensystem",
     "Failed",
     "FlutterPoint",
     "NamedStates",
@@ -93,7 +89,6 @@ __all__ = [
     "coordinate_shares",
     "damping_rate",
     "decomposition",
-    "eigensystem",
     "eigenvalue_change",
     "eigenvalues",
     "error_near_zero",
@@ -107,7 +102,6 @@ __all__ = [
     "modes",
     "moving",
     "named_at",
-    "participation",
     "scan_speeds",
     "sensitivity",
     "stability_map",

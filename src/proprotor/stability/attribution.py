@@ -10,28 +10,19 @@ origin drives the mode. If the terms of all origins grow alike nothing moves: th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from proprotor.model import stamp
-from proprotor.model.linear_model import LinearModel
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change
-from proprotor.stability.matching import Modes
-from proprotor.stability.named_modes import named_modes
-from proprotor.stability.origins import Part, model_parts
-from proprotor.typing import Array
+from proprotor.stability.named_modes import doubtful_numbers, named_modes
+from proprotor.stability.origins import model_parts
 
 if TYPE_CHECKING:
     import xarray
 
     from proprotor.model.configuration import Configuration
-
-
-def _contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
-    """Return λ_g of each part and mode (..., parts, modes), rad/s; the sum over all parts of a model is zero."""
-    return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
 
 
 def attribution(
@@ -60,23 +51,19 @@ def attribution(
     InputError
         For a value that is no single airspeed, an airspeed that cannot be analysed, and an unknown mode.
     """
-    found = named_modes(case, airspeed, mode, options)
-    parts = model_parts(case, found.model, **options)
-    changes = _contributions(found.model, parts, found.modes)
-    data = _dataset(found.names, list(parts), found.modes.values, changes)
-    data["warning"] = (), str(found.model.trim.warning), {"long_name": "what makes the numbers doubtful"}
-    return data.assign_attrs(stamp.of_model(found.model) | {"airspeed": found.speed})
-
-
-def _dataset(modes: list[str], origins: list[str], values: Array, found: Array) -> xarray.Dataset:
     import xarray  # here, because it takes long to import
 
-    units = {"units": "rad/s"}
+    found = named_modes(case, airspeed, mode, options)
+    parts = model_parts(case, found.model, **options)
+    changes = np.stack([eigenvalue_change(found.model, part, found.modes) for part in parts.values()])
+    by_origin, units = ("origin", "mode"), {"units": "rad/s"}
     return xarray.Dataset(
         {
-            "contribution": (("origin", "mode"), found, units),
-            "growth": (("origin", "mode"), found.real, units),
-            "eigenvalue": ("mode", values, units),
+            "contribution": (by_origin, changes, units),
+            "growth": (by_origin, changes.real, units),
+            "eigenvalue": ("mode", found.modes.values, units),
+            "warning": doubtful_numbers(found.model.trim.warning),
         },
-        coords={"origin": origins, "mode": modes},
+        coords={"origin": list(parts), "mode": found.names},
+        attrs=stamp.of_model(found.model) | {"airspeed": found.speed},
     )

@@ -13,6 +13,7 @@ from proprotor.model.linear_model import SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
 from proprotor.needs import check_memory
 from proprotor.rotor.motions import HUB
+from proprotor.stability.modes import doubt_and_failure, leading_dims
 from proprotor.stability.root_error import roots
 from proprotor.typing import Array
 from proprotor.units import values_in_si
@@ -70,8 +71,7 @@ def frequency_response(
     size = _BYTES_PER_ENTRY * count * len(rows) * len(columns)
     check_memory("frequency", asked, size, "the response", "take fewer, or fewer inputs and outputs")
     response = _response(space, omega, rows, columns)
-    leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
-    leading = ("airspeed",) if len(leading) == 1 else leading
+    leading = leading_dims(model)
     dims = (*leading, "frequency", "output", "input")
     chosen = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
     unit = {"units": "output_unit / input_unit"}
@@ -81,12 +81,7 @@ def frequency_response(
             "magnitude": (dims, np.abs(response), unit),
             "phase": (dims, np.angle(response), {"units": "rad"}),
             "stable": (leading, _stable(model)),
-            "warning": (
-                leading,
-                model.trim.warning.astype(str),
-                {"long_name": "what makes a point doubtful"},
-            ),
-            "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
+            **doubt_and_failure(model, leading),
         },
         coords={
             "frequency": ("frequency", omega, {"units": "rad/s"}),

@@ -51,6 +51,14 @@ class Modes(NamedTuple):
     right: Array
     left: Array
 
+    def at(self, places: Array) -> Modes:
+        """Return the modes of each point at some places (..., modes)."""
+        return Modes(
+            np.take_along_axis(self.values, places, -1),
+            np.take_along_axis(self.right, places[..., None, :], -1),
+            np.take_along_axis(self.left, places[..., :, None], -2),
+        )
+
 
 class Spectrum(NamedTuple):
     """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side.
@@ -90,12 +98,7 @@ class Spectrum(NamedTuple):
 
     def modes(self, places: Array) -> Modes:
         """Return the states of each point at some places (..., modes)."""
-        values, right, left = self.all_modes
-        return Modes(
-            np.take_along_axis(values, places, -1),
-            np.take_along_axis(right, places[..., None, :], -1),
-            np.take_along_axis(left, places[..., :, None], -2),
-        )
+        return self.all_modes.at(places)
 
 
 def _left_vectors(values: Array, right: Array) -> Array:

@@ -31,7 +31,7 @@ from proprotor.stability.eigenvalue_derivatives import (
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.matching import Modes
 from proprotor.stability.modes import decomposition
-from proprotor.stability.named_modes import named_modes
+from proprotor.stability.named_modes import doubtful_numbers, named_modes
 from proprotor.stability.points import growth_rate
 from proprotor.stability.root_error import refined
 from proprotor.typing import Array
@@ -228,11 +228,8 @@ def at_boundary(
     rates = rates[:, 0]
     moves = -growth_rate(modes.values, rates, level) / boundary.rate
     frequency = rates.imag + boundary.eigenvalue_rate.imag * moves
-    data = _dataset(inputs, ("input",), moves, "m/s", exact)
+    data = _dataset(inputs, moves, "m/s", exact, defect(modes)[0], boundary.warning)
     data["frequency_derivative"] = ("input", frequency, {"units": "rad/s per SI unit of the input"})
-    data["defect"] = ((), float(defect(modes)[0]))
-    data["nearly_defective"] = ((), bool(data.defect > _NEARLY_DEFECTIVE))
-    data["warning"] = _doubt(boundary.warning)
     data.attrs = dict(boundary.stamp) | {
         "of": "flutter_speed",
         "value": speed,
@@ -253,7 +250,7 @@ def _of_modes(
     mode: str | None,
     options: Mapping[str, Any],
 ) -> xarray.Dataset:
-    names, modes, model, speed, eigen_solves = named_modes(case, airspeed, mode, options)
+    names, modes, model, speed = named_modes(case, airspeed, mode, options)
     rates, exact = _rates(case, inputs, speed, modes, model, options)
     value, units = modes.values, "rad/s"
     if of == "damping":
@@ -261,30 +258,29 @@ def _of_modes(
         at_zero = np.abs(root.values) <= root.error
         value, units = np.where(at_zero, np.nan, -modes.values.real / np.abs(modes.values)), "1"
         rates = np.where(at_zero, np.nan, damping_rate(modes.values, rates))
-    data = _dataset(inputs, ("input", "mode"), rates, units, exact).assign_coords(mode=names)
+    data = _dataset(inputs, rates, units, exact, defect(modes), model.trim.warning).assign_coords(mode=names)
     data[of] = ("mode", value, {"units": units})
-    data["defect"] = ("mode", defect(modes))
-    data["nearly_defective"] = ("mode", data.defect.values > _NEARLY_DEFECTIVE)
-    data["warning"] = _doubt(model.trim.warning)
-    data.attrs = stamp.of_model(model) | {"of": of, "airspeed": speed, "eigen_solves": eigen_solves}
+    data.attrs = stamp.of_model(model) | {"of": of, "airspeed": speed, "eigen_solves": 1}
     return data
 
 
-def _doubt(warning: Any) -> tuple[tuple[()], str, dict[str, str]]:
-    return (), str(warning), {"long_name": "what makes the numbers doubtful"}
-
-
 def _dataset(
-    inputs: Mapping[str, Datum], dims: tuple[str, ...], derivative: Array, units: str, exact: Array
+    inputs: Mapping[str, Datum], derivative: Array, units: str, exact: Array, defects: Array, warning: Any
 ) -> xarray.Dataset:
+    """Return the dataset of derivatives (inputs,) of a boundary, or (inputs, modes), with the defect of each mode."""
     import xarray  # here, because it takes long to import
 
     size = np.array([float(number.si) for number in inputs.values()])
     per = {"units": f"{units} per SI unit of the input"}
+    dims = ("input", "mode")[: derivative.ndim]
+    relative = derivative * size.reshape(-1, *[1] * (derivative.ndim - 1))
     return xarray.Dataset(
         {
             "derivative": (dims, derivative, per),
-            "relative": (dims, derivative * size.reshape(-1, *[1] * (len(dims) - 1)), {"units": units}),
+            "relative": (dims, relative, {"units": units}),
+            "defect": (dims[1:], defects),
+            "nearly_defective": (dims[1:], defects > _NEARLY_DEFECTIVE),
+            "warning": doubtful_numbers(warning),
         },
         coords={
             "input": list(inputs),
