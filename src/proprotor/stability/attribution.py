@@ -10,19 +10,28 @@ origin drives the mode. If the terms of all origins grow alike nothing moves: th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from proprotor.model import stamp
+from proprotor.model.linear_model import LinearModel
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change
+from proprotor.stability.matching import Modes
 from proprotor.stability.named_modes import doubtful_numbers, named_modes
-from proprotor.stability.origins import model_parts
+from proprotor.stability.origins import Part, model_parts
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import xarray
 
     from proprotor.model.configuration import Configuration
+
+
+def _contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
+    """Return λ_g of each part and mode (..., parts, modes), rad/s; the sum over all parts of a model is zero."""
+    return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
 
 
 def attribution(
@@ -55,7 +64,7 @@ def attribution(
 
     found = named_modes(case, airspeed, mode, options)
     parts = model_parts(case, found.model, **options)
-    changes = np.stack([eigenvalue_change(found.model, part, found.modes) for part in parts.values()])
+    changes = _contributions(found.model, parts, found.modes)
     by_origin, units = ("origin", "mode"), {"units": "rad/s"}
     return xarray.Dataset(
         {

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -114,12 +115,11 @@ def _widest_step(case: Configuration) -> float:
 def _in_small_steps(positions: Array, widest: float) -> Array:
     """Return rising positions (k,) with equally spaced points in each step that is wider than the widest allowed."""
     parts = np.maximum(np.ceil(np.diff(positions) / widest * (1 - 1e-9)), 1).astype(int)
-    step, part = (
-        np.repeat(np.arange(len(parts)), parts),
-        np.concatenate([np.arange(0), *(np.arange(k) for k in parts)]),
-    )
-    between = positions[step] + part / parts[step] * np.diff(positions)[step]
-    return np.append(between, positions[-1:])
+    between = [
+        low + np.arange(count) / count * (high - low)
+        for (low, high), count in zip(pairwise(positions), parts, strict=True)
+    ]
+    return np.concatenate([*between, positions[-1:]])
 
 
 def find_crossings(
@@ -308,13 +308,11 @@ def _failed(positions: Array, scanned: Solved, works: Array) -> tuple[Failed, ..
 def _lost(search: Search, brackets: Brackets) -> tuple[Failed, ...]:
     """Return stretches over which a mode passes the level, or may, and cannot be followed; neighbours as one."""
     rule = "a mode passes the level where it cannot be followed"
-    x = search.points.position
     found = []
     for k, why in brackets.lost.items():
         low, high = np.sort(brackets.x[:, k]).tolist()
         found.append(Failed(low, high, f"{rule}: {why}"))
-    for step in search.unsettled:
-        found.append(Failed(float(x[step.before[0]]), float(x[step.after[0]]), f"{rule}: {JUMPS}"))
+    found += [Failed(low, high, f"{rule}: {JUMPS}") for low, high in search.unsettled]
     joined: list[Failed] = []
     for one in sorted(found):
         if joined and one.first <= joined[-1].last + _TOGETHER * abs(one.first):

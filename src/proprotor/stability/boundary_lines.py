@@ -16,6 +16,7 @@ from proprotor.stability.matching import Spectrum, conjugate, match_modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.typing import Array
+from proprotor.units import in_metres_per_second
 
 if TYPE_CHECKING:
     import xarray
@@ -97,12 +98,10 @@ def boundary_lines(
 
 def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
     """Return the airspeed of a map in m/s; None where the airspeed is one of its axes."""
-    from proprotor.units import in_metres_per_second
-
     own = found.attrs.get(AIRSPEED)
     if given is not None and (own is None or not np.isclose(in_metres_per_second(given), own, rtol=1e-12)):
-        rule = "is one of the axes of the map" if own is None else f"must be {own:.6g} m/s, that of the map"
-        raise InputError(AIRSPEED, given, f"{rule}, or be left out" if own is not None else rule)
+        rule = f"must be {own:.6g} m/s, that of the map, or be left out" if own is not None else ""
+        raise InputError(AIRSPEED, given, rule or "is one of the axes of the map")
     return None if own is None else float(own)
 
 

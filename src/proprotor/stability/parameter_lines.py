@@ -23,7 +23,7 @@ from proprotor.model.quantities import batch_shape
 from proprotor.needs import check_memory
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array
-from proprotor.units import in_metres_per_second
+from proprotor.units import in_metres_per_second, values_in_si
 
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
@@ -135,8 +135,6 @@ def _is_batch(case: Configuration, options: Mapping[str, Any]) -> bool:
 def _line_of_input(
     case: Configuration, speed: Array, vary: Mapping[str, ArrayLike], options: Mapping[str, Any]
 ) -> ParameterLine:
-    from proprotor.units import values_in_si  # here, because pint takes long to import
-
     if len(vary) != 1:
         raise InputError("vary", ", ".join(vary), "must be one input to sweep")
     (path, given), *_ = vary.items()

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.stability.cubic import hermite
+from proprotor.stability.cubic import band, bend, hermite
 from proprotor.stability.matching import size_of, way_to_zero
 from proprotor.stability.points import Points
 from proprotor.stability.root_error import growth
@@ -23,7 +23,6 @@ from proprotor.typing import Array
 
 _APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
 _MEETING = 0.5  # of the distance at the farther end: and so may those that are as near at one end
-_OF_BEND = 1.0  # of what parts a cubic from its chord: its error
 _OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord: its least error
 _INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
 MANY, _FEW = 6, 4  # points of a scan through which polynomials go
@@ -70,8 +69,7 @@ def keep_off(
         return found
     which, place = np.unique(row, return_inverse=True)
     few = steps.at(which)
-    values = points.spectrum.values
-    partner = _partners(values[few.before], few.later(values))[place, state]
+    partner = _partners(*few.at_ends(points.spectrum.values))[place, state]
     sides = few.sides(points)[:, place]
     own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
     side = own[0]
@@ -122,8 +120,7 @@ def _sums_and_squares(
 
 def _couples(steps: Steps, points: Points) -> tuple[Array, Array, Array]:
     """Return steps (k,), two states (2, k) that are real at one end and a pair at the other, and which end that is."""
-    values = points.spectrum.values
-    ends = np.stack([values[steps.before], steps.later(values)])
+    ends = steps.at_ends(points.spectrum.values)
     real = ends.imag == 0
     found = []
     for end in (0, 1):
@@ -150,10 +147,8 @@ def joining_roots(steps: Steps, points: Points) -> tuple[Array, Array, Array, Ar
 
 
 def _cubic(ends: Array) -> _Smooth:
-    rise = ends[1] - ends[0]
-    bend = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
-    band = 16 * _INSIDE**2 * (1 - _INSIDE) ** 2
-    return _Smooth(hermite(_INSIDE, ends[:, :, None]), _OF_BEND * bend[:, None] * band)
+    """Return cubics within their steps by their ends (4, m); they may be wrong by as much as they bend."""
+    return _Smooth(hermite(_INSIDE, ends[:, :, None]), bend(ends)[:, None] * band(_INSIDE))
 
 
 def along_scan(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from proprotor.stability.matching import size_of
-from proprotor.stability.steps import Steps
+from proprotor.stability.steps import Steps, first_steps
 from proprotor.typing import Array
 
 _BLOCK = 64  # steps whose distances stay in the cache
@@ -23,9 +23,7 @@ def steps_by_values(values: Array, before: Array, after: Array) -> Steps:
     for start in range(0, count, _BLOCK):
         rows = slice(start, start + _BLOCK)
         successor[rows] = _nearest(values[before[rows]], values[after[rows]])
-    unknown = np.full(successor.shape, np.nan)
-    depth, is_open = np.zeros(count, dtype=int), np.ones(count, dtype=bool)
-    return Steps(before, after, successor, unknown, unknown.copy(), depth, is_open)
+    return first_steps(before, after, successor, np.full(successor.shape, np.nan))
 
 
 def _nearest(first: Array, last: Array) -> Array:

@@ -74,8 +74,8 @@ def sweep(
     data = mode_dataset(model, every, errors_of(model, spectrum), columns, line)
     by_mode = data.eigenvalue.dims
     sense = whirl(model, every.values, every.left, every.right)
-    meaning = {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
-    data["whirl"] = by_mode, at_columns(sense, columns), meaning
+    way = {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
+    data["whirl"] = by_mode, at_columns(sense, columns), way
     labels = branch_labels(branches, named, points)
     for name, values, meaning in (
         ("share", found.share, "participation of the motion that the mode is named after"),
