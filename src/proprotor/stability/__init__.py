@@ -50,13 +50,7 @@ from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.map import stability_map
 from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
-from proprotor.stability.modes import (
-    coordinate_motion,
-    coordinate_shares,
-    decomposition,
-    eigenvalues,
-    modes,
-)
+from proprotor.stability.modes import coordinate_motion, coordinate_shares, decomposition, eigenvalues, modes
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.root_error import error_near_zero
 from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity

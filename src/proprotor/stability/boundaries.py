@@ -98,7 +98,7 @@ def boundaries(
         raise InputError("case", case.name, "must be one design: give one input to vary")
     line = _rising(line)
     if vary is None:
-        line = replace(line, positions=_in_small_steps(line.positions, _widest_step(case)))
+        line = replace(line, positions=_in_small_steps(line.positions, tip_speed(case)))
     search = _search(line, level)
     found = _crossings(line, search, approach_to(case, line, search.scanned.works, options))
     own = stamp.of_case(case, options)
@@ -106,14 +106,13 @@ def boundaries(
     return found._replace(boundaries=carried, stamp=own)
 
 
-def _widest_step(case: Configuration) -> float:
-    """Return the widest step of airspeed in m/s that a search takes: the default scan's; wider ones hide crossings."""
+def _in_small_steps(positions: Array, tip: float) -> Array:
+    """Return rising positions (k,) with equally spaced points in each step that is wider than the default scan's.
+
+    Wider steps hide crossings. `tip` is the tip speed, m/s.
+    """
     low, high, points = _RANGE
-    return (high - low) / (points - 1) * tip_speed(case)
-
-
-def _in_small_steps(positions: Array, widest: float) -> Array:
-    """Return rising positions (k,) with equally spaced points in each step that is wider than the widest allowed."""
+    widest = (high - low) / (points - 1) * tip
     parts = np.maximum(np.ceil(np.diff(positions) / widest * (1 - 1e-9)), 1).astype(int)
     between = [
         low + np.arange(count) / count * (high - low)
@@ -194,11 +193,11 @@ def _branches(search: Search, positions: Array) -> Branches:
     between = np.arange(len(works), len(points.position))
     place = np.concatenate([works, len(positions) + np.arange(len(between))])
     count = len(positions) + len(between)
-    values, right, shapes = (
-        None if part is None else _in_places(part, place, count) for part in points.spectrum
-    )
-    assert values is not None and right is not None  # of points that work
-    spectrum = Spectrum(values, right, shapes)
+    rows = np.zeros(count, dtype=int)
+    rows[place] = np.arange(len(place))
+    spectrum = points.spectrum.at(rows)
+    failed = np.setdiff1d(np.arange(count), place)
+    spectrum.values[failed] = spectrum.right[failed] = np.nan
     order = np.argsort(points.position, kind="stable")
     return Branches(
         spectrum,
@@ -206,13 +205,6 @@ def _branches(search: Search, positions: Array) -> Branches:
         Matches(search.steps.successor, search.steps.quality),
         np.concatenate([positions, points.position[between]]),
     )
-
-
-def _in_places(part: Array, place: Array, count: int) -> Array:
-    """Return an array of so many rows with some rows at their places, and NaN elsewhere."""
-    whole = np.full((count, *part.shape[1:]), np.nan, dtype=part.dtype)
-    whole[place] = part
-    return whole
 
 
 def _label(found: Crossing, search: Search, branches: Branches, names: list[str], at: int) -> str:

@@ -85,7 +85,7 @@ def boundary_lines(
         vertices, frequency = found.boundary.values[places], np.abs(roots[places].imag)
         model = models_at(case, own | dict(zip(names, vertices.T, strict=True)), options)
         spectrum = decomposition(model)
-        state = _nearest_state(spectrum, roots[places])
+        state = spectrum.nearest(roots[places][:, None])[:, 0]
         for part in _same_mode(spectrum, state, np.isfinite(roots[places])):
             middle = (part.start + part.stop) // 2
             moved = names_of(some_points(model, [middle]), spectrum.at([middle]))[state[middle]]
@@ -124,10 +124,3 @@ def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice
     jumps = np.flatnonzero(~same) + 1
     for start, stop in zip((0, *jumps), (*jumps, len(state)), strict=True):
         yield slice(int(start), int(stop))
-
-
-def _nearest_state(spectrum: Spectrum, roots: Array) -> Array:
-    """Return which state of each point is the root (k,) of the point."""
-    apart = np.abs(spectrum.values - roots[:, None])
-    state: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=1)
-    return state

@@ -139,14 +139,11 @@ def branch_labels(branches: Branches, named: NamedStates, points: int) -> Branch
     own = branches.points[rows]
     values = branches.spectrum.values[own]
     start = branches.places[named.point]  # places of the branches at the point where they have their names
-    kept = np.empty((len(rows), states), dtype=int)
-    np.put_along_axis(kept, branches.places[rows], np.broadcast_to(named.place[start], kept.shape), 1)
+    branch = branches.places[rows].argsort(axis=1)  # of each state
+    kept = named.place[start][branch]
     kept = np.minimum(kept, np.take_along_axis(kept, conjugate(values), 1))
     label[own] = _as_text(kept, values, named.known)
-    ways = np.empty((len(rows), states))
-    np.put_along_axis(
-        ways, branches.places[rows], _from_anchor(branches, named.point, named.trust[start])[rows], 1
-    )
+    ways = np.take_along_axis(_from_anchor(branches, named.point, named.trust[start])[rows], branch, 1)
     trust[own] = np.minimum(ways, np.take_along_axis(ways, conjugate(values), 1))
     return BranchLabels(label, trust, _doubts(branches, label, points))
 
@@ -181,8 +178,7 @@ def _from_anchor(branches: Branches, point: int, start: Array) -> Array:
 def _doubts(branches: Branches, label: Array, points: int) -> Array:
     """Return the sentence (points,) that names the branches which the step to a point does not tell apart."""
     doubt = np.full(points, "", dtype=object)
-    by_place = np.empty((points, label.shape[1]))
-    np.put_along_axis(by_place, branches.order(points), branches.trust(points), 1)
+    by_place = np.take_along_axis(branches.trust(points), branches.order(points).argsort(axis=1), 1)
     for point in np.flatnonzero((by_place < POOR).any(axis=1) & (label != "").all(axis=1)):
         names = dict.fromkeys(label[point, by_place[point] < POOR])
         doubt[point] = f"{NOT_TOLD}: {', '.join(names)}"

@@ -122,8 +122,8 @@ def stability_map(
         ("warning", warning, "what makes a point doubtful"),
     ):
         found[name] = names[::-1], texts.astype(str), {"long_name": meaning}
-    meaning = {"long_name": "what makes the boundary doubtful"}
-    found["boundary_warning"] = "vertex", _warnings_at(plane, found.boundary.values), meaning
+    doubtful = _warnings_at(plane, found.boundary.values)
+    found["boundary_warning"] = "vertex", doubtful, {"long_name": "what makes the boundary doubtful"}
     found.attrs = stamp.of_case(case, options) | {"level": level}
     if airspeed is not None:
         found.attrs[AIRSPEED] = float(in_metres_per_second(airspeed))

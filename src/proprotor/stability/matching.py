@@ -91,6 +91,12 @@ class Spectrum(NamedTuple):
         """Which points have not failed."""
         return np.asarray(np.isfinite(self.values).any(axis=-1))
 
+    def nearest(self, roots: Array) -> Array:
+        """Return the places (..., k) of the states that are nearest to some roots (..., k) of the points."""
+        apart = size_of(self.values[..., None, :] - roots[..., :, None])
+        place: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1)
+        return place
+
     @property
     def all_modes(self) -> Modes:
         """Every state of every point, with left vectors."""

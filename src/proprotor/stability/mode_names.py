@@ -29,12 +29,7 @@ import numpy as np
 
 from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
-from proprotor.rotor.motions import (
-    HUB,
-    Motion,
-    motions,
-    name_list,
-)
+from proprotor.rotor.motions import HUB, Motion, motions, name_list
 from proprotor.stability.modes import coordinate_motion
 from proprotor.typing import Array
 
@@ -104,8 +99,8 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
     return Moving(known, place, shares)
 
 
-def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:
-    """Return the participation of whirl against and with the rotor in each state, two arrays (..., states).
+def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> Array:
+    """Return the participation of whirl against and with the rotor in each state (2, ..., states).
 
     Parameters
     ----------
@@ -116,13 +111,13 @@ def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) ->
     left, right : array (..., states, states)
         Left vectors in rows, right ones in columns.
     """
-    with_rotor, against = np.zeros(()), np.zeros(())
+    shares = np.zeros(())
     for cosine, sine in zip(*(_states(place, held) for place in motion.places), strict=True):
         c, s = right[..., cosine, :], right[..., sine, :]
         lc, ls = left[..., :, cosine], left[..., :, sine]
-        with_rotor = with_rotor + np.abs((c + 1j * s) * (lc - 1j * ls)) / 2
-        against = against + np.abs((c - 1j * s) * (lc + 1j * ls)) / 2
-    return against, with_rotor
+        against, with_rotor = (c - 1j * s) * (lc + 1j * ls), (c + 1j * s) * (lc - 1j * ls)
+        shares = shares + np.abs([against, with_rotor]) / 2
+    return shares
 
 
 def _states(place: int, held: list[int]) -> list[int]:
@@ -139,38 +134,32 @@ def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array
     centre. NaN for real roots, and where nothing goes round.
     """
     held = held_coordinates(model, right.shape[-2])
-    against, with_rotor = np.zeros(values.shape), np.zeros(values.shape)
+    shares = np.zeros((2, *values.shape))
     for motion in motions(model.dofs):
         if len(motion.places) == 2:
-            shares = _whirl_shares(motion, held, left, right)
-            against, with_rotor = against + shares[0], with_rotor + shares[1]
-    of_hub = _hub_whirl(model, values, right)
-    still = against + with_rotor < _STILL
-    against, with_rotor = (
-        np.where(still, hub, own) for hub, own in zip(of_hub, (against, with_rotor), strict=True)
-    )
+            shares = shares + _whirl_shares(motion, held, left, right)
+    shares = np.where(shares.sum(axis=0) < _STILL, _hub_whirl(model, values, right), shares)
+    against, with_rotor = shares
     total = against + with_rotor
     turned = np.where(values.imag < 0, -1.0, 1.0) * (with_rotor - against)
     return np.where((total > 0) & (values.imag != 0), turned / np.where(total > 0, total, 1), np.nan)
 
 
-def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, Array]:
-    """Return the squares of motion against and with the rotor (..., modes) of the shaft's axis, or of the hub."""
+def _hub_whirl(model: LinearModel, values: Array, right: Array) -> Array:
+    """Return the squares of motion against and with the rotor (2, ..., modes) of the shaft's axis, or of the hub."""
     n = len(model.dofs)
-    shape = coordinate_motion(held_coordinates(model, right.shape[-2]), n, values, right)
+    shape = np.nan_to_num(coordinate_motion(held_coordinates(model, right.shape[-2]), n, values, right))
     if model.hub is not None:
-        moved = np.asarray(model.hub) @ np.nan_to_num(shape)
+        moved = np.asarray(model.hub) @ shape
     else:
         moved = np.zeros((*shape.shape[:-2], len(HUB), shape.shape[-1]), dtype=complex)
         for axis, name in enumerate(HUB):
             if name in model.dofs:
-                moved[..., axis, :] = np.nan_to_num(shape[..., model.dofs.index(name), :])
+                moved[..., axis, :] = shape[..., model.dofs.index(name), :]
     x, y, _, about_x, about_y, _ = np.moveaxis(moved, -2, 0)
     # The axis k leans by α × k = (α_y, -α_x); x leads y by a quarter where a point goes round with the rotor.
-    sizes = [[np.abs(a - 1j * b) ** 2, np.abs(a + 1j * b) ** 2] for a, b in ((about_y, -about_x), (x, y))]
-    tilts = sum(sizes[0]) > 0
-    against, with_rotor = (np.where(tilts, tilt, way) for tilt, way in zip(*sizes, strict=True))
-    return against, with_rotor
+    tilt, way = (np.abs([a - 1j * b, a + 1j * b]) ** 2 for a, b in ((about_y, -about_x), (x, y)))
+    return np.where(tilt.sum(axis=0) > 0, tilt, way)
 
 
 def _name_shares(model: LinearModel, left: Array, right: Array) -> Array:
@@ -189,7 +178,7 @@ def _name_shares(model: LinearModel, left: Array, right: Array) -> Array:
             places = _states(motion.places[0], held)
             columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
             continue
-        whole = sum(_whirl_shares(motion, held, left, right))
+        whole = _whirl_shares(motion, held, left, right).sum(axis=0)
         progressive = _progressive_part(model, motion, held, left, right)
         columns += [whole * (1 - progressive), whole * progressive]
     sums = np.stack(columns, axis=-2)
@@ -294,13 +283,12 @@ def _assigned(gain: Array, slots: Array, values: Array) -> Array:
 
 def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
     """Return the names in as many places as a model has states: each mode's name twice, that of a rate alone once."""
-    slots, count = [], 0
-    for motion in motions(dofs):
-        for _ in motion.names:
-            rate_alone = len(motion.places) == 1 and motion.places[0] not in held
-            slots += [count] * (1 if rate_alone else 2)
-            count += 1
-    return np.array(slots)
+    counts = [
+        1 if len(motion.places) == 1 and motion.places[0] not in held else 2
+        for motion in motions(dofs)
+        for _ in motion.names
+    ]
+    return np.repeat(np.arange(len(counts)), counts)
 
 
 def _best(gain: Array) -> Array:

@@ -6,9 +6,8 @@ line that is nearest to the anchor. The anchor is the case with its own inputs, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -169,7 +168,12 @@ def with_approach(
     if not len(reachable):
         return line.models(), None
     approach = _approach(case, line, options, ANCHORS[0] * tip_speed(case), reachable)
-    model, near = _models_of(case, [line, approach], options)
+    assert line.inputs is not None and approach.inputs is not None  # of lines of a case
+    own, way = line.inputs(np.asarray(line.positions)), approach.inputs(np.asarray(approach.positions))
+    both = models_at(case, {name: np.concatenate([own[name], way[name]]) for name in own}, options)
+    model, near = (
+        _points_of(both, part) for part in (slice(len(line.positions)), slice(len(line.positions), None))
+    )
     if near.trim.converged[0] and near.trim.converged[-1]:
         return model, replace(approach, model=near)
     return model, approach_to(case, line, model.trim.converged, options)
@@ -229,18 +233,6 @@ def _nearest(positions: Array, to: float) -> float:
 def tip_speed(case: Configuration) -> float:
     """Return the rotor speed of a case times its radius, m/s."""
     return float(case.operation.rotor_speed) * float(case.rotor.radius)
-
-
-def _models_of(
-    case: Configuration, lines: Sequence[ParameterLine], options: Mapping[str, Any]
-) -> list[LinearModel]:
-    """Return the models of each of some lines of a case, linearised in one batch."""
-    parts = [line.inputs(np.asarray(line.positions)) for line in lines if line.inputs is not None]
-    model = models_at(
-        case, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}, options
-    )
-    ends = np.cumsum([0, *(len(line.positions) for line in lines)])
-    return [_points_of(model, slice(*pair)) for pair in pairwise(ends)]
 
 
 def _points_of(model: LinearModel, points: slice) -> LinearModel:

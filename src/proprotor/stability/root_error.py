@@ -132,9 +132,7 @@ def error_near_zero(model: LinearModel, values: Array) -> Array:
     if near.any():
         part = some_points(model, near)
         spectrum = decomposition(part, held_coordinates(model, values.shape[-1]))
-        apart = size_of(values[near][..., :, None] - spectrum.values[..., None, :])
-        place = np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1)
-        error[near] = np.take_along_axis(errors_of(part, spectrum), place, -1)
+        error[near] = np.take_along_axis(errors_of(part, spectrum), spectrum.nearest(values[near]), -1)
     return error
 
 

@@ -9,7 +9,6 @@ damping that is -Re λ_p / Re λ_V.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -157,8 +156,9 @@ def _rates(
     def linearize(values: Mapping[str, Array]) -> LinearModel:
         return vary_case(case, values).linearize(airspeed, **options)
 
-    def of_one(path: str, value: Array) -> LinearModel:
-        return linearize({path: value})
+    def by_differences(path: str) -> Array:
+        changes = differences(lambda value: linearize({path: value}), np.array(values[path]))
+        return eigenvalue_change(model, changes, modes)
 
     values = {path: float(number.si) for path, number in inputs.items()}
     try:
@@ -172,9 +172,7 @@ def _rates(
         analytic = {path: value for (path, value), takes in zip(values.items(), exact, strict=True) if takes}
         rates[exact] = _input_rates(linearize, analytic, model, modes)
     for place in np.flatnonzero(~exact):
-        path = list(values)[place]
-        changes = differences(partial(of_one, path), np.array(values[path]))
-        rates[place] = eigenvalue_change(model, changes, modes)
+        rates[place] = by_differences(list(values)[place])
     return rates, exact
 
 
@@ -223,7 +221,7 @@ def at_boundary(
     speed, level = boundary.position, boundary.level
     model = case.linearize(speed, **options)
     spectrum = decomposition(model)
-    modes = spectrum.modes(np.array([np.argmin(np.abs(spectrum.values - boundary.eigenvalue))]))
+    modes = spectrum.modes(spectrum.nearest(np.array([boundary.eigenvalue])))
     rates, exact = _rates(case, inputs, speed, modes, model, options)
     rates = rates[:, 0]
     moves = -growth_rate(modes.values, rates, level) / boundary.rate
