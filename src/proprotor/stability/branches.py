@@ -178,10 +178,15 @@ def _from_anchor(branches: Branches, point: int, start: Array) -> Array:
 def _doubts(branches: Branches, label: Array, points: int) -> Array:
     """Return the sentence (points,) that names the branches which the step to a point does not tell apart."""
     doubt = np.full(points, "", dtype=object)
-    by_place = np.take_along_axis(branches.trust(points), branches.order(points).argsort(axis=1), 1)
-    for point in np.flatnonzero((by_place < POOR).any(axis=1) & (label != "").all(axis=1)):
-        names = dict.fromkeys(label[point, by_place[point] < POOR])
-        doubt[point] = f"{NOT_TOLD}: {', '.join(names)}"
+    own = np.flatnonzero(branches.points < points)  # points of the line, and none between
+    if len(own) > 1:
+        poor = (
+            np.minimum.reduceat(branches.quality, own[:-1], axis=0) < POOR
+        )  # in any step since the point before
+        for row in np.flatnonzero(poor.any(axis=1)):
+            point, places = branches.points[own[row + 1]], branches.places[own[row + 1]]
+            names = dict.fromkeys(label[point, np.sort(places[poor[row]])])
+            doubt[point] = f"{NOT_TOLD}: {', '.join(names)}"
     return doubt
 
 

@@ -61,14 +61,6 @@ class Branches:
         order[self.points[own]] = self.places[own]
         return order
 
-    def trust(self, points: int) -> Array:
-        """Return the least quality (points, states) of the steps that led to each point of the line; 1 at the first."""
-        trust = np.ones((points, self.spectrum.values.shape[1]))
-        own = np.flatnonzero(self.points < points)
-        if len(own) > 1:
-            trust[self.points[own[1:]]] = np.minimum.reduceat(self.quality, own[:-1], axis=0)
-        return trust
-
     def _with_points(self, after: Array, positions: Array, between: Spectrum) -> Branches:
         """Return the branches with one more point in each of the steps `after`, at `positions` within the steps."""
         first = len(self.spectrum.values)

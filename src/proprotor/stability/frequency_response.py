@@ -73,7 +73,7 @@ def frequency_response(
     response = _response(space, omega, rows, columns)
     leading = leading_dims(model)
     dims = (*leading, "frequency", "output", "input")
-    chosen = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
+    names, moved = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
     unit = {"units": "output_unit / input_unit"}
     return xarray.Dataset(
         {
@@ -85,10 +85,10 @@ def frequency_response(
         },
         coords={
             "frequency": ("frequency", omega, {"units": "rad/s"}),
-            "output": chosen[0],
-            "input": chosen[1],
-            "output_unit": ("output", [_unit_of(name) for name in chosen[0]]),
-            "input_unit": ("input", ["rad" if name in SWASHPLATE else "m/s" for name in chosen[1]]),
+            "output": names,
+            "input": moved,
+            "output_unit": ("output", [_unit_of(name) for name in names]),
+            "input_unit": ("input", ["rad" if name in SWASHPLATE else "m/s" for name in moved]),
             "airspeed": (leading, model.airspeed, {"units": "m/s"}),
         },
         attrs=dict(space.stamp),

@@ -181,7 +181,7 @@ def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Ar
     states, count = spectrum.values.shape[-1], turn.shape[-1]
     rates = (
         states - (states + 1) // 2
-    )  # where they begin: all displacements, or all but the azimuth, stand before
+    )  # first place of a rate, after all displacements, or all but the azimuth
     right = spectrum.right[after]
     for start in (0, rates):
         places = slice(start, start + count)
@@ -192,14 +192,14 @@ def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Ar
 
 
 class _Packed(NamedTuple):
-    """Points with one number of pairs: places of the states above the real axis and of real states, values, vectors.
+    """Points with one number of pairs: places of the states, values, vectors.
 
-    above (n, pairs), real (n, rest), values (n, pairs + rest) of both; columns (n, states, states) real: real parts of
-    the vectors of the pairs, then imaginary parts, then the real vectors; rows, the inverse.
+    places (n, states): of the states above the real axis, of their conjugates, of real states; values (n, pairs + rest)
+    above the real axis and real; columns (n, states, states) real: real parts of the vectors of the pairs, then
+    imaginary parts, then the real vectors; rows, the inverse.
     """
 
-    above: Array
-    real: Array
+    places: Array
     values: Array
     columns: Array
     rows: Array
@@ -210,13 +210,14 @@ class _Packed(NamedTuple):
         n, states = values.shape
         above = np.nonzero(values.imag > 0)[1].reshape(n, pairs)
         real = np.nonzero(~((values.imag > 0) | (values.imag < 0)))[1].reshape(n, states - 2 * pairs)
-        places = np.concatenate([above, real], axis=1)
-        vectors = np.take_along_axis(right, places[:, None, :], 2)
+        upper = np.concatenate([above, real], axis=1)
+        vectors = np.take_along_axis(right, upper[:, None, :], 2)
         columns = np.empty((n, states, states))
         columns[..., :pairs] = vectors[..., :pairs].real
         columns[..., pairs : 2 * pairs] = vectors[..., :pairs].imag
         columns[..., 2 * pairs :] = vectors[..., pairs:].real
-        return cls(above, real, np.take_along_axis(values, places, 1), columns, _inverse(columns))
+        places = np.concatenate([above, above + 1, real], axis=1)
+        return cls(places, np.take_along_axis(values, upper, 1), columns, _inverse(columns))
 
     def at(self, points: slice) -> _Packed:
         return _Packed(*(part[points] for part in self))
@@ -224,7 +225,6 @@ class _Packed(NamedTuple):
 
 def _match_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> tuple[Array, Array]:
     """Match modes of points with one number of pairs; -1 where the best candidates are not all different."""
-    n = len(before)
     if np.array_equal(after, before + 1) and isinstance(_as_slice(before), slice):
         every = _Packed.of(spectrum.at(slice(int(before[0]), int(after[-1]) + 1)), pairs)
         first, last = every.at(slice(None, -1)), every.at(slice(1, None))
@@ -239,20 +239,13 @@ def _match_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) ->
     rows = np.arange(likeness.shape[1])
     good = (np.sort(target, axis=1) == np.where(rows < pairs, rows, rows + pairs)).all(axis=1)
     good &= (choice[:, :pairs] < 2 * pairs).all(axis=1)
-    places = np.concatenate([last.above, last.above + 1, last.real], axis=1)
-    successor = np.full((n, spectrum.values.shape[1]), -1)
-    found = np.take_along_axis(places, choice, 1)
+    above, real = np.split(np.take_along_axis(last.places, choice, 1), [pairs], axis=1)
     turned = np.where(choice[:, :pairs] < pairs, 1, -1)  # a state that turns over the real axis
-    np.put_along_axis(successor, first.above, found[:, :pairs], 1)
-    np.put_along_axis(successor, first.above + 1, found[:, :pairs] + turned, 1)
-    np.put_along_axis(successor, first.real, found[:, pairs:], 1)
-    successor[~good] = -1
     trust = _trust(likeness, choice, first.values, np.take_along_axis(ends, choice, 1))
-    quality = np.empty(successor.shape)
-    np.put_along_axis(quality, first.above, trust[:, :pairs], 1)
-    np.put_along_axis(quality, first.above + 1, trust[:, :pairs], 1)
-    np.put_along_axis(quality, first.real, trust[:, pairs:], 1)
-    return successor, quality
+    own = first.places.argsort(axis=1)
+    successor = np.take_along_axis(np.concatenate([above, above + turned, real], axis=1), own, 1)
+    successor[~good] = -1
+    return successor, np.take_along_axis(np.concatenate([trust[:, :pairs], trust], axis=1), own, 1)
 
 
 def _packed_likeness(first: _Packed, last: _Packed, pairs: int) -> Array:
