@@ -33,8 +33,8 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
-_TAKES_PART = 0.05  # of a mode: the least participation that its mechanism names
-_TOGETHER = 1e-3  # of a position: stretches that cannot be followed and lie nearer to each other are one
+_TAKES_PART = 0.05  # least participation of a motion that the mechanism of a boundary names
+_TOGETHER = 1e-3  # of a position: stretches without a followed mode that lie nearer to each other are one
 _RANGE = (0.2, 1.2, 51)  # of the tip speed: where boundaries are looked for, and at how many points
 
 
@@ -45,7 +45,7 @@ def scan_speeds(case: Configuration, points: int = _RANGE[2]) -> Array:
     ----------
     case : Case
     points : int
-        How many.
+        Number of airspeeds.
 
     Returns
     -------
@@ -259,7 +259,7 @@ def _least_damped(points: Points) -> tuple[int, int] | None:
 
 
 def _boundary(found: Crossing, moves: Moving, row: int) -> Boundary:
-    """Return the boundary of a crossing, by what moves in the modes of a row."""
+    """Return the boundary of a crossing, with what moves in its mode: a row of `moves`."""
     value = found.value
     shares = moves.shares[row, :, found.state]
     largest = [k for k in np.argsort(-shares) if shares[k] >= _TAKES_PART]

@@ -28,7 +28,7 @@ class Crossing(NamedTuple):
 
     line; position; spectrum of the position, and the state that crosses; value of the root; change of the root and
     slope of G with the position; onset, whether the root becomes unstable; start, the point of the search before the
-    crossing, and from_state, the state there; solves, beyond those of the search.
+    crossing, and from_state, its state at this point; solves, eigen-solves beyond those of the search.
     """
 
     line: int
@@ -51,7 +51,7 @@ class Brackets:
     ----------
     search : Search
     close : float, optional
-        The last correction of a position, in its unit; a billionth of it by default.
+        The last correction of a position, in the unit of the position; a billionth of the position by default.
     """
 
     def __init__(self, search: Search, close: float | None = None) -> None:
@@ -116,7 +116,7 @@ class Brackets:
         return list(self.found.values())
 
     def _keep(self, crossing: int, points: Points, row: int, place: int, correction: float) -> None:
-        """Record the crossing at a trial point, with a last correction if that stays in the bracket."""
+        """Record the crossing at a trial point, with a last correction if this stays within the bracket."""
         low, high = self.x[:, crossing]
         if not (np.isfinite(correction) and low <= points.position[row] + correction <= high):
             correction = 0.0
@@ -161,7 +161,7 @@ class Brackets:
         return followed
 
     def _narrow(self, active: Array, beyond: Array, points: Points, place: Array) -> None:
-        """Put each trial point in the place of the end on its side of the level."""
+        """Replace the end of each bracket that lies on the same side of the level as its trial point by this point."""
         end = (beyond == self.onset[active]).astype(int)
         for row, crossing in enumerate(active):
             side = end[row]

@@ -2,9 +2,9 @@
 
 A label belongs to a root and not to a motion: where two roots veer, each keeps its label though they exchange their
 motions. A label is the same in any range and for any step, as long as each step tells which root is which; `trust` says
-how far that holds. A pair that parts into two real roots does not tell which of the two it becomes: both have the label
-of the pair, the one that decays faster as the second root. A pair in which roots of two labels have joined has the
-label that comes first in the order of the coordinates.
+how far a label holds. A pair that parts into two real roots does not tell which of the two it becomes: both have the
+label of the pair, the one that decays faster as the second root. A pair in which roots of two labels have joined has
+the label that comes first in the order of the coordinates.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class NamedStates(NamedTuple):
 
     point : place of the point among those of the branches; known : all names of the model; place (states,) : place of
     each state's name in `known`; trust (states,) : in the steps from the anchor to the point; where : position at which
-    names were given, as text; eigen_solves : what that took beyond the points of the branches.
+    names were given, as text; eigen_solves : number of eigen-solves beyond the points of the branches.
     """
 
     point: int
@@ -59,7 +59,7 @@ class BranchLabels(NamedTuple):
         Least quality of all steps between the anchor and a point, 0 to 1: where it is low, the label may be that of
         another root. NaN at failed points.
     doubt : array (points,) of object
-        Which branches the step to a point does not tell apart, as a sentence; empty where it does.
+        Which branches the step to a point does not tell apart, as a sentence; empty where all branches are told apart.
     """
 
     label: Array
@@ -74,8 +74,8 @@ def name_states(branches: Branches, line: ParameterLine, approach: ParameterLine
     """Name the states of one point of some branches of a line.
 
     With an approach that can be followed from end to end: at the point that is nearest to the end of the approach, by
-    the names that the states have at the anchor. Without one: at the first point of the line that works, by what moves
-    there.
+    the names that the states have at the anchor. Without an approach: at the first point of the line that works, by
+    what moves at this point.
     """
     if approach is not None and len(branches.points):
         named = _named_by_approach(branches, approach)
@@ -86,7 +86,7 @@ def name_states(branches: Branches, line: ParameterLine, approach: ParameterLine
 
 
 def named_at(branches: Branches, line: ParameterLine, place: int) -> NamedStates:
-    """Name the states of a point of some branches by what moves there."""
+    """Name the states of a point of some branches by what moves at the point."""
     if not len(branches.points):
         return NamedStates(place, [], np.empty(0, dtype=int), np.empty(0), "")
     point = int(branches.points[place])
@@ -163,7 +163,7 @@ def _as_text(kept: Array, values: Array, known: list[str]) -> Array:
 
 
 def _from_anchor(branches: Branches, point: int, start: Array) -> Array:
-    """Return the least quality (k, states) of the steps between a point of the branches and each other one.
+    """Return the least quality (k, states) of the steps between a point of the branches and each other point.
 
     `start` (states,) is the trust in the point itself.
     """

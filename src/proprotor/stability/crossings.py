@@ -67,7 +67,7 @@ class Search:
     ) -> None:
         self.level, self.names, self.onset_only = level, names, onset_only
         self._models, self._forgiving, self._states = models, forgiving, states
-        # Both ends of steps of lines on which nothing settles, as where the trim jumps to and fro.
+        # Both ends of steps of lines on which nothing settles, as where the trim jumps back and forth.
         self.unsettled: list[list[float]] = []
         self.scanned = self.solve(line, position, plain=onset_only)
         self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
@@ -119,7 +119,7 @@ class Search:
         self.steps = first_steps(before, after, *match_modes(exact.points.spectrum, before, after))
 
     def _reach_edges(self, line: Array, position: Array) -> None:
-        """Halve the steps from a point that works to one that does not: boundaries may lie there."""
+        """Halve the steps from a point that works to a point that fails: a boundary may lie within such a step."""
         works = self.scanned.works
         edges = np.flatnonzero((line[1:] == line[:-1]) & (works[1:] != works[:-1]))
         good, bad = (np.where(works[edges], edges + k, edges + 1 - k) for k in (0, 1))

@@ -14,7 +14,7 @@ from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.typing import Array
 
-_MOST_PARTS = 128  # of a step: where two roots pass each other it takes a few dozens
+_MOST_PARTS = 128  # of a step: where two roots pass each other a few dozen parts are needed
 _HALVINGS = 24  # of a step whose modes cannot be told apart: of 20 kt, to 1e-6 kt
 
 
@@ -83,9 +83,9 @@ def _branches_of(spectrum: Spectrum, positions: Array) -> Branches:
 def follow(model: LinearModel, line: ParameterLine | None = None, held: list[int] | None = None) -> Branches:
     """Follow the states of the points of a line of models one to one.
 
-    A step whose quality is poor is halved until it is not, where the line can be linearised between its points. A step
-    that stays poor keeps its quality as a warning; where roots are alike all along a step, as two motions with one
-    frequency, the step is given up after a number of parts.
+    A step whose quality is poor is halved until the quality is good, where the line can be linearised between its
+    points. A step that stays poor keeps its quality as a warning; where roots are alike all along a step, as two
+    motions with one frequency, the step is given up after a number of parts.
 
     Parameters
     ----------

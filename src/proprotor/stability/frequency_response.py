@@ -96,6 +96,7 @@ def frequency_response(
 
 
 def _frequencies(frequency: Any) -> Array:
+    """Return frequencies (k,) in rad/s; raise an error for one that is negative or not finite."""
     omega = values_in_si(frequency, "rad/s", "frequency").reshape(-1)
     wrong = ~(np.isfinite(omega) & (omega >= 0))
     if wrong.any():
@@ -104,6 +105,7 @@ def _frequencies(frequency: Any) -> Array:
 
 
 def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> list[int]:
+    """Return the places of wanted names among known names; of all names where none is wanted."""
     names = known if wanted is None else (wanted,) if isinstance(wanted, str) else tuple(wanted)
     for name in names:
         if name not in known:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _AT_ONCE = 4096  # points of one batch
 _OFF_ZERO = 1e-6  # of the largest growth: no corner is nearer to zero while lines are joined
-_BYTES_PER_POINT = 100.0  # of the grid: where it is, what was found there, and the line between
+_BYTES_PER_POINT = 100.0  # of the grid: its inputs, its results, and the edges of the boundary
 
 _Plane = Callable[[Array, Array], LinearModel]  # x and y (k,) to the models there
 
@@ -266,7 +266,7 @@ def _dataset(
     root = np.where(line < 0, np.nan, edges.eigenvalue[line])
     dims = names[::-1]
     frequency = np.where(np.isnan(largest), np.nan, value.imag)
-    meaning = {"units": "rad/s", "long_name": "root that is neutral there"}
+    meaning = {"units": "rad/s", "long_name": "root that is neutral at the vertex"}
     return xarray.Dataset(
         {
             "growth": (dims, largest, {"units": "1/s", "long_name": "largest growth of all modes"}),

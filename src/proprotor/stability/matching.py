@@ -6,8 +6,8 @@ A mode is followed by the likeness of its vectors at two points,
 
 l the rows of the inverse of the matrix of right vectors r. They are the mass-weighted left vectors: S is 1 for a mode
 that has not changed and 0 for any other, whatever units coordinates have and however vectors are scaled. The distance
-of the eigenvalues, in parts of the largest, is taken off. The assignment with the largest sum of S_ij - d_ij is the
-step. Where the best candidates of all states are different, that is the assignment: no permutation exceeds the sum of
+of the eigenvalues, as a part of the largest, is subtracted. The assignment with the largest sum of S_ij - d_ij is the
+step. Where the best candidates of all states are different, they are the assignment: no permutation exceeds the sum of
 the largest entries of the rows. Elsewhere `scipy.optimize.linear_sum_assignment` finds it.
 """
 
@@ -44,7 +44,7 @@ class Matches(NamedTuple):
 class Modes(NamedTuple):
     """Some modes of points: values (..., modes), right vectors (..., states, modes), left vectors (..., modes, states).
 
-    left @ right is 1 for a mode with itself and 0 with any other.
+    left @ right is 1 for a mode with itself and 0 with any other mode.
     """
 
     values: Array
@@ -63,7 +63,8 @@ class Modes(NamedTuple):
 class Spectrum(NamedTuple):
     """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side.
 
-    A state that a point does not have, though others do, has a vector and no eigenvalue, NaN; a failed point has none.
+    A state that a point does not have, though others do, has a vector, and NaN as eigenvalue; a failed point has NaN
+    alone.
     shapes (..., m, k) : shapes of the first k coordinates where these differ from point to point, else None.
     """
 
@@ -149,14 +150,14 @@ def match_modes(spectrum: Spectrum, before: Array, after: Array) -> Matches:
 
         S_ij' max(|Δ1|, |Δ2|) / |Δmin|
 
-    over the other states, with S_ij' the likeness of the state to the successor of another, Δ1 and Δ2 what parts
-    their eigenvalues at both points, and Δmin the least on the straight way from one to the other. Two states that
-    mix by S while they are Δ apart are coupled by about S Δ: where they would come nearer to each other than that,
-    they may have passed or may have turned away between the points, and the step does not tell. The conjugate of a
-    state and its other half, where a pair parts into two real roots or two join, do not count as others.
+    over the other states, with S_ij' the likeness of the state to the successor of another, Δ1 and Δ2 the differences
+    of their eigenvalues at both points, and Δmin the smallest on the straight way from Δ1 to Δ2. Two states that mix by
+    S while they are Δ apart are coupled by about S Δ: where they would come nearer to each other than S Δ, they may
+    have passed or may have turned away between the points, and the step does not tell. The conjugate of a state and its
+    other half, where a pair parts into two real roots or two join, do not count as others.
 
-    A state that a point does not have is at no distance from any other: its likeness alone tells which it becomes
-    where the next point has it, and from there on it has an eigenvalue.
+    A state that a point does not have is at no distance from any other: its likeness alone tells which state
+    it becomes at a next point that has it, and from this point on it has an eigenvalue.
     """
     if spectrum.shapes is not None:
         return _match_in_common(spectrum, spectrum.shapes, before, after)
@@ -329,7 +330,7 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
 
 
 def _as_slice(points: Array) -> slice | Array:
-    """Return points as a slice where they are neighbours, so that indexing makes no copy."""
+    """Return points as a slice where they are neighbours, so that an index makes no copy."""
     if len(points) and points[-1] - points[0] == len(points) - 1 and np.all(np.diff(points) == 1):
         return slice(int(points[0]), int(points[-1]) + 1)
     return points
@@ -347,7 +348,7 @@ def size_of(numbers: Array) -> Array:
 
 
 def _distance(start: Array, end: Array, scale: Array) -> Array:
-    """Return the distance of eigenvalues in parts of the largest; 0 from or to a state that a point does not have."""
+    """Return the distance of eigenvalues as a part of `scale`; 0 from or to a state that a point does not have."""
     distance = size_of(start - end) / scale
     return np.where(np.isnan(distance), 0.0, distance)
 

@@ -2,22 +2,23 @@
 
 A model has as many names as modes: one for each coordinate of the support, for coning and the collective motion of each
 other blade angle, for the rotor speed, and two for the cyclic motion of each blade angle and of the gimbal, regressive
-and progressive. At each point the modes get them by the assignment with the largest sum of participations, one name to
-one mode. The names depend on the eigenvalues and vectors of the point alone, and on no other point. Where two branches
-veer and exchange their motions, the names pass from one branch to the other half-way: where the sum of participations
-is the same for either assignment. Which branch is which is another question, answered by following roots:
-`proprotor.stability.branches`.
+and progressive. At each point the modes get their names by the assignment with the largest sum of participations, one
+name to one mode. The names depend on the eigenvalues and vectors of the point alone, and on no other point. Where two
+branches veer and exchange their motions, the names pass from one branch to the other in the middle: where the sum of
+participations is the same for either assignment. Which branch is which is another question, answered by following
+roots: `proprotor.stability.branches`.
 
 The share that a mode has in its own name says how much the name is worth: near 1 nothing else moves, below one third
 something else may move more.
 
 A cyclic motion alone has two modes. In the rotating frame they have one frequency ν and run round the rotor forwards,
-progressive, or backwards, regressive; in the fixed frame they appear at ν + 1 and at |ν - 1| per revolution. The first
-whirls with the rotor there; the second against it for ν > 1, and with it, but slower than the blades, for ν < 1. A mode
-of the whole system is progressive by as much of the one as takes part in it, and regressive by as much of the other:
-motion and rate of β_1c + i β_1s are the sum of both. How a mode whirls in the fixed frame is another number, `whirl`.
-There β_1c + i β_1s is what whirls with the rotor and β_1c - i β_1s what whirls against it, for s = iω, ω > 0 and an
-azimuth that grows with rotation (β = β_1c cos ψ + β_1s sin ψ).
+progressive, or backwards, regressive; in the fixed frame they appear at ν + 1 and at |ν - 1| per revolution. The
+progressive mode whirls with the rotor in the fixed frame; the regressive mode against the rotor for ν > 1, and with the
+rotor, but slower than the blades, for ν < 1. A mode of the whole system is progressive by the participation of the
+progressive mode, and regressive by that of the regressive mode: motion and rate of β_1c + i β_1s are the sum of both.
+How a mode whirls in the fixed frame is another number, `whirl`. In the fixed frame β_1c + i β_1s is what whirls with
+the rotor and β_1c - i β_1s what whirls against it, for s = iω, ω > 0 and an azimuth that grows with rotation (β = β_1c
+cos ψ + β_1s sin ψ).
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ import numpy as np
 from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import HUB, Motion, motions, name_list
+from proprotor.stability.matching import Modes
 from proprotor.stability.modes import coordinate_motion
 from proprotor.typing import Array
 
@@ -126,13 +128,14 @@ def _states(place: int, held: list[int]) -> list[int]:
     return [held.index(place), rate] if place in held else [rate]
 
 
-def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array:
+def whirl(model: LinearModel, modes: Modes) -> Array:
     """Return the sense of whirl in the fixed frame (..., modes): 1 with the rotor, -1 against the rotor.
 
     The cyclic motion of blades and gimbal counts, by participation. In a mode without cyclic motion, as in all modes of
     a propeller on a pivot, the motion of the shaft's axis counts, and where the axis does not tilt, that of the hub's
     centre. NaN for real roots, and where nothing goes round.
     """
+    values, right, left = modes
     held = held_coordinates(model, right.shape[-2])
     shares = np.zeros((2, *values.shape))
     for motion in motions(model.dofs):

@@ -109,7 +109,7 @@ def _real(model: LinearModel) -> LinearModel:
 
 
 def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:
-    """Return the motion (..., n, modes) of the coordinates; that of a mere rate is the rate over the eigenvalue."""
+    """Return the motion (..., n, modes) of the coordinates: of a coordinate without displacement, its rate over λ."""
     shapes = right[..., -n:, :].copy()
     shapes[..., held, :] = right[..., : len(held), :]
     rates = [place for place in range(n) if place not in held]

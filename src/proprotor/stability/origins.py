@@ -68,7 +68,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _SomeCoefficients:
-    """An airfoil of which only some coefficients count, with Prandtl and Glauert's factor where it is wanted."""
+    """An airfoil with some of its coefficients, the others zero, and the Prandtl-Glauert factor where asked for."""
 
     airfoil: SectionModel
     kept: tuple[str, ...]

@@ -49,8 +49,8 @@ class ParameterLine:
     name, units : str
         Name and SI unit of the input.
     end : float, optional
-        Of an approach: the position at which the approach ends, on the line that it leads to; the last position of the
-        approach by default.
+        Of an approach: the position on the followed line at which the approach ends; the last position of the approach
+        by default.
     inputs : callable, optional
         Of a line of a case: takes positions (k,) and returns the inputs there by name, the airspeed among them.
     model : LinearModel, optional

@@ -14,7 +14,7 @@ import numpy as np
 from proprotor.errors import InputError
 from proprotor.model.first_order import held_coordinates, missing_roots, some_points
 from proprotor.model.linear_model import LinearModel
-from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, second_order_left, with_changes
+from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.matching import Spectrum
 from proprotor.stability.modes import decomposition
 from proprotor.stability.root_error import growth, growth_error, refined_near, roots
@@ -146,12 +146,10 @@ def _solved(
     if not works.any():
         return Solved(None, works, *_texts(model, states))
     part, some = some_points(model, works), spectrum.at(works)
-    modes = some.all_modes
-    left = second_order_left(part, modes.left)
-    found = refined_near(part, some, level, left)
+    found = refined_near(part, some, level)
     mass, damping, stiffness = (np.broadcast_to(one, model.K.shape)[works] for one in changes)
-    moved = modes._replace(values=found.values)
-    change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
+    modes = some.all_modes._replace(values=found.values)
+    change = eigenvalue_change(part, (mass, damping, stiffness), modes)
     spectrum = some._replace(values=found.values)
     points = _points(line[works], position[works], spectrum, change, found.error, level)
     return Solved(points, works, *_texts(model, states))
@@ -186,6 +184,6 @@ def _points(
 
 
 def _texts(model: LinearModel, states: int) -> tuple[Array, Array, Array]:
-    """Return why points failed, what makes them doubtful, and why they have fewer roots than so many."""
+    """Return why points failed, what makes them doubtful, and why they have fewer roots than `states`."""
     reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
     return reason, warning, missing_roots(model, states)

@@ -1,4 +1,4 @@
-"""Two roots that cannot be told apart over a step, or that join in it: how near they come to the level all the same.
+"""Two roots that cannot be told apart over a step, or that join in it: how near they come to the level.
 
 Where two roots meet or veer, each moves like a square root, and which is which may not be known. Their sum s and the
 square of their difference d = (λ1 - λ2)² are the same for either choice, and are as smooth as the matrices: polynomials
@@ -22,7 +22,7 @@ from proprotor.stability.steps import Steps
 from proprotor.typing import Array
 
 _APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
-_MEETING = 0.5  # of the distance at the farther end: and so may those that are as near at one end
+_MEETING = 0.5  # of the distance at the farther end: roots that are nearer than this at one end may meet too
 _OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord: its least error
 _INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
 MANY, _FEW = 6, 4  # points of a scan through which polynomials go
@@ -53,7 +53,7 @@ def may_meet(first: Array, last: Array, state: Array) -> Array:
 
 
 def _partners(first: Array, last: Array) -> Array:
-    """Return the one root (n, states) that each may meet, where neither of the two may meet another; -1 elsewhere."""
+    """Return the root (n, states) that each root may meet, if neither may meet a third; -1 elsewhere."""
     meeting = may_meet(first, last, np.broadcast_to(np.arange(first.shape[1]), first.shape))
     alone = meeting.sum(axis=2) == 1
     partner = meeting.argmax(axis=2)
@@ -73,7 +73,7 @@ def keep_off(
     sides = few.sides(points)[:, place]
     own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
     side = own[0]
-    alike = ((own == side) & (other == side)).all(axis=0)
+    alike = (np.concatenate([own, other]) == side).all(axis=0)
     asked = np.flatnonzero((partner >= 0) & (np.abs(side) == 1) & alike)
     if len(asked):
         pairs = within(steps, points, row[asked], state[asked], partner[asked])

@@ -13,7 +13,7 @@ from proprotor.stability.steps import Steps, first_steps
 from proprotor.typing import Array
 
 _BLOCK = 64  # steps whose distances stay in the cache
-_NEVER = 1e300  # the distance between a root and none
+_NEVER = 1e300  # the distance between a root and a state that a point does not have
 
 
 def steps_by_values(values: Array, before: Array, after: Array) -> Steps:

@@ -102,8 +102,8 @@ def sensitivity(
     airspeed : float in m/s, text such as "300 kt", or pint quantity
         Airspeed of damping or eigenvalues; for the flutter speed optionally the airspeeds of the scan.
     mode : str, optional
-        One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary at which this
-        moves, onset or not, instead of the lowest onset of any.
+        One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary, onset or
+        end, of the mode with this name, instead of the lowest onset of any mode.
     level : float
         Damping ratio that counts as the boundary of the flutter speed.
     **options

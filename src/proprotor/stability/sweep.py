@@ -73,14 +73,13 @@ def sweep(
     columns, modes = mode_columns(found, every.values)
     data = mode_dataset(model, every, errors_of(model, spectrum), columns, line)
     by_mode = data.eigenvalue.dims
-    sense = whirl(model, every.values, every.left, every.right)
     way = {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
-    data["whirl"] = by_mode, at_columns(sense, columns), way
+    data["whirl"] = by_mode, at_columns(whirl(model, every), columns), way
     labels = branch_labels(branches, named, points)
     for name, values, meaning in (
         ("share", found.share, "participation of the motion that the mode is named after"),
         ("branch", labels.label, "exact root, by what moves in it where branches are named"),
-        ("tracking_quality", labels.trust, "trust in the steps from there to the point"),
+        ("tracking_quality", labels.trust, "trust in the steps from where branches are named to the point"),
     ):
         data[name] = by_mode, at_columns(values, columns), {"long_name": meaning}
     data["branch"] = data.branch.astype(str)
