@@ -113,10 +113,8 @@ class Failed(NamedTuple):
         str
         """
         low, high = (f"{end / factor:.4g}" for end in (self.first, self.last))
-        return (
-            f"Not analysed: {low if low == high else f'{low} to {high}'} {unit}".rstrip()
-            + f" ({self.reason})."
-        )
+        where = low if low == high else f"{low} to {high}"
+        return f"Not analysed: {where} {unit}".rstrip() + f" ({self.reason})."
 
 
 class LeastDamping(NamedTuple):

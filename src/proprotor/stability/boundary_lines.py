@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise, starmap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -121,6 +122,5 @@ def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice
     same = np.zeros(len(before), dtype=bool)
     after = match_modes(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
     same[good] = (after == state[good + 1]) | (after == conjugate(spectrum.values)[good + 1, state[good + 1]])
-    jumps = np.flatnonzero(~same) + 1
-    for start, stop in zip((0, *jumps), (*jumps, len(state)), strict=True):
-        yield slice(int(start), int(stop))
+    jumps = (np.flatnonzero(~same) + 1).tolist()
+    yield from starmap(slice, pairwise([0, *jumps, len(state)]))

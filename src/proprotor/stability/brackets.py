@@ -78,7 +78,7 @@ class Brackets:
         """Run Newton's method on every crossing, by the derivative at the last point, within the bracket."""
         active = np.arange(self.count)
         with np.errstate(all="ignore"):
-            share = hermite_root(self.cubic) if self.count else np.empty(0)
+            share = hermite_root(self.cubic)
         guess = self.x[0] + share * (self.x[1] - self.x[0])
         for _ in range(_ITERATIONS):
             if not len(active):

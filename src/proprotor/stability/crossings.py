@@ -103,11 +103,8 @@ class Search:
         asked |= few[points.line[steps.before]]
         kept = steps.at(np.flatnonzero(asked & self._before_onset()))
         ends = np.unique(np.concatenate([kept.before, kept.after]))
-        if not len(ends):
-            self.steps = kept
-            return
-        exact = self.solve(points.line[ends], points.position[ends])
-        if exact.points is None:
+        exact = self.solve(points.line[ends], points.position[ends]) if len(ends) else None
+        if exact is None or exact.points is None:
             self.steps = kept.at(np.array([], dtype=int))
             return
         np.add.at(self.solves, exact.points.line, 1)

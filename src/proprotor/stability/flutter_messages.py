@@ -71,10 +71,8 @@ def least_damping_message(found: FlutterPoint, unit: str, factor: float) -> str:
     if math.isnan(found.least_damping):
         return ""
     speed = found.least_damping_speed
-    where = f"{found.least_damping_mode} at {speed / factor:.4g} {unit}"
-    return (
-        f"{marked(f'{100 * found.least_damping:.2g}', doubt_at(found.doubts, speed))} % of critical: {where}"
-    )
+    ratio = marked(f"{100 * found.least_damping:.2g}", doubt_at(found.doubts, speed))
+    return f"{ratio} % of critical: {found.least_damping_mode} at {speed / factor:.4g} {unit}"
 
 
 def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:

@@ -117,15 +117,8 @@ def _response(space: StateSpace, omega: Array, rows: list[int], columns: list[in
     """Return C (iω - A)⁻¹ B + D (..., frequencies, rows, columns)."""
     leading = space.A.shape[:-2]
     count = int(np.prod(leading, dtype=int))
-    a, b, c, d = (
-        np.reshape(np.broadcast_to(m, (*leading, *m.shape[-2:])), (count, *m.shape[-2:]))
-        for m in (
-            space.A,
-            space.B[..., columns],
-            space.C[..., rows, :],
-            space.D[..., rows, :][..., columns],
-        )
-    )
+    whole = space.A, space.B[..., columns], space.C[..., rows, :], space.D[..., rows, :][..., columns]
+    a, b, c, d = (np.broadcast_to(m, (*leading, *m.shape[-2:])).reshape(count, *m.shape[-2:]) for m in whole)
     found = np.full((count, len(omega), len(rows), len(columns)), complex(np.nan, np.nan))
     for points, own in _alike(a):
         parts = a[points][:, own][:, :, own], b[points][:, own], c[points][:, :, own], d[points]

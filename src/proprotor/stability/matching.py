@@ -79,13 +79,10 @@ class Spectrum(NamedTuple):
 
     def joined(self, other: Spectrum) -> Spectrum:
         """Return the points of both spectra."""
-        values, right = (
-            np.concatenate([getattr(part, of) for part in (self, other)]) for of in ("values", "right")
-        )
-        shapes = None
-        if self.shapes is not None and other.shapes is not None:
-            shapes = np.concatenate([self.shapes, other.shapes])
-        return Spectrum(values, right, shapes)
+        values, right = (np.concatenate(parts) for parts in zip(self[:2], other[:2], strict=True))
+        if self.shapes is None or other.shapes is None:
+            return Spectrum(values, right)
+        return Spectrum(values, right, np.concatenate([self.shapes, other.shapes]))
 
     @property
     def works(self) -> Array:
@@ -213,10 +210,8 @@ class _Packed(NamedTuple):
         real = np.nonzero(~((values.imag > 0) | (values.imag < 0)))[1].reshape(n, states - 2 * pairs)
         upper = np.concatenate([above, real], axis=1)
         vectors = np.take_along_axis(right, upper[:, None, :], 2)
-        columns = np.empty((n, states, states))
-        columns[..., :pairs] = vectors[..., :pairs].real
-        columns[..., pairs : 2 * pairs] = vectors[..., :pairs].imag
-        columns[..., 2 * pairs :] = vectors[..., pairs:].real
+        pair, rest = vectors[..., :pairs], vectors[..., pairs:]
+        columns = np.concatenate([pair.real, pair.imag, rest.real], axis=-1)
         places = np.concatenate([above, above + 1, real], axis=1)
         return cls(places, np.take_along_axis(values, upper, 1), columns, _inverse(columns))
 
@@ -310,13 +305,11 @@ def _index(mixing: Array, apart: Array, later: Array) -> Array:
 
 def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     """Return successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
     likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
     distance = _distance(start[:, None], end, np.nanmax(np.abs(start)))
     gain = likeness - distance
-    successor = linear_sum_assignment(np.where(np.isfinite(gain), gain, -1e300), maximize=True)[1]
+    successor = best_assignment(np.where(np.isfinite(gain), gain, -1e300))
     mixing = likeness[:, successor]
     own = np.diagonal(mixing).copy()
     states, twins = np.arange(len(start)), (conjugate(start), conjugate(end))
@@ -327,6 +320,14 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     index = np.zeros(mixing.shape)
     index[counts] = _index(mixing[counts], apart[counts], later[counts])
     return successor, np.clip(np.minimum(own, 1) - np.maximum(index.max(axis=0), index.max(axis=1)), 0, 1)
+
+
+def best_assignment(gain: Array) -> Array:
+    """Return the column of each row in the assignment of columns to rows with the largest sum."""
+    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
+
+    columns: Array = linear_sum_assignment(gain, maximize=True)[1]
+    return columns
 
 
 def _as_slice(points: Array) -> slice | Array:

@@ -31,7 +31,7 @@ import numpy as np
 from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import HUB, Motion, motions, name_list
-from proprotor.stability.matching import Modes
+from proprotor.stability.matching import Modes, best_assignment
 from proprotor.stability.modes import coordinate_motion
 from proprotor.typing import Array
 
@@ -266,7 +266,7 @@ def _by_rank(values: Array, names: int) -> Array:
 def _assigned(gain: Array, slots: Array, values: Array) -> Array:
     """Return the best assignment (states,) of one point that gives both states of a pair one name."""
     upper, real = np.flatnonzero(values.imag > 0), np.flatnonzero(values.imag == 0)
-    given: Array = slots[_best(gain[:, slots])]
+    given: Array = slots[best_assignment(gain[:, slots])]
     if (given[upper] == given[upper + 1]).all():
         return given
     # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
@@ -275,7 +275,10 @@ def _assigned(gain: Array, slots: Array, values: Array) -> Array:
     largest = -np.inf
     for left in combinations(whole.tolist(), len(whole) - len(upper)):
         of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)
-        pairs, roots = _best(gain[np.ix_(upper, of_pairs)]), _best(gain[np.ix_(real, of_real)])
+        pairs, roots = (
+            best_assignment(gain[np.ix_(upper, of_pairs)]),
+            best_assignment(gain[np.ix_(real, of_real)]),
+        )
         total = 2 * gain[upper, of_pairs[pairs]].sum() + gain[real, of_real[roots]].sum()
         if total > largest:
             largest = total
@@ -292,11 +295,3 @@ def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
         for _ in motion.names
     ]
     return np.repeat(np.arange(len(counts)), counts)
-
-
-def _best(gain: Array) -> Array:
-    """Return the column of each row in the assignment with the largest sum."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
-    columns: Array = linear_sum_assignment(gain, maximize=True)[1]
-    return columns

@@ -98,13 +98,13 @@ def with_azimuth(spectrum: Spectrum, dofs: tuple[str, ...], states: int) -> Spec
 
 
 def _solved(matrix: Array) -> tuple[Array, Array]:
+    """Return eigenvalues and right vectors as complex numbers, also where all of them are real."""
     values, right = np.linalg.eig(matrix)
     return values.astype(complex, copy=False), right.astype(complex, copy=False)
 
 
 def _real(model: LinearModel) -> LinearModel:
-    if not any(np.iscomplexobj(getattr(model, name)) for name in "MCK"):
-        return model
+    """Return the model with the real parts of its matrices."""
     return replace(model, M=model.M.real, C=model.C.real, K=model.K.real)
 
 

@@ -144,12 +144,9 @@ def _structure(quantities: dict[str, Any], choice: Options) -> dict[str, Part]:
     equations = choice.equation_set
     quantities = quantities | evaluate(equations.inertia.trim_integrals, quantities)._asdict()
     zero = np.zeros((12, 12))
+    mass = evaluate(equations.inertia.mass, quantities) + evaluate(equations.pitch.mass, quantities)
     parts = {
-        "inertia": Part(
-            evaluate(equations.inertia.mass, quantities) + evaluate(equations.pitch.mass, quantities),
-            zero,
-            zero,
-        ),
+        "inertia": Part(mass, zero, zero),
         "gyroscopic": Part(zero, evaluate(equations.inertia.gyroscopic, quantities), zero),
         "centrifugal": Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, quantities)),
         "dampers": Part(zero, evaluate(pitch.damping, quantities), zero),

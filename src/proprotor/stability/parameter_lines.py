@@ -98,8 +98,7 @@ def line_of_case(
         For airspeeds that do not form a line, more than one input, an unknown input, or points that do not fit into
         memory.
     """
-    speeds = in_metres_per_second(airspeeds)
-    speeds = speeds if speeds.ndim else speeds.reshape(1)  # one speed is the shortest list
+    speeds = np.atleast_1d(in_metres_per_second(airspeeds))  # one speed is the shortest list
     _check_points(AIRSPEED, speeds.size)
     if vary is not None:
         return _line_of_input(case, speeds.reshape(-1), vary, options)
@@ -113,7 +112,7 @@ def line_of_case(
 def _line(
     case: Configuration, options: Mapping[str, Any], positions: Array, inputs: _Inputs, *labels: Any
 ) -> ParameterLine:
-    """Return a line of a case from its positions and the inputs there, then name, unit and end of the line."""
+    """Return a line of a case from its positions and the inputs at each position, then name, unit and end of the line."""
     line = ParameterLine(positions, lambda at: models_at(case, inputs(at), options), *labels)
     return replace(line, inputs=inputs)
 
@@ -171,9 +170,8 @@ def with_approach(
     assert line.inputs is not None and approach.inputs is not None  # of lines of a case
     own, way = line.inputs(np.asarray(line.positions)), approach.inputs(np.asarray(approach.positions))
     both = models_at(case, {name: np.concatenate([own[name], way[name]]) for name in own}, options)
-    model, near = (
-        _points_of(both, part) for part in (slice(len(line.positions)), slice(len(line.positions), None))
-    )
+    count = len(line.positions)
+    model, near = _points_of(both, slice(count)), _points_of(both, slice(count, None))
     if near.trim.converged[0] and near.trim.converged[-1]:
         return model, replace(approach, model=near)
     return model, approach_to(case, line, model.trim.converged, options)

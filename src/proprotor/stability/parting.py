@@ -178,8 +178,6 @@ def _open_at(
     ends: Array, sides: Array, width: Array, errors: Array, square: Array, square_width: Array
 ) -> Array:
     """Return where (m,) a cubic with its band leaves open how often it crosses; NaN where nothing is open."""
-    if not len(width):
-        return np.empty(0)
     t = np.concatenate([np.broadcast_to(_GRID, (len(width), len(_GRID))), hermite_extrema(ends)], axis=1)
     t = np.sort(np.where(np.isnan(t), 0.5, t), axis=1)
     spread = band(t)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from proprotor.stability.matching import size_of
+from proprotor.stability.matching import best_assignment, size_of
 from proprotor.stability.steps import Steps, first_steps
 from proprotor.typing import Array
 
@@ -28,13 +28,11 @@ def steps_by_values(values: Array, before: Array, after: Array) -> Steps:
 
 def _nearest(first: Array, last: Array) -> Array:
     """Return places (steps, states) of the nearest root at the later point, a different one for each root."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
     none, none_later = np.isnan(first)[:, :, None], np.isnan(last)[:, None, :]
     apart = size_of(first[:, :, None] - last[:, None, :])
     apart = np.where(none & none_later, 0.0, np.where(none | none_later, _NEVER, apart))
     successor: Array = apart.argmin(axis=2)
     taken_once = (np.sort(successor, axis=1) == np.arange(successor.shape[1])).all(axis=1)
     for step in np.flatnonzero(~taken_once):
-        successor[step] = linear_sum_assignment(apart[step])[1]
+        successor[step] = best_assignment(-apart[step])
     return successor

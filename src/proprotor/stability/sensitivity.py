@@ -9,6 +9,7 @@ damping that is -Re λ_p / Re λ_V.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import compress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -169,8 +170,7 @@ def _rates(
             raise
     rates = np.empty((len(values), len(modes.values)), dtype=complex)
     if exact.any():
-        analytic = {path: value for (path, value), takes in zip(values.items(), exact, strict=True) if takes}
-        rates[exact] = _input_rates(linearize, analytic, model, modes)
+        rates[exact] = _input_rates(linearize, dict(compress(values.items(), exact)), model, modes)
     for place in np.flatnonzero(~exact):
         rates[place] = by_differences(list(values)[place])
     return rates, exact
