@@ -1,7 +1,7 @@
 """Stability boundaries along a line: where the damping of a mode passes a level, to rounding.
 
-Every crossing in a range is looked for, flutter and divergence, those between two points of the scan included:
-`proprotor.stability.crossings` says how.
+Every crossing in a range is looked for, flutter and divergence, also where two crossings lie between two points of the
+scan: `proprotor.stability.crossings` says how.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ class Boundary:
         Dimensionless: 1 for a well-separated mode, large where the mode nearly falls into one with another
         (`proprotor.stability.eigenvalue_derivatives.defect`).
     eigen_solves : int
-        Eigen-solves for this crossing beyond those that bracketed it.
+        Eigen-solves for this crossing beyond the eigen-solves that bracketed it.
     branch : str
         The exact root that crosses, by what moves in it where branches are named (`proprotor.stability.branches`).
     warning : str

@@ -106,8 +106,7 @@ class Brackets:
             done |= collapsed
             for one in np.flatnonzero(done & ~jumps).tolist():
                 self._keep(int(active[one]), points, one, int(place[one]), float(correction[one]))
-            beyond = value > error
-            self._narrow(active, beyond, points, place)
+            self._narrow(active, value > error, points, place)
             newton = points.position + correction
             low, high = self.x[:, active].min(axis=0), self.x[:, active].max(axis=0)
             inside = (newton > low) & (newton < high) & (np.abs(value) > error)
@@ -162,9 +161,8 @@ class Brackets:
 
     def _narrow(self, active: Array, beyond: Array, points: Points, place: Array) -> None:
         """Replace the end of each bracket that lies on the same side of the level as its trial point by this point."""
-        end = (beyond == self.onset[active]).astype(int)
-        for row, crossing in enumerate(active):
-            side = end[row]
+        sides = (beyond == self.onset[active]).astype(int)
+        for row, (crossing, side) in enumerate(zip(active, sides, strict=True)):
             self.x[side, crossing], self.place[side, crossing] = points.position[row], place[row]
             for kept, new in zip(self.ends[side], points.spectrum, strict=True):
                 if kept is not None and new is not None:

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 class NamedStates(NamedTuple):
     """Names of the states of one point of some branches, in the order of the point's spectrum.
 
-    point : place of the point among those of the branches; known : all names of the model; place (states,) : place of
-    each state's name in `known`; trust (states,) : in the steps from the anchor to the point; where : position at which
-    names were given, as text; eigen_solves : number of eigen-solves beyond the points of the branches.
+    point : place of the point among the points of the branches; known : all names of the model; place (states,) : place
+    of each state's name in `known`; trust (states,) : in the steps from the anchor to the point; where : position at
+    which names were given, as text; eigen_solves : number of eigen-solves beyond the points of the branches.
     """
 
     point: int
@@ -105,7 +105,7 @@ def names_of(model: LinearModel, spectrum: Spectrum) -> Array:
 
 
 def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStates | None:
-    """Name states by those of the anchor; None where the approach cannot be followed from end to end."""
+    """Name states by their names at the anchor; None where the approach cannot be followed from end to end."""
     near = approach.models()
     n, states = len(near.dofs), branches.spectrum.values.shape[1]
     # A shaft may hold the azimuth on one of the two lines only.
@@ -129,7 +129,7 @@ def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStat
 
 
 def branch_labels(branches: Branches, named: NamedStates, points: int) -> BranchLabels:
-    """Return the labels of all states at the first points of the spectrum of some branches, those of their line."""
+    """Return the labels of all states at the points of a line, the first in the spectrum of its branches."""
     states = branches.spectrum.values.shape[1]
     label = np.full((points, states), "", dtype=object)
     trust = np.full((points, states), np.nan)

@@ -51,7 +51,7 @@ def frequency_response(
     xarray.Dataset
         response (..., frequency, output, input), complex, in the output's unit per unit of the input; magnitude and
         phase (rad) of the response; stable (...), whether every mode is damped; warning and reason (...) of points that
-        are doubtful, and of those that failed. Attributes: the case and its options (`proprotor.model.stamp`).
+        are doubtful, and of points that failed. Attributes: the case and its options (`proprotor.model.stamp`).
         Coordinates: frequency, output_unit, input_unit, airspeed. NaN where a point failed, or where a frequency is
         that of an undamped mode.
 

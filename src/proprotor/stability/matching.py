@@ -141,7 +141,7 @@ def _inverse(matrices: Array) -> Array:
 
 
 def match_modes(spectrum: Spectrum, before: Array, after: Array) -> Matches:
-    """Match the states of points `before` (steps,) with those of points `after` (steps,).
+    """Match the states of points `before` (steps,) with the states of points `after` (steps,).
 
     The quality of a step is the likeness of a state to its successor, less the largest of
 
@@ -154,7 +154,7 @@ def match_modes(spectrum: Spectrum, before: Array, after: Array) -> Matches:
     other half, where a pair parts into two real roots or two join, do not count as others.
 
     A state that a point does not have is at no distance from any other: its likeness alone tells which state
-    it becomes at a next point that has it, and from this point on it has an eigenvalue.
+    it becomes at a next point that has this state, and from this point on it has an eigenvalue.
     """
     if spectrum.shapes is not None:
         return _match_in_common(spectrum, spectrum.shapes, before, after)

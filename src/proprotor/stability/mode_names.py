@@ -77,7 +77,7 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
     Parameters
     ----------
     model : LinearModel
-        Its points (...) are those of the eigenvalues.
+        Its points (...) are the points of the eigenvalues.
     values : array (..., states)
         All eigenvalues, rad/s, each pair side by side.
     left, right : array (..., states, states)
@@ -93,9 +93,7 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
         shares = _name_shares(model, left, right)
     else:
         shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
-        if good.any():
-            some = some_points(model, good)
-            shares[good] = _name_shares(some, left[good], right[good])
+        shares[good] = _name_shares(some_points(model, good), left[good], right[good])
     held = held_coordinates(model, values.shape[-1])
     place[good] = _assign_names(model.dofs, held, shares[good], roots[good])
     return Moving(known, place, shares)

@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum:
     """Return eigenvalues and right vectors in the state space; of a complex model, those of its real part.
 
-    The eigenvalue of a state that a point does not have is NaN, and stands last. States are those of the batch, or with
-    `held`, places of coordinates whose displacement is a state, those of another batch with the same coordinates.
+    The eigenvalue of a state that a point does not have is NaN, and stands last. States are the states of the batch, or
+    with `held`, places of coordinates whose displacement is a state, of another batch with the same coordinates.
     """
     model = _real(model)
     states = len(held_coordinates(model) if held is None else held) + len(model.dofs)

@@ -45,7 +45,7 @@ class ParameterLine:
     positions : array (points,)
         Airspeeds in m/s, or values of another input in SI.
     linearize : callable, optional
-        Takes positions (k,) and returns the models there; needed for points between those of the line.
+        Takes positions (k,) and returns the models there; needed for points between the points of the line.
     name, units : str
         Name and SI unit of the input.
     end : float, optional
@@ -112,7 +112,7 @@ def line_of_case(
 def _line(
     case: Configuration, options: Mapping[str, Any], positions: Array, inputs: _Inputs, *labels: Any
 ) -> ParameterLine:
-    """Return a line of a case from its positions and the inputs at each position, then name, unit and end of the line."""
+    """Return a line of a case from its positions and the inputs at them, then name, unit and end of the line."""
     line = ParameterLine(positions, lambda at: models_at(case, inputs(at), options), *labels)
     return replace(line, inputs=inputs)
 

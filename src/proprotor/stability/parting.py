@@ -65,7 +65,7 @@ def where_to_part(
     row, state = np.nonzero(poor & near)
     near[row, state] = ~keep_off(steps, points, row, state, level, trust, pairs)
     reasons = (
-        _band_is_open(near, ends, sides, width, steps.errors(points), *square),
+        _band_is_open(near, ends, sides, width, steps.at_ends(points.error), *square),
         _roots_are_alike(steps, poor, near, names),
         _real_roots_join(steps, points, sides, trust),
     )

@@ -11,8 +11,8 @@ matrices, a few times ε |yᴴ|(|λ|²|M| + |λ||C| + |K|)|x| / |yᴴ(2λM + C)x
 root.
 
 A root whose distance from a level is within its error is neutral there: neither beyond the level nor crossing it. Two
-roots that fall into one, as those of a motion without spring and damper, have an error without bound by that formula,
-but in fact one of the square root of rounding: no larger error is reported.
+roots that fall into one, as the roots of a motion without spring and damper, have an error without bound by that
+formula, but in fact one of the square root of rounding: no larger error is reported.
 """
 
 from __future__ import annotations

@@ -157,7 +157,7 @@ def along_scan(
     """Return s and d of pairs by polynomials through six points of the scan about the step; NaN where a line has fewer.
 
     Their difference from polynomials through four points is the error of the latter, and an upper bound of their own.
-    The steps are all those of their lines, one after the other.
+    The steps are all steps of their lines, one after the other.
     """
     line = points.line[steps.before]
     first, last = np.searchsorted(line, line[row]), np.searchsorted(line, line[row], side="right")

@@ -17,7 +17,7 @@ _NEVER = 1e300  # the distance between a root and a state that a point does not 
 
 
 def steps_by_values(values: Array, before: Array, after: Array) -> Steps:
-    """Return steps from points to those that follow, by eigenvalues (points, states); their quality is not known."""
+    """Return steps from points to the next points, by eigenvalues (points, states); their quality is not known."""
     count = len(before)
     successor = np.empty((count, values.shape[1]), dtype=int)
     for start in range(0, count, _BLOCK):

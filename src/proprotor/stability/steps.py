@@ -44,10 +44,6 @@ class Steps(NamedTuple):
         slopes = self.at_ends(points.slope) * self.length(points)
         return np.concatenate([self.at_ends(points.growth), slopes])
 
-    def errors(self, points: Points) -> Array:
-        """Return the error of the growth at both ends (2, steps, states)."""
-        return self.at_ends(points.error)
-
     def counts(self, points: Points) -> Array:
         """Return which states are not the conjugates of others."""
         return np.asarray(~(self.at_ends(points.spectrum.values).imag < 0).all(axis=0))
@@ -55,7 +51,7 @@ class Steps(NamedTuple):
     def sides(self, points: Points) -> Array:
         """Return on which side of the level roots are at both ends (2, steps, states); 0 where they are neutral."""
         value = self.at_ends(points.growth)
-        return np.where(np.abs(value) <= self.errors(points), 0.0, np.sign(value))
+        return np.where(np.abs(value) <= self.at_ends(points.error), 0.0, np.sign(value))
 
     def crossing(self, points: Points) -> tuple[Array, Array, Array]:
         """Return steps and states that are beyond the level at one end alone, with the ends (4, k) of their cubics."""
