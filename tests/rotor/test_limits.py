@@ -14,7 +14,7 @@ from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
 from proprotor.model.first_order import state_matrix
-from proprotor.stability.modes import eigensystem
+from proprotor.stability.modes import decomposition
 from tests.c81_files import made_up_tables
 from tests.rotors import flights, random_support, seeds
 
@@ -95,7 +95,7 @@ def assert_numbers_or_a_reason(model):
     assert converged == (model.trim.reason == "")
     numbers = [np.isfinite(getattr(model, name)).all() for name in "MCK"]
     assert all(numbers) if "without any mass" in str(model.trim.reason) else numbers == [converged] * 3
-    assert np.isfinite(eigensystem(model).values).all() == converged
+    assert np.isfinite(decomposition(model).values).all() == converged
     assume(converged)
 
 

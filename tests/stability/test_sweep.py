@@ -14,7 +14,7 @@ import proprotor as pp
 from proprotor.rotor.trim import Trim
 from proprotor.stability.following import _branches_of, follow
 from proprotor.stability.matching import Spectrum
-from proprotor.stability.modes import decomposition, eigensystem
+from proprotor.stability.modes import decomposition
 from proprotor.stability.sweep import sweep
 from tests.rotors import SPEED_OF_SOUND
 
@@ -121,7 +121,7 @@ def tiltrotor(**changes):
 @pytest.mark.parametrize(("rotor_speed", "rates_only"), [("windmilling", 1), ("constant", 0)])
 def test_rotor_speed_is_a_rate_so_a_model_has_an_odd_number_of_states(rotor_speed, rates_only):
     model = tiltrotor().linearize(100.0, rotor_speed=rotor_speed)
-    values = eigensystem(model).values
+    values = decomposition(model).values
     assert values.shape == (2 * len(model.dofs) - rates_only,)
     modes = model.modes()
     pairs = modes.eigenvalue.values[modes.frequency > 0]
@@ -270,7 +270,7 @@ def test_failed_points_are_passed_over(failed):
 
 def assert_every_root_appears(model, modes):
     """At each point the sweep has each root of the model or its conjugate, once."""
-    for values, found in zip(eigensystem(model).values, modes.eigenvalue.values, strict=True):
+    for values, found in zip(decomposition(model).values, modes.eigenvalue.values, strict=True):
         above, found = np.sort_complex(values[values.imag >= 0]), found[np.isfinite(found)]
         assert np.allclose(np.sort_complex(found.real + 1j * np.abs(found.imag)), above, rtol=1e-12)
 
@@ -328,7 +328,7 @@ def test_a_divergence_is_not_lost_where_a_pair_becomes_two_real_roots(points, ba
     model = diverging(points)
     if backwards:
         model = system(model.M[::-1], model.C[::-1], model.K[::-1], airspeeds=model.airspeed)
-    roots = eigensystem(model).values.real.max(axis=1)
+    roots = decomposition(model).values.real.max(axis=1)
     assert roots.max() > 0.5
     found = np.nanmax(sweep(model).eigenvalue.values.real, axis=1)
     assert np.allclose(found, roots, rtol=1e-12)

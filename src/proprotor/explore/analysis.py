@@ -13,9 +13,10 @@ from proprotor.model.linear_model import LinearModel
 from proprotor.stability.branches import NamedStates, branch_labels, named_at
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.mode_names import moving
+from proprotor.stability.modes import at_columns
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.root_error import error_near_zero
-from proprotor.stability.sweep import at_columns, mode_columns
+from proprotor.stability.sweep import mode_columns
 from proprotor.tables.sweep_summary import UnstableRange, leaps, unstable_ranges
 from proprotor.typing import Array
 

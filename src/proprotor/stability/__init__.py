@@ -51,19 +51,17 @@ from proprotor.stability.map import stability_map
 from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import (
-    Eigensystem,
+    at_columns,
     coordinate_motion,
     coordinate_shares,
     decomposition,
-    eigensystem,
     eigenvalues,
     modes,
-    participation,
 )
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.root_error import error_near_zero
 from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
-from proprotor.stability.sweep import at_columns, mode_columns, sweep, sweep_case
+from proprotor.stability.sweep import mode_columns, sweep, sweep_case
 
 __all__ = [
     "ANCHORS",
@@ -76,7 +74,6 @@ __all__ = [
     "Branches",
     "Crossing",
     "Crossings",
-    "Eigensystem",
     "Failed",
     "FlutterPoint",
     "NamedStates",
@@ -94,7 +91,6 @@ __all__ = [
     "coordinate_shares",
     "damping_rate",
     "decomposition",
-    "eigensystem",
     "eigenvalue_change",
     "eigenvalues",
     "error_near_zero",
@@ -108,7 +104,6 @@ __all__ = [
     "modes",
     "moving",
     "named_at",
-    "participation",
     "scan_speeds",
     "sensitivity",
     "stability_map",

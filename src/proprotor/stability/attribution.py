@@ -19,7 +19,7 @@ from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change
 from proprotor.stability.matching import Modes
-from proprotor.stability.named_modes import named_modes
+from proprotor.stability.named_modes import doubtful_numbers, named_modes
 from proprotor.stability.origins import Part, model_parts
 from proprotor.typing import Array
 
@@ -60,23 +60,19 @@ def attribution(
     InputError
         For a value that is no single airspeed, an airspeed that cannot be analysed, and an unknown mode.
     """
+    import xarray  # here, because it takes long to import
+
     found = named_modes(case, airspeed, mode, options)
     parts = model_parts(case, found.model, **options)
     changes = _contributions(found.model, parts, found.modes)
-    data = _dataset(found.names, list(parts), found.modes.values, changes)
-    data["warning"] = (), str(found.model.trim.warning), {"long_name": "what makes the numbers doubtful"}
-    return data.assign_attrs(stamp.of_model(found.model) | {"airspeed": found.speed})
-
-
-def _dataset(modes: list[str], origins: list[str], values: Array, found: Array) -> xarray.Dataset:
-    import xarray  # here, because it takes long to import
-
-    units = {"units": "rad/s"}
+    by_origin, units = ("origin", "mode"), {"units": "rad/s"}
     return xarray.Dataset(
         {
-            "contribution": (("origin", "mode"), found, units),
-            "growth": (("origin", "mode"), found.real, units),
-            "eigenvalue": ("mode", values, units),
+            "contribution": (by_origin, changes, units),
+            "growth": (by_origin, changes.real, units),
+            "eigenvalue": ("mode", found.modes.values, units),
+            "warning": doubtful_numbers(found.model.trim.warning),
         },
-        coords={"origin": origins, "mode": modes},
+        coords={"origin": list(parts), "mode": found.names},
+        attrs=stamp.of_model(found.model) | {"airspeed": found.speed},
     )

@@ -1,7 +1,7 @@
 """Stability boundaries along a line: where the damping of a mode passes a level, to rounding.
 
-Every crossing in a range is looked for, flutter and divergence, those between two points of the scan included:
-`proprotor.stability.crossings` says how.
+Every crossing in a range is looked for, flutter and divergence, also where two crossings lie between two points of the
+scan: `proprotor.stability.crossings` says how.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,8 +33,8 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
-_TAKES_PART = 0.05  # of a mode: the least participation that its mechanism names
-_TOGETHER = 1e-3  # of a position: stretches that cannot be followed and lie nearer to each other are one
+_TAKES_PART = 0.05  # least participation of a motion that the mechanism of a boundary names
+_TOGETHER = 1e-3  # of a position: stretches without a followed mode that lie nearer to each other are one
 _RANGE = (0.2, 1.2, 51)  # of the tip speed: where boundaries are looked for, and at how many points
 
 
@@ -44,7 +45,7 @@ def scan_speeds(case: Configuration, points: int = _RANGE[2]) -> Array:
     ----------
     case : Case
     points : int
-        How many.
+        Number of airspeeds.
 
     Returns
     -------
@@ -97,7 +98,7 @@ def boundaries(
         raise InputError("case", case.name, "must be one design: give one input to vary")
     line = _rising(line)
     if vary is None:
-        line = replace(line, positions=_in_small_steps(line.positions, _widest_step(case)))
+        line = replace(line, positions=_in_small_steps(line.positions, tip_speed(case)))
     search = _search(line, level)
     found = _crossings(line, search, approach_to(case, line, search.scanned.works, options))
     own = stamp.of_case(case, options)
@@ -105,21 +106,19 @@ def boundaries(
     return found._replace(boundaries=carried, stamp=own)
 
 
-def _widest_step(case: Configuration) -> float:
-    """Return the widest step of airspeed in m/s that a search takes: the default scan's; wider ones hide crossings."""
+def _in_small_steps(positions: Array, tip: float) -> Array:
+    """Return rising positions (k,) with equally spaced points in each step that is wider than the default scan's.
+
+    Wider steps hide crossings. `tip` is the tip speed, m/s.
+    """
     low, high, points = _RANGE
-    return (high - low) / (points - 1) * tip_speed(case)
-
-
-def _in_small_steps(positions: Array, widest: float) -> Array:
-    """Return rising positions (k,) with equally spaced points in each step that is wider than the widest allowed."""
+    widest = (high - low) / (points - 1) * tip
     parts = np.maximum(np.ceil(np.diff(positions) / widest * (1 - 1e-9)), 1).astype(int)
-    step, part = (
-        np.repeat(np.arange(len(parts)), parts),
-        np.concatenate([np.arange(0), *(np.arange(k) for k in parts)]),
-    )
-    between = positions[step] + part / parts[step] * np.diff(positions)[step]
-    return np.append(between, positions[-1:])
+    between = [
+        low + np.arange(count) / count * (high - low)
+        for (low, high), count in zip(pairwise(positions), parts, strict=True)
+    ]
+    return np.concatenate([*between, positions[-1:]])
 
 
 def find_crossings(
@@ -194,11 +193,11 @@ def _branches(search: Search, positions: Array) -> Branches:
     between = np.arange(len(works), len(points.position))
     place = np.concatenate([works, len(positions) + np.arange(len(between))])
     count = len(positions) + len(between)
-    values, right, shapes = (
-        None if part is None else _in_places(part, place, count) for part in points.spectrum
-    )
-    assert values is not None and right is not None  # of points that work
-    spectrum = Spectrum(values, right, shapes)
+    rows = np.zeros(count, dtype=int)
+    rows[place] = np.arange(len(place))
+    spectrum = points.spectrum.at(rows)
+    failed = np.setdiff1d(np.arange(count), place)
+    spectrum.values[failed] = spectrum.right[failed] = np.nan
     order = np.argsort(points.position, kind="stable")
     return Branches(
         spectrum,
@@ -206,13 +205,6 @@ def _branches(search: Search, positions: Array) -> Branches:
         Matches(search.steps.successor, search.steps.quality),
         np.concatenate([positions, points.position[between]]),
     )
-
-
-def _in_places(part: Array, place: Array, count: int) -> Array:
-    """Return an array of so many rows with some rows at their places, and NaN elsewhere."""
-    whole = np.full((count, *part.shape[1:]), np.nan, dtype=part.dtype)
-    whole[place] = part
-    return whole
 
 
 def _label(found: Crossing, search: Search, branches: Branches, names: list[str], at: int) -> str:
@@ -267,7 +259,7 @@ def _least_damped(points: Points) -> tuple[int, int] | None:
 
 
 def _boundary(found: Crossing, moves: Moving, row: int) -> Boundary:
-    """Return the boundary of a crossing, by what moves in the modes of a row."""
+    """Return the boundary of a crossing, with what moves in its mode: a row of `moves`."""
     value = found.value
     shares = moves.shares[row, :, found.state]
     largest = [k for k in np.argsort(-shares) if shares[k] >= _TAKES_PART]
@@ -308,13 +300,11 @@ def _failed(positions: Array, scanned: Solved, works: Array) -> tuple[Failed, ..
 def _lost(search: Search, brackets: Brackets) -> tuple[Failed, ...]:
     """Return stretches over which a mode passes the level, or may, and cannot be followed; neighbours as one."""
     rule = "a mode passes the level where it cannot be followed"
-    x = search.points.position
     found = []
     for k, why in brackets.lost.items():
         low, high = np.sort(brackets.x[:, k]).tolist()
         found.append(Failed(low, high, f"{rule}: {why}"))
-    for step in search.unsettled:
-        found.append(Failed(float(x[step.before[0]]), float(x[step.after[0]]), f"{rule}: {JUMPS}"))
+    found += [Failed(low, high, f"{rule}: {JUMPS}") for low, high in search.unsettled]
     joined: list[Failed] = []
     for one in sorted(found):
         if joined and one.first <= joined[-1].last + _TOGETHER * abs(one.first):

@@ -40,7 +40,7 @@ class Boundary:
         Dimensionless: 1 for a well-separated mode, large where the mode nearly falls into one with another
         (`proprotor.stability.eigenvalue_derivatives.defect`).
     eigen_solves : int
-        Eigen-solves for this crossing beyond those that bracketed it.
+        Eigen-solves for this crossing beyond the eigen-solves that bracketed it.
     branch : str
         The exact root that crosses, by what moves in it where branches are named (`proprotor.stability.branches`).
     warning : str
@@ -113,10 +113,8 @@ class Failed(NamedTuple):
         str
         """
         low, high = (f"{end / factor:.4g}" for end in (self.first, self.last))
-        return (
-            f"Not analysed: {low if low == high else f'{low} to {high}'} {unit}".rstrip()
-            + f" ({self.reason})."
-        )
+        where = low if low == high else f"{low} to {high}"
+        return f"Not analysed: {where} {unit}".rstrip() + f" ({self.reason})."
 
 
 class LeastDamping(NamedTuple):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise, starmap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from proprotor.stability.matching import Spectrum, conjugate, match_modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.typing import Array
+from proprotor.units import in_metres_per_second
 
 if TYPE_CHECKING:
     import xarray
@@ -84,7 +86,7 @@ def boundary_lines(
         vertices, frequency = found.boundary.values[places], np.abs(roots[places].imag)
         model = models_at(case, own | dict(zip(names, vertices.T, strict=True)), options)
         spectrum = decomposition(model)
-        state = _nearest_state(spectrum, roots[places])
+        state = spectrum.nearest(roots[places][:, None])[:, 0]
         for part in _same_mode(spectrum, state, np.isfinite(roots[places])):
             middle = (part.start + part.stop) // 2
             moved = names_of(some_points(model, [middle]), spectrum.at([middle]))[state[middle]]
@@ -97,12 +99,10 @@ def boundary_lines(
 
 def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
     """Return the airspeed of a map in m/s; None where the airspeed is one of its axes."""
-    from proprotor.units import in_metres_per_second
-
     own = found.attrs.get(AIRSPEED)
     if given is not None and (own is None or not np.isclose(in_metres_per_second(given), own, rtol=1e-12)):
-        rule = "is one of the axes of the map" if own is None else f"must be {own:.6g} m/s, that of the map"
-        raise InputError(AIRSPEED, given, f"{rule}, or be left out" if own is not None else rule)
+        rule = f"must be {own:.6g} m/s, that of the map, or be left out" if own is not None else ""
+        raise InputError(AIRSPEED, given, rule or "is one of the axes of the map")
     return None if own is None else float(own)
 
 
@@ -122,13 +122,5 @@ def _same_mode(spectrum: Spectrum, state: Array, known: Array) -> Iterator[slice
     same = np.zeros(len(before), dtype=bool)
     after = match_modes(spectrum, good, good + 1).successor[np.arange(len(good)), state[good]]
     same[good] = (after == state[good + 1]) | (after == conjugate(spectrum.values)[good + 1, state[good + 1]])
-    jumps = np.flatnonzero(~same) + 1
-    for start, stop in zip((0, *jumps), (*jumps, len(state)), strict=True):
-        yield slice(int(start), int(stop))
-
-
-def _nearest_state(spectrum: Spectrum, roots: Array) -> Array:
-    """Return which state of each point is the root (k,) of the point."""
-    apart = np.abs(spectrum.values - roots[:, None])
-    state: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=1)
-    return state
+    jumps = (np.flatnonzero(~same) + 1).tolist()
+    yield from starmap(slice, pairwise([0, *jumps, len(state)]))

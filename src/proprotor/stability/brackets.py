@@ -28,7 +28,7 @@ class Crossing(NamedTuple):
 
     line; position; spectrum of the position, and the state that crosses; value of the root; change of the root and
     slope of G with the position; onset, whether the root becomes unstable; start, the point of the search before the
-    crossing, and from_state, the state there; solves, beyond those of the search.
+    crossing, and from_state, its state at this point; solves, eigen-solves beyond those of the search.
     """
 
     line: int
@@ -51,7 +51,7 @@ class Brackets:
     ----------
     search : Search
     close : float, optional
-        The last correction of a position, in its unit; a billionth of it by default.
+        The last correction of a position, in the unit of the position; a billionth of the position by default.
     """
 
     def __init__(self, search: Search, close: float | None = None) -> None:
@@ -78,7 +78,7 @@ class Brackets:
         """Run Newton's method on every crossing, by the derivative at the last point, within the bracket."""
         active = np.arange(self.count)
         with np.errstate(all="ignore"):
-            share = hermite_root(self.cubic) if self.count else np.empty(0)
+            share = hermite_root(self.cubic)
         guess = self.x[0] + share * (self.x[1] - self.x[0])
         for _ in range(_ITERATIONS):
             if not len(active):
@@ -106,8 +106,7 @@ class Brackets:
             done |= collapsed
             for one in np.flatnonzero(done & ~jumps).tolist():
                 self._keep(int(active[one]), points, one, int(place[one]), float(correction[one]))
-            beyond = value > error
-            self._narrow(active, beyond, points, place)
+            self._narrow(active, value > error, points, place)
             newton = points.position + correction
             low, high = self.x[:, active].min(axis=0), self.x[:, active].max(axis=0)
             inside = (newton > low) & (newton < high) & (np.abs(value) > error)
@@ -116,7 +115,7 @@ class Brackets:
         return list(self.found.values())
 
     def _keep(self, crossing: int, points: Points, row: int, place: int, correction: float) -> None:
-        """Record the crossing at a trial point, with a last correction if that stays in the bracket."""
+        """Record the crossing at a trial point, with a last correction if this stays within the bracket."""
         low, high = self.x[:, crossing]
         if not (np.isfinite(correction) and low <= points.position[row] + correction <= high):
             correction = 0.0
@@ -161,10 +160,9 @@ class Brackets:
         return followed
 
     def _narrow(self, active: Array, beyond: Array, points: Points, place: Array) -> None:
-        """Put each trial point in the place of the end on its side of the level."""
-        end = (beyond == self.onset[active]).astype(int)
-        for row, crossing in enumerate(active):
-            side = end[row]
+        """Replace the end of each bracket that lies on the same side of the level as its trial point by this point."""
+        sides = (beyond == self.onset[active]).astype(int)
+        for row, (crossing, side) in enumerate(zip(active, sides, strict=True)):
             self.x[side, crossing], self.place[side, crossing] = points.position[row], place[row]
             for kept, new in zip(self.ends[side], points.spectrum, strict=True):
                 if kept is not None and new is not None:

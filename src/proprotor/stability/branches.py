@@ -2,9 +2,9 @@
 
 A label belongs to a root and not to a motion: where two roots veer, each keeps its label though they exchange their
 motions. A label is the same in any range and for any step, as long as each step tells which root is which; `trust` says
-how far that holds. A pair that parts into two real roots does not tell which of the two it becomes: both have the label
-of the pair, the one that decays faster as the second root. A pair in which roots of two labels have joined has the
-label that comes first in the order of the coordinates.
+how far a label holds. A pair that parts into two real roots does not tell which of the two it becomes: both have the
+label of the pair, the one that decays faster as the second root. A pair in which roots of two labels have joined has
+the label that comes first in the order of the coordinates.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 class NamedStates(NamedTuple):
     """Names of the states of one point of some branches, in the order of the point's spectrum.
 
-    point : place of the point among those of the branches; known : all names of the model; place (states,) : place of
-    each state's name in `known`; trust (states,) : in the steps from the anchor to the point; where : position at which
-    names were given, as text; eigen_solves : what that took beyond the points of the branches.
+    point : place of the point among the points of the branches; known : all names of the model; place (states,) : place
+    of each state's name in `known`; trust (states,) : in the steps from the anchor to the point; where : position at
+    which names were given, as text; eigen_solves : number of eigen-solves beyond the points of the branches.
     """
 
     point: int
@@ -59,7 +59,7 @@ class BranchLabels(NamedTuple):
         Least quality of all steps between the anchor and a point, 0 to 1: where it is low, the label may be that of
         another root. NaN at failed points.
     doubt : array (points,) of object
-        Which branches the step to a point does not tell apart, as a sentence; empty where it does.
+        Which branches the step to a point does not tell apart, as a sentence; empty where all branches are told apart.
     """
 
     label: Array
@@ -74,8 +74,8 @@ def name_states(branches: Branches, line: ParameterLine, approach: ParameterLine
     """Name the states of one point of some branches of a line.
 
     With an approach that can be followed from end to end: at the point that is nearest to the end of the approach, by
-    the names that the states have at the anchor. Without one: at the first point of the line that works, by what moves
-    there.
+    the names that the states have at the anchor. Without an approach: at the first point of the line that works, by
+    what moves at this point.
     """
     if approach is not None and len(branches.points):
         named = _named_by_approach(branches, approach)
@@ -86,7 +86,7 @@ def name_states(branches: Branches, line: ParameterLine, approach: ParameterLine
 
 
 def named_at(branches: Branches, line: ParameterLine, place: int) -> NamedStates:
-    """Name the states of a point of some branches by what moves there."""
+    """Name the states of a point of some branches by what moves at the point."""
     if not len(branches.points):
         return NamedStates(place, [], np.empty(0, dtype=int), np.empty(0), "")
     point = int(branches.points[place])
@@ -105,7 +105,7 @@ def names_of(model: LinearModel, spectrum: Spectrum) -> Array:
 
 
 def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStates | None:
-    """Name states by those of the anchor; None where the approach cannot be followed from end to end."""
+    """Name states by their names at the anchor; None where the approach cannot be followed from end to end."""
     near = approach.models()
     n, states = len(near.dofs), branches.spectrum.values.shape[1]
     # A shaft may hold the azimuth on one of the two lines only.
@@ -129,7 +129,7 @@ def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStat
 
 
 def branch_labels(branches: Branches, named: NamedStates, points: int) -> BranchLabels:
-    """Return the labels of all states at the first points of the spectrum of some branches, those of their line."""
+    """Return the labels of all states at the points of a line, the first in the spectrum of its branches."""
     states = branches.spectrum.values.shape[1]
     label = np.full((points, states), "", dtype=object)
     trust = np.full((points, states), np.nan)
@@ -139,14 +139,11 @@ def branch_labels(branches: Branches, named: NamedStates, points: int) -> Branch
     own = branches.points[rows]
     values = branches.spectrum.values[own]
     start = branches.places[named.point]  # places of the branches at the point where they have their names
-    kept = np.empty((len(rows), states), dtype=int)
-    np.put_along_axis(kept, branches.places[rows], np.broadcast_to(named.place[start], kept.shape), 1)
+    branch = branches.places[rows].argsort(axis=1)  # of each state
+    kept = named.place[start][branch]
     kept = np.minimum(kept, np.take_along_axis(kept, conjugate(values), 1))
     label[own] = _as_text(kept, values, named.known)
-    ways = np.empty((len(rows), states))
-    np.put_along_axis(
-        ways, branches.places[rows], _from_anchor(branches, named.point, named.trust[start])[rows], 1
-    )
+    ways = np.take_along_axis(_from_anchor(branches, named.point, named.trust[start])[rows], branch, 1)
     trust[own] = np.minimum(ways, np.take_along_axis(ways, conjugate(values), 1))
     return BranchLabels(label, trust, _doubts(branches, label, points))
 
@@ -166,7 +163,7 @@ def _as_text(kept: Array, values: Array, known: list[str]) -> Array:
 
 
 def _from_anchor(branches: Branches, point: int, start: Array) -> Array:
-    """Return the least quality (k, states) of the steps between a point of the branches and each other one.
+    """Return the least quality (k, states) of the steps between a point of the branches and each other point.
 
     `start` (states,) is the trust in the point itself.
     """
@@ -181,11 +178,15 @@ def _from_anchor(branches: Branches, point: int, start: Array) -> Array:
 def _doubts(branches: Branches, label: Array, points: int) -> Array:
     """Return the sentence (points,) that names the branches which the step to a point does not tell apart."""
     doubt = np.full(points, "", dtype=object)
-    by_place = np.empty((points, label.shape[1]))
-    np.put_along_axis(by_place, branches.order(points), branches.trust(points), 1)
-    for point in np.flatnonzero((by_place < POOR).any(axis=1) & (label != "").all(axis=1)):
-        names = dict.fromkeys(label[point, by_place[point] < POOR])
-        doubt[point] = f"{NOT_TOLD}: {', '.join(names)}"
+    own = np.flatnonzero(branches.points < points)  # points of the line, and none between
+    if len(own) > 1:
+        poor = (
+            np.minimum.reduceat(branches.quality, own[:-1], axis=0) < POOR
+        )  # in any step since the point before
+        for row in np.flatnonzero(poor.any(axis=1)):
+            point, places = branches.points[own[row + 1]], branches.places[own[row + 1]]
+            names = dict.fromkeys(label[point, np.sort(places[poor[row]])])
+            doubt[point] = f"{NOT_TOLD}: {', '.join(names)}"
     return doubt
 
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from proprotor.stability.matching import match_modes
 from proprotor.stability.parting import where_to_part
 from proprotor.stability.points import Models, Points, Solved, growth_rate, solve_points
 from proprotor.stability.root_pairs import MANY, along_scan
@@ -66,8 +67,8 @@ class Search:
     ) -> None:
         self.level, self.names, self.onset_only = level, names, onset_only
         self._models, self._forgiving, self._states = models, forgiving, states
-        # Steps of lines on which nothing settles, as where the trim jumps to and fro.
-        self.unsettled: list[Steps] = []
+        # Both ends of steps of lines on which nothing settles, as where the trim jumps back and forth.
+        self.unsettled: list[list[float]] = []
         self.scanned = self.solve(line, position, plain=onset_only)
         self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
         if self.scanned.points is not None:
@@ -82,7 +83,7 @@ class Search:
                 self.steps = steps_by_values(self.points.spectrum.values, before, after)
                 self._screen()
             else:
-                self.steps = first_steps(self.points.spectrum, before, after)
+                self.steps = first_steps(before, after, *match_modes(self.points.spectrum, before, after))
             self._settle()
 
     def solve(self, line: Array, position: Array, plain: bool = False) -> Solved:
@@ -102,23 +103,20 @@ class Search:
         asked |= few[points.line[steps.before]]
         kept = steps.at(np.flatnonzero(asked & self._before_onset()))
         ends = np.unique(np.concatenate([kept.before, kept.after]))
-        if not len(ends):
-            self.steps = kept
-            return
-        exact = self.solve(points.line[ends], points.position[ends])
-        if exact.points is None:
+        exact = self.solve(points.line[ends], points.position[ends]) if len(ends) else None
+        if exact is None or exact.points is None:
             self.steps = kept.at(np.array([], dtype=int))
             return
         np.add.at(self.solves, exact.points.line, 1)
         place = np.full(len(points.position), -1)
         place[ends[exact.works]] = np.arange(len(exact.points.position))
-        before, after = place[kept.before], place[kept.after]
-        both = (before >= 0) & (after >= 0)
+        linked = place[np.stack([kept.before, kept.after])]
+        before, after = linked[:, (linked >= 0).all(axis=0)]
         self.points = exact.points
-        self.steps = first_steps(exact.points.spectrum, before[both], after[both])
+        self.steps = first_steps(before, after, *match_modes(exact.points.spectrum, before, after))
 
     def _reach_edges(self, line: Array, position: Array) -> None:
-        """Halve the steps from a point that works to one that does not: boundaries may lie there."""
+        """Halve the steps from a point that works to a point that fails: a boundary may lie within such a step."""
         works = self.scanned.works
         edges = np.flatnonzero((line[1:] == line[:-1]) & (works[1:] != works[:-1]))
         good, bad = (np.where(works[edges], edges + k, edges + 1 - k) for k in (0, 1))
@@ -139,8 +137,8 @@ class Search:
             self.steps.open[wanted] = False
             line = self.points.line[self.steps.before[wanted]]
             left = np.isfinite(share) & (self.solves[line] > _MOST_SOLVES)
-            for one in np.flatnonzero(left).tolist():
-                self.unsettled.append(self.steps.at(wanted[one : one + 1]))
+            ends = self.points.position[np.stack([self.steps.before, self.steps.after], axis=1)]
+            self.unsettled += ends[wanted[left]].tolist()
             chosen = np.isfinite(share) & ~left
             if not chosen.any() or not self._part(wanted[chosen], share[chosen]):
                 break
@@ -160,25 +158,24 @@ class Search:
 
     def _part(self, chosen: Array, share: Array) -> bool:
         """Put a point into each of some steps; return whether any of these points could be analysed."""
-        x, line = self.points.position, self.points.line[self.steps.before[chosen]]
-        start, end = x[self.steps.before[chosen]], x[self.steps.after[chosen]]
-        at = start + share * (end - start)
+        few, first = self.steps.at(chosen), len(self.points.position)
+        line = self.points.line[few.before]
+        at = self.points.position[few.before] + share * few.length(self.points)[:, 0]
         between = self.solve(line, at)
         if between.points is None:
             return False
         self.points = self.points.joined(between.points)
         np.add.at(self.solves, line[between.works], 1)
-        self.steps = parted(self.steps, chosen[between.works], self.points, len(x))
+        self.steps = parted(self.steps, chosen[between.works], self.points, first)
         return True
 
 
 def _with_differences(points: Points, steps: Steps, level: float) -> Points:
     """Return the points with differences to their neighbours in place of derivatives."""
     values = points.spectrum.values
-    length = (points.position[steps.after] - points.position[steps.before])[:, None]
+    length = steps.length(points)
     rate = (steps.later(values) - values[steps.before]) / length
-    there = np.empty(rate.shape, dtype=complex)
-    np.put_along_axis(there, steps.successor, rate, 1)
+    there = np.take_along_axis(rate, steps.successor.argsort(axis=1), 1)
     sums, weights = np.zeros(values.shape, dtype=complex), np.zeros((len(values), 1))
     for place, part in ((steps.before, rate), (steps.after, there)):  # the nearer neighbour counts more
         np.add.at(sums, place, part / length)

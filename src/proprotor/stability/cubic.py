@@ -24,6 +24,19 @@ def hermite_slope(t: Array, ends: Array) -> Array:
     return slope
 
 
+def bend(ends: Array) -> Array:
+    """Return how far cubics, by their ends (4, ...), may leave the straight line between the ends."""
+    rise = ends[1] - ends[0]
+    found: Array = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
+    return found
+
+
+def band(t: Array) -> Array:
+    """Return how the error of a cubic is spread over the step: 0 at both ends, 1 in the middle."""
+    spread: Array = 16 * t**2 * (1 - t) ** 2
+    return spread
+
+
 def hermite_extrema(ends: Array) -> Array:
     """Return where cubics (4, m) have extrema within (0, 1): (m, 2), NaN for an extremum that does not exist."""
     value0, value1, slope0, slope1 = ends

@@ -65,7 +65,6 @@ def eigenvalue_change(
     model: LinearModel,
     changes: tuple[Array, Array, Array],
     modes: Modes,
-    left_rows: Array | None = None,
 ) -> Array:
     """Return the first-order change (..., modes) of eigenvalues by changes of M, C and K (..., n, n).
 
@@ -75,8 +74,6 @@ def eigenvalue_change(
         The model that has the vectors; its leading axes and those of the changes broadcast.
     changes : three arrays (..., n, n)
     modes : Modes
-    left_rows : array (..., modes, n), optional
-        The result of `second_order_left`, where it is known.
     """
     values, right, left = modes
     n, held = len(model.dofs), held_coordinates(model, right.shape[-2])
@@ -84,10 +81,9 @@ def eigenvalue_change(
     rates, displacement = right[..., -n:, :], right[..., : len(held), :]
     motion = np.concatenate([values[..., None, :] * rates, rates, displacement], axis=-2)
     load = real_times(np.concatenate([mass, damping, stiffness[..., held]], axis=-1), motion)
-    for place in set(range(n)) - set(held):  # an azimuth that nothing holds, which a shaft would
+    for place in set(range(n)) - set(held):  # an azimuth that nothing holds, and that a shaft would hold
         load = load + _pull(stiffness[..., place], rates[..., place, :], values)
-    rows = second_order_left(model, left) if left_rows is None else left_rows
-    change: Array = -(rows * np.swapaxes(load, -1, -2)).sum(axis=-1)
+    change: Array = -(second_order_left(model, left) * np.swapaxes(load, -1, -2)).sum(axis=-1)
     return change
 
 

@@ -141,23 +141,18 @@ def flutter_point(
         As `boundaries`.
     """
     found = boundaries(case, airspeeds, level=level, **options)
-    onsets = [boundary for boundary in found.boundaries if boundary.onset]
-    first = onsets[0] if onsets else None
+    onset = next((boundary for boundary in found.boundaries if boundary.onset), None)
+    own = (onset.position, onset.frequency, onset.mode, onset.kind) if onset else (np.nan, np.nan, "", "")
     return FlutterPoint(
-        speed=first.position if first else np.nan,
-        frequency=first.frequency if first else np.nan,
-        mode=first.mode if first else "",
-        kind=first.kind if first else "",
-        boundaries=found.boundaries,
-        unstable_at_start=found.unstable_at_start,
-        searched=found.searched,
-        eigen_solves=found.eigen_solves,
-        scan_solves=found.scan_solves,
-        level=level,
-        least_damping=found.least.ratio,
-        least_damping_mode=found.least.mode,
-        least_damping_speed=found.least.position,
-        doubts=found.doubts,
-        stamp=found.stamp,
-        failed=found.failed,
+        *own,
+        found.boundaries,
+        found.unstable_at_start,
+        found.searched,
+        found.eigen_solves,
+        found.scan_solves,
+        level,
+        *found.least,
+        found.doubts,
+        found.stamp,
+        found.failed,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from proprotor.model.doubts import doubt_at, marked
@@ -14,37 +14,26 @@ if TYPE_CHECKING:
     from proprotor.stability.boundary import Boundary
     from proprotor.stability.flutter import FlutterPoint
 
-COLUMNS = (
-    "airspeed (kt)",
-    "airspeed (m/s)",
-    "frequency (Hz)",
-    "frequency (per rev)",
-    "mode",
-    "kind",
-    "onset",
-    "mechanism",
-    "growth per airspeed (1/m)",
-    "branch",
-    "warning",
-)
+_CELLS: dict[str, Callable[[Boundary, float], Any]] = {  # of a boundary, and of a rotor speed in rad/s
+    "airspeed (kt)": lambda boundary, _: boundary.position / KNOT,
+    "airspeed (m/s)": lambda boundary, _: boundary.position,
+    "frequency (Hz)": lambda boundary, _: boundary.frequency / (2 * math.pi),
+    "frequency (per rev)": lambda boundary, rotor_speed: boundary.frequency / rotor_speed,
+    "mode": lambda boundary, _: boundary.mode,
+    "kind": lambda boundary, _: boundary.kind,
+    "onset": lambda boundary, _: boundary.onset,
+    "mechanism": lambda boundary, _: dict(boundary.mechanism),
+    "growth per airspeed (1/m)": lambda boundary, _: boundary.rate,
+    "branch": lambda boundary, _: boundary.branch,
+    "warning": lambda boundary, _: boundary.warning,
+}
+COLUMNS = tuple(_CELLS)
 
 
 def boundary_record(boundary: Boundary, case: Configuration) -> dict[str, Any]:
     """Return a boundary in the units people read, by `COLUMNS`."""
-    values = (
-        boundary.position / KNOT,
-        boundary.position,
-        boundary.frequency / (2 * math.pi),
-        boundary.frequency / float(case.operation.rotor_speed),
-        boundary.mode,
-        boundary.kind,
-        boundary.onset,
-        dict(boundary.mechanism),
-        boundary.rate,
-        boundary.branch,
-        boundary.warning,
-    )
-    return dict(zip(COLUMNS, values, strict=True))
+    rotor_speed = float(case.operation.rotor_speed)
+    return {column: cell(boundary, rotor_speed) for column, cell in _CELLS.items()}
 
 
 def boundary_row(record: dict[str, Any], factor: float) -> tuple[str, ...]:
@@ -82,10 +71,8 @@ def least_damping_message(found: FlutterPoint, unit: str, factor: float) -> str:
     if math.isnan(found.least_damping):
         return ""
     speed = found.least_damping_speed
-    where = f"{found.least_damping_mode} at {speed / factor:.4g} {unit}"
-    return (
-        f"{marked(f'{100 * found.least_damping:.2g}', doubt_at(found.doubts, speed))} % of critical: {where}"
-    )
+    ratio = marked(f"{100 * found.least_damping:.2g}", doubt_at(found.doubts, speed))
+    return f"{ratio} % of critical: {found.least_damping_mode} at {speed / factor:.4g} {unit}"
 
 
 def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:

@@ -14,7 +14,7 @@ from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.typing import Array
 
-_MOST_PARTS = 128  # of a step: where two roots pass each other it takes a few dozens
+_MOST_PARTS = 128  # of a step: where two roots pass each other a few dozen parts are needed
 _HALVINGS = 24  # of a step whose modes cannot be told apart: of 20 kt, to 1e-6 kt
 
 
@@ -61,14 +61,6 @@ class Branches:
         order[self.points[own]] = self.places[own]
         return order
 
-    def trust(self, points: int) -> Array:
-        """Return the least quality (points, states) of the steps that led to each point of the line; 1 at the first."""
-        trust = np.ones((points, self.spectrum.values.shape[1]))
-        own = np.flatnonzero(self.points < points)
-        if len(own) > 1:
-            trust[self.points[own[1:]]] = np.minimum.reduceat(self.quality, own[:-1], axis=0)
-        return trust
-
     def _with_points(self, after: Array, positions: Array, between: Spectrum) -> Branches:
         """Return the branches with one more point in each of the steps `after`, at `positions` within the steps."""
         first = len(self.spectrum.values)
@@ -91,9 +83,9 @@ def _branches_of(spectrum: Spectrum, positions: Array) -> Branches:
 def follow(model: LinearModel, line: ParameterLine | None = None, held: list[int] | None = None) -> Branches:
     """Follow the states of the points of a line of models one to one.
 
-    A step whose quality is poor is halved until it is not, where the line can be linearised between its points. A step
-    that stays poor keeps its quality as a warning; where roots are alike all along a step, as two motions with one
-    frequency, the step is given up after a number of parts.
+    A step whose quality is poor is halved until the quality is good, where the line can be linearised between its
+    points. A step that stays poor keeps its quality as a warning; where roots are alike all along a step, as two
+    motions with one frequency, the step is given up after a number of parts.
 
     Parameters
     ----------

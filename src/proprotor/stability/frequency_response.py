@@ -13,6 +13,7 @@ from proprotor.model.linear_model import SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
 from proprotor.needs import check_memory
 from proprotor.rotor.motions import HUB
+from proprotor.stability.modes import doubt_and_failure, leading_dims
 from proprotor.stability.root_error import roots
 from proprotor.typing import Array
 from proprotor.units import values_in_si
@@ -50,7 +51,7 @@ def frequency_response(
     xarray.Dataset
         response (..., frequency, output, input), complex, in the output's unit per unit of the input; magnitude and
         phase (rad) of the response; stable (...), whether every mode is damped; warning and reason (...) of points that
-        are doubtful, and of those that failed. Attributes: the case and its options (`proprotor.model.stamp`).
+        are doubtful, and of points that failed. Attributes: the case and its options (`proprotor.model.stamp`).
         Coordinates: frequency, output_unit, input_unit, airspeed. NaN where a point failed, or where a frequency is
         that of an undamped mode.
 
@@ -70,10 +71,9 @@ def frequency_response(
     size = _BYTES_PER_ENTRY * count * len(rows) * len(columns)
     check_memory("frequency", asked, size, "the response", "take fewer, or fewer inputs and outputs")
     response = _response(space, omega, rows, columns)
-    leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
-    leading = ("airspeed",) if len(leading) == 1 else leading
+    leading = leading_dims(model)
     dims = (*leading, "frequency", "output", "input")
-    chosen = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
+    names, moved = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
     unit = {"units": "output_unit / input_unit"}
     return xarray.Dataset(
         {
@@ -81,19 +81,14 @@ def frequency_response(
             "magnitude": (dims, np.abs(response), unit),
             "phase": (dims, np.angle(response), {"units": "rad"}),
             "stable": (leading, _stable(model)),
-            "warning": (
-                leading,
-                model.trim.warning.astype(str),
-                {"long_name": "what makes a point doubtful"},
-            ),
-            "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
+            **doubt_and_failure(model, leading),
         },
         coords={
             "frequency": ("frequency", omega, {"units": "rad/s"}),
-            "output": chosen[0],
-            "input": chosen[1],
-            "output_unit": ("output", [_unit_of(name) for name in chosen[0]]),
-            "input_unit": ("input", ["rad" if name in SWASHPLATE else "m/s" for name in chosen[1]]),
+            "output": names,
+            "input": moved,
+            "output_unit": ("output", [_unit_of(name) for name in names]),
+            "input_unit": ("input", ["rad" if name in SWASHPLATE else "m/s" for name in moved]),
             "airspeed": (leading, model.airspeed, {"units": "m/s"}),
         },
         attrs=dict(space.stamp),
@@ -101,6 +96,7 @@ def frequency_response(
 
 
 def _frequencies(frequency: Any) -> Array:
+    """Return frequencies (k,) in rad/s; raise an error for one that is negative or not finite."""
     omega = values_in_si(frequency, "rad/s", "frequency").reshape(-1)
     wrong = ~(np.isfinite(omega) & (omega >= 0))
     if wrong.any():
@@ -109,6 +105,7 @@ def _frequencies(frequency: Any) -> Array:
 
 
 def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> list[int]:
+    """Return the places of wanted names among known names; of all names where none is wanted."""
     names = known if wanted is None else (wanted,) if isinstance(wanted, str) else tuple(wanted)
     for name in names:
         if name not in known:
@@ -120,15 +117,8 @@ def _response(space: StateSpace, omega: Array, rows: list[int], columns: list[in
     """Return C (iω - A)⁻¹ B + D (..., frequencies, rows, columns)."""
     leading = space.A.shape[:-2]
     count = int(np.prod(leading, dtype=int))
-    a, b, c, d = (
-        np.reshape(np.broadcast_to(m, (*leading, *m.shape[-2:])), (count, *m.shape[-2:]))
-        for m in (
-            space.A,
-            space.B[..., columns],
-            space.C[..., rows, :],
-            space.D[..., rows, :][..., columns],
-        )
-    )
+    whole = space.A, space.B[..., columns], space.C[..., rows, :], space.D[..., rows, :][..., columns]
+    a, b, c, d = (np.broadcast_to(m, (*leading, *m.shape[-2:])).reshape(count, *m.shape[-2:]) for m in whole)
     found = np.full((count, len(omega), len(rows), len(columns)), complex(np.nan, np.nan))
     for points, own in _alike(a):
         parts = a[points][:, own][:, :, own], b[points][:, own], c[points][:, :, own], d[points]

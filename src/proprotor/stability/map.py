@@ -24,7 +24,7 @@ from proprotor.stability.crossings import Search
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.stability.root_error import growth, growth_error, roots
 from proprotor.typing import Array
-from proprotor.units import in_metres_per_second
+from proprotor.units import in_metres_per_second, values_in_si
 
 if TYPE_CHECKING:
     import xarray
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _AT_ONCE = 4096  # points of one batch
 _OFF_ZERO = 1e-6  # of the largest growth: no corner is nearer to zero while lines are joined
-_BYTES_PER_POINT = 100.0  # of the grid: where it is, what was found there, and the line between
+_BYTES_PER_POINT = 100.0  # of the grid: its inputs, its results, and the edges of the boundary
 
 _Plane = Callable[[Array, Array], LinearModel]  # x and y (k,) to the models there
 
@@ -108,13 +108,12 @@ def stability_map(
     points = len(x) * len(y)
     check_memory("axes", f"{points:.4g} points", _BYTES_PER_POINT * points, "the map", "take larger steps")
     grid_x, grid_y = (part.reshape(-1) for part in np.meshgrid(x, y))
-    parts = [
-        _evaluated(plane, grid_x[start : start + _AT_ONCE], grid_y[start : start + _AT_ONCE], level)
-        for start in range(0, len(grid_x), _AT_ONCE)
-    ]
-    shape = (len(y), len(x))
+    parts = []
+    for some in _batches(points):
+        model = plane(grid_x[some], grid_y[some])
+        parts.append((*_largest_growth(model, level), model.trim.reason, model.trim.warning))
     largest, value, reason, warning = (
-        np.concatenate(part).reshape(shape) for part in zip(*parts, strict=True)
+        np.concatenate(part).reshape(len(y), len(x)) for part in zip(*parts, strict=True)
     )
     edges, solves = _crossings(plane, x, y, largest, level)
     found = _dataset(names, values, largest, value, edges)
@@ -123,11 +122,8 @@ def stability_map(
         ("warning", warning, "what makes a point doubtful"),
     ):
         found[name] = names[::-1], texts.astype(str), {"long_name": meaning}
-    found["boundary_warning"] = (
-        "vertex",
-        _warnings_at(plane, found.boundary.values),
-        {"long_name": "what makes the boundary doubtful"},
-    )
+    doubtful = _warnings_at(plane, found.boundary.values)
+    found["boundary_warning"] = "vertex", doubtful, {"long_name": "what makes the boundary doubtful"}
     found.attrs = stamp.of_case(case, options) | {"level": level}
     if airspeed is not None:
         found.attrs[AIRSPEED] = float(in_metres_per_second(airspeed))
@@ -141,22 +137,18 @@ def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str
     """Return the names and the values, in SI, of both axes."""
     if len(axes) != 2:
         raise InputError("axes", ", ".join(axes), "must be two inputs")
-    from proprotor.units import values_in_si
-
-    known = design_inputs(case)
-    for name in axes:
+    known, found = design_inputs(case), {}
+    for name, given in axes.items():
         if name != AIRSPEED and name not in known:
             raise InputError(name, None, unknown_name(name, known, "input"))
-    names = tuple(axes)
-    values = tuple(
-        in_metres_per_second(given) if name == AIRSPEED else values_in_si(given, known[name].unit, name)
-        for name, given in axes.items()
-    )
-    for name, given in zip(names, values, strict=True):
-        if given.ndim != 1 or len(given) < 2 or not np.all(np.diff(given) > 0):
-            raise InputError(name, given.tolist(), "must be a list of values that rise")
-    (x, y), (along_x, along_y) = names, values
-    return (x, y), (along_x, along_y)
+        values = (
+            in_metres_per_second(given) if name == AIRSPEED else values_in_si(given, known[name].unit, name)
+        )
+        if values.ndim != 1 or len(values) < 2 or not np.all(np.diff(values) > 0):
+            raise InputError(name, values.tolist(), "must be a list of values that rise")
+        found[name] = values
+    x, y = found
+    return (x, y), (found[x], found[y])
 
 
 def _plane(case: Configuration, names: tuple[str, str], airspeed: Any, options: Mapping[str, Any]) -> _Plane:
@@ -165,24 +157,21 @@ def _plane(case: Configuration, names: tuple[str, str], airspeed: Any, options: 
         raise InputError("airspeed", None, "must be given, or be one of the axes")
     if AIRSPEED in names and airspeed is not None:
         raise InputError("airspeed", airspeed, "is one of the axes already")
-
     own = {} if AIRSPEED in names else {AIRSPEED: airspeed}
     return lambda x, y: models_at(case, own | dict(zip(names, (x, y), strict=True)), options)
 
 
-def _evaluated(plane: _Plane, x: Array, y: Array, level: float) -> tuple[Array, Array, Array, Array]:
-    """Return growth and eigenvalue of the mode that grows most at points (k,), with reason and warning."""
-    model = plane(x, y)
-    return *_largest_growth(model, level), model.trim.reason, model.trim.warning
+def _batches(count: int, most: int = _AT_ONCE) -> list[slice]:
+    """Return slices that divide so many points into batches."""
+    return [slice(start, start + most) for start in range(0, count, most)]
 
 
 def _warnings_at(plane: _Plane, vertices: Array) -> Array:
     """Return what makes each vertex (vertices, 2) doubtful; nothing between two lines."""
     warnings = np.full(len(vertices), "", dtype=object)
     there = np.flatnonzero(np.isfinite(vertices).all(axis=1))
-    for start in range(0, len(there), _AT_ONCE):
-        some = there[start : start + _AT_ONCE]
-        warnings[some] = plane(vertices[some, 0], vertices[some, 1]).trim.warning
+    for batch in _batches(len(there)):
+        warnings[there[batch]] = plane(*vertices[there[batch]].T).trim.warning
     return warnings.astype(str)
 
 
@@ -199,8 +188,7 @@ def _crossings(plane: _Plane, x: Array, y: Array, largest: Array, level: float) 
     start, end = (np.stack([x[place[:, 1]], y[place[:, 0]]], axis=1) for place in (stable, other))
     share, value = np.full(len(first), 0.5), np.full(len(first), complex(np.nan, np.nan))
     solves = 0
-    for begin in range(0, len(first), _AT_ONCE // 2):
-        some = slice(begin, begin + _AT_ONCE // 2)
+    for some in _batches(len(first), _AT_ONCE // 2):
         share[some], value[some], count = _onsets(plane, start[some], end[some], level)
         solves += count
     return _Edges(first, last, start + share[:, None] * (end - start), value), solves
@@ -218,8 +206,6 @@ def _onsets(plane: _Plane, start: Array, end: Array, level: float) -> tuple[Arra
 
     count = len(start)
     share, value = np.full(count, np.inf), np.full(count, complex(np.nan, np.nan))
-    if not count:
-        return share, value, 0
     search = Search(
         models, np.repeat(np.arange(count), 2), np.tile([0.0, 1.0], count), level, onset_only=True
     )
@@ -276,21 +262,17 @@ def _dataset(
     import xarray  # here, because it takes long to import
 
     line = _lines(edges, largest)
-    vertices = np.where((line < 0)[:, None], np.nan, edges.crossing[line]) if len(line) else np.empty((0, 2))
-    root = np.where(line < 0, np.nan, edges.eigenvalue[line]) if len(line) else np.empty(0, dtype=complex)
-
+    vertices = np.where((line < 0)[:, None], np.nan, edges.crossing[line])
+    root = np.where(line < 0, np.nan, edges.eigenvalue[line])
     dims = names[::-1]
     frequency = np.where(np.isnan(largest), np.nan, value.imag)
+    meaning = {"units": "rad/s", "long_name": "root that is neutral at the vertex"}
     return xarray.Dataset(
         {
             "growth": (dims, largest, {"units": "1/s", "long_name": "largest growth of all modes"}),
             "frequency": (dims, frequency, {"units": "rad/s", "long_name": "of the mode that grows most"}),
             "boundary": (("vertex", "axis"), vertices),
-            "boundary_eigenvalue": (
-                "vertex",
-                root,
-                {"units": "rad/s", "long_name": "root that is neutral there"},
-            ),
+            "boundary_eigenvalue": ("vertex", root, meaning),
         },
         coords={names[0]: values[0], names[1]: values[1], "axis": list(names)},
     )

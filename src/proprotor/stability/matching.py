@@ -6,8 +6,8 @@ A mode is followed by the likeness of its vectors at two points,
 
 l the rows of the inverse of the matrix of right vectors r. They are the mass-weighted left vectors: S is 1 for a mode
 that has not changed and 0 for any other, whatever units coordinates have and however vectors are scaled. The distance
-of the eigenvalues, in parts of the largest, is taken off. The assignment with the largest sum of S_ij - d_ij is the
-step. Where the best candidates of all states are different, that is the assignment: no permutation exceeds the sum of
+of the eigenvalues, as a part of the largest, is subtracted. The assignment with the largest sum of S_ij - d_ij is the
+step. Where the best candidates of all states are different, they are the assignment: no permutation exceeds the sum of
 the largest entries of the rows. Elsewhere `scipy.optimize.linear_sum_assignment` finds it.
 """
 
@@ -44,18 +44,27 @@ class Matches(NamedTuple):
 class Modes(NamedTuple):
     """Some modes of points: values (..., modes), right vectors (..., states, modes), left vectors (..., modes, states).
 
-    left @ right is 1 for a mode with itself and 0 with any other.
+    left @ right is 1 for a mode with itself and 0 with any other mode.
     """
 
     values: Array
     right: Array
     left: Array
 
+    def at(self, places: Array) -> Modes:
+        """Return the modes of each point at some places (..., modes)."""
+        return Modes(
+            np.take_along_axis(self.values, places, -1),
+            np.take_along_axis(self.right, places[..., None, :], -1),
+            np.take_along_axis(self.left, places[..., :, None], -2),
+        )
+
 
 class Spectrum(NamedTuple):
     """Eigenvalues (..., states) and right vectors in columns (..., states, states), each pair side by side.
 
-    A state that a point does not have, though others do, has a vector and no eigenvalue, NaN; a failed point has none.
+    A state that a point does not have, though others do, has a vector, and NaN as eigenvalue; a failed point has NaN
+    alone.
     shapes (..., m, k) : shapes of the first k coordinates where these differ from point to point, else None.
     """
 
@@ -70,18 +79,21 @@ class Spectrum(NamedTuple):
 
     def joined(self, other: Spectrum) -> Spectrum:
         """Return the points of both spectra."""
-        values, right = (
-            np.concatenate([getattr(part, of) for part in (self, other)]) for of in ("values", "right")
-        )
-        shapes = None
-        if self.shapes is not None and other.shapes is not None:
-            shapes = np.concatenate([self.shapes, other.shapes])
-        return Spectrum(values, right, shapes)
+        values, right = (np.concatenate(parts) for parts in zip(self[:2], other[:2], strict=True))
+        if self.shapes is None or other.shapes is None:
+            return Spectrum(values, right)
+        return Spectrum(values, right, np.concatenate([self.shapes, other.shapes]))
 
     @property
     def works(self) -> Array:
         """Which points have not failed."""
         return np.asarray(np.isfinite(self.values).any(axis=-1))
+
+    def nearest(self, roots: Array) -> Array:
+        """Return the places (..., k) of the states that are nearest to some roots (..., k) of the points."""
+        apart = size_of(self.values[..., None, :] - roots[..., :, None])
+        place: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1)
+        return place
 
     @property
     def all_modes(self) -> Modes:
@@ -90,12 +102,7 @@ class Spectrum(NamedTuple):
 
     def modes(self, places: Array) -> Modes:
         """Return the states of each point at some places (..., modes)."""
-        values, right, left = self.all_modes
-        return Modes(
-            np.take_along_axis(values, places, -1),
-            np.take_along_axis(right, places[..., None, :], -1),
-            np.take_along_axis(left, places[..., :, None], -2),
-        )
+        return self.all_modes.at(places)
 
 
 def _left_vectors(values: Array, right: Array) -> Array:
@@ -134,20 +141,20 @@ def _inverse(matrices: Array) -> Array:
 
 
 def match_modes(spectrum: Spectrum, before: Array, after: Array) -> Matches:
-    """Match the states of points `before` (steps,) with those of points `after` (steps,).
+    """Match the states of points `before` (steps,) with the states of points `after` (steps,).
 
     The quality of a step is the likeness of a state to its successor, less the largest of
 
         S_ij' max(|Δ1|, |Δ2|) / |Δmin|
 
-    over the other states, with S_ij' the likeness of the state to the successor of another, Δ1 and Δ2 what parts
-    their eigenvalues at both points, and Δmin the least on the straight way from one to the other. Two states that
-    mix by S while they are Δ apart are coupled by about S Δ: where they would come nearer to each other than that,
-    they may have passed or may have turned away between the points, and the step does not tell. The conjugate of a
-    state and its other half, where a pair parts into two real roots or two join, do not count as others.
+    over the other states, with S_ij' the likeness of the state to the successor of another, Δ1 and Δ2 the differences
+    of their eigenvalues at both points, and Δmin the smallest on the straight way from Δ1 to Δ2. Two states that mix by
+    S while they are Δ apart are coupled by about S Δ: where they would come nearer to each other than S Δ, they may
+    have passed or may have turned away between the points, and the step does not tell. The conjugate of a state and its
+    other half, where a pair parts into two real roots or two join, do not count as others.
 
-    A state that a point does not have is at no distance from any other: its likeness alone tells which it becomes
-    where the next point has it, and from there on it has an eigenvalue.
+    A state that a point does not have is at no distance from any other: its likeness alone tells which state
+    it becomes at a next point that has this state, and from this point on it has an eigenvalue.
     """
     if spectrum.shapes is not None:
         return _match_in_common(spectrum, spectrum.shapes, before, after)
@@ -172,7 +179,7 @@ def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Ar
     states, count = spectrum.values.shape[-1], turn.shape[-1]
     rates = (
         states - (states + 1) // 2
-    )  # where they begin: all displacements, or all but the azimuth, stand before
+    )  # first place of a rate, after all displacements, or all but the azimuth
     right = spectrum.right[after]
     for start in (0, rates):
         places = slice(start, start + count)
@@ -183,14 +190,14 @@ def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Ar
 
 
 class _Packed(NamedTuple):
-    """Points with one number of pairs: places of the states above the real axis and of real states, values, vectors.
+    """Points with one number of pairs: places of the states, values, vectors.
 
-    above (n, pairs), real (n, rest), values (n, pairs + rest) of both; columns (n, states, states) real: real parts of
-    the vectors of the pairs, then imaginary parts, then the real vectors; rows, the inverse.
+    places (n, states): of the states above the real axis, of their conjugates, of real states; values (n, pairs + rest)
+    above the real axis and real; columns (n, states, states) real: real parts of the vectors of the pairs, then
+    imaginary parts, then the real vectors; rows, the inverse.
     """
 
-    above: Array
-    real: Array
+    places: Array
     values: Array
     columns: Array
     rows: Array
@@ -201,13 +208,12 @@ class _Packed(NamedTuple):
         n, states = values.shape
         above = np.nonzero(values.imag > 0)[1].reshape(n, pairs)
         real = np.nonzero(~((values.imag > 0) | (values.imag < 0)))[1].reshape(n, states - 2 * pairs)
-        places = np.concatenate([above, real], axis=1)
-        vectors = np.take_along_axis(right, places[:, None, :], 2)
-        columns = np.empty((n, states, states))
-        columns[..., :pairs] = vectors[..., :pairs].real
-        columns[..., pairs : 2 * pairs] = vectors[..., :pairs].imag
-        columns[..., 2 * pairs :] = vectors[..., pairs:].real
-        return cls(above, real, np.take_along_axis(values, places, 1), columns, _inverse(columns))
+        upper = np.concatenate([above, real], axis=1)
+        vectors = np.take_along_axis(right, upper[:, None, :], 2)
+        pair, rest = vectors[..., :pairs], vectors[..., pairs:]
+        columns = np.concatenate([pair.real, pair.imag, rest.real], axis=-1)
+        places = np.concatenate([above, above + 1, real], axis=1)
+        return cls(places, np.take_along_axis(values, upper, 1), columns, _inverse(columns))
 
     def at(self, points: slice) -> _Packed:
         return _Packed(*(part[points] for part in self))
@@ -215,7 +221,6 @@ class _Packed(NamedTuple):
 
 def _match_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> tuple[Array, Array]:
     """Match modes of points with one number of pairs; -1 where the best candidates are not all different."""
-    n = len(before)
     if np.array_equal(after, before + 1) and isinstance(_as_slice(before), slice):
         every = _Packed.of(spectrum.at(slice(int(before[0]), int(after[-1]) + 1)), pairs)
         first, last = every.at(slice(None, -1)), every.at(slice(1, None))
@@ -230,20 +235,13 @@ def _match_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) ->
     rows = np.arange(likeness.shape[1])
     good = (np.sort(target, axis=1) == np.where(rows < pairs, rows, rows + pairs)).all(axis=1)
     good &= (choice[:, :pairs] < 2 * pairs).all(axis=1)
-    places = np.concatenate([last.above, last.above + 1, last.real], axis=1)
-    successor = np.full((n, spectrum.values.shape[1]), -1)
-    found = np.take_along_axis(places, choice, 1)
+    above, real = np.split(np.take_along_axis(last.places, choice, 1), [pairs], axis=1)
     turned = np.where(choice[:, :pairs] < pairs, 1, -1)  # a state that turns over the real axis
-    np.put_along_axis(successor, first.above, found[:, :pairs], 1)
-    np.put_along_axis(successor, first.above + 1, found[:, :pairs] + turned, 1)
-    np.put_along_axis(successor, first.real, found[:, pairs:], 1)
-    successor[~good] = -1
     trust = _trust(likeness, choice, first.values, np.take_along_axis(ends, choice, 1))
-    quality = np.empty(successor.shape)
-    np.put_along_axis(quality, first.above, trust[:, :pairs], 1)
-    np.put_along_axis(quality, first.above + 1, trust[:, :pairs], 1)
-    np.put_along_axis(quality, first.real, trust[:, pairs:], 1)
-    return successor, quality
+    own = first.places.argsort(axis=1)
+    successor = np.take_along_axis(np.concatenate([above, above + turned, real], axis=1), own, 1)
+    successor[~good] = -1
+    return successor, np.take_along_axis(np.concatenate([trust[:, :pairs], trust], axis=1), own, 1)
 
 
 def _packed_likeness(first: _Packed, last: _Packed, pairs: int) -> Array:
@@ -307,13 +305,11 @@ def _index(mixing: Array, apart: Array, later: Array) -> Array:
 
 def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     """Return successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
     likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
     distance = _distance(start[:, None], end, np.nanmax(np.abs(start)))
     gain = likeness - distance
-    successor = linear_sum_assignment(np.where(np.isfinite(gain), gain, -1e300), maximize=True)[1]
+    successor = best_assignment(np.where(np.isfinite(gain), gain, -1e300))
     mixing = likeness[:, successor]
     own = np.diagonal(mixing).copy()
     states, twins = np.arange(len(start)), (conjugate(start), conjugate(end))
@@ -326,8 +322,16 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     return successor, np.clip(np.minimum(own, 1) - np.maximum(index.max(axis=0), index.max(axis=1)), 0, 1)
 
 
+def best_assignment(gain: Array) -> Array:
+    """Return the column of each row in the assignment of columns to rows with the largest sum."""
+    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
+
+    columns: Array = linear_sum_assignment(gain, maximize=True)[1]
+    return columns
+
+
 def _as_slice(points: Array) -> slice | Array:
-    """Return points as a slice where they are neighbours, so that indexing makes no copy."""
+    """Return points as a slice where they are neighbours, so that an index makes no copy."""
     if len(points) and points[-1] - points[0] == len(points) - 1 and np.all(np.diff(points) == 1):
         return slice(int(points[0]), int(points[-1]) + 1)
     return points
@@ -345,7 +349,7 @@ def size_of(numbers: Array) -> Array:
 
 
 def _distance(start: Array, end: Array, scale: Array) -> Array:
-    """Return the distance of eigenvalues in parts of the largest; 0 from or to a state that a point does not have."""
+    """Return the distance of eigenvalues as a part of `scale`; 0 from or to a state that a point does not have."""
     distance = size_of(start - end) / scale
     return np.where(np.isnan(distance), 0.0, distance)
 

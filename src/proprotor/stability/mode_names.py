@@ -2,22 +2,23 @@
 
 A model has as many names as modes: one for each coordinate of the support, for coning and the collective motion of each
 other blade angle, for the rotor speed, and two for the cyclic motion of each blade angle and of the gimbal, regressive
-and progressive. At each point the modes get them by the assignment with the largest sum of participations, one name to
-one mode. The names depend on the eigenvalues and vectors of the point alone, and on no other point. Where two branches
-veer and exchange their motions, the names pass from one branch to the other half-way: where the sum of participations
-is the same for either assignment. Which branch is which is another question, answered by following roots:
-`proprotor.stability.branches`.
+and progressive. At each point the modes get their names by the assignment with the largest sum of participations, one
+name to one mode. The names depend on the eigenvalues and vectors of the point alone, and on no other point. Where two
+branches veer and exchange their motions, the names pass from one branch to the other in the middle: where the sum of
+participations is the same for either assignment. Which branch is which is another question, answered by following
+roots: `proprotor.stability.branches`.
 
 The share that a mode has in its own name says how much the name is worth: near 1 nothing else moves, below one third
 something else may move more.
 
 A cyclic motion alone has two modes. In the rotating frame they have one frequency ν and run round the rotor forwards,
-progressive, or backwards, regressive; in the fixed frame they appear at ν + 1 and at |ν - 1| per revolution. The first
-whirls with the rotor there; the second against it for ν > 1, and with it, but slower than the blades, for ν < 1. A mode
-of the whole system is progressive by as much of the one as takes part in it, and regressive by as much of the other:
-motion and rate of β_1c + i β_1s are the sum of both. How a mode whirls in the fixed frame is another number, `whirl`.
-There β_1c + i β_1s is what whirls with the rotor and β_1c - i β_1s what whirls against it, for s = iω, ω > 0 and an
-azimuth that grows with rotation (β = β_1c cos ψ + β_1s sin ψ).
+progressive, or backwards, regressive; in the fixed frame they appear at ν + 1 and at |ν - 1| per revolution. The
+progressive mode whirls with the rotor in the fixed frame; the regressive mode against the rotor for ν > 1, and with the
+rotor, but slower than the blades, for ν < 1. A mode of the whole system is progressive by the participation of the
+progressive mode, and regressive by that of the regressive mode: motion and rate of β_1c + i β_1s are the sum of both.
+How a mode whirls in the fixed frame is another number, `whirl`. In the fixed frame β_1c + i β_1s is what whirls with
+the rotor and β_1c - i β_1s what whirls against it, for s = iω, ω > 0 and an azimuth that grows with rotation (β = β_1c
+cos ψ + β_1s sin ψ).
 """
 
 from __future__ import annotations
@@ -29,12 +30,8 @@ import numpy as np
 
 from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
-from proprotor.rotor.motions import (
-    HUB,
-    Motion,
-    motions,
-    name_list,
-)
+from proprotor.rotor.motions import HUB, Motion, motions, name_list
+from proprotor.stability.matching import Modes, best_assignment
 from proprotor.stability.modes import coordinate_motion
 from proprotor.typing import Array
 
@@ -80,7 +77,7 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
     Parameters
     ----------
     model : LinearModel
-        Its points (...) are those of the eigenvalues.
+        Its points (...) are the points of the eigenvalues.
     values : array (..., states)
         All eigenvalues, rad/s, each pair side by side.
     left, right : array (..., states, states)
@@ -96,16 +93,14 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
         shares = _name_shares(model, left, right)
     else:
         shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
-        if good.any():
-            some = some_points(model, good)
-            shares[good] = _name_shares(some, left[good], right[good])
+        shares[good] = _name_shares(some_points(model, good), left[good], right[good])
     held = held_coordinates(model, values.shape[-1])
     place[good] = _assign_names(model.dofs, held, shares[good], roots[good])
     return Moving(known, place, shares)
 
 
-def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> tuple[Array, Array]:
-    """Return the participation of whirl against and with the rotor in each state, two arrays (..., states).
+def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> Array:
+    """Return the participation of whirl against and with the rotor in each state (2, ..., states).
 
     Parameters
     ----------
@@ -116,13 +111,13 @@ def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) ->
     left, right : array (..., states, states)
         Left vectors in rows, right ones in columns.
     """
-    with_rotor, against = np.zeros(()), np.zeros(())
+    shares = np.zeros(())
     for cosine, sine in zip(*(_states(place, held) for place in motion.places), strict=True):
         c, s = right[..., cosine, :], right[..., sine, :]
         lc, ls = left[..., :, cosine], left[..., :, sine]
-        with_rotor = with_rotor + np.abs((c + 1j * s) * (lc - 1j * ls)) / 2
-        against = against + np.abs((c - 1j * s) * (lc + 1j * ls)) / 2
-    return against, with_rotor
+        against, with_rotor = (c - 1j * s) * (lc + 1j * ls), (c + 1j * s) * (lc - 1j * ls)
+        shares = shares + np.abs([against, with_rotor]) / 2
+    return shares
 
 
 def _states(place: int, held: list[int]) -> list[int]:
@@ -131,46 +126,41 @@ def _states(place: int, held: list[int]) -> list[int]:
     return [held.index(place), rate] if place in held else [rate]
 
 
-def whirl(model: LinearModel, values: Array, left: Array, right: Array) -> Array:
+def whirl(model: LinearModel, modes: Modes) -> Array:
     """Return the sense of whirl in the fixed frame (..., modes): 1 with the rotor, -1 against the rotor.
 
     The cyclic motion of blades and gimbal counts, by participation. In a mode without cyclic motion, as in all modes of
     a propeller on a pivot, the motion of the shaft's axis counts, and where the axis does not tilt, that of the hub's
     centre. NaN for real roots, and where nothing goes round.
     """
+    values, right, left = modes
     held = held_coordinates(model, right.shape[-2])
-    against, with_rotor = np.zeros(values.shape), np.zeros(values.shape)
+    shares = np.zeros((2, *values.shape))
     for motion in motions(model.dofs):
         if len(motion.places) == 2:
-            shares = _whirl_shares(motion, held, left, right)
-            against, with_rotor = against + shares[0], with_rotor + shares[1]
-    of_hub = _hub_whirl(model, values, right)
-    still = against + with_rotor < _STILL
-    against, with_rotor = (
-        np.where(still, hub, own) for hub, own in zip(of_hub, (against, with_rotor), strict=True)
-    )
+            shares = shares + _whirl_shares(motion, held, left, right)
+    shares = np.where(shares.sum(axis=0) < _STILL, _hub_whirl(model, values, right), shares)
+    against, with_rotor = shares
     total = against + with_rotor
     turned = np.where(values.imag < 0, -1.0, 1.0) * (with_rotor - against)
     return np.where((total > 0) & (values.imag != 0), turned / np.where(total > 0, total, 1), np.nan)
 
 
-def _hub_whirl(model: LinearModel, values: Array, right: Array) -> tuple[Array, Array]:
-    """Return the squares of motion against and with the rotor (..., modes) of the shaft's axis, or of the hub."""
+def _hub_whirl(model: LinearModel, values: Array, right: Array) -> Array:
+    """Return the squares of motion against and with the rotor (2, ..., modes) of the shaft's axis, or of the hub."""
     n = len(model.dofs)
-    shape = coordinate_motion(held_coordinates(model, right.shape[-2]), n, values, right)
+    shape = np.nan_to_num(coordinate_motion(held_coordinates(model, right.shape[-2]), n, values, right))
     if model.hub is not None:
-        moved = np.asarray(model.hub) @ np.nan_to_num(shape)
+        moved = np.asarray(model.hub) @ shape
     else:
         moved = np.zeros((*shape.shape[:-2], len(HUB), shape.shape[-1]), dtype=complex)
         for axis, name in enumerate(HUB):
             if name in model.dofs:
-                moved[..., axis, :] = np.nan_to_num(shape[..., model.dofs.index(name), :])
+                moved[..., axis, :] = shape[..., model.dofs.index(name), :]
     x, y, _, about_x, about_y, _ = np.moveaxis(moved, -2, 0)
     # The axis k leans by α × k = (α_y, -α_x); x leads y by a quarter where a point goes round with the rotor.
-    sizes = [[np.abs(a - 1j * b) ** 2, np.abs(a + 1j * b) ** 2] for a, b in ((about_y, -about_x), (x, y))]
-    tilts = sum(sizes[0]) > 0
-    against, with_rotor = (np.where(tilts, tilt, way) for tilt, way in zip(*sizes, strict=True))
-    return against, with_rotor
+    tilt, way = (np.abs([a - 1j * b, a + 1j * b]) ** 2 for a, b in ((about_y, -about_x), (x, y)))
+    return np.where(tilt.sum(axis=0) > 0, tilt, way)
 
 
 def _name_shares(model: LinearModel, left: Array, right: Array) -> Array:
@@ -189,7 +179,7 @@ def _name_shares(model: LinearModel, left: Array, right: Array) -> Array:
             places = _states(motion.places[0], held)
             columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
             continue
-        whole = sum(_whirl_shares(motion, held, left, right))
+        whole = _whirl_shares(motion, held, left, right).sum(axis=0)
         progressive = _progressive_part(model, motion, held, left, right)
         columns += [whole * (1 - progressive), whole * progressive]
     sums = np.stack(columns, axis=-2)
@@ -274,7 +264,7 @@ def _by_rank(values: Array, names: int) -> Array:
 def _assigned(gain: Array, slots: Array, values: Array) -> Array:
     """Return the best assignment (states,) of one point that gives both states of a pair one name."""
     upper, real = np.flatnonzero(values.imag > 0), np.flatnonzero(values.imag == 0)
-    given: Array = slots[_best(gain[:, slots])]
+    given: Array = slots[best_assignment(gain[:, slots])]
     if (given[upper] == given[upper + 1]).all():
         return given
     # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
@@ -283,7 +273,10 @@ def _assigned(gain: Array, slots: Array, values: Array) -> Array:
     largest = -np.inf
     for left in combinations(whole.tolist(), len(whole) - len(upper)):
         of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)
-        pairs, roots = _best(gain[np.ix_(upper, of_pairs)]), _best(gain[np.ix_(real, of_real)])
+        pairs, roots = (
+            best_assignment(gain[np.ix_(upper, of_pairs)]),
+            best_assignment(gain[np.ix_(real, of_real)]),
+        )
         total = 2 * gain[upper, of_pairs[pairs]].sum() + gain[real, of_real[roots]].sum()
         if total > largest:
             largest = total
@@ -294,18 +287,9 @@ def _assigned(gain: Array, slots: Array, values: Array) -> Array:
 
 def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
     """Return the names in as many places as a model has states: each mode's name twice, that of a rate alone once."""
-    slots, count = [], 0
-    for motion in motions(dofs):
-        for _ in motion.names:
-            rate_alone = len(motion.places) == 1 and motion.places[0] not in held
-            slots += [count] * (1 if rate_alone else 2)
-            count += 1
-    return np.array(slots)
-
-
-def _best(gain: Array) -> Array:
-    """Return the column of each row in the assignment with the largest sum."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
-    columns: Array = linear_sum_assignment(gain, maximize=True)[1]
-    return columns
+    counts = [
+        1 if len(motion.places) == 1 and motion.places[0] not in held else 2
+        for motion in motions(dofs)
+        for _ in motion.names
+    ]
+    return np.repeat(np.arange(len(counts)), counts)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from types import EllipsisType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from proprotor.model.first_order import (
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.rotor.motions import ROTOR_SPEED
-from proprotor.stability.matching import Spectrum
+from proprotor.stability.matching import Modes, Spectrum
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
@@ -36,32 +36,11 @@ if TYPE_CHECKING:
     from proprotor.stability.parameter_lines import ParameterLine
 
 
-class Eigensystem(NamedTuple):
-    """All eigenvalues of a batch of models, with vectors in the state space.
-
-    values (..., states), right (..., states, states) in columns, left (..., states, states) in rows with
-    left @ right = 1; displacement (..., n, states) is each mode's motion of the model's n coordinates.
-    NaN at failed points, and the last eigenvalue of a point that has fewer than others.
-    """
-
-    values: Array
-    right: Array
-    left: Array
-    displacement: Array
-
-
-def eigensystem(model: LinearModel) -> Eigensystem:
-    """Return all eigenvalues and vectors; eigenvalues of a point in no particular order, each pair side by side."""
-    spectrum, held = decomposition(model), held_coordinates(model)
-    values, right, left = spectrum.all_modes
-    return Eigensystem(values, right, left, coordinate_motion(held, len(model.dofs), values, right))
-
-
 def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum:
     """Return eigenvalues and right vectors in the state space; of a complex model, those of its real part.
 
-    The eigenvalue of a state that a point does not have is NaN, and stands last. States are those of the batch, or with
-    `held`, places of coordinates whose displacement is a state, those of another batch with the same coordinates.
+    The eigenvalue of a state that a point does not have is NaN, and stands last. States are the states of the batch, or
+    with `held`, places of coordinates whose displacement is a state, of another batch with the same coordinates.
     """
     model = _real(model)
     states = len(held_coordinates(model) if held is None else held) + len(model.dofs)
@@ -119,18 +98,18 @@ def with_azimuth(spectrum: Spectrum, dofs: tuple[str, ...], states: int) -> Spec
 
 
 def _solved(matrix: Array) -> tuple[Array, Array]:
+    """Return eigenvalues and right vectors as complex numbers, also where all of them are real."""
     values, right = np.linalg.eig(matrix)
     return values.astype(complex, copy=False), right.astype(complex, copy=False)
 
 
 def _real(model: LinearModel) -> LinearModel:
-    if not any(np.iscomplexobj(getattr(model, name)) for name in "MCK"):
-        return model
+    """Return the model with the real parts of its matrices."""
     return replace(model, M=model.M.real, C=model.C.real, K=model.K.real)
 
 
 def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> Array:
-    """Return the motion (..., n, modes) of the coordinates; that of a mere rate is the rate over the eigenvalue."""
+    """Return the motion (..., n, modes) of the coordinates: of a coordinate without displacement, its rate over λ."""
     shapes = right[..., -n:, :].copy()
     shapes[..., held, :] = right[..., : len(held), :]
     rates = [place for place in range(n) if place not in held]
@@ -139,17 +118,12 @@ def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> A
     return shapes
 
 
-def participation(model: LinearModel, system: Eigensystem) -> Array:
-    """Return the share of each coordinate in each mode (..., n, states), from left times right vector; it sums to 1.
+def coordinate_shares(held: list[int], n: int, left: Array, right: Array) -> Array:
+    """Return the share of each coordinate in each mode (..., n, modes), from left times right vector; it sums to 1.
 
     The share depends neither on units nor on the scale of vectors, unlike the largest component of a mode that mixes
-    lengths and angles.
+    lengths and angles. Left vectors (..., modes, states) stand in rows, right ones (..., states, modes) in columns.
     """
-    return coordinate_shares(held_coordinates(model), len(model.dofs), system.left, system.right)
-
-
-def coordinate_shares(held: list[int], n: int, left: Array, right: Array) -> Array:
-    """Return shares (..., n, modes) as `participation`, of left vectors in rows and right ones in columns."""
     products = np.swapaxes(left, -1, -2) * right
     products = np.sqrt(products.real**2 + products.imag**2)
     sums = products[..., -n:, :].copy()
@@ -184,59 +158,50 @@ def modes(model: LinearModel) -> xarray.Dataset:
     from proprotor.stability.mode_names import moving  # which needs the vectors of this module
     from proprotor.stability.root_error import errors_of  # here, because it is built on this module
 
-    system = eigensystem(model)
     model = with_reasons(model) if model.hub is None else model
-    values = system.values
-    moves = moving(model, values, system.left, system.right)
-    error = errors_of(model, Spectrum(values, system.right))
-    kept = np.where(values.imag >= 0, np.abs(values.imag), np.inf)
+    spectrum = decomposition(model)
+    every = spectrum.all_modes
+    moves = moving(model, every.values, every.left, every.right)
+    kept = np.where(every.values.imag >= 0, np.abs(every.values.imag), np.inf)
     order = np.argsort(kept, axis=-1, kind="stable")
-    count = int(np.isfinite(kept).sum(axis=-1).max(initial=0))
-    order = order[..., :count]
-    there = np.isfinite(np.take_along_axis(kept, order, -1))
-    values = np.where(there, np.take_along_axis(values, order, -1), np.nan)
-    shapes = np.take_along_axis(system.displacement, order[..., None, :], -1)
-    shares = np.take_along_axis(participation(model, system), order[..., None, :], -1)
-    data = mode_dataset(model, values, np.take_along_axis(error, order, -1), shapes, shares)
+    is_there = np.isfinite(np.take_along_axis(kept, order, -1))
+    columns = np.where(is_there, order, -1)[..., : is_there.sum(axis=-1).max(initial=0)]
+    data = mode_dataset(model, every, errors_of(model, spectrum), columns)
     by_mode = data.eigenvalue.dims
-    names = np.where(there, np.take_along_axis(moves.names, order, -1), "").astype(str)
-    data["name"] = by_mode, names, {"long_name": "what moves"}
-    share = np.where(there, np.take_along_axis(moves.share, order, -1), np.nan)
-    data["share"] = by_mode, share, {"units": "1", "long_name": "participation of what the name says"}
+    data["name"] = by_mode, at_columns(moves.names, columns).astype(str), {"long_name": "what moves"}
+    meaning = {"units": "1", "long_name": "participation of what the name says"}
+    data["share"] = by_mode, at_columns(moves.share, columns), meaning
     return data
 
 
 def mode_dataset(
-    model: LinearModel,
-    values: Array,
-    error: Array,
-    shapes: Array,
-    shares: Array,
-    line: ParameterLine | None = None,
+    model: LinearModel, every: Modes, error: Array, columns: Array, line: ParameterLine | None = None
 ) -> xarray.Dataset:
-    """Return the dataset of `modes` from eigenvalues and errors (..., mode), motions and participations (..., n, mode).
+    """Return the dataset of `modes` from all states of the points, with the error (..., states) of each eigenvalue.
 
-    A root at zero within its error has no damping ratio.
+    `columns` (..., mode) tells which state each mode is, -1 where a point lacks the mode. A root at zero within its
+    error has no damping ratio.
     """
     import xarray  # here, because it takes long to import
 
-    leading = tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
-    if len(leading) == 1:
-        leading = ("airspeed" if line is None else line.name,)
+    n, held = len(model.dofs), held_coordinates(model, every.right.shape[-2])
+    leading = leading_dims(model, line)
     by_mode = (*leading, "mode")
+    chosen = every.at(np.maximum(columns, 0))
+    values, error = at_columns(every.values, columns), at_columns(error, columns)
+    lacks = (columns < 0)[..., None, :]
+    shapes = coordinate_motion(held, n, values, chosen.right)
+    shares = np.where(lacks, np.nan, coordinate_shares(held, n, chosen.left, chosen.right))
     with np.errstate(all="ignore"):
         ratio = np.where(np.abs(values) <= error, np.nan, -values.real / np.abs(values))
         largest = np.take_along_axis(shapes, np.abs(np.nan_to_num(shapes)).argmax(axis=-2)[..., None, :], -2)
         shapes = np.where(np.isnan(values)[..., None, :], np.nan, shapes / largest)
     dominant = np.array(model.dofs, dtype=object)[np.nan_to_num(shares).argmax(axis=-2)]
     dominant = np.where(np.isnan(values), "", dominant)
+    meaning = "bound on the rounding error of the eigenvalue"
     data = {
         "eigenvalue": (by_mode, values, {"units": "rad/s"}),
-        "eigenvalue_error": (
-            by_mode,
-            np.where(np.isnan(values), np.nan, error),
-            {"units": "rad/s", "long_name": "bound on the rounding error of the eigenvalue"},
-        ),
+        "eigenvalue_error": (by_mode, error, {"units": "rad/s", "long_name": meaning}),
         "frequency": (
             by_mode,
             np.where(np.isnan(values), np.nan, np.abs(values.imag)),
@@ -247,17 +212,34 @@ def mode_dataset(
         "shape": ((*by_mode, "dof"), np.moveaxis(shapes, -1, -2)),
         "participation": ((*by_mode, "dof"), np.moveaxis(shares, -1, -2)),
         "dominant": (by_mode, dominant.astype(str)),
-        "warning": (leading, model.trim.warning.astype(str), {"long_name": "what makes a point doubtful"}),
-        "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
+        **doubt_and_failure(model, leading),
     }
     missing = missing_roots(model)
     if (missing != "").any():
-        data["missing"] = (
-            leading,
-            missing.astype(str),
-            {"long_name": "why a point has fewer roots than others"},
-        )
+        meaning = "why a point has fewer roots than others"
+        data["missing"] = leading, missing.astype(str), {"long_name": meaning}
     coordinates = {"dof": list(model.dofs), "airspeed": (leading, model.airspeed, {"units": "m/s"})}
     if line is not None and line.name != "airspeed":
         coordinates[line.name] = (leading, line.positions, {"units": line.units})
     return xarray.Dataset(data, coords=coordinates, attrs=stamp.of_model(model))
+
+
+def at_columns(values: Array, columns: Array) -> Array:
+    """Return values (..., states) of the states in the columns (..., modes) of each point; nothing at column -1."""
+    nothing = "" if values.dtype == object else np.nan
+    return np.where(columns >= 0, np.take_along_axis(values, np.maximum(columns, 0), -1), nothing)
+
+
+def leading_dims(model: LinearModel, line: ParameterLine | None = None) -> tuple[str, ...]:
+    """Return the names of the axes of a batch in a dataset: one axis is that of the airspeed or of the line's input."""
+    if model.airspeed.ndim == 1:
+        return ("airspeed" if line is None else line.name,)
+    return tuple(f"point_{axis}" for axis in range(model.airspeed.ndim))
+
+
+def doubt_and_failure(model: LinearModel, leading: tuple[str, ...]) -> dict[str, Any]:
+    """Return the variables of a dataset that tell why its points (...) are doubtful, and why points failed."""
+    return {
+        "warning": (leading, model.trim.warning.astype(str), {"long_name": "what makes a point doubtful"}),
+        "reason": (leading, model.trim.reason.astype(str), {"long_name": "why a point failed"}),
+    }

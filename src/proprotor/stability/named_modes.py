@@ -22,15 +22,13 @@ if TYPE_CHECKING:
 class _NamedModes(NamedTuple):
     """Modes at an airspeed.
 
-    names (modes,); modes : eigenvalues and vectors; model : at the airspeed; speed : m/s; eigen_solves : of the
-    analysis.
+    names (modes,); modes : eigenvalues and vectors; model : at the airspeed; speed : m/s.
     """
 
     names: list[str]
     modes: Modes
     model: LinearModel
     speed: float
-    eigen_solves: int
 
 
 def named_modes(
@@ -59,4 +57,9 @@ def named_modes(
         raise InputError("mode", mode, unknown_name(mode, names, "mode"))
     chosen = np.array([names.index(name) for name in (names if mode is None else [mode])])
     wanted = spectrum.modes(columns[0, chosen])
-    return _NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]), 1)
+    return _NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]))
+
+
+def doubtful_numbers(warning: Any) -> tuple[tuple[()], str, dict[str, str]]:
+    """Return the variable of a dataset that tells what makes all its numbers doubtful."""
+    return (), str(warning), {"long_name": "what makes the numbers doubtful"}

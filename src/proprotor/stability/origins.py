@@ -45,9 +45,10 @@ _COUPLING_ORIGINS = {
     "pitch_lag_coupling": "pitch-lag coupling K_Pζ",
 }
 _RESTRAINTS = {
-    "control_stiffness": "control system",
-    "gimbal_stiffness": "gimbal spring",
-    "propeller_moment": "propeller moment",
+    "gimbal damper": "gimbal_damping",
+    "control system": "control_stiffness",
+    "gimbal spring": "gimbal_stiffness",
+    "propeller moment": "propeller_moment",
 }
 _COEFFICIENTS = {
     "lift slope": ("lift_coefficient_alpha",),
@@ -67,7 +68,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _SomeCoefficients:
-    """An airfoil of which only some coefficients count, with Prandtl and Glauert's factor where it is wanted."""
+    """An airfoil with some of its coefficients, the others zero, and the Prandtl-Glauert factor where asked for."""
 
     airfoil: SectionModel
     kept: tuple[str, ...]
@@ -143,19 +144,15 @@ def _structure(quantities: dict[str, Any], choice: Options) -> dict[str, Part]:
     equations = choice.equation_set
     quantities = quantities | evaluate(equations.inertia.trim_integrals, quantities)._asdict()
     zero = np.zeros((12, 12))
+    mass = evaluate(equations.inertia.mass, quantities) + evaluate(equations.pitch.mass, quantities)
     parts = {
-        "inertia": Part(
-            evaluate(equations.inertia.mass, quantities) + evaluate(equations.pitch.mass, quantities),
-            zero,
-            zero,
-        ),
+        "inertia": Part(mass, zero, zero),
         "gyroscopic": Part(zero, evaluate(equations.inertia.gyroscopic, quantities), zero),
         "centrifugal": Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, quantities)),
         "dampers": Part(zero, evaluate(pitch.damping, quantities), zero),
     }
-    every = {"gimbal damper": "gimbal_damping"} | {origin: name for name, origin in _RESTRAINTS.items()}
-    for origin, name in every.items():
-        others = dict.fromkeys(set(every.values()) - {name}, 0.0)
+    for origin, name in _RESTRAINTS.items():
+        others = dict.fromkeys(set(_RESTRAINTS.values()) - {name}, 0.0)
         parts[origin] = Part(zero, zero, evaluate(equations.pitch.stiffness, quantities | others))
     springs = evaluate(equations.flap_lag_springs.stiffness, quantities)
     return parts | {
@@ -190,23 +187,22 @@ def _airloads(
     """Yield airloads of one blade (points, 12, 12) by coefficient, and by coupling of the blade's pitch."""
     if choice.airloads == "none":
         return
-    zero, none = np.zeros((12, 12)), dict.fromkeys(COUPLINGS, 0.0)
+    zero, uncoupled = np.zeros((12, 12)), quantities | dict.fromkeys(COUPLINGS, 0.0)
     kinds = {"lift slope": _COEFFICIENTS["lift slope"]} if choice.airloads == "lift-slope" else _COEFFICIENTS
     for origin, kept in kinds.items():
         loads = _moments(sections, quantities, choice, kept, section_damping=False)
-        yield f"airloads: {origin}", Part(zero, *_loads(quantities | none, choice, loads))
+        yield f"airloads: {origin}", Part(zero, *_loads(uncoupled, choice, loads))
     every = tuple(name for kept in kinds.values() for name in kept)
     whole = _moments(sections, quantities, choice, every, section_damping=False)
+    alone = _loads(uncoupled, choice, whole)
     if choice.section_damping:
-        damped = _moments(sections, quantities, choice, every, section_damping=True)
-        with_it, without = (_loads(quantities | none, choice, loads) for loads in (damped, whole))
-        yield "section pitch damping", Part(zero, *(a - b for a, b in zip(with_it, without, strict=True)))
-        whole = damped
-    alone = _loads(quantities | none, choice, whole)
+        whole = _moments(sections, quantities, choice, every, section_damping=True)
+        undamped, alone = alone, _loads(uncoupled, choice, whole)
+        yield "section pitch damping", Part(zero, *(alone - undamped))
     for name, origin in _COUPLING_ORIGINS.items():
         if np.any(quantities[name]):
-            coupled = _loads(quantities | none | {name: quantities[name]}, choice, whole)
-            yield origin, Part(zero, *(a - b for a, b in zip(coupled, alone, strict=True)))
+            coupled = _loads(uncoupled | {name: quantities[name]}, choice, whole)
+            yield origin, Part(zero, *(coupled - alone))
 
 
 def _moments(
@@ -230,11 +226,11 @@ def _moments(
     )
 
 
-def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> tuple[Array, Array]:
-    """Return airload damping and stiffness of one blade."""
+def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> Array:
+    """Return airload damping and stiffness of one blade (2, points, 12, 12)."""
     given = {**segments, **quantities, "equations": choice.equation_set}
     damping, stiffness, _ = evaluate(whole_rotor.blade_airloads, given)
-    return damping, stiffness
+    return np.stack([damping, stiffness])
 
 
 def _in_fixed_frame(part: Part, quantities: Mapping[str, Any]) -> Part:

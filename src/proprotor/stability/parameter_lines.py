@@ -6,9 +6,8 @@ line that is nearest to the anchor. The anchor is the case with its own inputs, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from proprotor.model.quantities import batch_shape
 from proprotor.needs import check_memory
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array
-from proprotor.units import in_metres_per_second
+from proprotor.units import in_metres_per_second, values_in_si
 
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
@@ -46,12 +45,12 @@ class ParameterLine:
     positions : array (points,)
         Airspeeds in m/s, or values of another input in SI.
     linearize : callable, optional
-        Takes positions (k,) and returns the models there; needed for points between those of the line.
+        Takes positions (k,) and returns the models there; needed for points between the points of the line.
     name, units : str
         Name and SI unit of the input.
     end : float, optional
-        Of an approach: the position at which the approach ends, on the line that it leads to; the last position of the
-        approach by default.
+        Of an approach: the position on the followed line at which the approach ends; the last position of the approach
+        by default.
     inputs : callable, optional
         Of a line of a case: takes positions (k,) and returns the inputs there by name, the airspeed among them.
     model : LinearModel, optional
@@ -99,8 +98,7 @@ def line_of_case(
         For airspeeds that do not form a line, more than one input, an unknown input, or points that do not fit into
         memory.
     """
-    speeds = in_metres_per_second(airspeeds)
-    speeds = speeds if speeds.ndim else speeds.reshape(1)  # one speed is the shortest list
+    speeds = np.atleast_1d(in_metres_per_second(airspeeds))  # one speed is the shortest list
     _check_points(AIRSPEED, speeds.size)
     if vary is not None:
         return _line_of_input(case, speeds.reshape(-1), vary, options)
@@ -114,7 +112,7 @@ def line_of_case(
 def _line(
     case: Configuration, options: Mapping[str, Any], positions: Array, inputs: _Inputs, *labels: Any
 ) -> ParameterLine:
-    """Return a line of a case from its positions and the inputs there, then name, unit and end of the line."""
+    """Return a line of a case from its positions and the inputs at them, then name, unit and end of the line."""
     line = ParameterLine(positions, lambda at: models_at(case, inputs(at), options), *labels)
     return replace(line, inputs=inputs)
 
@@ -135,8 +133,6 @@ def _is_batch(case: Configuration, options: Mapping[str, Any]) -> bool:
 def _line_of_input(
     case: Configuration, speed: Array, vary: Mapping[str, ArrayLike], options: Mapping[str, Any]
 ) -> ParameterLine:
-    from proprotor.units import values_in_si  # here, because pint takes long to import
-
     if len(vary) != 1:
         raise InputError("vary", ", ".join(vary), "must be one input to sweep")
     (path, given), *_ = vary.items()
@@ -171,7 +167,11 @@ def with_approach(
     if not len(reachable):
         return line.models(), None
     approach = _approach(case, line, options, ANCHORS[0] * tip_speed(case), reachable)
-    model, near = _models_of(case, [line, approach], options)
+    assert line.inputs is not None and approach.inputs is not None  # of lines of a case
+    own, way = line.inputs(np.asarray(line.positions)), approach.inputs(np.asarray(approach.positions))
+    both = models_at(case, {name: np.concatenate([own[name], way[name]]) for name in own}, options)
+    count = len(line.positions)
+    model, near = _points_of(both, slice(count)), _points_of(both, slice(count, None))
     if near.trim.converged[0] and near.trim.converged[-1]:
         return model, replace(approach, model=near)
     return model, approach_to(case, line, model.trim.converged, options)
@@ -231,18 +231,6 @@ def _nearest(positions: Array, to: float) -> float:
 def tip_speed(case: Configuration) -> float:
     """Return the rotor speed of a case times its radius, m/s."""
     return float(case.operation.rotor_speed) * float(case.rotor.radius)
-
-
-def _models_of(
-    case: Configuration, lines: Sequence[ParameterLine], options: Mapping[str, Any]
-) -> list[LinearModel]:
-    """Return the models of each of some lines of a case, linearised in one batch."""
-    parts = [line.inputs(np.asarray(line.positions)) for line in lines if line.inputs is not None]
-    model = models_at(
-        case, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}, options
-    )
-    ends = np.cumsum([0, *(len(line.positions) for line in lines)])
-    return [_points_of(model, slice(*pair)) for pair in pairwise(ends)]
 
 
 def _points_of(model: LinearModel, points: slice) -> LinearModel:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from proprotor.stability.cubic import hermite, hermite_extrema, hermite_slope
+from proprotor.stability.cubic import band, bend, hermite, hermite_extrema, hermite_slope
 from proprotor.stability.matching import POOR
 from proprotor.stability.points import Points
 from proprotor.stability.root_pairs import PairsWithin, by_derivatives, joining_roots, keep_off, may_meet
@@ -55,18 +55,17 @@ def where_to_part(
     if not len(share):
         return share
     ends, sides, square = steps.ends(points), steps.sides(points), _squares(steps, points)
-    bend = _bend(ends)
-    width = np.where(np.isnan(steps.wrong), _UNSEEN * bend, np.fmax(steps.wrong, _SEEN * bend)) / trust
-    counts = steps.counts(points) & (sides != 0).any(
-        axis=0
-    )  # a root that is neutral all along crosses nothing
+    bends = bend(ends)
+    width = np.where(np.isnan(steps.wrong), _UNSEEN * bends, np.fmax(steps.wrong, _SEEN * bends)) / trust
+    # A root that is neutral all along crosses nothing.
+    counts = steps.counts(points) & (sides != 0).any(axis=0)
     near = counts & _may_reach(steps, points, ends, sides, width + _most_parted(*square))
     _learn_quality(steps, points, near)
     poor = counts & (steps.quality < POOR)
     row, state = np.nonzero(poor & near)
     near[row, state] = ~keep_off(steps, points, row, state, level, trust, pairs)
     reasons = (
-        _band_is_open(near, ends, sides, width, steps.errors(points), *square),
+        _band_is_open(near, ends, sides, width, steps.at_ends(points.error), *square),
         _roots_are_alike(steps, poor, near, names),
         _real_roots_join(steps, points, sides, trust),
     )
@@ -123,21 +122,14 @@ def _reach_of_couple(mean: Array, square: Array, side: Array, trust: float) -> t
 
     A real root crosses every level where it crosses zero.
     """
-    band = 16 * _GRID**2 * (1 - _GRID) ** 2 / trust
+    spread = _UNSEEN * band(_GRID) / trust
     of_mean, of_square = (hermite(_GRID, ends[:, :, None]) for ends in (mean, square))
-    apart = np.sqrt(np.maximum(of_square + band * _UNSEEN * _bend(square)[:, None], 0))
-    reach = -side[:, None] * of_mean + band * _UNSEEN * _bend(mean)[:, None] + apart
+    apart = np.sqrt(np.maximum(of_square + spread * bend(square)[:, None], 0))
+    reach = -side[:, None] * of_mean + spread * bend(mean)[:, None] + apart
     # Where the two roots are no longer real they have their mean as real part, whose own cubic is judged.
     reach = np.where(apart > 0, reach, -np.inf)
     place = reach.argmax(axis=1)
     return reach[np.arange(len(place)), place], _GRID[place]
-
-
-def _bend(ends: Array) -> Array:
-    """Return how far cubics, by their ends (4, ...), may leave the straight line between the ends."""
-    rise = ends[1] - ends[0]
-    bend: Array = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
-    return bend
 
 
 def _may_reach(steps: Steps, points: Points, ends: Array, sides: Array, width: Array) -> Array:
@@ -165,15 +157,9 @@ def _squares(steps: Steps, points: Points) -> tuple[Array, Array]:
     pair has parted into two real roots, by the square root of what is missing.
     """
     values = points.spectrum.values
-    length = (points.position[steps.after] - points.position[steps.before])[:, None]
-    change = 2 * values.imag * points.change.imag
-    ends = np.stack([
-        values[steps.before].imag ** 2,
-        steps.later(values).imag ** 2,
-        change[steps.before] * length,
-        steps.later(change) * length,
-    ])  # fmt: skip
-    return ends, np.where((ends[:2] > 0).all(axis=0), _UNSEEN * _bend(ends), -np.inf)
+    slopes = steps.at_ends(2 * values.imag * points.change.imag) * steps.length(points)
+    ends = np.concatenate([steps.at_ends(values.imag) ** 2, slopes])
+    return ends, np.where((ends[:2] > 0).all(axis=0), _UNSEEN * bend(ends), -np.inf)
 
 
 def _most_parted(square: Array, width: Array) -> Array:
@@ -183,8 +169,8 @@ def _most_parted(square: Array, width: Array) -> Array:
     and the line's.
     """
     rise = square[1] - square[0]
-    bend = 4 / 27 * (np.abs(square[2] - rise) + np.abs(square[3] - rise))
-    most: Array = np.sqrt(np.maximum(bend + width - square[:2].min(axis=0), 0))
+    away = 4 / 27 * (np.abs(square[2] - rise) + np.abs(square[3] - rise))
+    most: Array = np.sqrt(np.maximum(away + width - square[:2].min(axis=0), 0))
     return most
 
 
@@ -192,16 +178,14 @@ def _open_at(
     ends: Array, sides: Array, width: Array, errors: Array, square: Array, square_width: Array
 ) -> Array:
     """Return where (m,) a cubic with its band leaves open how often it crosses; NaN where nothing is open."""
-    if not len(width):
-        return np.empty(0)
     t = np.concatenate([np.broadcast_to(_GRID, (len(width), len(_GRID))), hermite_extrema(ends)], axis=1)
     t = np.sort(np.where(np.isnan(t), 0.5, t), axis=1)
-    band = 16 * t**2 * (1 - t) ** 2
+    spread = band(t)
     value, slope = hermite(t, ends[:, :, None]), hermite_slope(t, ends[:, :, None])
     with np.errstate(invalid="ignore"):
-        split = np.sqrt(np.maximum(square_width[:, None] * band - hermite(t, square[:, :, None]), 0))
+        split = np.sqrt(np.maximum(square_width[:, None] * spread - hermite(t, square[:, :, None]), 0))
     split = np.where(np.isfinite(square_width)[:, None], split, 0)
-    half = width[:, None] * band
+    half = width[:, None] * spread
     side = np.where(sides[0] != 0, sides[0], sides[1])[:, None]
     noise = np.where((sides == 0).any(axis=0), 10 * errors.max(axis=0), 0)[:, None]
     # With both ends on one side, all of the band must be on that side.

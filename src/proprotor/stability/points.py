@@ -14,8 +14,8 @@ import numpy as np
 from proprotor.errors import InputError
 from proprotor.model.first_order import held_coordinates, missing_roots, some_points
 from proprotor.model.linear_model import LinearModel
-from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, second_order_left, with_changes
-from proprotor.stability.matching import Modes, Spectrum
+from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
+from proprotor.stability.matching import Spectrum
 from proprotor.stability.modes import decomposition
 from proprotor.stability.root_error import growth, growth_error, refined_near, roots
 from proprotor.typing import Array
@@ -46,21 +46,15 @@ class Points(NamedTuple):
     slope: Array
     error: Array
 
-    def at(self, points: Array) -> Points:
-        """Return some of the points."""
-        line, position, *rest = (part[points] for part in self._arrays)
-        return Points(line, position, self.spectrum.at(points), *rest)
-
     def joined(self, other: Points) -> Points:
         """Return the points of both."""
-        line, position, *rest = (
-            np.concatenate(parts) for parts in zip(self._arrays, other._arrays, strict=True)
-        )
-        return Points(line, position, self.spectrum.joined(other.spectrum), *rest)
-
-    @property
-    def _arrays(self) -> tuple[Array, ...]:
-        return self.line, self.position, self.change, self.growth, self.slope, self.error
+        spectrum = self.spectrum.joined(other.spectrum)
+        parts = {
+            name: np.concatenate([own, getattr(other, name)])
+            for name, own in self._asdict().items()
+            if name != "spectrum"
+        }
+        return Points(spectrum=spectrum, **parts)
 
 
 class Solved(NamedTuple):
@@ -152,21 +146,12 @@ def _solved(
     if not works.any():
         return Solved(None, works, *_texts(model, states))
     part, some = some_points(model, works), spectrum.at(works)
-    modes = some.all_modes
-    left = second_order_left(part, modes.left)
-    found = refined_near(part, some, level, left)
+    found = refined_near(part, some, level)
     mass, damping, stiffness = (np.broadcast_to(one, model.K.shape)[works] for one in changes)
-    moved = Modes(found.values, modes.right, modes.left)
-    change = eigenvalue_change(part, (mass, damping, stiffness), moved, left)
-    points = Points(
-        line[works],
-        position[works],
-        Spectrum(found.values, some.right, some.shapes),
-        change,
-        growth(found.values, level),
-        growth_rate(found.values, change, level),
-        growth_error(found.error, level),
-    )
+    modes = some.all_modes._replace(values=found.values)
+    change = eigenvalue_change(part, (mass, damping, stiffness), modes)
+    spectrum = some._replace(values=found.values)
+    points = _points(line[works], position[works], spectrum, change, found.error, level)
     return Solved(points, works, *_texts(model, states))
 
 
@@ -183,21 +168,22 @@ def _values_alone(
     values, error = (
         np.pad(part[works], [(0, 0), (0, more)], constant_values=np.nan) for part in (values, error)
     )
-    unknown = np.full(values.shape, complex(np.nan))
     spectrum = Spectrum(values, np.empty((*values.shape, 0), dtype=complex))
-    points = Points(
-        line[works],
-        position[works],
-        spectrum,
-        unknown,
-        growth(values, level),
-        unknown.real,
-        growth_error(error, level),
-    )
+    unknown = np.full(values.shape, complex(np.nan))
+    points = _points(line[works], position[works], spectrum, unknown, error, level)
     return Solved(points, works, *_texts(model, states))
 
 
+def _points(
+    line: Array, position: Array, spectrum: Spectrum, change: Array, error: Array, level: float
+) -> Points:
+    """Return points with the growth of each root, by its change with the position and its error (k, states)."""
+    values = spectrum.values
+    slope = growth_rate(values, change, level)
+    return Points(line, position, spectrum, change, growth(values, level), slope, growth_error(error, level))
+
+
 def _texts(model: LinearModel, states: int) -> tuple[Array, Array, Array]:
-    """Return why points failed, what makes them doubtful, and why they have fewer roots than so many."""
+    """Return why points failed, what makes them doubtful, and why they have fewer roots than `states`."""
     reason, warning = (np.array(part, dtype=object) for part in (model.trim.reason, model.trim.warning))
     return reason, warning, missing_roots(model, states)

@@ -11,8 +11,8 @@ matrices, a few times ε |yᴴ|(|λ|²|M| + |λ||C| + |K|)|x| / |yᴴ(2λM + C)x
 root.
 
 A root whose distance from a level is within its error is neutral there: neither beyond the level nor crossing it. Two
-roots that fall into one, as those of a motion without spring and damper, have an error without bound by that formula,
-but in fact one of the square root of rounding: no larger error is reported.
+roots that fall into one, as the roots of a motion without spring and damper, have an error without bound by that
+formula, but in fact one of the square root of rounding: no larger error is reported.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def growth_error(error: Array, level: float = 0.0) -> Array:
     return error * (1 + abs(level)) if level else error
 
 
-def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> _Refined:
+def refined(model: LinearModel, modes: Modes) -> _Refined:
     """Return roots refined by their vectors, with their errors; NaN at failed points.
 
     Parameters
@@ -61,12 +61,10 @@ def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> _Ref
         Points (...,).
     modes : Modes
         All modes of every point, each pair side by side.
-    left : array (..., modes, n), optional
-        The result of `second_order_left`, where it is known.
     """
     values, right, _ = modes
     n, held = len(model.dofs), held_coordinates(model, right.shape[-2])
-    left = second_order_left(model, modes.left) if left is None else left
+    left = second_order_left(model, modes.left)
     with np.errstate(all="ignore"):
         displacement = right[..., : len(held), :]
         rates = right[..., -n:, :].copy()
@@ -84,19 +82,15 @@ def refined(model: LinearModel, modes: Modes, left: Array | None = None) -> _Ref
     return _Refined(np.where(better, values + correction, values), error)
 
 
-def refined_near(
-    model: LinearModel, spectrum: Spectrum, level: float = 0.0, left: Array | None = None
-) -> _Refined:
+def refined_near(model: LinearModel, spectrum: Spectrum, level: float = 0.0) -> _Refined:
     """Return roots of points (k,) that work, refined where one is near a level; elsewhere unchanged, with no error.
 
-    No error reaches farther than a millionth of the largest root. `left` is the result of `second_order_left`, where it
-    is known.
+    No error reaches farther than a millionth of the largest root.
     """
     values, error = spectrum.values.copy(), np.zeros(spectrum.values.shape)
     near = _any_near(growth(values, level), values)
     if near.any():
-        modes, rows = spectrum.at(near).all_modes, None if left is None else left[near]
-        values[near], error[near] = refined(some_points(model, near), modes, rows)
+        values[near], error[near] = refined(some_points(model, near), spectrum.at(near).all_modes)
     return _Refined(values, error)
 
 
@@ -132,9 +126,7 @@ def error_near_zero(model: LinearModel, values: Array) -> Array:
     if near.any():
         part = some_points(model, near)
         spectrum = decomposition(part, held_coordinates(model, values.shape[-1]))
-        apart = size_of(values[near][..., :, None] - spectrum.values[..., None, :])
-        place = np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1)
-        error[near] = np.take_along_axis(errors_of(part, spectrum), place, -1)
+        error[near] = np.take_along_axis(errors_of(part, spectrum), spectrum.nearest(values[near]), -1)
     return error
 
 

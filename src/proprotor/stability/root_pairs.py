@@ -1,4 +1,4 @@
-"""Two roots that cannot be told apart over a step, or that join in it: how near they come to the level all the same.
+"""Two roots that cannot be told apart over a step, or that join in it: how near they come to the level.
 
 Where two roots meet or veer, each moves like a square root, and which is which may not be known. Their sum s and the
 square of their difference d = (λ1 - λ2)² are the same for either choice, and are as smooth as the matrices: polynomials
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.stability.cubic import hermite
+from proprotor.stability.cubic import band, bend, hermite
 from proprotor.stability.matching import size_of, way_to_zero
 from proprotor.stability.points import Points
 from proprotor.stability.root_error import growth
@@ -22,8 +22,7 @@ from proprotor.stability.steps import Steps
 from proprotor.typing import Array
 
 _APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
-_MEETING = 0.5  # of the distance at the farther end: and so may those that are as near at one end
-_OF_BEND = 1.0  # of what parts a cubic from its chord: its error
+_MEETING = 0.5  # of the distance at the farther end: roots that are nearer than this at one end may meet too
 _OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord: its least error
 _INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
 MANY, _FEW = 6, 4  # points of a scan through which polynomials go
@@ -54,7 +53,7 @@ def may_meet(first: Array, last: Array, state: Array) -> Array:
 
 
 def _partners(first: Array, last: Array) -> Array:
-    """Return the one root (n, states) that each may meet, where neither of the two may meet another; -1 elsewhere."""
+    """Return the root (n, states) that each root may meet, if neither may meet a third; -1 elsewhere."""
     meeting = may_meet(first, last, np.broadcast_to(np.arange(first.shape[1]), first.shape))
     alone = meeting.sum(axis=2) == 1
     partner = meeting.argmax(axis=2)
@@ -70,12 +69,11 @@ def keep_off(
         return found
     which, place = np.unique(row, return_inverse=True)
     few = steps.at(which)
-    values = points.spectrum.values
-    partner = _partners(values[few.before], few.later(values))[place, state]
+    partner = _partners(*few.at_ends(points.spectrum.values))[place, state]
     sides = few.sides(points)[:, place]
     own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
     side = own[0]
-    alike = ((own == side) & (other == side)).all(axis=0)
+    alike = (np.concatenate([own, other]) == side).all(axis=0)
     asked = np.flatnonzero((partner >= 0) & (np.abs(side) == 1) & alike)
     if len(asked):
         pairs = within(steps, points, row[asked], state[asked], partner[asked])
@@ -122,8 +120,7 @@ def _sums_and_squares(
 
 def _couples(steps: Steps, points: Points) -> tuple[Array, Array, Array]:
     """Return steps (k,), two states (2, k) that are real at one end and a pair at the other, and which end that is."""
-    values = points.spectrum.values
-    ends = np.stack([values[steps.before], steps.later(values)])
+    ends = steps.at_ends(points.spectrum.values)
     real = ends.imag == 0
     found = []
     for end in (0, 1):
@@ -150,10 +147,8 @@ def joining_roots(steps: Steps, points: Points) -> tuple[Array, Array, Array, Ar
 
 
 def _cubic(ends: Array) -> _Smooth:
-    rise = ends[1] - ends[0]
-    bend = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
-    band = 16 * _INSIDE**2 * (1 - _INSIDE) ** 2
-    return _Smooth(hermite(_INSIDE, ends[:, :, None]), _OF_BEND * bend[:, None] * band)
+    """Return cubics within their steps by their ends (4, m); they may be wrong by as much as they bend."""
+    return _Smooth(hermite(_INSIDE, ends[:, :, None]), bend(ends)[:, None] * band(_INSIDE))
 
 
 def along_scan(
@@ -162,7 +157,7 @@ def along_scan(
     """Return s and d of pairs by polynomials through six points of the scan about the step; NaN where a line has fewer.
 
     Their difference from polynomials through four points is the error of the latter, and an upper bound of their own.
-    The steps are all those of their lines, one after the other.
+    The steps are all steps of their lines, one after the other.
     """
     line = points.line[steps.before]
     first, last = np.searchsorted(line, line[row]), np.searchsorted(line, line[row], side="right")

@@ -8,35 +8,31 @@ from __future__ import annotations
 
 import numpy as np
 
-from proprotor.stability.matching import size_of
-from proprotor.stability.steps import Steps
+from proprotor.stability.matching import best_assignment, size_of
+from proprotor.stability.steps import Steps, first_steps
 from proprotor.typing import Array
 
 _BLOCK = 64  # steps whose distances stay in the cache
-_NEVER = 1e300  # the distance between a root and none
+_NEVER = 1e300  # the distance between a root and a state that a point does not have
 
 
 def steps_by_values(values: Array, before: Array, after: Array) -> Steps:
-    """Return steps from points to those that follow, by eigenvalues (points, states); their quality is not known."""
+    """Return steps from points to the next points, by eigenvalues (points, states); their quality is not known."""
     count = len(before)
     successor = np.empty((count, values.shape[1]), dtype=int)
     for start in range(0, count, _BLOCK):
         rows = slice(start, start + _BLOCK)
         successor[rows] = _nearest(values[before[rows]], values[after[rows]])
-    unknown = np.full(successor.shape, np.nan)
-    depth, is_open = np.zeros(count, dtype=int), np.ones(count, dtype=bool)
-    return Steps(before, after, successor, unknown, unknown.copy(), depth, is_open)
+    return first_steps(before, after, successor, np.full(successor.shape, np.nan))
 
 
 def _nearest(first: Array, last: Array) -> Array:
     """Return places (steps, states) of the nearest root at the later point, a different one for each root."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
     none, none_later = np.isnan(first)[:, :, None], np.isnan(last)[:, None, :]
     apart = size_of(first[:, :, None] - last[:, None, :])
     apart = np.where(none & none_later, 0.0, np.where(none | none_later, _NEVER, apart))
     successor: Array = apart.argmin(axis=2)
     taken_once = (np.sort(successor, axis=1) == np.arange(successor.shape[1])).all(axis=1)
     for step in np.flatnonzero(~taken_once):
-        successor[step] = linear_sum_assignment(apart[step])[1]
+        successor[step] = best_assignment(-apart[step])
     return successor

@@ -9,7 +9,7 @@ damping that is -Re λ_p / Re λ_V.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from itertools import compress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +31,7 @@ from proprotor.stability.eigenvalue_derivatives import (
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.matching import Modes
 from proprotor.stability.modes import decomposition
-from proprotor.stability.named_modes import named_modes
+from proprotor.stability.named_modes import doubtful_numbers, named_modes
 from proprotor.stability.points import growth_rate
 from proprotor.stability.root_error import refined
 from proprotor.typing import Array
@@ -103,8 +103,8 @@ def sensitivity(
     airspeed : float in m/s, text such as "300 kt", or pint quantity
         Airspeed of damping or eigenvalues; for the flutter speed optionally the airspeeds of the scan.
     mode : str, optional
-        One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary at which this
-        moves, onset or not, instead of the lowest onset of any.
+        One mode by what moves at the airspeed; all by default. For the flutter speed the first boundary, onset or
+        end, of the mode with this name, instead of the lowest onset of any mode.
     level : float
         Damping ratio that counts as the boundary of the flutter speed.
     **options
@@ -115,7 +115,7 @@ def sensitivity(
     xarray.Dataset
         derivative (input,) or (input, mode), SI units per SI unit of the input; relative, the derivative times the
         input: the change per change of the input by its own size; value, unit and status of every input; exact, whether
-        its matrices were derived by a complex step, or, those of finite elements, by extrapolated differences; defect
+        its matrices were derived by a complex step, or, as with finite elements, by extrapolated differences; defect
         and nearly_defective of the modes (`proprotor.stability.eigenvalue_derivatives.defect`): derivatives of a nearly
         defective mode hold in a small range only. For the flutter speed also frequency_derivative, of the frequency at
         the boundary as it moves. warning is what makes the numbers doubtful. Attributes: of, its value where there is
@@ -157,8 +157,9 @@ def _rates(
     def linearize(values: Mapping[str, Array]) -> LinearModel:
         return vary_case(case, values).linearize(airspeed, **options)
 
-    def of_one(path: str, value: Array) -> LinearModel:
-        return linearize({path: value})
+    def by_differences(path: str) -> Array:
+        changes = differences(lambda value: linearize({path: value}), np.array(values[path]))
+        return eigenvalue_change(model, changes, modes)
 
     values = {path: float(number.si) for path, number in inputs.items()}
     try:
@@ -169,12 +170,9 @@ def _rates(
             raise
     rates = np.empty((len(values), len(modes.values)), dtype=complex)
     if exact.any():
-        analytic = {path: value for (path, value), takes in zip(values.items(), exact, strict=True) if takes}
-        rates[exact] = _input_rates(linearize, analytic, model, modes)
+        rates[exact] = _input_rates(linearize, dict(compress(values.items(), exact)), model, modes)
     for place in np.flatnonzero(~exact):
-        path = list(values)[place]
-        changes = differences(partial(of_one, path), np.array(values[path]))
-        rates[place] = eigenvalue_change(model, changes, modes)
+        rates[place] = by_differences(list(values)[place])
     return rates, exact
 
 
@@ -223,16 +221,13 @@ def at_boundary(
     speed, level = boundary.position, boundary.level
     model = case.linearize(speed, **options)
     spectrum = decomposition(model)
-    modes = spectrum.modes(np.array([np.argmin(np.abs(spectrum.values - boundary.eigenvalue))]))
+    modes = spectrum.modes(spectrum.nearest(np.array([boundary.eigenvalue])))
     rates, exact = _rates(case, inputs, speed, modes, model, options)
     rates = rates[:, 0]
     moves = -growth_rate(modes.values, rates, level) / boundary.rate
     frequency = rates.imag + boundary.eigenvalue_rate.imag * moves
-    data = _dataset(inputs, ("input",), moves, "m/s", exact)
+    data = _dataset(inputs, moves, "m/s", exact, defect(modes)[0], boundary.warning)
     data["frequency_derivative"] = ("input", frequency, {"units": "rad/s per SI unit of the input"})
-    data["defect"] = ((), float(defect(modes)[0]))
-    data["nearly_defective"] = ((), bool(data.defect > _NEARLY_DEFECTIVE))
-    data["warning"] = _doubt(boundary.warning)
     data.attrs = dict(boundary.stamp) | {
         "of": "flutter_speed",
         "value": speed,
@@ -253,7 +248,7 @@ def _of_modes(
     mode: str | None,
     options: Mapping[str, Any],
 ) -> xarray.Dataset:
-    names, modes, model, speed, eigen_solves = named_modes(case, airspeed, mode, options)
+    names, modes, model, speed = named_modes(case, airspeed, mode, options)
     rates, exact = _rates(case, inputs, speed, modes, model, options)
     value, units = modes.values, "rad/s"
     if of == "damping":
@@ -261,30 +256,29 @@ def _of_modes(
         at_zero = np.abs(root.values) <= root.error
         value, units = np.where(at_zero, np.nan, -modes.values.real / np.abs(modes.values)), "1"
         rates = np.where(at_zero, np.nan, damping_rate(modes.values, rates))
-    data = _dataset(inputs, ("input", "mode"), rates, units, exact).assign_coords(mode=names)
+    data = _dataset(inputs, rates, units, exact, defect(modes), model.trim.warning).assign_coords(mode=names)
     data[of] = ("mode", value, {"units": units})
-    data["defect"] = ("mode", defect(modes))
-    data["nearly_defective"] = ("mode", data.defect.values > _NEARLY_DEFECTIVE)
-    data["warning"] = _doubt(model.trim.warning)
-    data.attrs = stamp.of_model(model) | {"of": of, "airspeed": speed, "eigen_solves": eigen_solves}
+    data.attrs = stamp.of_model(model) | {"of": of, "airspeed": speed, "eigen_solves": 1}
     return data
 
 
-def _doubt(warning: Any) -> tuple[tuple[()], str, dict[str, str]]:
-    return (), str(warning), {"long_name": "what makes the numbers doubtful"}
-
-
 def _dataset(
-    inputs: Mapping[str, Datum], dims: tuple[str, ...], derivative: Array, units: str, exact: Array
+    inputs: Mapping[str, Datum], derivative: Array, units: str, exact: Array, defects: Array, warning: Any
 ) -> xarray.Dataset:
+    """Return the dataset of derivatives (inputs,) of a boundary, or (inputs, modes), with the defect of each mode."""
     import xarray  # here, because it takes long to import
 
     size = np.array([float(number.si) for number in inputs.values()])
     per = {"units": f"{units} per SI unit of the input"}
+    dims = ("input", "mode")[: derivative.ndim]
+    relative = derivative * size.reshape(-1, *[1] * (derivative.ndim - 1))
     return xarray.Dataset(
         {
             "derivative": (dims, derivative, per),
-            "relative": (dims, derivative * size.reshape(-1, *[1] * (len(dims) - 1)), {"units": units}),
+            "relative": (dims, relative, {"units": units}),
+            "defect": (dims[1:], defects),
+            "nearly_defective": (dims[1:], defects > _NEARLY_DEFECTIVE),
+            "warning": doubtful_numbers(warning),
         },
         coords={
             "input": list(inputs),

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
 from proprotor.stability.cubic import hermite
-from proprotor.stability.matching import POOR, Spectrum, match_modes
+from proprotor.stability.matching import POOR, match_modes
 from proprotor.stability.points import Points
 from proprotor.typing import Array
 
 _SAFETY = 4.0  # the error of a cubic over half a step is a sixteenth; a quarter is taken
 
 
-@dataclass
-class Steps:
+class Steps(NamedTuple):
     """Pairs of neighbouring points of one line.
 
     before, after (steps,) of int : the points; successor (steps, states) of int, quality (steps, states) : see
@@ -34,35 +33,25 @@ class Steps:
 
     def at(self, rows: Array) -> Steps:
         """Return some of the steps."""
-        return Steps(*(getattr(self, entry.name)[rows] for entry in fields(self)))
+        return Steps(*(part[rows] for part in self))
 
     def joined(self, other: Steps) -> Steps:
         """Return the steps of both."""
-        return Steps(
-            *(np.concatenate([getattr(self, one.name), getattr(other, one.name)]) for one in fields(self))
-        )
+        return Steps(*map(np.concatenate, zip(self, other, strict=True)))
 
     def ends(self, points: Points) -> Array:
         """Return growth at both ends, and both slopes times the length of the step (4, steps, states)."""
-        length = (points.position[self.after] - points.position[self.before])[:, None]
-        value, slope = (self.later(part) for part in (points.growth, points.slope))
-        return np.stack(
-            [points.growth[self.before], value, points.slope[self.before] * length, slope * length]
-        )
-
-    def errors(self, points: Points) -> Array:
-        """Return the error of the growth at both ends (2, steps, states)."""
-        return np.stack([points.error[self.before], self.later(points.error)])
+        slopes = self.at_ends(points.slope) * self.length(points)
+        return np.concatenate([self.at_ends(points.growth), slopes])
 
     def counts(self, points: Points) -> Array:
         """Return which states are not the conjugates of others."""
-        values = points.spectrum.values
-        return ~((values[self.before].imag < 0) & (self.later(values).imag < 0))
+        return np.asarray(~(self.at_ends(points.spectrum.values).imag < 0).all(axis=0))
 
     def sides(self, points: Points) -> Array:
         """Return on which side of the level roots are at both ends (2, steps, states); 0 where they are neutral."""
-        value = np.stack([points.growth[self.before], self.later(points.growth)])
-        return np.where(np.abs(value) <= self.errors(points), 0.0, np.sign(value))
+        value = self.at_ends(points.growth)
+        return np.where(np.abs(value) <= self.at_ends(points.error), 0.0, np.sign(value))
 
     def crossing(self, points: Points) -> tuple[Array, Array, Array]:
         """Return steps and states that are beyond the level at one end alone, with the ends (4, k) of their cubics."""
@@ -76,31 +65,35 @@ class Steps:
         certain = (sides[0] < 0) & (sides[1] > 0) & (self.quality >= POOR)
         return np.flatnonzero((certain & self.counts(points)).any(axis=1))
 
+    def length(self, points: Points) -> Array:
+        """Return the length of each step (steps, 1), in the unit of the positions."""
+        return np.asarray(points.position[self.after] - points.position[self.before])[:, None]
+
+    def at_ends(self, part: Array) -> Array:
+        """Return values (points, states) of the followed states at both ends (2, steps, states)."""
+        return np.stack([part[self.before], self.later(part)])
+
     def later(self, part: Array) -> Array:
         """Return values (points, states) at the later end in the places of the earlier end (steps, states)."""
         return np.take_along_axis(part[self.after], self.successor, 1)
 
 
-def first_steps(spectrum: Spectrum, before: Array, after: Array) -> Steps:
-    """Return steps from points to the points that follow."""
-    linked = match_modes(spectrum, before, after)
-    nothing = np.full(linked.quality.shape, np.nan)
+def first_steps(before: Array, after: Array, successor: Array, quality: Array) -> Steps:
+    """Return steps from points to the points that follow, none of them parted yet."""
     count = len(before)
-    return Steps(before, after, *linked, nothing, np.zeros(count, dtype=int), np.ones(count, dtype=bool))
+    depth, is_open = np.zeros(count, dtype=int), np.ones(count, dtype=bool)
+    return Steps(before, after, successor, quality, np.full(successor.shape, np.nan), depth, is_open)
 
 
 def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:
     """Return the steps with some of them, `rows`, parted at the points from `first` on."""
     old, new = steps.at(rows), np.arange(first, first + len(rows))
     halves = [match_modes(points.spectrum, *ends) for ends in ((old.before, new), (new, old.after))]
-    start, end = points.position[old.before], points.position[old.after]
-    share = ((points.position[new] - start) / (end - start))[:, None]
+    share = (points.position[new] - points.position[old.before])[:, None] / old.length(points)
     seen = np.take_along_axis(points.growth[new], halves[0].successor, 1)
     wrong = np.abs(hermite(share, old.ends(points)) - seen) / _SAFETY
-    later = np.empty(wrong.shape)
-    np.put_along_axis(later, halves[0].successor, wrong, 1)
-    rest = np.ones(len(steps.before), dtype=bool)
-    rest[rows] = False
+    later = np.take_along_axis(wrong, halves[0].successor.argsort(axis=1), 1)
+    rest = np.delete(np.arange(len(steps.before)), rows)
     depth, is_open = old.depth + 1, np.ones(len(rows), dtype=bool)
     return (
         steps.at(rest)

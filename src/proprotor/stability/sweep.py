@@ -11,14 +11,12 @@ from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
 from proprotor.model import stamp
-from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import SECOND
 from proprotor.stability.branches import branch_labels, name_states
 from proprotor.stability.following import follow
-from proprotor.stability.matching import Modes, Spectrum
 from proprotor.stability.mode_names import Moving, moving, whirl
-from proprotor.stability.modes import coordinate_motion, coordinate_shares, mode_dataset
+from proprotor.stability.modes import at_columns, mode_dataset
 from proprotor.stability.parameter_lines import ParameterLine, line_of_case, with_approach
 from proprotor.stability.root_error import errors_of
 from proprotor.typing import Array
@@ -70,45 +68,24 @@ def sweep(
     points, branches = len(model.airspeed), follow(model, line)
     named = name_states(branches, line, approach)
     spectrum = branches.spectrum.at(slice(points))
-    values, right, left = spectrum.all_modes
-    found = moving(model, values, left, right)
-    columns, modes = mode_columns(found, values)
-    data = _by_motion(model, line, Modes(values, right, left), errors_of(model, spectrum), columns)
+    every = spectrum.all_modes
+    found = moving(model, every.values, every.left, every.right)
+    columns, modes = mode_columns(found, every.values)
+    data = mode_dataset(model, every, errors_of(model, spectrum), columns, line)
     by_mode = data.eigenvalue.dims
+    way = {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
+    data["whirl"] = by_mode, at_columns(whirl(model, every), columns), way
     labels = branch_labels(branches, named, points)
     for name, values, meaning in (
         ("share", found.share, "participation of the motion that the mode is named after"),
         ("branch", labels.label, "exact root, by what moves in it where branches are named"),
-        ("tracking_quality", labels.trust, "trust in the steps from there to the point"),
+        ("tracking_quality", labels.trust, "trust in the steps from where branches are named to the point"),
     ):
         data[name] = by_mode, at_columns(values, columns), {"long_name": meaning}
     data["branch"] = data.branch.astype(str)
     data["warning"] = data.warning.dims, _joined(data.warning.values, labels.doubt), data.warning.attrs
     data.attrs |= {"eigen_solves": len(branches.points) + named.eigen_solves, "named_at": named.where}
     return data.assign_coords(mode=modes)
-
-
-def _by_motion(
-    model: LinearModel, line: ParameterLine, every: Modes, error: Array, columns: Array
-) -> xarray.Dataset:
-    """Return the dataset of the states in the columns (points, modes), with the sense in which they whirl."""
-    n, held, there = len(model.dofs), held_coordinates(model, every.right.shape[-2]), columns >= 0
-    places = np.maximum(columns, 0)
-    modes = Spectrum(every.values, every.right).modes(places)
-    values = np.where(there, modes.values, np.nan)
-    shapes = coordinate_motion(held, n, values, modes.right)
-    shares = np.where(there[:, None, :], coordinate_shares(held, n, modes.left, modes.right), np.nan)
-    data = mode_dataset(model, values, at_columns(error, columns), shapes, shares, line)
-    sense = np.where(there, whirl(model, modes.values, modes.left, modes.right), np.nan)
-    meaning = {"units": "1", "long_name": "whirl with the rotor, in the fixed frame"}
-    data["whirl"] = data.eigenvalue.dims, sense, meaning
-    return data
-
-
-def at_columns(values: Array, columns: Array) -> Array:
-    """Return values (points, states) of the states in the columns of each point; nothing where a column is empty."""
-    nothing = "" if values.dtype == object else np.nan
-    return np.where(columns >= 0, np.take_along_axis(values, np.maximum(columns, 0), 1), nothing)
 
 
 def _joined(first: Array, second: Array) -> Array:
