@@ -45,9 +45,7 @@ class InputError(ValueError):
 
     def __init__(self, field: str, value: object, rule: str, others: Iterable[InputError] = ()) -> None:
         self.field, self.value, self.rule, self.others = field, value, rule, tuple(others)
-        super().__init__(
-            field, value, rule, self.others
-        )  # with all arguments, so that the error can be pickled
+        super().__init__(field, value, rule, self.others)  # all arguments, so that the error can be pickled
 
     def __str__(self) -> str:
         shown = "" if self.value is None else f" = {_on_one_line(self.value)}"
@@ -115,11 +113,10 @@ def check_finite(field: str, value: Any, sign: str = "") -> None:
 def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
     """Return the rule that an unknown name breaks, with the nearest known name or, without a near name, all names."""
     by_lower_case = {k.lower(): k for k in known}
-    nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1) or [
-        k
-        for k in by_lower_case
-        if name and k.startswith(f"{name.lower()}_")  # "thrust" for thrust_coefficient
-    ]
+    longer = [
+        k for k in by_lower_case if name and k.startswith(f"{name.lower()}_")
+    ]  # as "thrust_coefficient"
+    nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1) or longer
     hint = f"did you mean {by_lower_case[nearest[0]]}?" if nearest else f"known: {', '.join(known)}"
     return f"unknown {what} {_on_one_line(name)!r}; {hint}"
 

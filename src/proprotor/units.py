@@ -262,13 +262,11 @@ def in_metres_per_second(airspeed: Any) -> Array:
     InputError
         When the value is not a speed.
     """
-    if isinstance(airspeed, str) or (isinstance(airspeed, list | tuple) and has_own_unit(airspeed)):
-        if not isinstance(airspeed, str):
-            return values_in_si(airspeed, "m/s", "airspeed")
+    if isinstance(airspeed, str):
         found = speeds(airspeed)
         return found if ":" in airspeed else found.reshape(())
     if has_own_unit(airspeed):
-        return as_si(airspeed, "m/s", "airspeed")
+        return values_in_si(airspeed, "m/s", "airspeed")
     try:
         return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)
     except (TypeError, ValueError):

@@ -67,8 +67,7 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     OSError
         When no file can be made in the folder, or an existing file may not be replaced.
     """
-    place, before = _place(path)
-    with _unfinished(place, before):
+    with _unfinished(*_place(path)):
         pass
 
 

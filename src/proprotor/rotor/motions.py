@@ -14,8 +14,8 @@ from proprotor.errors import InputError, unprintable
 
 HUB = tuple(coordinate.name for coordinate in FIXED if coordinate.angle in ("hub", "turn"))
 ROTOR_SPEED = "azimuth"  # the model has the rate of this coordinate: nothing holds the rotor's azimuth
-_COLLECTIVE = {"flap": "coning"}
-_AZIMUTH = "rotor speed"
+_NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning"}  # of the modes of single coordinates
+_PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
 
 
@@ -77,13 +77,7 @@ def _cyclic_names(dof: str) -> tuple[str, str]:
 def _single_name(dof: str) -> str:
     """Return the name of the mode of a single coordinate."""
     stem, _, part = dof.rpartition("_")
-    if dof == ROTOR_SPEED:
-        return _AZIMUTH
-    if stem and part == "0":
-        return _COLLECTIVE.get(stem, f"collective {stem}")
-    if stem and part == "d":
-        return f"differential {stem}"
-    return dof
+    return _NAMES.get(dof) or (f"{_PARTS[part]} {stem}" if stem and part in _PARTS else dof)
 
 
 def name_list(dofs: tuple[str, ...]) -> list[str]:

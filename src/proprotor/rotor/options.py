@@ -101,9 +101,7 @@ class Options:
     def __post_init__(self) -> None:
         for name, choices in CHOICES.items():
             value = getattr(self, name)
-            if isinstance(value, EquationSet):
-                continue
-            if value not in choices:
+            if not isinstance(value, EquationSet) and value not in choices:
                 raise InputError(name, value, f"must be one of {', '.join(map(str, choices))}")
         if self.section_damping is None:
             object.__setattr__(self, "section_damping", default_choice("section_damping", vars(self)))

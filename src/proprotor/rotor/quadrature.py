@@ -146,12 +146,11 @@ def gauss_panels(
     knots : array (..., k)
         Radii at which chord or twist has a kink, m.
     """
-    at = np.zeros(knots.shape[:-1])
-    root, tip, flap, lag, _ = np.broadcast_arrays(
-        root_cutout, radius, flap_hinge_offset, lag_hinge_offset, at
-    )
+    blades = np.zeros(knots.shape[:-1])
+    given = root_cutout, radius, flap_hinge_offset, lag_hinge_offset, blades
+    root, tip, flap, lag, _ = np.broadcast_arrays(*given)
     inner, outer = root[..., None], tip[..., None]
-    share = np.linspace(0, 1, max(2, int(np.ceil(1 / _LONGEST_PANEL)) + 1))[1:-1]
+    share = np.linspace(0, 1, round(1 / _LONGEST_PANEL) + 1)[1:-1]
     even, tabulated = inner + (outer - inner) * share, np.broadcast_to(knots, (*root.shape, knots.shape[-1]))
     if knots.shape[-1]:
         # If a table splits the blade finely already, even panels would only add stations.

@@ -19,12 +19,7 @@ from proprotor.typing import Array
 
 MASS_INTEGRALS = (
     "blade_mass",
-    "blade_first_moment",
-    "blade_inertia",
-    "flap_first_moment",
-    "flap_inertia",
-    "lag_first_moment",
-    "lag_inertia",
+    *(f"{part}_{kind}" for part in ("blade", "flap", "lag") for kind in ("first_moment", "inertia")),
 )
 _POSITIVE = ("radius", "blade_inertia", "flap_inertia", "lag_inertia", "blade_mass")
 _NOT_NEGATIVE = (
@@ -160,7 +155,7 @@ class Rotor:
         for name in ("chord", "twist"):
             if isinstance(getattr(self, name), tuple):
                 _check_distribution(name, getattr(self, name))
-        chord: Any = self.station_chord if callable(self.chord) else self.chord
+        chord: Any = self.chord_at(self.quadrature.stations) if callable(self.chord) else self.chord
         chord = chord[1] if isinstance(chord, tuple) else chord
         if np.any(np.real(chord) <= 0):
             raise InputError("chord", chord, "must be above zero")
@@ -259,16 +254,6 @@ class Rotor:
         names = ("root_cutout", "radius", "flap_hinge_offset", "lag_hinge_offset")
         return {name: getattr(self, name) for name in names}
 
-    @functools.cached_property
-    def station_chord(self) -> Array:
-        """Chord at the stations of the quadrature, m."""
-        return self.chord_at(self.quadrature.stations)
-
-    @functools.cached_property
-    def station_twist(self) -> Array:
-        """Twist at the stations of the quadrature, from the pitch at 0.75 R, rad."""
-        return self.twist_at(self.quadrature.stations)
-
     def chord_at(self, r: Array) -> Array:
         """Return the chord at radii.
 
@@ -356,9 +341,9 @@ class Rotor:
             raise InputError("mass_distribution", beyond, rule)
         r = _reaching(r, fields_.get("radius"), beyond, hub_mass)
         _check_distribution("mass_distribution", (r, mass))
-        hinges = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
-        integrals = {"blade_mass": _outboard_moment(r, mass, None, 0)}
-        for name, axis in {"blade": None, **hinges}.items():
+        axes = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
+        integrals = {"blade_mass": _outboard_moment(r, mass, 0.0, 0)}
+        for name, axis in {"blade": 0.0, **axes}.items():
             for power, kind in ((1, "first_moment"), (2, "inertia")):
                 integrals[f"{name}_{kind}"] = _outboard_moment(r, mass, axis, power)
         rotor = cls(**integrals, **fields_)
@@ -382,11 +367,8 @@ def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) ->
     if not np.all(np.real(tip) > 0):
         return r
     at_centre, at_tip = _check_ends(r, tip, beyond, hub_mass)
-    moved = np.array(np.broadcast_to(r, (*np.broadcast_shapes(r.shape[:-1], tip.shape), r.shape[-1])))
-    moved = moved.astype(np.result_type(moved, tip), copy=False)
-    moved[..., 0] = np.where(at_centre, 0.0, moved[..., 0])
-    moved[..., -1] = np.where(at_tip, tip, moved[..., -1])
-    return moved
+    first, last = np.where(at_centre, 0.0, r[..., 0]), np.where(at_tip, tip, r[..., -1])
+    return _joined([first[..., None], r[..., 1:-1], last[..., None]])
 
 
 def _check_ends(r: Array, tip: Array, beyond: str, hub_mass: ArrayLike | None) -> tuple[Array, Array]:
@@ -429,12 +411,11 @@ def _check_distribution(name: str, distribution: _Table) -> None:
         raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
 
 
-def _joined(knots: list[Array]) -> Array:
-    """Return the stations of several distributions, one after another along the last axis."""
-    if not knots:
-        return np.empty(0)
-    leading = np.broadcast_shapes(*(stations.shape[:-1] for stations in knots))
-    return np.concatenate([np.broadcast_to(s, (*leading, s.shape[-1])) for s in knots], axis=-1)
+def _joined(parts: list[Array]) -> Array:
+    """Return stations in several arrays one after another along the last axis; other axes broadcast."""
+    parts = [np.empty(0), *parts]  # without parts there are no stations
+    leading = np.broadcast_shapes(*(stations.shape[:-1] for stations in parts))
+    return np.concatenate([np.broadcast_to(s, (*leading, s.shape[-1])) for s in parts], axis=-1)
 
 
 def _interpolate(distribution: _Table | Callable[[Array], Array], r: Array) -> Array:
@@ -453,15 +434,13 @@ def _interpolate(distribution: _Table | Callable[[Array], Array], r: Array) -> A
     return between
 
 
-def _outboard_moment(r: Array, mass: Array, axis: ArrayLike | None, power: int) -> Any:
-    """Return ∫ m (r - axis)^power outboard of an axis (...), or over the whole blade about its centre for None."""
+def _outboard_moment(r: Array, mass: Array, axis: ArrayLike, power: int) -> Any:
+    """Return ∫ m (r - axis)^power outboard of an axis at a radius (...); the whole blade is outboard of 0."""
     nodes, weights = np.polynomial.legendre.leggauss(2)
     inboard, outboard = r[..., :-1], r[..., 1:]
-    center = np.zeros(()) if axis is None else np.asarray(axis)[..., None]
-    start = inboard
-    if axis is not None:
-        start = np.where(np.real(center) > np.real(inboard), center, inboard)
-        start = np.where(np.real(start) > np.real(outboard), outboard, start)
+    center = np.asarray(axis)[..., None]
+    start = np.where(np.real(center) > np.real(inboard), center, inboard)
+    start = np.where(np.real(start) > np.real(outboard), outboard, start)
     half = ((outboard - start) / 2)[..., None]
     stations = start[..., None] + half * (1 + nodes)
     slope = (np.diff(mass) / np.diff(r))[..., None]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, cast
 
@@ -56,29 +56,21 @@ class BladeSections:
     def of(cls, rotor: Rotor, shape: tuple[int, ...], coarse: bool = False) -> BladeSections:
         """Return the sections of a rotor at all stations or at a coarse few, many designs flattened over the batch."""
         quadrature = rotor.coarse_quadrature if coarse else rotor.quadrature
-        profiles = (rotor.station_chord, rotor.station_twist)
-        if coarse:
-            profiles = (rotor.chord_at(quadrature.stations), rotor.twist_at(quadrature.stations))
-        chord, twist = (flatten_points(part, shape, 1) for part in profiles)
+        profiles = (rotor.chord_at, rotor.twist_at)
+        chord, twist = (flatten_points(profile(quadrature.stations), shape, 1) for profile in profiles)
         airfoil = rotor.airfoil.flattened(shape) if isinstance(rotor.airfoil, Airfoil) else rotor.airfoil
         return cls(quadrature.flattened(shape), chord, twist, airfoil)
 
     @property
     def is_complex(self) -> bool:
         """Whether any number is complex, for derivatives by a complex step."""
-        numbers = [self.quadrature.stations, self.chord, self.twist]
-        if isinstance(self.airfoil, Airfoil):
-            numbers += [getattr(self.airfoil, entry.name) for entry in fields(self.airfoil)]
-        return any(map(np.iscomplexobj, numbers))
+        airfoil = vars(self.airfoil).values() if isinstance(self.airfoil, Airfoil) else ()
+        return any(map(np.iscomplexobj, (self.quadrature.stations, self.chord, self.twist, *airfoil)))
 
     @property
     def real(self) -> BladeSections:
         """The same sections without imaginary parts."""
-        if not self.is_complex:
-            return self
-        airfoil = self.airfoil
-        if isinstance(airfoil, Airfoil):
-            airfoil = Airfoil(**{e.name: np.real(getattr(airfoil, e.name)) for e in fields(airfoil)})
+        airfoil = self.airfoil.real if isinstance(self.airfoil, Airfoil) else self.airfoil
         return BladeSections(self.quadrature.real, np.real(self.chord), np.real(self.twist), airfoil)
 
     def take(self, rows: Array | slice) -> BladeSections:

@@ -294,11 +294,8 @@ def _settle(
 def _complex_trim(balance: Balance, coarse: BladeSections, points: int) -> Settled:
     """Return the trim of the real parts after one more Newton step: exact to first order in the imaginary parts."""
     target = balance.target
-    real_target = replace(
-        target,
-        collective=None if target.collective is None else np.real(target.collective),
-        load=np.real(target.load),
-    )
+    collective = None if target.collective is None else np.real(target.collective)
+    real_target = replace(target, collective=collective, load=np.real(target.load))
     real = {name: np.real(value) for name, value in balance.quantities.items()}
     trim = solve_trim(balance.sections.real, coarse.real, real, balance.options, real_target, points).trim
     state = {name: getattr(trim, name).astype(complex) for name in UNKNOWNS}

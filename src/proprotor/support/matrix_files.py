@@ -147,8 +147,8 @@ def support_from_matrices(
     if includes_rotor and np.any(rotor_mass):
         raise InputError("rotor_mass", rotor_mass, "must not be given where the mass includes the rotor")
     names = _names(dofs)
-    matrices = {"mass": mass, "stiffness": stiffness} | ({} if damping is None else {"damping": damping})
-    matrices = {name: _checked(name, matrix, len(names)) for name, matrix in matrices.items()}
+    given = {"mass": mass, "stiffness": stiffness, "damping": damping}
+    matrices = {name: _checked(name, part, len(names)) for name, part in given.items() if part is not None}
     for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
         if not 1 / _LARGEST_UNIT <= unit <= _LARGEST_UNIT:
             rule = f"must be above zero, from {1 / _LARGEST_UNIT:g} to {_LARGEST_UNIT:g}"
