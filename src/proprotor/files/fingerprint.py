@@ -3,7 +3,7 @@
 Numbers, texts, arrays and containers count by value. An object counts by its class and by the state that another
 process would receive in a pickle. A function counts by its code, its defaults, the contents of its closure and its
 attributes, and every global to which it refers. Installed modules count by name and version instead, because these
-define the code. An object that contains itself is followed once around.
+define the code. Where an object contains itself, its place on the walk counts in its stead.
 
 An object whose content cannot be read, such as an open file, is refused: without that content the fingerprint could be
 the fingerprint of other inputs.
@@ -73,7 +73,7 @@ def fingerprint(content: Any, name: str = "") -> str:
     try:
         walk.add(content)
     except RecursionError:
-        raise walk.refusal("what is nested too deeply") from None
+        raise walk.refusal("an object that is nested too deeply") from None
     return walk.digest.hexdigest()
 
 

@@ -132,7 +132,7 @@ def _unfinished(place: Path, before: os.stat_result | None) -> Iterator[IO[bytes
 
 
 def _make_like(name: str, before: os.stat_result) -> None:
-    """Give a file the permissions of an earlier one, and the same owner if this user is allowed to."""
+    """Give a file the permissions of an earlier one, and the same owner if this user may set the owner."""
     if hasattr(os, "chown"):
         with suppress(PermissionError):
             os.chown(name, before.st_uid, before.st_gid)

@@ -1,4 +1,4 @@
-"""Flap and lag frequencies of a blade given against collective or airspeed, as analyses with tabulated rotors use."""
+"""Flap and lag frequencies of a blade against collective or airspeed, which some analyses use in place of springs."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ class BladeFrequencies:
     at : array (k,), optional
         Abscissae of the tables' entries, rad or m/s, increasing; not needed for numbers and functions.
     flap, lag : float, array (k,) or function of an array
-        Frequency per revolution. Tables are interpolated smoothly without overshoot and held at their ends.
+        Frequency per revolution. Tables are interpolated smoothly without overshoot; beyond its ends a table
+        keeps its end values.
     cyclic_flap : the same, optional
         Frequency of cyclic flapping if it differs from collective flapping, as when the gimbal is locked and the
         gimbal's mode stands in the blade's place.

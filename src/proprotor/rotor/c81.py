@@ -1,7 +1,7 @@
 """C81 airfoil files: card images of seven columns for each number.
 
 Line 1 has a title (columns 1-30) and six counts of two digits: Mach numbers and angles of lift, of drag and of moment.
-Each of the three tables is a line of Mach numbers, whose first seven columns are blank, and a line for every angle of
+Each of the three tables is a line of Mach numbers, whose first seven columns are blank, and a line for each angle of
 attack in degrees. A line has nine values; more values follow on lines that begin with seven blanks.
 
 The package has a reader of its own. The reader on the package index, c81utils 1.1.0, splits lines at blanks: it refuses
@@ -62,7 +62,7 @@ class _Lines:
     number: int = 0
 
     def take(self, what: str) -> str:
-        """Return the next line, which must hold something named for the message."""
+        """Return the next line of the file; `what` says in the message what a missing line must have."""
         if self.number == len(self.lines):
             raise self.fault(f"is missing; it must have {what}", self.number + 1)
         self.number += 1

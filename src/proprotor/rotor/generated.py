@@ -15,15 +15,15 @@ from proprotor_equations import published
 
 @dataclass(frozen=True)
 class EquationSet:
-    """Generated modules that a dropped term can change, for the option ``equations``.
+    """The generated modules that change when terms of the derivation are dropped, for the option ``equations``.
 
     The functions that all sets share are imported from `proprotor_equations` where they are used.
 
     Parameters
     ----------
     inertia, flap_lag_springs, pitch, airloads : module
-        Each with the functions of the module of `proprotor_equations.published` that has its name, under the arguments
-        of that module. A set of one's own has modules of its own in some of the four places.
+        Each module has the functions and arguments of the module of the same name in `proprotor_equations.published`.
+        A user's own set has the user's modules in some of the four places.
     """
 
     inertia: ModuleType

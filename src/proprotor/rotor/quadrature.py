@@ -13,16 +13,17 @@ from proprotor.typing import Array
 
 POWERS = 3  # moments of r^0, r^1 and r^2
 # Number of points for a panel of a given share of the radius: at high airspeed section loads vary over the radius. At
-# low airspeed section loads turn within V/Ω of the axis: panels near the root double outward, with points by distance
-# from the axis. Every radial moment then has a relative error below 1e-10 (tests/rotor/test_quadrature.py).
+# low airspeed section loads change quickly within V/Ω of the axis: panels near the root double in width outward, and
+# the number of their points follows from the distance to the axis. Every radial moment then has a relative error below
+# 1e-10 (tests/rotor/test_quadrature.py).
 _LONGEST_PANEL = 0.1
 _SHARES, _POINTS = np.array([0.021, 0.03, 0.06]), np.array([3, 4, 6, 8])
 _NEAR_ROOT = 0.2 / 2.0 ** np.arange(7)  # of the radius
 _TINY = np.finfo(float).tiny
 _DIGITS, _MOST_POINTS = 12, 16
-# Width of a panel, as a share of its outer radius, up to which 1, 2, ... points resolve loads that turn at the axis.
-# Gauss errors fall as rho^(-2n), with rho the size of the ellipse about the panel that reaches the axis; the axis is
-# (rho + 1/rho)/2 half widths from the panel's centre.
+# Width of a panel, as a share of its outer radius, up to which 1, 2, ... points resolve loads that change quickly at
+# the axis. Gauss errors fall as rho^(-2n), with rho the size of the ellipse about the panel that reaches the axis; the
+# axis is (rho + 1/rho)/2 half widths from the panel's centre.
 _NEARNESS = 2 / (1 + np.cosh(_DIGITS * np.log(10) / (2 * np.arange(1, _MOST_POINTS))))
 _COARSE_POINTS = 12
 

@@ -372,7 +372,7 @@ def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) ->
 
 
 def _check_ends(r: Array, tip: Array, beyond: str, hub_mass: ArrayLike | None) -> tuple[Array, Array]:
-    """Return whether the first station is near the centre and the last near the tip; refuse what leaves mass out."""
+    """Return whether the first station is near the centre and the last near the tip; refuse stations that omit mass."""
     first, last = (np.real(r[..., end]) / np.real(tip) for end in (0, -1))
     reached = f"has stations from {_shown(first)} R to {_shown(last)} R"
     at_centre, at_tip = np.abs(first) <= _REACH, np.abs(last - 1) <= _REACH
@@ -419,7 +419,7 @@ def _joined(parts: list[Array]) -> Array:
 
 
 def _interpolate(distribution: _Table | Callable[[Array], Array], r: Array) -> Array:
-    """Return values (..., stations) at radii r (..., stations): linear, constant beyond the ends, complex if r is."""
+    """Return values (..., stations) at radii r (..., stations): linear, constant beyond the ends; r may be complex."""
     if callable(distribution):
         return np.asarray(distribution(r))
     stations, values = np.asarray(distribution[0]), np.asarray(distribution[1])

@@ -54,7 +54,7 @@ class BladeSections:
 
     @classmethod
     def of(cls, rotor: Rotor, shape: tuple[int, ...], coarse: bool = False) -> BladeSections:
-        """Return the sections of a rotor at all stations or at a coarse few, many designs flattened over the batch."""
+        """Return the sections of a rotor at all stations or at a few, with the axes of many designs flattened."""
         quadrature = rotor.coarse_quadrature if coarse else rotor.quadrature
         profiles = (rotor.chord_at, rotor.twist_at)
         chord, twist = (flatten_points(profile(quadrature.stations), shape, 1) for profile in profiles)
@@ -126,14 +126,12 @@ def compressible(coefficients: SectionCoefficients, mach: Array) -> SectionCoeff
     """Return the coefficients with the Prandtl-Glauert factor on lift and moment and on their derivatives."""
     factor, slope = section.prandtl_glauert(mach=mach)
     scaled: dict[str, Any] = {}
-    for name in ("lift", "moment"):
-        value, alpha, by_mach = (
-            getattr(coefficients, f"{name}_coefficient{d}") for d in ("", "_alpha", "_mach")
-        )
-        if not _any(value, alpha, by_mach):
-            continue
-        scaled |= {f"{name}_coefficient": factor * value, f"{name}_coefficient_alpha": factor * alpha}
-        scaled[f"{name}_coefficient_mach"] = slope * value + (factor * by_mach if _any(by_mach) else 0.0)
+    for load in ("lift", "moment"):
+        names = [f"{load}_coefficient{derivative}" for derivative in ("", "_alpha", "_mach")]
+        value, alpha, by_mach = (getattr(coefficients, name) for name in names)
+        if _any(value, alpha, by_mach):
+            with_mach = slope * value + (factor * by_mach if _any(by_mach) else 0.0)
+            scaled |= zip(names, (factor * value, factor * alpha, with_mach), strict=True)
     return coefficients._replace(**scaled)
 
 

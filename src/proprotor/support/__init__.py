@@ -17,9 +17,7 @@ from proprotor.support.modal_reduction import StructuralModes, lowest_modes
 from proprotor.support.normal_modes import (
     HUB_AXES,
     INCLUDES_ROTOR,
-    ROTATION,
     SHAFT,
-    TRANSLATION,
     NormalModes,
     rigid_support,
     two_axis_pivot,
@@ -28,9 +26,7 @@ from proprotor.support.normal_modes import (
 __all__ = [
     "HUB_AXES",
     "INCLUDES_ROTOR",
-    "ROTATION",
     "SHAFT",
-    "TRANSLATION",
     "NormalModes",
     "StructuralModes",
     "beam_wing",

@@ -174,7 +174,7 @@ def _texts(path: Path, dofs: Array) -> list[str]:
     if dofs.dtype.kind == "U":
         numbers = np.frombuffer(dofs.tobytes(), dtype=np.dtype("u4").newbyteorder(dofs.dtype.byteorder))
         if (numbers > sys.maxunicode).any():
-            raise InputError("file", str(path), "is damaged: dofs holds what is no text")
+            raise InputError("file", str(path), "is damaged: dofs has numbers that are no characters")
     return [str(name) for name in dofs]
 
 

@@ -44,7 +44,7 @@ def read_matrix(path: Path) -> Any:
     Returns
     -------
     array or scipy.sparse.coo_array, shape (rows, columns)
-        Sparse if the file leaves out zeros. Entries that the file gives twice are to be added.
+        Sparse if the file leaves out zeros. Where the file gives an entry twice, the entry is the sum of both numbers.
 
     Raises
     ------

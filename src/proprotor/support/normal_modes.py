@@ -45,7 +45,7 @@ class NormalModes:
         follows from this choice, is subtracted so that it does not count twice. False: no rotor was on. True:
         "gimballed" for a rotor with a gimbal, "rigid" for a rotor without one.
     shaft : "held" or "free"
-        Whether the rotor could turn about its shaft then; without effect for a point mass.
+        Whether the rotor was free to turn about its shaft when `mass` was found; without effect for a point mass.
     shapes : array, shape (..., m, n), optional
         Shapes of the structure for each coordinate, if these differ between designs: the shapes show which coordinates
         of two designs belong together.
