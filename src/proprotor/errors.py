@@ -1,7 +1,7 @@
 """Errors of inputs: the field, the value and the rule that the value breaks, and the words that messages are made of.
 
-`InputError` is the only error that an input raises. The checks of numbers, the lists of names and choices that messages
-have in common, and the way in which a text is shown on a terminal stand here too.
+`InputError` is the only error that an input raises. The checks of numbers and matrices, the lists of names and
+choices that messages have in common, and the way in which a text is shown on a terminal stand here too.
 """
 
 from __future__ import annotations
@@ -105,6 +105,19 @@ def check_finite(field: str, value: Any, sign: str = "") -> None:
         broken, rule = _SIGNS[sign]
         if np.any(broken(np.real(value), 0)):
             raise InputError(field, value, rule)
+
+
+def nowhere_negative(matrix: np.ndarray[Any, Any]) -> bool:
+    """Return whether symmetric matrices (..., n, n) have no negative eigenvalue.
+
+    The matrices are scaled to a unit diagonal, so that kg and kg m² in one matrix do not set the tolerance.
+    """
+    diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
+    if (diagonal < 0).any():
+        return False
+    scale = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    scaled = matrix / (scale[..., :, None] * scale[..., None, :])
+    return bool((np.linalg.eigvalsh(scaled) > -1e-9).all())
 
 
 # Names and choices in messages --------------------------------------------------------------------

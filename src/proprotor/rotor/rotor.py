@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from proprotor_equations import inertia
 
-from proprotor.errors import InputError, check_finite, check_number
+from proprotor.errors import InputError, check_finite, check_number, nowhere_negative
 from proprotor.rotor.airfoil import SectionModel
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
@@ -22,21 +22,7 @@ MASS_INTEGRALS = (
     *(f"{part}_{kind}" for part in ("blade", "flap", "lag") for kind in ("first_moment", "inertia")),
 )
 _POSITIVE = ("radius", "blade_inertia", "flap_inertia", "lag_inertia", "blade_mass")
-_NOT_NEGATIVE = (
-    "flap_hinge_offset",
-    "root_cutout",
-    "flap_first_moment",
-    "lag_first_moment",
-    "flap_stiffness",
-    "lag_stiffness",
-    "gimbal_stiffness",
-    "pitch_inertia",
-    "control_stiffness",
-    "flap_damping",
-    "lag_damping",
-    "pitch_damping",
-    "gimbal_damping",
-)
+_NOT_NEGATIVE = ("flap_hinge_offset", "root_cutout", "flap_first_moment", "lag_first_moment", "pitch_inertia")
 _FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
 _REACH = 1e-3  # of the radius: stations may be printed to three digits
 HELD, NOTHING = "held", "nothing"  # words for the blade beyond the stations of a table
@@ -146,7 +132,9 @@ class Rotor:
 
     def _check_signs(self) -> None:
         """Refuse numbers of the wrong sign, and fractions and angles out of range."""
-        for names, sign in ((_POSITIVE, "above zero"), (_NOT_NEGATIVE, "not negative")):
+        own = (entry.name for entry in fields(self))
+        passive = [name for name in own if name.endswith(("_stiffness", "_damping"))]
+        for names, sign in ((_POSITIVE, "above zero"), ((*_NOT_NEGATIVE, *passive), "not negative")):
             for name in names:
                 check_finite(name, getattr(self, name), sign)
         for name in _FRACTIONS:
@@ -197,10 +185,7 @@ class Rotor:
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
             rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
             raise InputError("flap_inertia", self.flap_inertia, rule)
-        gram = np.real(self._gram_matrix())
-        scale = np.sqrt(np.diagonal(gram, axis1=-2, axis2=-1))
-        correlation = gram / (scale[..., :, None] * scale[..., None, :])
-        if np.any(np.linalg.eigvalsh(correlation) < -1e-9):
+        if not nowhere_negative(np.real(self._gram_matrix())):
             rule = (
                 "cannot belong to one blade: the Gram matrix of the mass integrals has a negative eigenvalue"
             )
