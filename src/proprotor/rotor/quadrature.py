@@ -194,8 +194,7 @@ def _within(edges: Array, root: Array, tip: Array) -> Array:
 
 def _wide(edges: Array, tip: Array) -> Array:
     """Return which panels between edges (..., n) have a width, (..., n - 1)."""
-    wide: Array = np.real(np.diff(edges, axis=-1)) > 1e-12 * np.real(tip)[..., None]
-    return wide
+    return np.real(np.diff(edges, axis=-1)) > 1e-12 * np.real(tip)[..., None]
 
 
 def _points(starts: Array, widths: Array, tip: Array) -> Array:

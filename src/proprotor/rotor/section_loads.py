@@ -103,8 +103,7 @@ def segment_quantities(
     segments = {name: np.asarray(value)[..., None] for name, value in quantities.items()}
     for name in ("beyond_flap_hinge", "beyond_lag_hinge"):
         segments[name] = getattr(sections.quadrature, name)
-    geometry: dict[str, Any] = evaluate(equations.segment_geometry, segments)._asdict()
-    return segments | geometry
+    return {**segments, **evaluate(equations.segment_geometry, segments)._asdict()}
 
 
 def _air(
@@ -118,8 +117,7 @@ def _air(
         stations[name] = along_lines(line[..., at_axis], line[..., per_radius])
     stations["section_spin"] = along_lines(line[..., airloads.SPIN]) if spins else 0.0
     stations |= {"chord": sections.chord, "section_pitch": segments["pitch"] + sections.twist}
-    air: dict[str, Any] = evaluate(section.air_at_section, stations)._asdict()
-    return stations | air
+    return {**stations, **evaluate(section.air_at_section, stations)._asdict()}
 
 
 def compressible(coefficients: SectionCoefficients, mach: Array) -> SectionCoefficients:
@@ -181,7 +179,7 @@ def load_moments(
         }
         air, coefficients, spins = _aerodynamics(here, block, compressibility, equations)
         if doubts is not None:
-            _doubt(doubts, here, block, air, rows, points)
+            _doubt(doubts, here, block | air, rows, points)
         if lift_slope_only:
             coefficients = SectionCoefficients(lift_coefficient_alpha=coefficients.lift_coefficient_alpha)
         for name, load in _loads(air, coefficients, spins and not lift_slope_only, steady_only).items():
@@ -236,20 +234,15 @@ def _loads(
 
 
 def _doubt(
-    doubts: dict[str, Array],
-    sections: BladeSections,
-    segments: _Quantities,
-    air: _Quantities,
-    rows: Array | slice,
-    points: int,
+    doubts: dict[str, Array], sections: BladeSections, given: _Quantities, rows: Array | slice, points: int
 ) -> None:
-    """Mark the points at which outboard stations are beyond the range of the airfoil."""
+    """Mark the points at which outboard stations are beyond the range of the airfoil, by radius and air."""
     if not isinstance(sections.airfoil, Warns):
         return
-    radius = np.ravel(np.real(segments["radius"]))[:, None]
+    radius = np.ravel(np.real(given["radius"]))[:, None]
     outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * radius
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
-    found = sections.airfoil.warnings(*(air[name][..., first:] for name in ("lift_incidence", "mach")))
+    found = sections.airfoil.warnings(*(given[name][..., first:] for name in ("lift_incidence", "mach")))
     for text, mask in found.items():
         if mask.any():
             marks = doubts.setdefault(f"{text} outboard of {_OUTBOARD:g} R", np.zeros(points, dtype=bool))
@@ -272,5 +265,5 @@ def closed_form_moments(sections: BladeSections, segments: _Quantities) -> dict[
         "inner_edge": edges[..., 0],
         "outer_edge": edges[..., 1],
     }
-    moments: dict[str, Any] = evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()
-    return dict.fromkeys(LOAD_MOMENTS, 0.0) | moments
+    moments = evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()
+    return {**dict.fromkeys(LOAD_MOMENTS, 0.0), **moments}

@@ -202,9 +202,8 @@ class _Search:
 
     def finish(self) -> None:
         """Run full Newton; points that leave the end of their path begin again, on all stations."""
-        begun = self.near
-        own = np.setdiff1d(self.rows[~self.followed[self.rows]], begun)  # without a path, and not come near
-        done = self._newton_steps(np.union1d(begun, own))
+        without_path = self.rows[~self.followed[self.rows]]
+        done = self._newton_steps(np.union1d(self.near, without_path))
         self.reason[(self.reason == "") & ~self.followed & ~done] = not_found(self.balance.target)
         again = np.flatnonzero((self.reason == "") & self.followed & ~done)
         if not len(again):

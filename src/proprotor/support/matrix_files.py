@@ -64,10 +64,8 @@ def read_npz(
     for name in ("mass", "stiffness", "dofs"):
         if name not in arrays:
             raise InputError("file", str(path), f"has no array {name}")
-    names = _texts(path, np.atleast_1d(arrays["dofs"]))
-    return support_from_matrices(
-        arrays["mass"], arrays["stiffness"], arrays.get("damping"), dofs=names, hub=hub, **options
-    )
+    names = _texts(path, np.atleast_1d(arrays.pop("dofs")))
+    return support_from_matrices(**arrays, dofs=names, hub=hub, **options)
 
 
 def read_matrix_market(
@@ -95,9 +93,7 @@ def read_matrix_market(
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _matrix_market(name, path) for name, path in given.items() if path is not None}
     names = read_text(Path(dofs), "dofs", str(dofs), _LARGEST).split()
-    return support_from_matrices(
-        matrices["mass"], matrices["stiffness"], matrices.get("damping"), dofs=names, hub=hub, **options
-    )
+    return support_from_matrices(**matrices, dofs=names, hub=hub, **options)
 
 
 def support_from_matrices(
