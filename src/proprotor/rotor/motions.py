@@ -105,7 +105,7 @@ def check_support_names(field: str, names: Sequence[str]) -> None:
         if unprintable(name) or not name.strip():
             raise InputError(field, name, "must be printable text")
         if re.sub(r"\d+", "2", name) in _names_of_rotors() or name.endswith(SECOND):
-            rule = "must not be the name of a motion of a rotor: results could not tell the two motions apart"
+            rule = "must not be the name that a motion of a rotor has: results could not tell the two apart"
             raise InputError(field, name, rule)
     check_distinct(field, tuple(names))
 

@@ -171,7 +171,7 @@ class Rotor:
             if np.any(first > cutout / radius + _REACH) or np.any(last < 1 - _REACH):
                 rule = (
                     f"has stations from {_shown(first)} R to {_shown(last)} R; they must reach from the root cutout, "
-                    f'{_shown(cutout / radius)} R, to the tip, or say beyond = "held" for end values that hold there'
+                    f'{_shown(cutout / radius)} R, to the tip, or say beyond = "held" to hold the end values'
                 )
                 raise InputError(name, f"{np.size(table[1])} values", rule)
 
@@ -322,7 +322,7 @@ class Rotor:
         if np.any(mass < 0):
             raise InputError("mass_distribution", float(mass.min()), "must not be negative")
         if beyond not in ("", NOTHING):
-            rule = f'must say "{NOTHING}" of what is beyond, or not say it'
+            rule = f'must have beyond = "{NOTHING}", or no beyond'
             raise InputError("mass_distribution", beyond, rule)
         r = _reaching(r, fields_.get("radius"), beyond, hub_mass)
         _check_distribution("mass_distribution", (r, mass))
@@ -369,7 +369,7 @@ def _check_ends(r: Array, tip: Array, beyond: str, hub_mass: ArrayLike | None) -
         raise InputError("hub_mass", hub_mass, rule)
     if beyond != NOTHING and not (np.all(at_tip) and (hub_mass is not None or np.all(at_centre))):
         rule = (
-            f"{reached}; they must reach from the centre to the tip. Give hub_mass for what is inboard of the first, "
+            f"{reached}; they must reach from the centre to the tip. Give hub_mass for the mass inboard of the first, "
             f'or say beyond = "{NOTHING}" where there is no mass beyond the stations'
         )
         raise InputError("mass_distribution", f"{r.shape[-1]} values", rule)

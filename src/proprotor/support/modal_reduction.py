@@ -63,7 +63,8 @@ def on_modes(
         holds for all modes above, or a function that returns the values for shapes (n, k).
     rotor_mass : float
         Mass at the hub while modes are computed and damped, kg. This mass does not stay in the support, because the
-        rotor model brings it. Modes without the rotor would bend too little near the hub, and six would not be enough.
+        rotor model brings it. Modes without the rotor would bend too little near the hub, and six such modes would not
+        be enough.
     includes_rotor, shaft : bool or str, str
         How the mass includes the rotor already, as for `proprotor.support.normal_modes.NormalModes`.
     name_modes : callable, optional
@@ -86,7 +87,8 @@ def on_modes(
     ratio = per_mode(given, len(found.frequency))
     if count is None:
         shapes = np.eye(len(names))
-        structural = _modal_damping(_dense(loaded), found, ratio)
+        forces = _dense(loaded) @ found.shapes
+        structural = (forces * (2 * ratio * found.frequency)) @ forces.T  # M Φ (2ζω) Φᵀ M
     else:
         shapes = found.shapes
         structural = np.diag(2 * ratio * found.frequency)
@@ -118,13 +120,6 @@ def lowest_modes(mass: Any, stiffness: Any, count: int | None = None) -> Structu
     if count is not None and mass.shape[0] > max(_DENSE, 3 * count):
         return _lowest_of_many(mass, stiffness, count)
     return _of_few(_dense(mass), _dense(stiffness), count)
-
-
-def _modal_damping(mass: Array, modes: StructuralModes, damping_ratio: ArrayLike) -> Array:
-    """Return the viscous damping (n, n) that gives each mode of a mass its ratio (k,): C = M Φ (2ζω) Φᵀ M."""
-    forces = mass @ modes.shapes
-    damping: Array = (forces * (2 * np.asarray(damping_ratio) * modes.frequency)) @ forces.T
-    return damping
 
 
 def per_mode(damping_ratio: ArrayLike, count: int) -> Array:
