@@ -235,12 +235,8 @@ class _Walk:
     def _class(self, it: type) -> None:
         """Add the bases and the entries of a class."""
         self._each("class", (type(it), *it.__bases__))
-        own = {
-            name: entry
-            for name, entry in vars(it).items()
-            if name not in _MADE_BY_PYTHON and not name.startswith("__annot")
-        }
-        self._mapping(own)
+        own = {name for name in vars(it) if not name.startswith("__annot")}
+        self._mapping({name: vars(it)[name] for name in own.difference(_MADE_BY_PYTHON)})
 
     def _function(self, it: FunctionType) -> None:
         """Add code, defaults, closure and attributes of a function, and every global to which its code refers."""

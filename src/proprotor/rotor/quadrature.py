@@ -26,6 +26,8 @@ _DIGITS, _MOST_POINTS = 12, 16
 # axis is (rho + 1/rho)/2 half widths from the panel's centre.
 _NEARNESS = 2 / (1 + np.cosh(_DIGITS * np.log(10) / (2 * np.arange(1, _MOST_POINTS))))
 _COARSE_POINTS = 12
+# Nodes and weights on -1 to 1, kept because to find them takes longer than to fill a rotor's panels.
+_gauss = functools.cache(np.polynomial.legendre.leggauss)
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,12 +222,6 @@ def _gauss_points(starts: Array, widths: Array, points: Array, tip: Array) -> tu
         stations[places] = starts[blade, panel, None] + half[blade, panel, None] * (1 + nodes)
         weights[places] = half[blade, panel, None] * gauss
     return stations.reshape(*leading, count), weights.reshape(*leading, count)
-
-
-@functools.cache
-def _gauss(points: int) -> tuple[Array, Array]:
-    """Return nodes and weights on -1 to 1; finding these takes longer than filling a rotor's panels."""
-    return np.polynomial.legendre.leggauss(points)
 
 
 def _by_segment(

@@ -93,8 +93,10 @@ def on_modes(
         shapes = found.shapes
         structural = np.diag(2 * ratio * found.frequency)
         names = name_modes(shapes) if name_modes else [f"mode_{k}" for k in range(1, count + 1)]
-    matrices = {"mass": mass, "stiffness": stiffness, "damping": damping}
-    reduced = {name: _projected(matrix, shapes) for name, matrix in matrices.items() if matrix is not None}
+    parts = {"mass": mass, "stiffness": stiffness, "damping": damping}
+    reduced = {
+        name: symmetric(shapes.T @ (part @ shapes)) for name, part in parts.items() if part is not None
+    }
     reduced["damping"] = reduced.get("damping", 0.0) + symmetric(structural)
     support = NormalModes(
         names=names, **reduced, hub=hub @ shapes, includes_rotor=includes_rotor, shaft=shaft
@@ -213,11 +215,6 @@ def _with_mass_at_hub(mass: Any, hub: Array, rotor_mass: float) -> Any:
 
     moving = csc_array(moving)
     return csc_array(mass) + rotor_mass * (moving.T @ moving)
-
-
-def _projected(matrix: Any, shapes: Array) -> Array:
-    """Return a matrix on the coordinates of shapes (n, k)."""
-    return symmetric(shapes.T @ (matrix @ shapes))
 
 
 def symmetric(matrix: Array) -> Array:
