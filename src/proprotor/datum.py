@@ -1,6 +1,7 @@
 """A number with its provenance: the text in the deck, the SI value, the unit, the status and the source.
 
-Every number of a deck becomes a `Datum`, which results and reports show. `deck_unit` says in which unit it was written.
+Every number of a deck becomes a `Datum`, which results and reports show. `deck_unit` says in which unit the
+number was written.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Errors of inputs: the field, the value and the rule that the value breaks, and the words that messages are made of.
 
-`InputError` is the only error that an input raises. The checks of numbers, the lists of names and choices that messages
-have in common, and the way in which a text is shown on a terminal stand here too.
+`InputError` is the only error that an input raises. The checks of numbers and matrices, the lists of names and
+choices that messages have in common, and the way in which a text is shown on a terminal stand here too.
 """
 
 from __future__ import annotations
@@ -45,9 +45,7 @@ class InputError(ValueError):
 
     def __init__(self, field: str, value: object, rule: str, others: Iterable[InputError] = ()) -> None:
         self.field, self.value, self.rule, self.others = field, value, rule, tuple(others)
-        super().__init__(
-            field, value, rule, self.others
-        )  # with all arguments, so that the error can be pickled
+        super().__init__(field, value, rule, self.others)  # all arguments, so that the error can be pickled
 
     def __str__(self) -> str:
         shown = "" if self.value is None else f" = {_on_one_line(self.value)}"
@@ -109,17 +107,29 @@ def check_finite(field: str, value: Any, sign: str = "") -> None:
             raise InputError(field, value, rule)
 
 
+def nowhere_negative(matrix: np.ndarray[Any, Any]) -> bool:
+    """Return whether symmetric matrices (..., n, n) have no negative eigenvalue.
+
+    The matrices are scaled to a unit diagonal, so that kg and kg m² in one matrix do not set the tolerance.
+    """
+    diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
+    if (diagonal < 0).any():
+        return False
+    scale = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    scaled = matrix / (scale[..., :, None] * scale[..., None, :])
+    return bool((np.linalg.eigvalsh(scaled) > -1e-9).all())
+
+
 # Names and choices in messages --------------------------------------------------------------------
 
 
 def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
     """Return the rule that an unknown name breaks, with the nearest known name or, without a near name, all names."""
     by_lower_case = {k.lower(): k for k in known}
-    nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1) or [
-        k
-        for k in by_lower_case
-        if name and k.startswith(f"{name.lower()}_")  # "thrust" for thrust_coefficient
-    ]
+    longer = [
+        k for k in by_lower_case if name and k.startswith(f"{name.lower()}_")
+    ]  # as "thrust_coefficient"
+    nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1) or longer
     hint = f"did you mean {by_lower_case[nearest[0]]}?" if nearest else f"known: {', '.join(known)}"
     return f"unknown {what} {_on_one_line(name)!r}; {hint}"
 

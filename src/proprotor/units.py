@@ -232,7 +232,7 @@ def _rising(text: str, numbers: list[float], most: int, what: str, field: str = 
     start, stop, step = numbers
     if not step > 0 or stop < start:
         raise InputError(field, text, "must rise from start to stop, start:stop:step, by a positive step")
-    steps = (stop - start) / step * (1 + 1e-12)  # slightly more, so that 0:1:0.1 includes its 1
+    steps = (stop - start) / step * (1 + 1e-12)  # slightly more, so that 0:1:0.1 includes the stop
     if not steps < most:
         raise InputError(field, text, f"must have at most {most} {what}")
     check_memory(field, text, 24 * steps, f"{steps:.4g} {what}", "take a larger step")
@@ -262,13 +262,11 @@ def in_metres_per_second(airspeed: Any) -> Array:
     InputError
         When the value is not a speed.
     """
-    if isinstance(airspeed, str) or (isinstance(airspeed, list | tuple) and has_own_unit(airspeed)):
-        if not isinstance(airspeed, str):
-            return values_in_si(airspeed, "m/s", "airspeed")
+    if isinstance(airspeed, str):
         found = speeds(airspeed)
         return found if ":" in airspeed else found.reshape(())
     if has_own_unit(airspeed):
-        return as_si(airspeed, "m/s", "airspeed")
+        return values_in_si(airspeed, "m/s", "airspeed")
     try:
         return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)
     except (TypeError, ValueError):
@@ -319,7 +317,7 @@ def _split(text: str | float) -> tuple[float, str]:
 
 
 def _parse_unit(text: object, unit: str) -> pint.Unit:
-    """Return a unit of the registry, or refuse one that is unknown or not written as a product of names."""
+    """Return a unit of the registry, or refuse a unit that is unknown or not written as a product of names."""
     import pint
 
     product = f"1{unit}" if unit.startswith("/") else unit  # "5.7/rad"

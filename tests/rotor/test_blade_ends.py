@@ -177,7 +177,7 @@ def test_a_table_that_ends_early_is_refused(tmp_path, way, column, end):
     assert f"has stations from {first:g} R to {last:g} R; they must reach from " in told
     assert f'say beyond = "{word}"' in told and len(told.splitlines()) == 1
     if column == "mass_distribution":
-        assert "Give hub_mass for what is inboard of the first" in told
+        assert "Give hub_mass for the mass inboard of the first" in told
     else:
         assert "from the root cutout, 0.0875 R, to the tip" in told
 
@@ -218,7 +218,7 @@ def test_other_words_are_refused(tmp_path):
     rotor = blade([0.0, 4.0], [9.0, 3.0])
     with pytest.raises(InputError, match='must be \\(r, values\\), or \\(r, values, "held"\\)'):
         replace(rotor, chord=([0.0, 4.0], [0.4, 0.3], "nothing"))
-    with pytest.raises(InputError, match='must say "nothing" of what is beyond, or not say it'):
+    with pytest.raises(InputError, match='must have beyond = "nothing", or no beyond'):
         blade([0.0, 4.0], [9.0, 3.0], "held")
 
 

@@ -123,9 +123,9 @@ def fine_moments(rotor, airspeed, start, end):
 @many
 @given(blades, airspeeds)
 def test_radial_moments_of_section_loads(rotor, airspeed):
-    quadrature = rotor.quadrature
-    loads = loads_and_derivatives(quadrature.stations, rotor.station_chord, rotor.station_twist, airspeed)
-    moments = quadrature.moments(loads)
+    r = rotor.quadrature.stations
+    loads = loads_and_derivatives(r, rotor.chord_at(r), rotor.twist_at(r), airspeed)
+    moments = rotor.quadrature.moments(loads)
     ends = segment_ends(rotor)
     assert moments.shape == (20, len(ends) - 1, 3)
     for segment, (start, end) in enumerate(itertools.pairwise(ends)):

@@ -3,7 +3,7 @@
 Numbers, texts, arrays and containers count by value. An object counts by its class and by the state that another
 process would receive in a pickle. A function counts by its code, its defaults, the contents of its closure and its
 attributes, and every global to which it refers. Installed modules count by name and version instead, because these
-define the code. An object that contains itself is followed once around.
+define the code. Where an object contains itself, its place on the walk counts in its stead.
 
 An object whose content cannot be read, such as an open file, is refused: without that content the fingerprint could be
 the fingerprint of other inputs.
@@ -42,7 +42,8 @@ _OWN = ("proprotor", "proprotor_equations")  # `source_code` makes a fingerprint
 _PLAIN = (type(None), bool, float, complex, bytes, EllipsisType, NotImplementedType)
 _CACHED_FUNCTION = type(functools.cache(lambda: None))
 _WRAPPERS = (property, staticmethod, classmethod, functools.cached_property, _CACHED_FUNCTION)
-_OF_GLOBALS = ("LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS")  # instructions
+# Instructions of compiled code that read a global, and that import a module.
+_OF_GLOBALS, _OF_IMPORTS = ("LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS"), ("IMPORT_NAME",)
 _LONGEST = 8  # names of a path in a message
 _MADE_AS_IT_RUNS = 1 << 9  # flag of a class that Python code has made
 # Builtins that read something outside the function.
@@ -72,7 +73,7 @@ def fingerprint(content: Any, name: str = "") -> str:
     try:
         walk.add(content)
     except RecursionError:
-        raise walk.refusal("what is nested too deeply") from None
+        raise walk.refusal("an object that is nested too deeply") from None
     return walk.digest.hexdigest()
 
 
@@ -82,9 +83,8 @@ class _Walk:
     def __init__(self, path: list[str]) -> None:
         self.digest = hashlib.sha256()
         self.path = path  # names of the parts that are being read, from the outermost to the innermost
-        self.around: dict[
-            int, int
-        ] = {}  # parts that are being read, by identity, with their place on the walk
+        # Parts that are being read, by identity, with their place on the walk.
+        self.around: dict[int, int] = {}
         self.met: dict[int, tuple[int, Any]] = {}  # functions and classes by identity: number and object
 
     def add(self, it: Any) -> None:
@@ -235,12 +235,8 @@ class _Walk:
     def _class(self, it: type) -> None:
         """Add the bases and the entries of a class."""
         self._each("class", (type(it), *it.__bases__))
-        own = {
-            name: entry
-            for name, entry in vars(it).items()
-            if name not in _MADE_BY_PYTHON and not name.startswith("__annot")
-        }
-        self._mapping(own)
+        own = {name for name in vars(it) if not name.startswith("__annot")}
+        self._mapping({name: vars(it)[name] for name in own.difference(_MADE_BY_PYTHON)})
 
     def _function(self, it: FunctionType) -> None:
         """Add code, defaults, closure and attributes of a function, and every global to which its code refers."""
@@ -257,10 +253,10 @@ class _Walk:
         codes = list(_nested(it.__code__))
         names = {name for code in codes for name in code.co_names}
         names |= {text for code in codes for text in code.co_consts if isinstance(text, str)}
-        for name in sorted({name for code in codes for name in _globals_of(code)}):
+        for name in _names_in(codes, _OF_GLOBALS):
             with self._within(name):
                 self._global(name, it.__globals__, names)
-        for name in sorted({name for code in codes for name in _imports_of(code)}):
+        for name in _names_in(codes, _OF_IMPORTS):
             with self._within(name):
                 self._imported(name, names)
 
@@ -339,14 +335,10 @@ def _nested(code: CodeType) -> Iterator[CodeType]:
             yield from _nested(constant)
 
 
-def _globals_of(code: CodeType) -> set[str]:
-    """Return the names of the globals that compiled code reads."""
-    return {step.argval for step in dis.get_instructions(code) if step.opname in _OF_GLOBALS}
-
-
-def _imports_of(code: CodeType) -> set[str]:
-    """Return the names of the modules that compiled code imports."""
-    return {step.argval for step in dis.get_instructions(code) if step.opname == "IMPORT_NAME"}
+def _names_in(codes: Iterable[CodeType], instructions: tuple[str, ...]) -> list[str]:
+    """Return the names to which some instructions of compiled code refer, in alphabetical order."""
+    steps = (step for code in codes for step in dis.get_instructions(code))
+    return sorted({step.argval for step in steps if step.opname in instructions})
 
 
 def _package(module: str) -> str:

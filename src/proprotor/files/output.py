@@ -67,8 +67,7 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     OSError
         When no file can be made in the folder, or an existing file may not be replaced.
     """
-    place, before = _place(path)
-    with _unfinished(place, before):
+    with _unfinished(*_place(path)):
         pass
 
 
@@ -133,7 +132,7 @@ def _unfinished(place: Path, before: os.stat_result | None) -> Iterator[IO[bytes
 
 
 def _make_like(name: str, before: os.stat_result) -> None:
-    """Give a file the permissions of an earlier one, and the same owner if this user is allowed to."""
+    """Give a file the permissions of an earlier one, and the same owner if this user may set the owner."""
     if hasattr(os, "chown"):
         with suppress(PermissionError):
             os.chown(name, before.st_uid, before.st_gid)

@@ -40,9 +40,8 @@ def code_fingerprint() -> str:
     """
     digest = hashlib.sha256()
     for name, path in modules():
-        if (
-            _IMPORTED < path.stat().st_mtime <= time.time()
-        ):  # a time in the future is a wrong clock, not a change
+        # A time in the future comes from a wrong clock, not from a change.
+        if _IMPORTED < path.stat().st_mtime <= time.time():
             raise InputError("code", path, "was changed after this process had read it: start Python again")
         text = path.read_bytes()
         digest.update(f"{name}:{len(text)}:".encode() + text)

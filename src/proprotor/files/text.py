@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import io
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,19 +34,16 @@ def read_text(
     InputError
         When the file does not exist, cannot be read, is larger than allowed or is not text of that encoding.
     """
+    content = None
     try:
-        found = file.is_file()
-    except ValueError:  # a name with a null character
-        found = False
-    except OSError as error:  # a name too long, a folder that this user may not enter
+        with suppress(ValueError):  # a name with a null character
+            if file.is_file():
+                with file.open("rb") as stream:
+                    content = stream.read(largest + 1)
+    except OSError as error:  # such as a name too long, or a folder that this user may not enter
         raise InputError(field, label, f"cannot be read ({error.strerror})") from None
-    if not found:
+    if content is None:
         raise InputError(field, label, "no such file")
-    try:
-        with file.open("rb") as stream:
-            content = stream.read(largest + 1)
-    except OSError as error:
-        raise InputError(field, label, f"cannot be read ({error.strerror})") from None
     if len(content) > largest:
         raise InputError(field, label, f"must not be larger than {largest} bytes")
     try:

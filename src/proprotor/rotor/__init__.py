@@ -7,7 +7,8 @@ matrices. This room imports `errors`, `typing` and `files`, and the generated eq
 What a rotor is:
     rotor                a proprotor: geometry, mass, springs, chord and twist
     airfoil              section coefficients; the linear airfoil
-    airfoil_table        an airfoil from tables, c81 : files of such tables
+    airfoil_table        an airfoil from tables
+    c81                  files of such tables in the C81 format
     coefficient_surface  the smooth surface through a table
     drive_train          engine and shaft
     blade_frequencies    frequencies given in tables, in place of springs

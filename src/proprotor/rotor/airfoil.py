@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 
@@ -120,11 +121,7 @@ class Airfoil:
         -------
         Airfoil
         """
-        arrays = {entry.name: np.asarray(getattr(self, entry.name)) for entry in fields(self)}
-        many: dict[str, Any] = {
-            name: np.broadcast_to(value, shape).reshape(-1, 1) for name, value in arrays.items() if value.ndim
-        }
-        return replace(self, **many)
+        return self._with_arrays(lambda array: np.broadcast_to(array, shape).reshape(-1, 1))
 
     def take(self, rows: Array | slice) -> Airfoil:
         """Return a flattened airfoil at some of the points.
@@ -138,9 +135,17 @@ class Airfoil:
         -------
         Airfoil
         """
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        many = {name: value[rows] for name, value in values.items() if np.ndim(value)}
-        return replace(self, **many) if many else self
+        return self._with_arrays(lambda array: array[rows])
+
+    @property
+    def real(self) -> Airfoil:
+        """The airfoil without imaginary parts."""
+        return replace(self, **{name: np.real(value) for name, value in vars(self).items()})
+
+    def _with_arrays(self, change: Callable[[Array], Any]) -> Airfoil:
+        """Return the airfoil with a change to each value that is an array."""
+        arrays = {name: np.asarray(value) for name, value in vars(self).items() if np.ndim(value)}
+        return replace(self, **{name: change(array) for name, array in arrays.items()}) if arrays else self
 
     def warnings(self, alpha: Array, mach: Array) -> dict[str, Array]:
         """Return where linear lift or the Prandtl-Glauert factor is doubtful.

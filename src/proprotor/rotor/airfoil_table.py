@@ -26,8 +26,8 @@ class AirfoilTable:
     """Section coefficients interpolated in a table, with the exact derivatives of the interpolation.
 
     `proprotor.rotor.coefficient_surface` interpolates: smooth, exact at the nodes, without overshoot along the rows
-    and columns of the table. Outside the table the coefficients go on straight in angle of attack and are held in
-    Mach number (a table from -180 to 180 deg closes on itself); `warnings` says where a point lies outside.
+    and columns of the table. Outside the table the coefficients continue on straight lines in angle of attack and are
+    constant in Mach number (a table from -180 to 180 deg closes on itself); `warnings` says where a point lies outside.
 
     Parameters
     ----------

@@ -53,27 +53,24 @@ def standard_air(altitude: ArrayLike, temperature_offset: ArrayLike = 0.0) -> Ai
     InputError
         When an altitude or an offset is not finite or out of range.
     """
-    check_number("altitude", altitude)
-    check_number("temperature_offset", temperature_offset)
-    altitude, offset = np.broadcast_arrays(np.asarray(altitude), np.asarray(temperature_offset))
     _check("altitude", altitude, _LOWEST, _HIGHEST, "m")
-    _check("temperature_offset", offset, -_MOST_OFFSET, _MOST_OFFSET, "K")
+    _check("temperature_offset", temperature_offset, -_MOST_OFFSET, _MOST_OFFSET, "K")
+    altitude, offset = np.broadcast_arrays(altitude, temperature_offset)
     density, sound, pressure, temperature, lapse, gravity = _standard(altitude.real)
-    if np.iscomplexobj(altitude):
-        # dp/dH = -g0 ρ, dT/dH as in the layer, ρ ~ p/T
-        step = 1j * altitude.imag
-        fall = gravity * density / pressure
-        density = density * (1 - (fall + lapse / temperature) * step)
-        pressure = pressure * (1 - fall * step)
-        standard = temperature + lapse * step
-    else:
-        standard = temperature
+    # dp/dH = -g0 ρ, dT/dH as in the layer, ρ ~ p/T
+    step = 1j * altitude.imag if np.iscomplexobj(altitude) else 0.0
+    fall = gravity * density / pressure
+    density = density * (1 - (fall + lapse / temperature) * step)
+    pressure = pressure * (1 - fall * step)
+    standard = temperature + lapse * step
     actual = standard + offset
     return Air(density * standard / actual, sound * np.sqrt(actual / temperature), pressure, actual)
 
 
-def _check(field: str, values: Array, least: float, most: float, unit: str) -> None:
-    """Refuse values that are not finite or out of range."""
+def _check(field: str, given: ArrayLike, least: float, most: float, unit: str) -> None:
+    """Refuse values that are no numbers, not finite or out of range."""
+    check_number(field, given)
+    values = np.asarray(given)
     wrong = ~((values.real >= least) & (values.real <= most) & np.isfinite(values))
     if wrong.any():
         rule = f"must lie between {least:g} and {most:g} {unit}"

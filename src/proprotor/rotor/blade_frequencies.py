@@ -1,4 +1,4 @@
-"""Flap and lag frequencies of a blade given against collective or airspeed, as analyses with tabulated rotors use."""
+"""Flap and lag frequencies of a blade against collective or airspeed, which some analyses use in place of springs."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ class BladeFrequencies:
     at : array (k,), optional
         Abscissae of the tables' entries, rad or m/s, increasing; not needed for numbers and functions.
     flap, lag : float, array (k,) or function of an array
-        Frequency per revolution. Tables are interpolated smoothly without overshoot and held at their ends.
+        Frequency per revolution. Tables are interpolated smoothly without overshoot; beyond its ends a table
+        keeps its end values.
     cyclic_flap : the same, optional
         Frequency of cyclic flapping if it differs from collective flapping, as when the gimbal is locked and the
         gimbal's mode stands in the blade's place.
@@ -81,15 +82,16 @@ class BladeFrequencies:
             return change / (2 * step)
         if np.ndim(curve) == 0:
             return np.zeros(np.shape(abscissa))
-        at = np.asarray(self.at, dtype=float)
-        slope: Array = self._interpolation(curve).derivative()(np.clip(abscissa, at[0], at[-1]))
-        return np.asarray(np.where((abscissa < at[0]) | (abscissa > at[-1]), 0.0, slope))
+        interpolant, held = self._interpolation(curve, abscissa)
+        outside = (abscissa < held) | (abscissa > held)
+        return np.asarray(np.where(outside, 0.0, interpolant.derivative()(held)))
 
-    def _interpolation(self, curve: _Curve) -> Any:
-        """Return the interpolant of a table."""
+    def _interpolation(self, curve: _Curve, abscissa: Array) -> tuple[Any, Array]:
+        """Return the interpolant of a table, and an abscissa with values beyond the table moved to its ends."""
         from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
 
-        return PchipInterpolator(np.asarray(self.at, dtype=float), np.asarray(curve, dtype=float))
+        at = np.asarray(self.at, dtype=float)
+        return PchipInterpolator(at, np.asarray(curve, dtype=float)), np.clip(abscissa, at[0], at[-1])
 
     def _value(self, curve: _Curve, abscissa: Array) -> Array:
         """Return a curve at a real abscissa; a function must give positive values."""
@@ -102,9 +104,8 @@ class BladeFrequencies:
         given = np.asarray(curve, dtype=float)
         if given.ndim == 0:
             return np.full(np.shape(abscissa), float(given))
-        at = np.asarray(self.at, dtype=float)
-        found: Array = self._interpolation(curve)(np.clip(abscissa, at[0], at[-1]))
-        return found
+        interpolant, held = self._interpolation(curve, abscissa)
+        return np.asarray(interpolant(held))
 
     def rotating(self, collective: Array, airspeed: Array, rotor_speed: Array) -> dict[str, Array]:
         """Return rotating frequencies by the names of the derivation; the arguments broadcast.

@@ -1,7 +1,7 @@
 """C81 airfoil files: card images of seven columns for each number.
 
 Line 1 has a title (columns 1-30) and six counts of two digits: Mach numbers and angles of lift, of drag and of moment.
-Each of the three tables is a line of Mach numbers, whose first seven columns are blank, and a line for every angle of
+Each of the three tables is a line of Mach numbers, whose first seven columns are blank, and a line for each angle of
 attack in degrees. A line has nine values; more values follow on lines that begin with seven blanks.
 
 The package has a reader of its own. The reader on the package index, c81utils 1.1.0, splits lines at blanks: it refuses
@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +45,7 @@ def read_c81(path: str | os.PathLike[str]) -> tuple[str, dict[str, Table]]:
     """
     try:
         text = read_text(Path(path), "table", os.fspath(path), _LARGEST, encoding="latin-1")  # any title
-        return _read(_Lines(text))
+        return _read(_Lines(re.split("\r\n|\r|\n", text.rstrip())))
     except _Fault as fault:
         raise InputError("table", os.fspath(path), str(fault)) from None
 
@@ -58,17 +58,13 @@ class _Fault(Exception):
 class _Lines:
     """The lines of a file, read one after another."""
 
-    text: str
+    lines: list[str]
     number: int = 0
-    lines: list[str] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.lines = re.split("\r\n|\r|\n", self.text.rstrip())
 
     def take(self, what: str) -> str:
-        """Return the next line, which must hold something named for the message."""
+        """Return the next line of the file; `what` says in the message what a missing line must have."""
         if self.number == len(self.lines):
-            raise _Fault(f"line {self.number + 1}: is missing; it must have {what}")
+            raise self.fault(f"is missing; it must have {what}", self.number + 1)
         self.number += 1
         return self.lines[self.number - 1]
 
@@ -85,8 +81,8 @@ def _read(lines: _Lines) -> tuple[str, dict[str, Table]]:
     for (name, least), columns, rows in zip(COEFFICIENTS.items(), counts[::2], counts[1::2], strict=True):
         tables[name] = _table(lines, name, columns, rows, least)
     if lines.number < len(lines.lines):
-        lines.number += 1
-        raise lines.fault("must not be there: the counts of line 1 end the moment table before it")
+        rule = "must not be there: the counts of line 1 end the moment table before it"
+        raise lines.fault(rule, lines.number + 1)
     return printable(header[: _COUNTS.start]).strip(), tables
 
 

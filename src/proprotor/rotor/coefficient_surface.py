@@ -28,9 +28,9 @@ _SAME = 1e-9  # coefficients and angles that differ by less are equal
 class CoefficientSurface:
     """A coefficient at n angles and m Mach numbers, and between and beyond these nodes.
 
-    Outside the table the surface goes on straight in angle of attack and is held in Mach number, with a Mach
-    derivative of zero. A table from -180 to 180 deg whose ends agree closes on itself instead, and a table with a
-    single column holds at every Mach number.
+    Outside the table the surface continues on straight lines in angle of attack and is constant in Mach number, with
+    a Mach derivative of zero. A table from -180 to 180 deg whose ends agree closes on itself instead, and a table with
+    a single column holds at every Mach number.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def _slopes(x: Array, values: Array) -> Array:
 def _cubics(x: Array, values: Array, slopes: Array, outside: float) -> Array:
     """Return the coefficients (n + 1, 4, ...) of the cubics between n nodes along the first axis, and of lines outside.
 
-    `outside` is the factor on the slope beyond the ends: 1 to go on straight, 0 to hold the value.
+    `outside` is the factor on the slope beyond the ends: 1 for a straight line, 0 for a constant value.
     """
     step = np.diff(x).reshape(-1, *[1] * (values.ndim - 1))
     secant, left, right = np.diff(values, axis=0) / step, slopes[:-1], slopes[1:]

@@ -15,15 +15,15 @@ from proprotor_equations import published
 
 @dataclass(frozen=True)
 class EquationSet:
-    """Generated modules that a dropped term can change, for the option ``equations``.
+    """The generated modules that change when terms of the derivation are dropped, for the option ``equations``.
 
     The functions that all sets share are imported from `proprotor_equations` where they are used.
 
     Parameters
     ----------
     inertia, flap_lag_springs, pitch, airloads : module
-        Each with the functions of the module of `proprotor_equations.published` that has its name, under the arguments
-        of that module. A set of one's own has modules of its own in some of the four places.
+        Each module has the functions and arguments of the module of the same name in `proprotor_equations.published`.
+        A user's own set has the user's modules in some of the four places.
     """
 
     inertia: ModuleType
@@ -33,27 +33,16 @@ class EquationSet:
 
 
 EQUATION_SETS = {
-    "consistent": EquationSet(
-        consistent.inertia, consistent.flap_lag_springs, consistent.pitch, consistent.airloads
-    ),
-    "published": EquationSet(
-        published.inertia, published.flap_lag_springs, published.pitch, published.airloads
-    ),
+    name: EquationSet(package.inertia, package.flap_lag_springs, package.pitch, package.airloads)
+    for name, package in {"consistent": consistent, "published": published}.items()
 }
 
+_arguments = cache(inspect.getfullargspec)
 
-@cache
-def keywords(function: Callable[..., Any]) -> tuple[str, ...]:
+
+def keywords(function: Callable[..., Any]) -> list[str]:
     """Return the names of the quantities that a generated function takes."""
-    parameters = inspect.signature(function).parameters.values()
-    return tuple(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
-
-
-@cache
-def _optional(function: Callable[..., Any]) -> frozenset[str]:
-    """Return the names of the quantities that a generated function can do without."""
-    parameters = inspect.signature(function).parameters.values()
-    return frozenset(p.name for p in parameters if p.default is not inspect.Parameter.empty)
+    return _arguments(function).kwonlyargs
 
 
 def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matrices: Any) -> Any:
@@ -66,12 +55,11 @@ def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matri
     KeyError
         When a quantity that the function needs is missing.
     """
-    optional = _optional(function)
+    optional = _arguments(function).kwonlydefaults or {}
     names = (name for name in keywords(function) if name in quantities or name not in optional)
     try:
         given = {name: quantities[name] for name in names}
     except KeyError as missing:
-        where = f"{function.__module__}.{function.__name__}"
-        message = f"{where} takes {missing}, which nothing gives; a field of Rotor does"
-        raise KeyError(message) from None
+        name = f"{function.__module__}.{function.__name__}"
+        raise KeyError(f"{name} takes {missing}, which nothing gives; a field of Rotor does") from None
     return function(*matrices, **given)

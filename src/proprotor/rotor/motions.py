@@ -13,9 +13,11 @@ from proprotor_equations.coordinates import DIFFERENTIAL, FIXED, REACTIONLESS_PA
 from proprotor.errors import InputError, unprintable
 
 HUB = tuple(coordinate.name for coordinate in FIXED if coordinate.angle in ("hub", "turn"))
-ROTOR_SPEED = "azimuth"  # the model has the rate of this coordinate: nothing holds the rotor's azimuth
-_COLLECTIVE = {"flap": "coning"}
-_AZIMUTH = "rotor speed"
+ROTOR_SPEED = (
+    "azimuth"  # only the rate of this coordinate is a state, because nothing holds the rotor's azimuth
+)
+_NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning"}  # of the modes of single coordinates
+_PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
 
 
@@ -35,7 +37,7 @@ class Motion(NamedTuple):
 
 
 def reactionless_coordinates(n_blades: int) -> list[Coordinate]:
-    """Return the blade motions beyond Eq. 17: harmonics 2 to below N/2, for even N also neighbours in opposition."""
+    """Return the blade motions that Eq. 17 leaves out: harmonics 2 to below N/2, for even N also opposed neighbours."""
     pairs = [
         motion._replace(name=f"{motion.angle}_{harmonic}{motion.part}", harmonic=harmonic)
         for harmonic in reactionless_harmonics(n_blades)
@@ -77,13 +79,7 @@ def _cyclic_names(dof: str) -> tuple[str, str]:
 def _single_name(dof: str) -> str:
     """Return the name of the mode of a single coordinate."""
     stem, _, part = dof.rpartition("_")
-    if dof == ROTOR_SPEED:
-        return _AZIMUTH
-    if stem and part == "0":
-        return _COLLECTIVE.get(stem, f"collective {stem}")
-    if stem and part == "d":
-        return f"differential {stem}"
-    return dof
+    return _NAMES.get(dof) or (f"{_PARTS[part]} {stem}" if stem and part in _PARTS else dof)
 
 
 def name_list(dofs: tuple[str, ...]) -> list[str]:
@@ -109,7 +105,7 @@ def check_support_names(field: str, names: Sequence[str]) -> None:
         if unprintable(name) or not name.strip():
             raise InputError(field, name, "must be printable text")
         if re.sub(r"\d+", "2", name) in _names_of_rotors() or name.endswith(SECOND):
-            rule = "must not be the name that a motion of a rotor has, which results would take it for"
+            rule = "must not be the name that a motion of a rotor has: results could not tell the two apart"
             raise InputError(field, name, rule)
     check_distinct(field, tuple(names))
 

@@ -45,11 +45,11 @@ class Operation:
 
     def _check_trim(self) -> None:
         """Refuse a trim that is neither "windmill" nor one target with a finite value."""
-        if isinstance(self.trim, str):
-            if not self.windmilling:
-                known = ("windmill", *_TRIM_TARGETS)
-                raise InputError("trim", self.trim, unknown_name(self.trim, known, "trim"))
+        if self.windmilling:
             return
+        if isinstance(self.trim, str):
+            rule = unknown_name(self.trim, ("windmill", *_TRIM_TARGETS), "trim")
+            raise InputError("trim", self.trim, rule)
         if not isinstance(self.trim, Mapping) or len(self.trim) != 1:
             rule = 'must be "windmill" or one target such as {"collective": 0.6}'
             raise InputError("trim", self.trim, rule)

@@ -50,8 +50,8 @@ class Options:
     Parameters
     ----------
     equations : "consistent" or "published"
-        Every first-order term, or what AIAA-2002-1604 keeps of the perturbation equations (the trim is the same); an
-        `EquationSet` has generated modules of its own.
+        Every first-order term, or the terms that AIAA-2002-1604 keeps in the perturbation equations (the trim is the
+        same); an `EquationSet` has generated modules of its own.
     pitch : "dynamic", "coupling" or "rigid"
         Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
     structure : "coupled", "diagonal" or "tabulated"
@@ -101,9 +101,7 @@ class Options:
     def __post_init__(self) -> None:
         for name, choices in CHOICES.items():
             value = getattr(self, name)
-            if isinstance(value, EquationSet):
-                continue
-            if value not in choices:
+            if not isinstance(value, EquationSet) and value not in choices:
                 raise InputError(name, value, f"must be one of {', '.join(map(str, choices))}")
         if self.section_damping is None:
             object.__setattr__(self, "section_damping", default_choice("section_damping", vars(self)))

@@ -13,18 +13,21 @@ from proprotor.typing import Array
 
 POWERS = 3  # moments of r^0, r^1 and r^2
 # Number of points for a panel of a given share of the radius: at high airspeed section loads vary over the radius. At
-# low airspeed section loads turn within V/Ω of the axis: panels near the root double outward, with points by distance
-# from the axis. Every radial moment then has a relative error below 1e-10 (tests/rotor/test_quadrature.py).
+# low airspeed section loads change quickly within V/Ω of the axis: panels near the root double in width outward, and
+# the number of their points follows from the distance to the axis. Every radial moment then has a relative error below
+# 1e-10 (tests/rotor/test_quadrature.py).
 _LONGEST_PANEL = 0.1
 _SHARES, _POINTS = np.array([0.021, 0.03, 0.06]), np.array([3, 4, 6, 8])
 _NEAR_ROOT = 0.2 / 2.0 ** np.arange(7)  # of the radius
 _TINY = np.finfo(float).tiny
 _DIGITS, _MOST_POINTS = 12, 16
-# Width of a panel, as a share of its outer radius, up to which 1, 2, ... points resolve loads that turn at the axis.
-# Gauss errors fall as rho^(-2n), with rho the size of the ellipse about the panel that reaches the axis; the axis is
-# (rho + 1/rho)/2 half widths from the panel's centre.
+# Width of a panel, as a share of its outer radius, up to which 1, 2, ... points resolve loads that change quickly at
+# the axis. Gauss errors fall as rho^(-2n), with rho the size of the ellipse about the panel that reaches the axis; the
+# axis is (rho + 1/rho)/2 half widths from the panel's centre.
 _NEARNESS = 2 / (1 + np.cosh(_DIGITS * np.log(10) / (2 * np.arange(1, _MOST_POINTS))))
 _COARSE_POINTS = 12
+# Nodes and weights on -1 to 1, kept because to find them takes longer than to fill a rotor's panels.
+_gauss = functools.cache(np.polynomial.legendre.leggauss)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,12 +149,11 @@ def gauss_panels(
     knots : array (..., k)
         Radii at which chord or twist has a kink, m.
     """
-    at = np.zeros(knots.shape[:-1])
-    root, tip, flap, lag, _ = np.broadcast_arrays(
-        root_cutout, radius, flap_hinge_offset, lag_hinge_offset, at
-    )
+    blades = np.zeros(knots.shape[:-1])
+    given = root_cutout, radius, flap_hinge_offset, lag_hinge_offset, blades
+    root, tip, flap, lag, _ = np.broadcast_arrays(*given)
     inner, outer = root[..., None], tip[..., None]
-    share = np.linspace(0, 1, max(2, int(np.ceil(1 / _LONGEST_PANEL)) + 1))[1:-1]
+    share = np.linspace(0, 1, round(1 / _LONGEST_PANEL) + 1)[1:-1]
     even, tabulated = inner + (outer - inner) * share, np.broadcast_to(knots, (*root.shape, knots.shape[-1]))
     if knots.shape[-1]:
         # If a table splits the blade finely already, even panels would only add stations.
@@ -194,8 +196,7 @@ def _within(edges: Array, root: Array, tip: Array) -> Array:
 
 def _wide(edges: Array, tip: Array) -> Array:
     """Return which panels between edges (..., n) have a width, (..., n - 1)."""
-    wide: Array = np.real(np.diff(edges, axis=-1)) > 1e-12 * np.real(tip)[..., None]
-    return wide
+    return np.real(np.diff(edges, axis=-1)) > 1e-12 * np.real(tip)[..., None]
 
 
 def _points(starts: Array, widths: Array, tip: Array) -> Array:
@@ -221,12 +222,6 @@ def _gauss_points(starts: Array, widths: Array, points: Array, tip: Array) -> tu
         stations[places] = starts[blade, panel, None] + half[blade, panel, None] * (1 + nodes)
         weights[places] = half[blade, panel, None] * gauss
     return stations.reshape(*leading, count), weights.reshape(*leading, count)
-
-
-@functools.cache
-def _gauss(points: int) -> tuple[Array, Array]:
-    """Return nodes and weights on -1 to 1; finding these takes longer than filling a rotor's panels."""
-    return np.polynomial.legendre.leggauss(points)
 
 
 def _by_segment(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from proprotor_equations import inertia
 
-from proprotor.errors import InputError, check_finite, check_number
+from proprotor.errors import InputError, check_finite, check_number, nowhere_negative
 from proprotor.rotor.airfoil import SectionModel
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
@@ -19,29 +19,10 @@ from proprotor.typing import Array
 
 MASS_INTEGRALS = (
     "blade_mass",
-    "blade_first_moment",
-    "blade_inertia",
-    "flap_first_moment",
-    "flap_inertia",
-    "lag_first_moment",
-    "lag_inertia",
+    *(f"{part}_{kind}" for part in ("blade", "flap", "lag") for kind in ("first_moment", "inertia")),
 )
 _POSITIVE = ("radius", "blade_inertia", "flap_inertia", "lag_inertia", "blade_mass")
-_NOT_NEGATIVE = (
-    "flap_hinge_offset",
-    "root_cutout",
-    "flap_first_moment",
-    "lag_first_moment",
-    "flap_stiffness",
-    "lag_stiffness",
-    "gimbal_stiffness",
-    "pitch_inertia",
-    "control_stiffness",
-    "flap_damping",
-    "lag_damping",
-    "pitch_damping",
-    "gimbal_damping",
-)
+_NOT_NEGATIVE = ("flap_hinge_offset", "root_cutout", "flap_first_moment", "lag_first_moment", "pitch_inertia")
 _FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
 _REACH = 1e-3  # of the radius: stations may be printed to three digits
 HELD, NOTHING = "held", "nothing"  # words for the blade beyond the stations of a table
@@ -151,7 +132,9 @@ class Rotor:
 
     def _check_signs(self) -> None:
         """Refuse numbers of the wrong sign, and fractions and angles out of range."""
-        for names, sign in ((_POSITIVE, "above zero"), (_NOT_NEGATIVE, "not negative")):
+        own = (entry.name for entry in fields(self))
+        passive = [name for name in own if name.endswith(("_stiffness", "_damping"))]
+        for names, sign in ((_POSITIVE, "above zero"), ((*_NOT_NEGATIVE, *passive), "not negative")):
             for name in names:
                 check_finite(name, getattr(self, name), sign)
         for name in _FRACTIONS:
@@ -160,7 +143,7 @@ class Rotor:
         for name in ("chord", "twist"):
             if isinstance(getattr(self, name), tuple):
                 _check_distribution(name, getattr(self, name))
-        chord: Any = self.station_chord if callable(self.chord) else self.chord
+        chord: Any = self.chord_at(self.quadrature.stations) if callable(self.chord) else self.chord
         chord = chord[1] if isinstance(chord, tuple) else chord
         if np.any(np.real(chord) <= 0):
             raise InputError("chord", chord, "must be above zero")
@@ -188,7 +171,7 @@ class Rotor:
             if np.any(first > cutout / radius + _REACH) or np.any(last < 1 - _REACH):
                 rule = (
                     f"has stations from {_shown(first)} R to {_shown(last)} R; they must reach from the root cutout, "
-                    f'{_shown(cutout / radius)} R, to the tip, or say beyond = "held" for end values that hold there'
+                    f'{_shown(cutout / radius)} R, to the tip, or say beyond = "held" to hold the end values'
                 )
                 raise InputError(name, f"{np.size(table[1])} values", rule)
 
@@ -202,10 +185,7 @@ class Rotor:
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
             rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
             raise InputError("flap_inertia", self.flap_inertia, rule)
-        gram = np.real(self._gram_matrix())
-        scale = np.sqrt(np.diagonal(gram, axis1=-2, axis2=-1))
-        correlation = gram / (scale[..., :, None] * scale[..., None, :])
-        if np.any(np.linalg.eigvalsh(correlation) < -1e-9):
+        if not nowhere_negative(np.real(self._gram_matrix())):
             rule = (
                 "cannot belong to one blade: the Gram matrix of the mass integrals has a negative eigenvalue"
             )
@@ -258,16 +238,6 @@ class Rotor:
         """Radii between which the blade has airloads, by name."""
         names = ("root_cutout", "radius", "flap_hinge_offset", "lag_hinge_offset")
         return {name: getattr(self, name) for name in names}
-
-    @functools.cached_property
-    def station_chord(self) -> Array:
-        """Chord at the stations of the quadrature, m."""
-        return self.chord_at(self.quadrature.stations)
-
-    @functools.cached_property
-    def station_twist(self) -> Array:
-        """Twist at the stations of the quadrature, from the pitch at 0.75 R, rad."""
-        return self.twist_at(self.quadrature.stations)
 
     def chord_at(self, r: Array) -> Array:
         """Return the chord at radii.
@@ -352,13 +322,13 @@ class Rotor:
         if np.any(mass < 0):
             raise InputError("mass_distribution", float(mass.min()), "must not be negative")
         if beyond not in ("", NOTHING):
-            rule = f'must say "{NOTHING}" of what is beyond, or not say it'
+            rule = f'must have beyond = "{NOTHING}", or no beyond'
             raise InputError("mass_distribution", beyond, rule)
         r = _reaching(r, fields_.get("radius"), beyond, hub_mass)
         _check_distribution("mass_distribution", (r, mass))
-        hinges = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
-        integrals = {"blade_mass": _outboard_moment(r, mass, None, 0)}
-        for name, axis in {"blade": None, **hinges}.items():
+        axes = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
+        integrals = {"blade_mass": _outboard_moment(r, mass, 0.0, 0)}
+        for name, axis in {"blade": 0.0, **axes}.items():
             for power, kind in ((1, "first_moment"), (2, "inertia")):
                 integrals[f"{name}_{kind}"] = _outboard_moment(r, mass, axis, power)
         rotor = cls(**integrals, **fields_)
@@ -382,15 +352,12 @@ def _reaching(r: Array, radius: Any, beyond: str, hub_mass: ArrayLike | None) ->
     if not np.all(np.real(tip) > 0):
         return r
     at_centre, at_tip = _check_ends(r, tip, beyond, hub_mass)
-    moved = np.array(np.broadcast_to(r, (*np.broadcast_shapes(r.shape[:-1], tip.shape), r.shape[-1])))
-    moved = moved.astype(np.result_type(moved, tip), copy=False)
-    moved[..., 0] = np.where(at_centre, 0.0, moved[..., 0])
-    moved[..., -1] = np.where(at_tip, tip, moved[..., -1])
-    return moved
+    first, last = np.where(at_centre, 0.0, r[..., 0]), np.where(at_tip, tip, r[..., -1])
+    return _joined([first[..., None], r[..., 1:-1], last[..., None]])
 
 
 def _check_ends(r: Array, tip: Array, beyond: str, hub_mass: ArrayLike | None) -> tuple[Array, Array]:
-    """Return whether the first station is near the centre and the last near the tip; refuse what leaves mass out."""
+    """Return whether the first station is near the centre and the last near the tip; refuse stations that omit mass."""
     first, last = (np.real(r[..., end]) / np.real(tip) for end in (0, -1))
     reached = f"has stations from {_shown(first)} R to {_shown(last)} R"
     at_centre, at_tip = np.abs(first) <= _REACH, np.abs(last - 1) <= _REACH
@@ -402,7 +369,7 @@ def _check_ends(r: Array, tip: Array, beyond: str, hub_mass: ArrayLike | None) -
         raise InputError("hub_mass", hub_mass, rule)
     if beyond != NOTHING and not (np.all(at_tip) and (hub_mass is not None or np.all(at_centre))):
         rule = (
-            f"{reached}; they must reach from the centre to the tip. Give hub_mass for what is inboard of the first, "
+            f"{reached}; they must reach from the centre to the tip. Give hub_mass for the mass inboard of the first, "
             f'or say beyond = "{NOTHING}" where there is no mass beyond the stations'
         )
         raise InputError("mass_distribution", f"{r.shape[-1]} values", rule)
@@ -429,16 +396,15 @@ def _check_distribution(name: str, distribution: _Table) -> None:
         raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
 
 
-def _joined(knots: list[Array]) -> Array:
-    """Return the stations of several distributions, one after another along the last axis."""
-    if not knots:
-        return np.empty(0)
-    leading = np.broadcast_shapes(*(stations.shape[:-1] for stations in knots))
-    return np.concatenate([np.broadcast_to(s, (*leading, s.shape[-1])) for s in knots], axis=-1)
+def _joined(parts: list[Array]) -> Array:
+    """Return stations in several arrays one after another along the last axis; other axes broadcast."""
+    parts = [np.empty(0), *parts]  # without parts there are no stations
+    leading = np.broadcast_shapes(*(stations.shape[:-1] for stations in parts))
+    return np.concatenate([np.broadcast_to(s, (*leading, s.shape[-1])) for s in parts], axis=-1)
 
 
 def _interpolate(distribution: _Table | Callable[[Array], Array], r: Array) -> Array:
-    """Return values (..., stations) at radii r (..., stations): linear, constant beyond the ends, complex if r is."""
+    """Return values (..., stations) at radii r (..., stations): linear, constant beyond the ends; r may be complex."""
     if callable(distribution):
         return np.asarray(distribution(r))
     stations, values = np.asarray(distribution[0]), np.asarray(distribution[1])
@@ -453,15 +419,13 @@ def _interpolate(distribution: _Table | Callable[[Array], Array], r: Array) -> A
     return between
 
 
-def _outboard_moment(r: Array, mass: Array, axis: ArrayLike | None, power: int) -> Any:
-    """Return ∫ m (r - axis)^power outboard of an axis (...), or over the whole blade about its centre for None."""
+def _outboard_moment(r: Array, mass: Array, axis: ArrayLike, power: int) -> Any:
+    """Return ∫ m (r - axis)^power outboard of an axis at a radius (...); the whole blade is outboard of 0."""
     nodes, weights = np.polynomial.legendre.leggauss(2)
     inboard, outboard = r[..., :-1], r[..., 1:]
-    center = np.zeros(()) if axis is None else np.asarray(axis)[..., None]
-    start = inboard
-    if axis is not None:
-        start = np.where(np.real(center) > np.real(inboard), center, inboard)
-        start = np.where(np.real(start) > np.real(outboard), outboard, start)
+    center = np.asarray(axis)[..., None]
+    start = np.where(np.real(center) > np.real(inboard), center, inboard)
+    start = np.where(np.real(start) > np.real(outboard), outboard, start)
     half = ((outboard - start) / 2)[..., None]
     stations = start[..., None] + half * (1 + nodes)
     slope = (np.diff(mass) / np.diff(r))[..., None]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, cast
 
@@ -54,31 +54,23 @@ class BladeSections:
 
     @classmethod
     def of(cls, rotor: Rotor, shape: tuple[int, ...], coarse: bool = False) -> BladeSections:
-        """Return the sections of a rotor at all stations or at a coarse few, many designs flattened over the batch."""
+        """Return the sections of a rotor at all stations or at a few, with the axes of many designs flattened."""
         quadrature = rotor.coarse_quadrature if coarse else rotor.quadrature
-        profiles = (rotor.station_chord, rotor.station_twist)
-        if coarse:
-            profiles = (rotor.chord_at(quadrature.stations), rotor.twist_at(quadrature.stations))
-        chord, twist = (flatten_points(part, shape, 1) for part in profiles)
+        profiles = (rotor.chord_at, rotor.twist_at)
+        chord, twist = (flatten_points(profile(quadrature.stations), shape, 1) for profile in profiles)
         airfoil = rotor.airfoil.flattened(shape) if isinstance(rotor.airfoil, Airfoil) else rotor.airfoil
         return cls(quadrature.flattened(shape), chord, twist, airfoil)
 
     @property
     def is_complex(self) -> bool:
         """Whether any number is complex, for derivatives by a complex step."""
-        numbers = [self.quadrature.stations, self.chord, self.twist]
-        if isinstance(self.airfoil, Airfoil):
-            numbers += [getattr(self.airfoil, entry.name) for entry in fields(self.airfoil)]
-        return any(map(np.iscomplexobj, numbers))
+        airfoil = vars(self.airfoil).values() if isinstance(self.airfoil, Airfoil) else ()
+        return any(map(np.iscomplexobj, (self.quadrature.stations, self.chord, self.twist, *airfoil)))
 
     @property
     def real(self) -> BladeSections:
         """The same sections without imaginary parts."""
-        if not self.is_complex:
-            return self
-        airfoil = self.airfoil
-        if isinstance(airfoil, Airfoil):
-            airfoil = Airfoil(**{e.name: np.real(getattr(airfoil, e.name)) for e in fields(airfoil)})
+        airfoil = self.airfoil.real if isinstance(self.airfoil, Airfoil) else self.airfoil
         return BladeSections(self.quadrature.real, np.real(self.chord), np.real(self.twist), airfoil)
 
     def take(self, rows: Array | slice) -> BladeSections:
@@ -111,8 +103,7 @@ def segment_quantities(
     segments = {name: np.asarray(value)[..., None] for name, value in quantities.items()}
     for name in ("beyond_flap_hinge", "beyond_lag_hinge"):
         segments[name] = getattr(sections.quadrature, name)
-    geometry: dict[str, Any] = evaluate(equations.segment_geometry, segments)._asdict()
-    return segments | geometry
+    return {**segments, **evaluate(equations.segment_geometry, segments)._asdict()}
 
 
 def _air(
@@ -126,22 +117,19 @@ def _air(
         stations[name] = along_lines(line[..., at_axis], line[..., per_radius])
     stations["section_spin"] = along_lines(line[..., airloads.SPIN]) if spins else 0.0
     stations |= {"chord": sections.chord, "section_pitch": segments["pitch"] + sections.twist}
-    air: dict[str, Any] = evaluate(section.air_at_section, stations)._asdict()
-    return stations | air
+    return {**stations, **evaluate(section.air_at_section, stations)._asdict()}
 
 
 def compressible(coefficients: SectionCoefficients, mach: Array) -> SectionCoefficients:
     """Return the coefficients with the Prandtl-Glauert factor on lift and moment and on their derivatives."""
     factor, slope = section.prandtl_glauert(mach=mach)
     scaled: dict[str, Any] = {}
-    for name in ("lift", "moment"):
-        value, alpha, by_mach = (
-            getattr(coefficients, f"{name}_coefficient{d}") for d in ("", "_alpha", "_mach")
-        )
-        if not _any(value, alpha, by_mach):
-            continue
-        scaled |= {f"{name}_coefficient": factor * value, f"{name}_coefficient_alpha": factor * alpha}
-        scaled[f"{name}_coefficient_mach"] = slope * value + (factor * by_mach if _any(by_mach) else 0.0)
+    for load in ("lift", "moment"):
+        names = [f"{load}_coefficient{derivative}" for derivative in ("", "_alpha", "_mach")]
+        value, alpha, by_mach = (getattr(coefficients, name) for name in names)
+        if _any(value, alpha, by_mach):
+            with_mach = slope * value + (factor * by_mach if _any(by_mach) else 0.0)
+            scaled |= zip(names, (factor * value, factor * alpha, with_mach), strict=True)
     return coefficients._replace(**scaled)
 
 
@@ -191,7 +179,7 @@ def load_moments(
         }
         air, coefficients, spins = _aerodynamics(here, block, compressibility, equations)
         if doubts is not None:
-            _doubt(doubts, here, block, air, rows, points)
+            _doubt(doubts, here, block | air, rows, points)
         if lift_slope_only:
             coefficients = SectionCoefficients(lift_coefficient_alpha=coefficients.lift_coefficient_alpha)
         for name, load in _loads(air, coefficients, spins and not lift_slope_only, steady_only).items():
@@ -246,20 +234,15 @@ def _loads(
 
 
 def _doubt(
-    doubts: dict[str, Array],
-    sections: BladeSections,
-    segments: _Quantities,
-    air: _Quantities,
-    rows: Array | slice,
-    points: int,
+    doubts: dict[str, Array], sections: BladeSections, given: _Quantities, rows: Array | slice, points: int
 ) -> None:
-    """Mark the points at which outboard stations are beyond the range of the airfoil."""
+    """Mark the points at which outboard stations are beyond the range of the airfoil, by radius and air."""
     if not isinstance(sections.airfoil, Warns):
         return
-    radius = np.ravel(np.real(segments["radius"]))[:, None]
+    radius = np.ravel(np.real(given["radius"]))[:, None]
     outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * radius
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
-    found = sections.airfoil.warnings(*(air[name][..., first:] for name in ("lift_incidence", "mach")))
+    found = sections.airfoil.warnings(*(given[name][..., first:] for name in ("lift_incidence", "mach")))
     for text, mask in found.items():
         if mask.any():
             marks = doubts.setdefault(f"{text} outboard of {_OUTBOARD:g} R", np.zeros(points, dtype=bool))
@@ -282,5 +265,5 @@ def closed_form_moments(sections: BladeSections, segments: _Quantities) -> dict[
         "inner_edge": edges[..., 0],
         "outer_edge": edges[..., 1],
     }
-    moments: dict[str, Any] = evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()
-    return dict.fromkeys(LOAD_MOMENTS, 0.0) | moments
+    moments = evaluate(lift_slope.load_moments, dict(segments) | given)._asdict()
+    return {**dict.fromkeys(LOAD_MOMENTS, 0.0), **moments}

@@ -122,7 +122,7 @@ class Balance:
         share: Array | float | None = None,
         doubts: dict[str, Array] | None = None,
     ) -> Linear:
-        """Return residual and slopes at a state and a share of the precone, with the quantities they follow from."""
+        """Return residual and slopes at a state and a share of the precone, with the quantities behind both."""
         quantities = self._at(state, rows, share)
         segments = self._loads(quantities, rows, doubts=doubts)
         residual, work = self._residual(quantities, segments, rows)

@@ -75,8 +75,7 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
         """Return the radius of the relative difference of the slopes."""
         return _radius(np.abs(solve(expected.full, found.full - expected.full)))
 
-    near: Array = _by_moments_or_angles(sprung, radius, found, expected) <= CONTRACTION
-    return near
+    return _by_moments_or_angles(sprung, radius, found, expected) <= CONTRACTION
 
 
 def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:

@@ -202,9 +202,8 @@ class _Search:
 
     def finish(self) -> None:
         """Run full Newton; points that leave the end of their path begin again, on all stations."""
-        begun = self.near
-        own = np.setdiff1d(self.rows[~self.followed[self.rows]], begun)  # without a path, and not come near
-        done = self._newton_steps(np.union1d(begun, own))
+        without_path = self.rows[~self.followed[self.rows]]
+        done = self._newton_steps(np.union1d(self.near, without_path))
         self.reason[(self.reason == "") & ~self.followed & ~done] = not_found(self.balance.target)
         again = np.flatnonzero((self.reason == "") & self.followed & ~done)
         if not len(again):
@@ -294,11 +293,8 @@ def _settle(
 def _complex_trim(balance: Balance, coarse: BladeSections, points: int) -> Settled:
     """Return the trim of the real parts after one more Newton step: exact to first order in the imaginary parts."""
     target = balance.target
-    real_target = replace(
-        target,
-        collective=None if target.collective is None else np.real(target.collective),
-        load=np.real(target.load),
-    )
+    collective = None if target.collective is None else np.real(target.collective)
+    real_target = replace(target, collective=collective, load=np.real(target.load))
     real = {name: np.real(value) for name, value in balance.quantities.items()}
     trim = solve_trim(balance.sections.real, coarse.real, real, balance.options, real_target, points).trim
     state = {name: getattr(trim, name).astype(complex) for name in UNKNOWNS}

@@ -51,8 +51,7 @@ def undeflect(balance: Balance, state: State, rows: Array) -> Array:
         state[name][rows] = 0.0
     found = np.ones(len(rows), dtype=bool)
     if balance.target.finds_collective:
-        pitch, found = _rigid_pitch(balance, state, rows)
-        state["collective"][rows] = pitch
+        state["collective"][rows], found = _rigid_pitch(balance, state, rows)
     if balance.options.pitch_is_free:
         _balance_control(balance, state, rows)
     return found & np.isfinite(state["elastic_pitch"][rows])
@@ -114,8 +113,7 @@ def _rigid_pitch(balance: Balance, state: State, rows: Array) -> tuple[Array, Ar
 def _closing(balance: Balance, state: State, rows: Array, pitch: Array) -> Array:
     """Return the residual (n,) of the row that closes the trim, at a pitch of the undeflected blade."""
     state["collective"][rows] = pitch
-    left: Array = balance.left(state, rows, share=0.0)[:, -1] if len(rows) else np.zeros(0)
-    return left
+    return balance.left(state, rows, share=0.0)[:, -1] if len(rows) else np.zeros(0)
 
 
 def _root_between(

@@ -8,7 +8,8 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     beam_wing          a cantilever wing of beam elements with a pylon
     wing_aerodynamics  airloads of the wing itself, by strips
     nastran            modes from a Nastran run
-    matrix_files       matrices of any finite-element code, matrix_market : files of such matrices
+    matrix_files       matrices of any finite-element code
+    matrix_market      files of such matrices in the Matrix Market format
 
 All public names of the modules `beam_wing`, `matrix_files`, `nastran` and `wing_aerodynamics` belong to the face.
 """
@@ -17,9 +18,7 @@ from proprotor.support.modal_reduction import StructuralModes, lowest_modes
 from proprotor.support.normal_modes import (
     HUB_AXES,
     INCLUDES_ROTOR,
-    ROTATION,
     SHAFT,
-    TRANSLATION,
     NormalModes,
     rigid_support,
     two_axis_pivot,
@@ -28,9 +27,7 @@ from proprotor.support.normal_modes import (
 __all__ = [
     "HUB_AXES",
     "INCLUDES_ROTOR",
-    "ROTATION",
     "SHAFT",
-    "TRANSLATION",
     "NormalModes",
     "StructuralModes",
     "beam_wing",

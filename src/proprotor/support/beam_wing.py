@@ -11,12 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_finite, unknown_name
 from proprotor.support.modal_reduction import ModalSupport, on_modes, symmetric
 from proprotor.support.normal_modes import HUB_AXES, ROTATION, TRANSLATION, NormalModes
 from proprotor.typing import Array
@@ -72,13 +72,14 @@ class Wing:
     elements: int = 8
 
     def __post_init__(self) -> None:
-        _check("span", self.span, above_zero=True)
+        _check("span", self.span, "above zero")
         for name in ("sweep", "dihedral"):
             _check(name, getattr(self, name))
             if abs(getattr(self, name)) >= np.pi / 2:
                 raise InputError(name, getattr(self, name), "must lie between -90 and 90 degrees")
         for name in _PROFILES:
-            _check_profile(name, getattr(self, name), above_zero=name.endswith("stiffness"))
+            sign = "above zero" if name.endswith("stiffness") else "not negative"
+            _check_profile(name, getattr(self, name), sign)
         if not isinstance(self.elements, int) or not 1 <= self.elements <= _MOST_ELEMENTS:
             raise InputError("elements", self.elements, f"must be a whole number from 1 to {_MOST_ELEMENTS}")
 
@@ -88,14 +89,7 @@ class Wing:
         return self.span * np.array([np.tan(self.dihedral), 1.0, -np.tan(self.sweep)])
 
 
-_PROFILES = (
-    "beam_stiffness",
-    "chord_stiffness",
-    "torsion_stiffness",
-    "axial_stiffness",
-    "mass_per_length",
-    "torsional_inertia_per_length",
-)
+_PROFILES = tuple(e.name for e in fields(Wing) if e.name.endswith(("_stiffness", "_per_length")))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,15 +131,12 @@ class Pylon:
     pitch_stiffness: float | None = None
 
     def __post_init__(self) -> None:
-        for entry in fields(self):
-            value = getattr(self, entry.name)
-            if entry.name == "pitch_stiffness":
-                if value is not None:
-                    _check(entry.name, value, above_zero=True)
-            else:
-                _check(entry.name, value)
-                if entry.name.endswith(("mass", "inertia")) and value < 0:
-                    raise InputError(entry.name, value, "must not be negative")
+        given = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        downstop = given.pop("pitch_stiffness")
+        for name, value in given.items():
+            _check(name, value, "not negative" if name.endswith(("mass", "inertia")) else "")
+        if downstop is not None:
+            _check("pitch_stiffness", downstop, "above zero")
 
     @property
     def hub(self) -> Array:
@@ -384,18 +375,15 @@ def _means(profile: _SpanwiseProfile, stations: Array) -> Array:
     return means
 
 
-def _check(name: str, value: float, above_zero: bool = False) -> None:
-    """Refuse a value that is no finite real number or, if asked, not above zero."""
-    is_number = np.isscalar(value) and np.isreal(value) and np.isfinite(value)
-    if not is_number:
+def _check(name: str, value: Any, sign: str = "") -> None:
+    """Refuse a value that is no finite real number or has the wrong sign; signs as for `check_finite`."""
+    if not (np.isscalar(value) and np.isreal(value) and np.isfinite(value)):
         raise InputError(name, value, "must be a finite number")
-    if above_zero and value <= 0:
-        raise InputError(name, value, "must be above zero")
+    check_finite(name, value, sign)
 
 
-def _check_profile(name: str, profile: _SpanwiseProfile, above_zero: bool) -> None:
+def _check_profile(name: str, profile: _SpanwiseProfile, sign: str) -> None:
     """Refuse a profile that does not reach from 0 to 1, is not finite, or has values of the wrong sign."""
-    rule = "must be above zero" if above_zero else "must not be negative"
     if not isinstance(profile, tuple):
         _check(name, profile)
         values = np.array([profile])
@@ -405,5 +393,4 @@ def _check_profile(name: str, profile: _SpanwiseProfile, above_zero: bool) -> No
             raise InputError(name, "a profile", "must have one finite value for each station")
         if stations[0] != 0 or stations[-1] != 1 or (np.diff(stations) <= 0).any():
             raise InputError(name, stations.tolist(), "must have stations that rise from 0 to 1")
-    if (values < 0).any() or (above_zero and (values == 0).any()):
-        raise InputError(name, values.min(), rule)
+    check_finite(name, values.min(), sign)

@@ -64,10 +64,8 @@ def read_npz(
     for name in ("mass", "stiffness", "dofs"):
         if name not in arrays:
             raise InputError("file", str(path), f"has no array {name}")
-    names = _texts(path, np.atleast_1d(arrays["dofs"]))
-    return support_from_matrices(
-        arrays["mass"], arrays["stiffness"], arrays.get("damping"), dofs=names, hub=hub, **options
-    )
+    names = _texts(path, np.atleast_1d(arrays.pop("dofs")))
+    return support_from_matrices(**arrays, dofs=names, hub=hub, **options)
 
 
 def read_matrix_market(
@@ -95,9 +93,7 @@ def read_matrix_market(
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _matrix_market(name, path) for name, path in given.items() if path is not None}
     names = read_text(Path(dofs), "dofs", str(dofs), _LARGEST).split()
-    return support_from_matrices(
-        matrices["mass"], matrices["stiffness"], matrices.get("damping"), dofs=names, hub=hub, **options
-    )
+    return support_from_matrices(**matrices, dofs=names, hub=hub, **options)
 
 
 def support_from_matrices(
@@ -147,8 +143,8 @@ def support_from_matrices(
     if includes_rotor and np.any(rotor_mass):
         raise InputError("rotor_mass", rotor_mass, "must not be given where the mass includes the rotor")
     names = _names(dofs)
-    matrices = {"mass": mass, "stiffness": stiffness} | ({} if damping is None else {"damping": damping})
-    matrices = {name: _checked(name, matrix, len(names)) for name, matrix in matrices.items()}
+    given = {"mass": mass, "stiffness": stiffness, "damping": damping}
+    matrices = {name: _checked(name, part, len(names)) for name, part in given.items() if part is not None}
     for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
         if not 1 / _LARGEST_UNIT <= unit <= _LARGEST_UNIT:
             rule = f"must be above zero, from {1 / _LARGEST_UNIT:g} to {_LARGEST_UNIT:g}"
@@ -174,7 +170,7 @@ def _texts(path: Path, dofs: Array) -> list[str]:
     if dofs.dtype.kind == "U":
         numbers = np.frombuffer(dofs.tobytes(), dtype=np.dtype("u4").newbyteorder(dofs.dtype.byteorder))
         if (numbers > sys.maxunicode).any():
-            raise InputError("file", str(path), "is damaged: dofs holds what is no text")
+            raise InputError("file", str(path), "is damaged: dofs has numbers that are no characters")
     return [str(name) for name in dofs]
 
 

@@ -16,10 +16,8 @@ import numpy as np
 from proprotor.files.text import open_text
 from proprotor.typing import Array
 
-_LARGEST = {
-    "coordinate": 50_000,
-    "array": 5_000,
-}  # rows or columns, by layout: without zeros, and with all entries
+# Rows or columns, by layout: without zeros, and with all entries.
+_LARGEST = {"coordinate": 50_000, "array": 5_000}
 _FIELDS = ("real", "double", "integer")
 _OTHER_FIELDS = ("complex", "pattern")
 _SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
@@ -46,7 +44,7 @@ def read_matrix(path: Path) -> Any:
     Returns
     -------
     array or scipy.sparse.coo_array, shape (rows, columns)
-        Sparse if the file leaves out zeros. Entries that the file gives twice are to be added.
+        Sparse if the file leaves out zeros. Where the file gives an entry twice, the entry is the sum of both numbers.
 
     Raises
     ------
@@ -83,15 +81,10 @@ def _heading(file: io.TextIOBase) -> _Heading:
 
 def _sizes(file: io.TextIOBase, count: int) -> list[int]:
     """Return the whole numbers of the first line that is neither comment nor blank."""
-    for line in iter(lambda: file.readline(), ""):
-        if line.startswith("%") or not line.strip():
-            continue
-        words = line.split()
-        if len(words) == count and all(
-            word.isascii() and word.isdigit() and len(word) < 16 for word in words
-        ):
-            return [int(word) for word in words]
-        break
+    lines = iter(file.readline, "")
+    words = next((line.split() for line in lines if line.strip() and not line.startswith("%")), [])
+    if len(words) == count and all(word.isascii() and word.isdigit() and len(word) < 16 for word in words):
+        return [int(word) for word in words]
     raise MatrixMarketError(f"is damaged: it must have {count} whole numbers after its heading, its sizes")
 
 

@@ -63,7 +63,8 @@ def on_modes(
         holds for all modes above, or a function that returns the values for shapes (n, k).
     rotor_mass : float
         Mass at the hub while modes are computed and damped, kg. This mass does not stay in the support, because the
-        rotor model brings it. Modes without the rotor would bend too little near the hub, and six would not be enough.
+        rotor model brings it. Modes without the rotor would bend too little near the hub, and six such modes would not
+        be enough.
     includes_rotor, shaft : bool or str, str
         How the mass includes the rotor already, as for `proprotor.support.normal_modes.NormalModes`.
     name_modes : callable, optional
@@ -86,13 +87,16 @@ def on_modes(
     ratio = per_mode(given, len(found.frequency))
     if count is None:
         shapes = np.eye(len(names))
-        structural = _modal_damping(_dense(loaded), found, ratio)
+        forces = _dense(loaded) @ found.shapes
+        structural = (forces * (2 * ratio * found.frequency)) @ forces.T  # M Φ (2ζω) Φᵀ M
     else:
         shapes = found.shapes
         structural = np.diag(2 * ratio * found.frequency)
         names = name_modes(shapes) if name_modes else [f"mode_{k}" for k in range(1, count + 1)]
-    matrices = {"mass": mass, "stiffness": stiffness, "damping": damping}
-    reduced = {name: _projected(matrix, shapes) for name, matrix in matrices.items() if matrix is not None}
+    parts = {"mass": mass, "stiffness": stiffness, "damping": damping}
+    reduced = {
+        name: symmetric(shapes.T @ (part @ shapes)) for name, part in parts.items() if part is not None
+    }
     reduced["damping"] = reduced.get("damping", 0.0) + symmetric(structural)
     support = NormalModes(
         names=names, **reduced, hub=hub @ shapes, includes_rotor=includes_rotor, shaft=shaft
@@ -118,13 +122,6 @@ def lowest_modes(mass: Any, stiffness: Any, count: int | None = None) -> Structu
     if count is not None and mass.shape[0] > max(_DENSE, 3 * count):
         return _lowest_of_many(mass, stiffness, count)
     return _of_few(_dense(mass), _dense(stiffness), count)
-
-
-def _modal_damping(mass: Array, modes: StructuralModes, damping_ratio: ArrayLike) -> Array:
-    """Return the viscous damping (n, n) that gives each mode of a mass its ratio (k,): C = M Φ (2ζω) Φᵀ M."""
-    forces = mass @ modes.shapes
-    damping: Array = (forces * (2 * np.asarray(damping_ratio) * modes.frequency)) @ forces.T
-    return damping
 
 
 def per_mode(damping_ratio: ArrayLike, count: int) -> Array:
@@ -218,11 +215,6 @@ def _with_mass_at_hub(mass: Any, hub: Array, rotor_mass: float) -> Any:
 
     moving = csc_array(moving)
     return csc_array(mass) + rotor_mass * (moving.T @ moving)
-
-
-def _projected(matrix: Any, shapes: Array) -> Array:
-    """Return a matrix on the coordinates of shapes (n, k)."""
-    return symmetric(shapes.T @ (matrix @ shapes))
 
 
 def symmetric(matrix: Array) -> Array:

@@ -155,13 +155,12 @@ def _one_subcase(eigenvectors: Mapping[Any, Any], subcase: int | None, path: Any
         rule = "has complex eigenvectors alone: ask Nastran for real ones (SOL 103)"
         raise InputError("file", str(path), rule)
     numbers = {getattr(vectors, "isubcase", key): vectors for key, vectors in real.items()}
-    if subcase is None:
-        if len(numbers) > 1:
-            raise InputError("subcase", None, f"must be given: the file has {', '.join(map(str, numbers))}")
-        return next(iter(numbers.values()))
-    if subcase not in numbers:
-        raise InputError("subcase", subcase, f"is not in the file, which has {', '.join(map(str, numbers))}")
-    return numbers[subcase]
+    listed = ", ".join(map(str, numbers))
+    if subcase is None and len(numbers) > 1:
+        raise InputError("subcase", None, f"must be given: the file has {listed}")
+    if subcase is not None and subcase not in numbers:
+        raise InputError("subcase", subcase, f"is not in the file, which has {listed}")
+    return numbers[next(iter(numbers)) if subcase is None else subcase]
 
 
 def _motion_of(grid: int, vectors: Any) -> Array:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from proprotor.errors import InputError, is_choice, list_choices, unknown_name
+from proprotor.errors import InputError, is_choice, list_choices, nowhere_negative, unknown_name
 from proprotor.rotor.motions import check_support_names
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class NormalModes:
         follows from this choice, is subtracted so that it does not count twice. False: no rotor was on. True:
         "gimballed" for a rotor with a gimbal, "rigid" for a rotor without one.
     shaft : "held" or "free"
-        Whether the rotor could turn about its shaft then; without effect for a point mass.
+        Whether the rotor was free to turn about its shaft when `mass` was found; without effect for a point mass.
     shapes : array, shape (..., m, n), optional
         Shapes of the structure for each coordinate, if these differ between designs: the shapes show which coordinates
         of two designs belong together.
@@ -92,7 +92,7 @@ class NormalModes:
             if field in self.symmetric and not np.allclose(matrix, turned, rtol=1e-9, atol=rounding):
                 raise InputError(field, matrix.tolist(), "must be symmetric")
             object.__setattr__(self, field, matrix)
-        if not _nowhere_negative(np.real(self.mass)):
+        if not nowhere_negative(np.real(self.mass)):
             raise InputError("mass", self.mass.tolist(), "must not be negative in any direction")
 
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
@@ -254,19 +254,6 @@ def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
         raise InputError(field, array.tolist(), "must be finite")
     array.flags.writeable = False
     return array
-
-
-def _nowhere_negative(matrix: Array) -> bool:
-    """Return whether a matrix has no negative eigenvalue.
-
-    The matrix is scaled to a unit diagonal, so that kg and kg m² in one matrix do not set the tolerance.
-    """
-    diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
-    if (diagonal < 0).any():
-        return False
-    scale = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
-    scaled = matrix / (scale[..., :, None] * scale[..., None, :])
-    return bool((np.linalg.eigvalsh(scaled) > -1e-9).all())
 
 
 def _diagonal(values: Array) -> Array:
