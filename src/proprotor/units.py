@@ -16,6 +16,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from proprotor.errors import InputError, unknown_name
 from proprotor.needs import check_memory
@@ -23,7 +24,6 @@ from proprotor.typing import Array
 
 if TYPE_CHECKING:
     import pint
-    from numpy.typing import ArrayLike, NDArray
 
 KNOT = 1852 / 3600  # m/s
 

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.model.doubts import doubts_along, marked
 from proprotor.plots import plot_attribution
 from proprotor.stability.sensitivity import damping_rate
 from proprotor.tables.csv_text import csv_of
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.case import Case
+from proprotor.typing import Dataset
 
 _COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)", "warning")
 
@@ -51,13 +48,13 @@ def attribution(request: arguments.Request, outputs: output.Outputs, speed: str,
     )
 
 
-def _least_damped(found: xarray.Dataset) -> xarray.Dataset:
+def _least_damped(found: Dataset) -> Dataset:
     """Return the part of the dataset on the mode that is damped least."""
     value = found.eigenvalue.values
     return found.isel(mode=[int((-value.real / abs(value)).argmin())])
 
 
-def _records(found: xarray.Dataset) -> list[dict[str, Any]]:
+def _records(found: Dataset) -> list[dict[str, Any]]:
     """Return a record of `_COLUMNS` for each origin, the largest change of growth first."""
     changes = found.contribution.values[:, 0]
     damping = 100 * damping_rate(found.eigenvalue.values, changes)
@@ -67,7 +64,7 @@ def _records(found: xarray.Dataset) -> list[dict[str, Any]]:
     return sorted(records, key=lambda record: -abs(record["growth (1/s)"]))
 
 
-def _document(found: xarray.Dataset, records: list[dict[str, Any]], airspeed: float) -> dict[str, Any]:
+def _document(found: Dataset, records: list[dict[str, Any]], airspeed: float) -> dict[str, Any]:
     value = complex(found.eigenvalue.values[0])
     return {
         "airspeed (m/s)": airspeed,
@@ -80,7 +77,7 @@ def _document(found: xarray.Dataset, records: list[dict[str, Any]], airspeed: fl
     }
 
 
-def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], speed: str) -> None:
+def _print(case: Case, found: Dataset, records: list[dict[str, Any]], speed: str) -> None:
     output.print_head(case, found.attrs)
     value = complex(found.eigenvalue.values[0])
     out = output.console()

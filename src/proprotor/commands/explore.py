@@ -51,8 +51,8 @@ def explore(
       proprotor explore my.toml --speed 100:350:5kt --pitch coupling
       proprotor explore my.toml --port 0 --no-browser
     """
-    for package in ("bokeh", "tornado"):
-        need(package, "explore", "the page", "explore")
+    need("bokeh", "explore", "the page", "explore")
+    need("tornado", "explore", "the page", "explore")
     airspeeds = None if speed is None else np.unique(speeds(speed, "--speed"))
     if airspeeds is not None and len(airspeeds) < 2:
         raise InputError("--speed", speed, "must be a range of airspeeds")

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubt_at
+from proprotor.stability.flutter import FlutterPoint
 from proprotor.stability.flutter_messages import (
     COLUMNS,
     boundary_record,
@@ -22,10 +24,6 @@ from proprotor.stability.flutter_messages import (
 )
 from proprotor.tables.csv_text import csv_of
 from proprotor.units import KNOT, factor_to_si, speeds
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
-    from proprotor.stability.flutter import FlutterPoint
 
 
 @arguments.command(short_help="Find flutter and divergence boundaries, and the margin.")

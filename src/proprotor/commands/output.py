@@ -13,6 +13,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from proprotor.case import Case
 from proprotor.commands.arguments import Command, Option, Request
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
@@ -24,13 +25,10 @@ from proprotor.plots import rests_on
 from proprotor.plots.headless import drawn
 from proprotor.rotor.options import CHOICES, parse_options
 from proprotor.tables.sweep_table import heading
+from proprotor.typing import Axes, Figure
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from proprotor.case import Case
     from proprotor.commands.terminal import PlainConsole
 
 _STANDARD_OUTPUT = "-"  # as the file of an option: print instead of writing, as other programs do

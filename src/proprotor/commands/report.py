@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.deck.file import read_tables
@@ -19,7 +20,6 @@ from proprotor.stability.flutter_messages import boundary_record, failed_records
 from proprotor.units import speeds
 
 if TYPE_CHECKING:
-    from proprotor.case import Case
     from proprotor.report import Document, Findings
 
 _SUFFIXES = (".html", ".pdf")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 import numpy as np
 
+from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
@@ -19,12 +20,8 @@ from proprotor.tables.sensitivity_summary import (
     sensitivity_records,
     sensitivity_row,
 )
+from proprotor.typing import Dataset
 from proprotor.units import KNOT, speeds
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.case import Case
 
 
 @arguments.command(short_help="Show how each input moves the flutter speed or a damping.")
@@ -102,21 +99,21 @@ def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[s
     return {"airspeed": None if scan is None else speeds(scan, "--scan"), "level": level}
 
 
-def _one_mode(found: xarray.Dataset) -> xarray.Dataset:
+def _one_mode(found: Dataset) -> Dataset:
     """Return the part of the dataset on the mode that is damped least, if the dataset has several modes."""
     if "mode" not in found.dims:
         return found
     return found.isel(mode=int(np.nanargmin(found.damping.values)))
 
 
-def _point(found: xarray.Dataset, of: str) -> tuple[str, float, float]:
+def _point(found: Dataset, of: str) -> tuple[str, float, float]:
     """Return the mode, the airspeed (m/s) and the value of the quantity, in SI units."""
     if of == "flutter_speed":
         return str(found.attrs["mode"]), float(found.attrs["value"]), float(found.attrs["value"])
     return str(found.mode.item()), float(found.attrs["airspeed"]), float(found.damping)
 
 
-def _document(found: xarray.Dataset, records: list[dict[str, Any]], of: str) -> dict[str, Any]:
+def _document(found: Dataset, records: list[dict[str, Any]], of: str) -> dict[str, Any]:
     read_in, factor = READ_IN[of]
     mode, airspeed, value = _point(found, of)
     return {
@@ -130,7 +127,7 @@ def _document(found: xarray.Dataset, records: list[dict[str, Any]], of: str) -> 
     }
 
 
-def _print(case: Case, found: xarray.Dataset, records: list[dict[str, Any]], of: str, top: int) -> None:
+def _print(case: Case, found: Dataset, records: list[dict[str, Any]], of: str, top: int) -> None:
     output.print_head(case, found.attrs)
     out = output.console()
     read_in, factor = READ_IN[of]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import click
 import numpy as np
 
+from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.deck.vary import design_inputs
@@ -15,13 +16,8 @@ from proprotor.model.doubts import MARK, map_doubts, marked
 from proprotor.plots import plot_stability_map
 from proprotor.study.sampling import grid
 from proprotor.tables.csv_text import csv_of
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 from proprotor.units import factor_to_si
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.case import Case
 
 _AIRSPEED = "airspeed"
 _EXAMPLE = '"rotor.precone=0:5:0.25 deg"'
@@ -110,7 +106,7 @@ def _written(axis: _Axis) -> list[float]:
     return [float(f"{value:.10g}") for value in axis.values / axis.factor]
 
 
-def _records(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[dict[str, Any]]:
+def _records(found: Dataset, axes: tuple[_Axis, _Axis]) -> list[dict[str, Any]]:
     """Return a record for each point of the grid, row by row."""
     x, y = axes
     columns = (_label(x), _label(y), "largest growth (1/s)", "frequency (rad/s)", "warning", "failure")
@@ -124,7 +120,7 @@ def _records(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[dict[str,
     ]
 
 
-def _lines(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[tuple[list[list[float]], list[str]]]:
+def _lines(found: Dataset, axes: tuple[_Axis, _Axis]) -> list[tuple[list[list[float]], list[str]]]:
     """Return the boundary as lines of points (x, y) in the units of the axes, with the warnings of the points."""
     vertices = found.boundary.sel(axis=[axis.path for axis in axes]).values
     vertices = vertices / np.array([axis.factor for axis in axes])
@@ -136,7 +132,7 @@ def _lines(found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> list[tuple[list[
     ]
 
 
-def _document(found: xarray.Dataset, axes: tuple[_Axis, _Axis], airspeed: float | None) -> dict[str, Any]:
+def _document(found: Dataset, axes: tuple[_Axis, _Axis], airspeed: float | None) -> dict[str, Any]:
     lines = _lines(found, axes)
     return {
         "level (damping ratio)": float(found.attrs["level"]),
@@ -150,7 +146,7 @@ def _document(found: xarray.Dataset, axes: tuple[_Axis, _Axis], airspeed: float 
     }
 
 
-def _print(case: Case, found: xarray.Dataset, axes: tuple[_Axis, _Axis]) -> None:
+def _print(case: Case, found: Dataset, axes: tuple[_Axis, _Axis]) -> None:
     output.print_head(case, found.attrs)
     x, y = axes
     growth = found.growth.transpose(y.path, x.path).values

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -18,10 +18,8 @@ from proprotor.study.study import study as study_of
 from proprotor.study.uncertainty import distribution
 from proprotor.study.variables import DEFAULT_QUANTITIES
 from proprotor.tables.study_summary import study_summary
+from proprotor.typing import Dataset
 from proprotor.units import KNOT, speeds
-
-if TYPE_CHECKING:
-    import xarray
 
 _SAMPLES = ("latin-hypercube", "sobol", "saltelli")
 _OF_DECK = " of deck"
@@ -132,7 +130,7 @@ def _limits(whole: str, text: str) -> Any:
     return f"{low.strip()} {arguments.unit_of(high)}", high.strip()
 
 
-def _print(results: xarray.Dataset) -> None:
+def _print(results: Dataset) -> None:
     out, found = output.console(), study_summary(results)
     out.print(f"{found['title']}: {found['points']} points, {found['failed']} failed")
     for text, count in list(found["reasons"].items())[:_REASONS]:
@@ -151,7 +149,7 @@ def _print(results: xarray.Dataset) -> None:
         out.print(line)
 
 
-def _print_flutter(results: xarray.Dataset) -> None:
+def _print_flutter(results: Dataset) -> None:
     stacked = results[["flutter_speed", "flutter_note", "flutter_warning"]]
     if "design" not in stacked.dims:
         stacked = stacked.stack(design=stacked.flutter_speed.dims)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import textwrap
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.model.options_in_force import options_in_result, options_text
@@ -15,9 +16,6 @@ from proprotor.plots import plot_sweep
 from proprotor.tables.sweep_summary import unstable_ranges
 from proprotor.tables.sweep_table import CONVENTION, SweepTable, heading
 from proprotor.units import speeds
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
 
 
 @arguments.command()

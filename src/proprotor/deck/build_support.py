@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.datum import Datum
 from proprotor.deck.numbers import own_numbers
 from proprotor.errors import InputError
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, on_coordinates
@@ -24,7 +25,6 @@ from proprotor.support.wing_aerodynamics import (
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
-    from proprotor.datum import Datum
     from proprotor.deck import support_sections
 
 _KINDS_OF_STRAIN = ("beam", "chord", "torsion")

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from proprotor.datum import Datum
 from proprotor.deck.build import C, assemble
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.configuration import Configuration
 from proprotor.units import has_own_unit
-
-if TYPE_CHECKING:
-    from proprotor.datum import Datum
 
 _FIXED = (str, int, tuple)  # files, whole numbers and lists, which have no range
 

@@ -12,7 +12,7 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +20,7 @@ from proprotor.errors import InputError
 from proprotor.files.output import check_place, write_whole
 from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.stamp import of_model
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 
 _LARGEST = 2**31 - 1  # bytes of a variable, which version 5 counts with 32 bits
 _LONGEST = 63  # characters of a name
@@ -37,7 +33,7 @@ _KEYWORDS = frozenset([
 _OWN = ("dims", "units", "names", "attributes")  # variables of the file that are no variables of the dataset
 
 
-def save_matlab(results: LinearModel | xarray.Dataset, path: str | os.PathLike[str]) -> None:
+def save_matlab(results: LinearModel | Dataset, path: str | os.PathLike[str]) -> None:
     """Write a linear model or a dataset, such as a sweep or a study, as a file of MATLAB.
 
     A model becomes M, C, K, B (inputs of the second-order equations), dofs, inputs, airspeed, trim, and, where it has
@@ -120,7 +116,7 @@ def _of_model(model: LinearModel) -> dict[str, Any]:
     return content
 
 
-def _of_dataset(data: xarray.Dataset) -> dict[str, Any]:
+def _of_dataset(data: Dataset) -> dict[str, Any]:
     """Return the variables of a file for a dataset; refuse results of another type."""
     if not hasattr(data, "data_vars"):
         raise InputError("results", type(data).__name__, "must be a LinearModel or an xarray.Dataset")

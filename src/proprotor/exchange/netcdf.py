@@ -6,23 +6,20 @@ import errno
 import os
 from pathlib import Path
 from threading import Lock
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.files.output import check_place, write_whole
 from proprotor.needs import need
-
-if TYPE_CHECKING:
-    import xarray
+from proprotor.typing import Dataset
 
 _PARTS = ("_real", "_imag")
 _COMPLEX = "complex_of"  # attribute of both parts: the name of their complex variable
 _ONE_AT_A_TIME = Lock()  # the netCDF library is not made for threads: two at once crash the process
 
 
-def save_results(results: xarray.Dataset, path: str | os.PathLike[str]) -> None:
+def save_results(results: Dataset, path: str | os.PathLike[str]) -> None:
     """Write a dataset of this package, such as a study or a sweep, as netCDF.
 
     A complex variable ``eigenvalue`` is stored as ``eigenvalue_real`` and ``eigenvalue_imag``.
@@ -64,7 +61,7 @@ def check_path(path: str | os.PathLike[str], field: str = "path") -> None:
     need("netCDF4", field, "netCDF files")
 
 
-def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
+def load_results(path: str | os.PathLike[str]) -> Dataset:
     """Return the dataset that `save_results` has written, with complex numbers made of their two parts.
 
     Parameters
@@ -93,7 +90,7 @@ def load_results(path: str | os.PathLike[str]) -> xarray.Dataset:
         raise InputError("path", path, f"cannot be read as netCDF ({error.strerror or error})") from None
 
 
-def _write(results: xarray.Dataset, path: str) -> None:
+def _write(results: Dataset, path: str) -> None:
     """Write a dataset without complex numbers.
 
     Raises
@@ -108,7 +105,7 @@ def _write(results: xarray.Dataset, path: str) -> None:
         raise OSError(errno.EIO, f"{error}: is the disk full?") from None
 
 
-def _in_parts(results: xarray.Dataset) -> xarray.Dataset:
+def _in_parts(results: Dataset) -> Dataset:
     """Return a dataset with complex variables as two parts; the parts are views, not copies."""
     parts = {}
     for name, variable in results.variables.items():
@@ -125,7 +122,7 @@ def _in_parts(results: xarray.Dataset) -> xarray.Dataset:
     return results.drop_vars(whole).assign(parts)
 
 
-def _whole(stored: xarray.Dataset) -> xarray.Dataset:
+def _whole(stored: Dataset) -> Dataset:
     """Return a dataset with complex variables made of their two parts."""
     names = dict.fromkeys(v.attrs[_COMPLEX] for v in stored.data_vars.values() if _COMPLEX in v.attrs)
     for name in names:

@@ -22,7 +22,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -32,20 +32,18 @@ except ImportError as missing:
     hint = 'proprotor.exchange.openmdao needs OpenMDAO: pip install "proprotor[openmdao]"'
     raise ImportError(hint) from missing
 
+from numpy.typing import NDArray
+
 from proprotor.case import Case, load_case
+from proprotor.datum import Datum
 from proprotor.errors import InputError, check_known
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.modes import decomposition
 from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
+from proprotor.typing import Dataset
 from proprotor.units import in_metres_per_second
-
-if TYPE_CHECKING:
-    import xarray
-    from numpy.typing import NDArray
-
-    from proprotor.datum import Datum
 
 _UNITS = {"": None, "K": "degK"}  # units that OpenMDAO writes in another way
 
@@ -280,7 +278,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         for place, output in enumerate(self._damping):
             partials[output, "airspeed"] = rates[:, place]
 
-    def _modes_at(self, case: Case, speeds: NDArray[np.float64]) -> xarray.Dataset:
+    def _modes_at(self, case: Case, speeds: NDArray[np.float64]) -> Dataset:
         """Return the modes at the airspeeds; refuse an airspeed that failed and a wanted mode that does not exist."""
         line, places = np.unique(speeds, return_inverse=True)
         found = case.sweep(line, **self._model_options)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import functools
 import operator
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from proprotor.case import Case
 from proprotor.deck.file import read_tables
 from proprotor.deck.per_revolution import as_one_file
 from proprotor.deck.settings import with_settings
@@ -14,9 +15,6 @@ from proprotor.deck.template import toml
 from proprotor.deck.written import PerRevolution
 from proprotor.explore.inputs import slider_input
 from proprotor.rotor.options import CHOICES, default_choice
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
 
 
 def _settings_of_values(case: Case, values: Mapping[str, float]) -> dict[str, str]:

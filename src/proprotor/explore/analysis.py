@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from proprotor.case import Case
 from proprotor.model.first_order import some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.branches import NamedStates, branch_labels, named_at
@@ -18,12 +19,7 @@ from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_spee
 from proprotor.stability.root_error import error_near_zero
 from proprotor.stability.sweep import mode_columns
 from proprotor.tables.sweep_summary import UnstableRange, leaps, unstable_ranges
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.case import Case
+from proprotor.typing import Array, Dataset
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,9 +137,7 @@ def _named(branches: Branches, line: ParameterLine, anchors: Array) -> NamedStat
     return named_at(branches, line, places[0] if places else 0)
 
 
-def _as_sweep(
-    airspeeds: Array, names: list[str], eigenvalue: Array, labels: Array, error: Array
-) -> xarray.Dataset:
+def _as_sweep(airspeeds: Array, names: list[str], eigenvalue: Array, labels: Array, error: Array) -> Dataset:
     """Return the part of a sweep that its summary reads."""
     import xarray
 

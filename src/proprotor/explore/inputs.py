@@ -6,17 +6,14 @@ import functools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from proprotor.case import Case
 from proprotor.datum import deck_unit
 from proprotor.deck.describe import deck_fields
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError, unknown_name
 from proprotor.plots.input_names import short_name
 from proprotor.plots.line_of_sweep import written
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
 
 _FIRST = (
     "rotor.precone",

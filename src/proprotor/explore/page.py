@@ -14,6 +14,7 @@ from bokeh.models.annotations import BoxAnnotation, Legend, LegendItem, Span
 from bokeh.models.widgets import Button, Div, MultiChoice, Select, Slider, TextInput
 from bokeh.plotting import figure
 
+from proprotor.case import Case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.explore.altered_deck import altered_deck, explored_name
@@ -30,8 +31,6 @@ from proprotor.units import KNOT, to_si
 
 if TYPE_CHECKING:
     from bokeh.document import Document
-
-    from proprotor.case import Case
 
 _SWITCHES = tuple(name for name in CHOICES if name != "reactionless")
 _TOGETHER = 15  # ms: several moves within this time cause one analysis

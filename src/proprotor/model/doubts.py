@@ -5,14 +5,11 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
+from proprotor.typing import Array, Dataset
 
 MARK = "?"
 _SHARE = re.compile(r"\d+(?=%)")  # a percentage, which differs from point to point for the same reason
@@ -86,7 +83,7 @@ def footnotes(doubts: Iterable[Doubt], unit: str, factor: float = 1.0) -> Iterat
         yield f"Doubtful {where}: {doubt.text}."
 
 
-def map_doubts(found: xarray.Dataset) -> Iterator[str]:
+def map_doubts(found: Dataset) -> Iterator[str]:
     """Yield a sentence on each doubt of a stability map, at its points and along its boundary."""
     points, vertices = (
         found[name].values.ravel().tolist() if name in found else []

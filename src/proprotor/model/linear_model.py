@@ -14,11 +14,9 @@ from proprotor.model.doubts import reasons_for_doubt
 from proprotor.model.stamp import Origin
 from proprotor.rotor.motions import ROTOR_SPEED
 from proprotor.rotor.trim import Trim
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 
 if TYPE_CHECKING:
-    import xarray
-
     from proprotor.model.state_space import StateSpace
 
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
@@ -103,7 +101,7 @@ class LinearModel:
         place = self.dofs.index(ROTOR_SPEED)
         return np.asarray(np.nan_to_num(np.real(self.K[..., place, place])) > 0)
 
-    def modes(self) -> xarray.Dataset:
+    def modes(self) -> Dataset:
         """Return eigenvalues and mode shapes, see `proprotor.stability.modes.modes`.
 
         Returns

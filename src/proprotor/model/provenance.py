@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from proprotor.datum import Datum
+
 if TYPE_CHECKING:
-    from proprotor.datum import Datum
     from proprotor.model.configuration import Configuration
 
 _READ_IN_A_SOURCE = ("published", "derived")

@@ -14,14 +14,13 @@ from proprotor.files.output import check_place, write_whole
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK, marked
 from proprotor.needs import check_memory
+from proprotor.plots.mode_motion import ModeMotion
 from proprotor.plots.mode_shape import draw_moving, draw_still
+from proprotor.typing import Axes
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from PIL.Image import Image
-
-    from proprotor.plots.mode_motion import ModeMotion
 
 _SIZE = (8.0, 4.4)  # inches
 _PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "side": (0.82, 0.09, 0.17, 0.76)}

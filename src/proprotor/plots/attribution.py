@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,15 +12,12 @@ from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
 from proprotor.plots.canvas import axes_or_new, note, say_origin
 from proprotor.plots.style import DAMPS, DRIVES
 from proprotor.stability.sensitivity import damping_rate
+from proprotor.typing import Axes, Dataset
 from proprotor.units import KNOT
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
 
 
 def plot_attribution(
-    found: xarray.Dataset,
+    found: Dataset,
     mode: str | None = None,
     ax: Axes | None = None,
     *,

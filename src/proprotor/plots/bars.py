@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from proprotor.plots.canvas import grid
 from proprotor.plots.style import LABEL_SIZE
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from proprotor.typing import Axes
 
 
 def name_bars(ax: Axes, names: Sequence[str]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,17 +14,14 @@ from proprotor.plots.line_of_sweep import positions
 from proprotor.plots.mode_lines import draw_modes
 from proprotor.plots.style import LABEL_SIZE
 from proprotor.tables.sweep_summary import damped_frequency
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
+from proprotor.typing import Axes, Dataset
 
 _ROTOR_SPEED = "operation.rotor_speed"
 _HARMONICS = 5
 
 
 def plot_campbell(
-    sweep: xarray.Dataset,
+    sweep: Dataset,
     ax: Axes | None = None,
     *,
     harmonics: Sequence[int] | None = None,

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from proprotor.case import Case
 from proprotor.errors import printable
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK, doubts_along, footnotes
 from proprotor.model.provenance import reservations
 from proprotor.plots.line_of_sweep import Positions, written
 from proprotor.plots.style import GREY, LABEL_SIZE
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from proprotor.case import Case
+from proprotor.typing import Axes, Dataset, Figure
 
 RIGHT = 0.75  # right edge of the axes as a share of the width, if labels stand beside the axes
 _NOTE_SIZE = 7  # points
@@ -81,7 +76,7 @@ def say_origin(ax: Axes, attributes: Mapping[Any, Any], doubts: Iterable[str] = 
     ax.annotate("\n".join(lines), (0, 0), xytext=(0, -_BELOW), annotation_clip=False, **place, **style)
 
 
-def along(results: xarray.Dataset, line: Positions) -> Iterator[str]:
+def along(results: Dataset, line: Positions) -> Iterator[str]:
     """Yield a sentence for each doubt along the line of a sweep, in the unit of its axis."""
     if "warning" in results:
         found = doubts_along(results[line.name].values, results.warning.values)

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from proprotor.plots.canvas import note, points_per_pixel
 from proprotor.plots.style import LABEL_SIZE, ModeStyle
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
+from proprotor.typing import Array, Axes, Line2D
 
 _LINE_SPACING = 1.3
 

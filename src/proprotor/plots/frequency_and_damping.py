@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,16 +13,11 @@ from proprotor.plots.line_of_sweep import Positions, positions
 from proprotor.plots.mode_lines import draw_modes
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE
 from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from proprotor.typing import Array, Axes, Dataset, Figure
 
 
 def plot_frequency(
-    sweep: xarray.Dataset,
+    sweep: Dataset,
     ax: Axes | None = None,
     *,
     rotor_speed: ArrayLike | None = None,
@@ -64,7 +59,7 @@ def plot_frequency(
 
 def _draw_frequency(
     ax: Axes,
-    sweep: xarray.Dataset,
+    sweep: Dataset,
     line: Positions,
     rotor_speed: ArrayLike | None,
     limits: tuple[float, float] | None = None,
@@ -75,7 +70,7 @@ def _draw_frequency(
 
 
 def plot_damping(
-    sweep: xarray.Dataset,
+    sweep: Dataset,
     ax: Axes | None = None,
     *,
     unit: str | None = None,
@@ -113,14 +108,14 @@ def plot_damping(
     return ax
 
 
-def _draw_damping(ax: Axes, sweep: xarray.Dataset, line: Positions, limits: tuple[float, float]) -> None:
+def _draw_damping(ax: Axes, sweep: Dataset, line: Positions, limits: tuple[float, float]) -> None:
     _draw(ax, sweep, damping_percent(sweep), line, limits)
     _mark_instability(ax, sweep, line)
     ax.set_ylabel("Damping −Re s/|s| (% of critical)")
 
 
 def plot_sweep(
-    sweep: xarray.Dataset,
+    sweep: Dataset,
     *,
     rotor_speed: ArrayLike | None = None,
     unit: str | None = None,
@@ -164,7 +159,7 @@ def plot_sweep(
 
 
 def _draw(
-    ax: Axes, sweep: xarray.Dataset, values: Array, line: Positions, limits: tuple[float, float | None]
+    ax: Axes, sweep: Dataset, values: Array, line: Positions, limits: tuple[float, float | None]
 ) -> None:
     """Draw values (points, modes) of all modes within limits, and name the lines."""
     lines = draw_modes(ax, sweep, values, line)
@@ -173,7 +168,7 @@ def _draw(
     label_lines(ax, lines, f"at some {'airspeeds' if line.name == 'airspeed' else 'points'} or all")
 
 
-def _mark_instability(ax: Axes, sweep: xarray.Dataset, line: Positions) -> None:
+def _mark_instability(ax: Axes, sweep: Dataset, line: Positions) -> None:
     """Shade negative damping, and draw a circle at each point where a mode becomes unstable or stable again."""
     ax.axhspan(min(ax.get_ylim()[0], 0), 0, color=UNSTABLE, linewidth=0, zorder=0.5)
     ax.axhline(0, color="black", linewidth=0.8)

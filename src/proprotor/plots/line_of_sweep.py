@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from proprotor.plots.input_names import short_name
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 from proprotor.units import factor_to_si
-
-if TYPE_CHECKING:
-    import xarray
 
 _RATES = {
     "rotor_speed": "rpm",
@@ -36,7 +33,7 @@ class Positions(NamedTuple):
     label: str
 
 
-def positions(sweep: xarray.Dataset, unit: str | None = None) -> Positions:
+def positions(sweep: Dataset, unit: str | None = None) -> Positions:
     """Return the positions of the points of a sweep in a unit, by default the usual unit.
 
     Raises

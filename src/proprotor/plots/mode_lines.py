@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -10,15 +10,10 @@ from proprotor.plots.canvas import grid
 from proprotor.plots.line_of_sweep import Positions, with_gaps
 from proprotor.plots.style import mode_styles
 from proprotor.tables.sweep_summary import leaps
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
+from proprotor.typing import Array, Axes, Dataset, Line2D
 
 
-def draw_modes(ax: Axes, sweep: xarray.Dataset, values: Array, line: Positions) -> list[Line2D]:
+def draw_modes(ax: Axes, sweep: Dataset, values: Array, line: Positions) -> list[Line2D]:
     """Draw a line for each mode through values (points, modes), and return the lines.
 
     Points of the sweep that could not be analysed are gaps, with a cross on the axis.

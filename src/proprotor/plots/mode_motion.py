@@ -13,18 +13,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from proprotor.case import Case
 from proprotor.errors import InputError, check_known
+from proprotor.model.linear_model import LinearModel
 from proprotor.model.stamp import Stamp, of_model
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
-    from proprotor.model.linear_model import LinearModel
 
 _SPAN, _MAST, _CHORD = 1.333, 0.342, 0.42  # of the XV-15, in radii: for a deck without a wing
 _PER_BLADE, _PER_WING, _PER_CIRCLE = 12, 12, 73  # points

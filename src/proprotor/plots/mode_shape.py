@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from proprotor.errors import InputError, check_known
 from proprotor.plots.canvas import say_origin
+from proprotor.plots.mode_motion import ModeMotion
 from proprotor.plots.style import LABEL_SIZE
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from proprotor.plots.mode_motion import ModeMotion
-
+from proprotor.typing import Array, Axes
 
 # The axes of each view: 0, 1, 2 for x, y, z, and the sign of the coordinate. x is up, y outboard, z along the shaft.
 # Seen from ahead, outboard is to the left on a right wing; the perspective is right-handed with x up.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,18 +12,14 @@ from proprotor.plots.bars import name_bars
 from proprotor.plots.canvas import along, axes_or_new, say_origin
 from proprotor.plots.line_of_sweep import positions, written
 from proprotor.plots.style import COLOURS, LABEL_SIZE
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
+from proprotor.typing import Array, Axes, Dataset
 
 _LEAST = 0.01  # smallest share with which a coordinate has bars of its own
 _HATCHES = ("", "////", "....", "xxxx", "\\\\\\\\")
 
 
 def plot_participation(
-    sweep: xarray.Dataset,
+    sweep: Dataset,
     mode: str,
     ax: Axes | None = None,
     *,

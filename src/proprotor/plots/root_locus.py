@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,12 +11,7 @@ from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles
 from proprotor.tables.sweep_summary import growth_rate, leaps
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
+from proprotor.typing import Array, Axes, Dataset, Line2D
 
 _RATIOS = (0.01, 0.02, 0.05, 0.10, 0.20, 0.50)
 _SMALLEST, _LARGEST = 3.5, 8.0  # size of the markers, points
@@ -25,7 +20,7 @@ _MARKS = 8  # markers of a line, at most
 
 
 def plot_root_locus(
-    sweep: xarray.Dataset,
+    sweep: Dataset,
     ax: Axes | None = None,
     *,
     rotor_speed: float | None = None,
@@ -91,7 +86,7 @@ def plot_root_locus(
 
 def _set_limits(
     ax: Axes,
-    sweep: xarray.Dataset,
+    sweep: Dataset,
     real: Array,
     imaginary: Array,
     growth: tuple[float, float] | None,
@@ -127,7 +122,7 @@ def _round_values(line: Positions, step: float | None) -> Array:
 
 
 def _draw(
-    ax: Axes, sweep: xarray.Dataset, real: Array, imaginary: Array, line: Positions, at: Array
+    ax: Axes, sweep: Dataset, real: Array, imaginary: Array, line: Positions, at: Array
 ) -> list[Line2D]:
     """Draw a line for each mode with markers at round values; return the lines."""
     lines: list[Line2D] = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,13 +11,8 @@ from proprotor.model.doubts import map_doubts
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.line_of_sweep import Positions, axis_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-
-    from proprotor.stability.boundary_lines import BoundaryLine
+from proprotor.stability.boundary_lines import BoundaryLine
+from proprotor.typing import Array, Axes, Dataset
 
 _DASHES = ("-", "--", "-.", ":")
 _Point = tuple[float, float]
@@ -26,7 +21,7 @@ _ROOM = 0.06  # a region that is narrower than this share of the axes has no nam
 
 
 def plot_stability_map(
-    found: xarray.Dataset,
+    found: Dataset,
     ax: Axes | None = None,
     *,
     lines: Sequence[BoundaryLine] = (),
@@ -82,7 +77,7 @@ def plot_stability_map(
     return ax
 
 
-def _axis(found: xarray.Dataset, name: str, unit: str | None) -> Positions:
+def _axis(found: Dataset, name: str, unit: str | None) -> Positions:
     si = "m/s" if name == "airspeed" else str(found[name].attrs.get("units", ""))
     return axis_of(name, found[name].values, si, unit)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,17 +14,14 @@ from proprotor.plots.input_names import short_names
 from proprotor.plots.line_of_sweep import axis_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE
 from proprotor.study.uncertainty import distribution
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
+from proprotor.typing import Axes, Dataset
 
 _BEYOND = {"above": "stable throughout the airspeeds", "below": "unstable from the lowest airspeed on"}
 _DASHES = ("--", "-", "-.", ":")
 
 
 def plot_distribution(
-    results: xarray.Dataset,
+    results: Dataset,
     ax: Axes | None = None,
     *,
     of: str = "flutter_speed",
@@ -88,13 +85,13 @@ def plot_distribution(
     return ax
 
 
-def _doubts(found: xarray.Dataset) -> list[str]:
+def _doubts(found: Dataset) -> list[str]:
     """Return a sentence on the doubtful designs behind a distribution or shares of variance, if any."""
     text = found.attrs.get("doubts")
     return [f"Doubtful for {int(found.doubtful)} designs: {text}."] if text else []
 
 
-def plot_sobol(indices: xarray.Dataset, ax: Axes | None = None, *, count: int = 15) -> Axes:
+def plot_sobol(indices: Dataset, ax: Axes | None = None, *, count: int = 15) -> Axes:
     """Draw each input's share of the variance, alone and with its interactions, with confidence intervals.
 
     Parameters

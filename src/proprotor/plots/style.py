@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from itertools import cycle
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from proprotor.tables.sweep_summary import growth_rate, support_coordinates
-
-if TYPE_CHECKING:
-    import xarray
+from proprotor.typing import Dataset
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish; without the yellow, which is too pale on white.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -33,13 +31,13 @@ class ModeStyle(NamedTuple):
     marker: str
 
 
-def broad_modes(sweep: xarray.Dataset) -> set[str]:
+def broad_modes(sweep: Dataset) -> set[str]:
     """Return the modes that have broad lines: modes of the support, and modes that are unstable at some point."""
     grows = (growth_rate(sweep) > 0).any(axis=0)
     return {*support_coordinates(sweep), *sweep.mode.values[grows].tolist()}
 
 
-def mode_styles(sweep: xarray.Dataset) -> list[ModeStyle]:
+def mode_styles(sweep: Dataset) -> list[ModeStyle]:
     """Return a style for each mode of a sweep, in the order of the modes; no two share both colour and dashes.
 
     The same mode looks the same in every plot of a sweep. Modes of the support and unstable modes have broad lines with

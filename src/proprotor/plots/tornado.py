@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,11 +13,8 @@ from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
 from proprotor.plots.canvas import axes_or_new, note, say_origin
 from proprotor.plots.input_names import short_names
 from proprotor.plots.style import DAMPS, DRIVES, STATUS_HATCHES
+from proprotor.typing import Axes, Dataset
 from proprotor.units import factor_to_si
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
 
 _QUANTITIES = ("flutter_speed", "damping")
 
@@ -29,7 +26,7 @@ class _Bar(NamedTuple):
 
 
 def plot_sensitivity(
-    found: xarray.Dataset,
+    found: Dataset,
     ax: Axes | None = None,
     *,
     percent: float = 1.0,
@@ -84,7 +81,7 @@ def plot_sensitivity(
     return ax
 
 
-def _scale(found: xarray.Dataset, unit: str) -> tuple[float, str]:
+def _scale(found: Dataset, unit: str) -> tuple[float, str]:
     """Return the units of the plot in one SI unit, and the name of the quantity that changes."""
     of = str(found.attrs.get("of"))
     if of not in _QUANTITIES:
@@ -99,7 +96,7 @@ def _scale(found: xarray.Dataset, unit: str) -> tuple[float, str]:
     return 1 / factor, f"flutter speed, {value} {unit} ({found.attrs['mode']}), in {unit}"
 
 
-def _of_percent(found: xarray.Dataset, percent: float, scale: float) -> list[_Bar]:
+def _of_percent(found: Dataset, percent: float, scale: float) -> list[_Bar]:
     """Return a bar for each input that is not zero: its growth in size, so that a twist of -2 grows to -2.02."""
     values = found.value.values
     changes = found.derivative.values.reshape(-1) * values * percent / 100 * scale
@@ -107,7 +104,7 @@ def _of_percent(found: xarray.Dataset, percent: float, scale: float) -> list[_Ba
     return [_Bar(path, change, change) for path, value, change in found_for if value]
 
 
-def _of_ranges(found: xarray.Dataset, ranges: Mapping[str, tuple[float, float]], scale: float) -> list[_Bar]:
+def _of_ranges(found: Dataset, ranges: Mapping[str, tuple[float, float]], scale: float) -> list[_Bar]:
     """Return a bar for each given range: the changes at both ends, from the present value of the input."""
     places = {path: place for place, path in enumerate(found.input.values.tolist())}
     for path in ranges:

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from proprotor.case import Case
 from proprotor.errors import InputError
 from proprotor.rotor.trim import Trim
 from proprotor.stability.boundaries import scan_speeds
 from proprotor.stability.flutter import FlutterPoint, flutter_point
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.case import Case
+from proprotor.typing import Array, Dataset
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +35,7 @@ class Findings:
     no_causes : str
     """
 
-    sweep: xarray.Dataset
+    sweep: Dataset
     trim: Trim
     flutter: FlutterPoint
     speed: float
@@ -64,9 +60,9 @@ class Findings:
 class Causes:
     """Datasets at one airspeed: all modes, and the sensitivities and the attribution of one mode."""
 
-    modes: xarray.Dataset
-    sensitivity: xarray.Dataset
-    attribution: xarray.Dataset
+    modes: Dataset
+    sensitivity: Dataset
+    attribution: Dataset
 
 
 def analyse(case: Case, airspeeds: Array | None, options: Mapping[str, Any]) -> Findings:
@@ -99,7 +95,7 @@ def analyse(case: Case, airspeeds: Array | None, options: Mapping[str, Any]) -> 
     return Findings(sweep, trim, found, speed, mode, causes, no_causes)
 
 
-def _damped_least(sweep: xarray.Dataset) -> tuple[float, str]:
+def _damped_least(sweep: Dataset) -> tuple[float, str]:
     """Return the highest airspeed that could be analysed, and the mode that is damped least at this airspeed."""
     works = np.flatnonzero(sweep.reason.values == "")
     if not len(works):

@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from proprotor.case import Case
 from proprotor.datum import Datum
 from proprotor.deck.written import FilePath
 from proprotor.errors import as_toml
@@ -30,9 +31,6 @@ from proprotor.tables.sensitivity_summary import (
 from proprotor.tables.sweep_table import SweepTable, heading
 from proprotor.typing import Array
 from proprotor.units import factor_to_si
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
 
 _SPEEDS = 9  # airspeeds in the tables of modes and of trim
 _ANGLES = ("collective", "coning", "lag", "elastic_pitch")  # of the trim

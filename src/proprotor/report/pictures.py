@@ -6,6 +6,7 @@ import io
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from proprotor.case import Case
 from proprotor.plots import (
     plot_attribution,
     plot_damping,
@@ -16,11 +17,9 @@ from proprotor.plots import (
 )
 from proprotor.plots.headless import drawn
 from proprotor.report.document import Picture
+from proprotor.typing import Axes
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from proprotor.case import Case
     from proprotor.report.analyses import Causes, Findings
 
 _SHARE = 0.75  # share of the width of a sheet, for plots of bars

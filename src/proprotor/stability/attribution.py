@@ -11,22 +11,18 @@ origin drives the mode. If the terms of all origins grow alike nothing moves: th
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from proprotor.model import stamp
+from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change
 from proprotor.stability.matching import Modes
 from proprotor.stability.named_modes import doubtful_numbers, named_modes
 from proprotor.stability.origins import Part, model_parts
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.model.configuration import Configuration
+from proprotor.typing import Array, Dataset
 
 
 def _contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
@@ -34,9 +30,7 @@ def _contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) 
     return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
 
 
-def attribution(
-    case: Configuration, airspeed: Any, mode: str | None = None, **options: Any
-) -> xarray.Dataset:
+def attribution(case: Configuration, airspeed: Any, mode: str | None = None, **options: Any) -> Dataset:
     """Return what drives and what damps the modes of a case at one airspeed.
 
     Parameters

@@ -10,13 +10,14 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
 from proprotor.model import stamp
+from proprotor.model.configuration import Configuration
 from proprotor.model.doubts import doubts_along
 from proprotor.stability.boundary import NOWHERE, Boundary, Crossings, Failed, LeastDamping
 from proprotor.stability.brackets import JUMPS, Brackets, Crossing, each_once
@@ -29,9 +30,6 @@ from proprotor.stability.mode_names import Moving, moving
 from proprotor.stability.parameter_lines import ParameterLine, approach_to, line_of_case, tip_speed
 from proprotor.stability.points import Points, Solved
 from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    from proprotor.model.configuration import Configuration
 
 _TAKES_PART = 0.05  # least participation of a motion that the mechanism of a boundary names
 _TOGETHER = 1e-3  # of a position: stretches without a followed mode that lie nearer to each other are one

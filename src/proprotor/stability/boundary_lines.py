@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise, starmap
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.model.configuration import Configuration
 from proprotor.model.first_order import some_points
 from proprotor.model.options_of_result import options_of
 from proprotor.rotor.motions import name_list
@@ -16,13 +17,8 @@ from proprotor.stability.branches import names_of
 from proprotor.stability.matching import Spectrum, conjugate, match_modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 from proprotor.units import in_metres_per_second
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.model.configuration import Configuration
 
 
 class BoundaryLine(NamedTuple):
@@ -48,7 +44,7 @@ class BoundaryLine(NamedTuple):
 
 
 def boundary_lines(
-    case: Configuration, found: xarray.Dataset, *, airspeed: Any = None, **options: Any
+    case: Configuration, found: Dataset, *, airspeed: Any = None, **options: Any
 ) -> list[BoundaryLine]:
     """Return the lines of a stability map by mode.
 
@@ -97,7 +93,7 @@ def boundary_lines(
     return lines
 
 
-def _airspeed_of(found: xarray.Dataset, given: Any) -> float | None:
+def _airspeed_of(found: Dataset, given: Any) -> float | None:
     """Return the airspeed of a map in m/s; None where the airspeed is one of its axes."""
     own = found.attrs.get(AIRSPEED)
     if given is not None and (own is None or not np.isclose(in_metres_per_second(given), own, rtol=1e-12)):

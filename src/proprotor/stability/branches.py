@@ -9,7 +9,7 @@ the label that comes first in the order of the coordinates.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,10 +21,7 @@ from proprotor.stability.matching import NOT_TOLD, POOR, Spectrum, conjugate, ma
 from proprotor.stability.mode_names import moving
 from proprotor.stability.modes import with_azimuth
 from proprotor.stability.parameter_lines import ParameterLine
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
+from proprotor.typing import Array, Dataset
 
 
 class NamedStates(NamedTuple):
@@ -190,7 +187,7 @@ def _doubts(branches: Branches, label: Array, points: int) -> Array:
     return doubt
 
 
-def by_branch(sweep: xarray.Dataset) -> xarray.Dataset:
+def by_branch(sweep: Dataset) -> Dataset:
     """Return a sweep by exact roots in place of motions.
 
     Parameters

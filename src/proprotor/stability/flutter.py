@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from proprotor.model import stamp
+from proprotor.model.configuration import Configuration
 from proprotor.model.doubts import MARK, Doubt, doubt_at, footnotes, marked
 from proprotor.model.stamp import Stamp
 from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary import Boundary, Failed, start_and_gaps
 from proprotor.stability.flutter_messages import least_damping_message
 from proprotor.units import KNOT, in_metres_per_second
-
-if TYPE_CHECKING:
-    from proprotor.model.configuration import Configuration
 
 
 @dataclass(frozen=True, repr=False)

@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from proprotor.model.configuration import Configuration
 from proprotor.model.doubts import doubt_at, marked
 from proprotor.units import KNOT
 
 if TYPE_CHECKING:
-    from proprotor.model.configuration import Configuration
     from proprotor.stability.boundary import Boundary
     from proprotor.stability.flutter import FlutterPoint
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +15,8 @@ from proprotor.needs import check_memory
 from proprotor.rotor.motions import HUB
 from proprotor.stability.modes import doubt_and_failure, leading_dims
 from proprotor.stability.root_error import roots
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 from proprotor.units import values_in_si
-
-if TYPE_CHECKING:
-    import xarray
 
 _BYTES_PER_ENTRY = 48.0  # of a response: a complex number, its magnitude and phase, and a copy
 _BLOCK = 4096  # matrices solved at once
@@ -31,7 +28,7 @@ def frequency_response(
     *,
     inputs: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
-) -> xarray.Dataset:
+) -> Dataset:
     """Return the steady response to an input of one frequency: output = response × input, both e^{iωt}.
 
     The same as `StateSpace.to_control` gives to python-control, for whole batches and with names and units. Where the

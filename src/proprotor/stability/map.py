@@ -9,7 +9,7 @@ both not, are finer than the grid.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,19 +17,15 @@ from numpy.typing import ArrayLike
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
+from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
 from proprotor.needs import check_memory
 from proprotor.stability.brackets import Brackets
 from proprotor.stability.crossings import Search
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.stability.root_error import growth, growth_error, roots
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 from proprotor.units import in_metres_per_second, values_in_si
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.model.configuration import Configuration
 
 _AT_ONCE = 4096  # points of one batch
 _OFF_ZERO = 1e-6  # of the largest growth: no corner is nearer to zero while lines are joined
@@ -70,7 +66,7 @@ def stability_map(
     airspeed: Any = None,
     level: float = 0.0,
     **options: Any,
-) -> xarray.Dataset:
+) -> Dataset:
     """Return the stability of a case over two inputs.
 
     Parameters
@@ -257,7 +253,7 @@ def _dataset(
     largest: Array,
     value: Array,
     edges: _Edges,
-) -> xarray.Dataset:
+) -> Dataset:
     """Return the dataset of a map from what was found at its points and on its edges."""
     import xarray  # here, because it takes long to import
 

@@ -28,11 +28,9 @@ from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.rotor.motions import ROTOR_SPEED
 from proprotor.stability.matching import Modes, Spectrum
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 
 if TYPE_CHECKING:
-    import xarray
-
     from proprotor.stability.parameter_lines import ParameterLine
 
 
@@ -132,7 +130,7 @@ def coordinate_shares(held: list[int], n: int, left: Array, right: Array) -> Arr
     return shares
 
 
-def modes(model: LinearModel) -> xarray.Dataset:
+def modes(model: LinearModel) -> Dataset:
     """Return modes with frequency at or above zero, by frequency.
 
     Parameters
@@ -176,7 +174,7 @@ def modes(model: LinearModel) -> xarray.Dataset:
 
 def mode_dataset(
     model: LinearModel, every: Modes, error: Array, columns: Array, line: ParameterLine | None = None
-) -> xarray.Dataset:
+) -> Dataset:
     """Return the dataset of `modes` from all states of the points, with the error (..., states) of each eigenvalue.
 
     `columns` (..., mode) tells which state each mode is, -1 where a point lacks the mode. A root at zero within its

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from proprotor.errors import InputError, unknown_name
+from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.matching import Modes
 from proprotor.stability.mode_names import moving
 from proprotor.stability.modes import decomposition
 from proprotor.stability.sweep import mode_columns
 from proprotor.units import in_metres_per_second
-
-if TYPE_CHECKING:
-    from proprotor.model.configuration import Configuration
 
 
 class _NamedModes(NamedTuple):

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_train, multiblade, pitch
 from proprotor_equations import rotor as whole_rotor
 
 from proprotor.errors import InputError
+from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mount import mount
@@ -36,9 +37,6 @@ from proprotor.rotor.section_loads import (
 from proprotor.rotor.trim import UNKNOWNS, with_trim
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    from proprotor.model.configuration import Configuration
 
 _COUPLING_ORIGINS = {
     "pitch_flap_coupling": "pitch-flap coupling K_Pβ",

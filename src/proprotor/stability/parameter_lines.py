@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from proprotor.deck.vary import design_inputs
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
+from proprotor.model.configuration import Configuration
 from proprotor.model.first_order import some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.quantities import batch_shape
@@ -23,9 +24,6 @@ from proprotor.needs import check_memory
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second, values_in_si
-
-if TYPE_CHECKING:
-    from proprotor.model.configuration import Configuration
 
 _Inputs = Callable[[Array], dict[str, Array]]  # positions (k,) along a line to the inputs there, by name
 

@@ -10,14 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import compress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from proprotor.datum import Datum
 from proprotor.deck.vary import design_inputs
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError, unknown_name
 from proprotor.model import stamp
+from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.options_of_result import options_of
 from proprotor.stability.boundary import Boundary
@@ -34,13 +36,7 @@ from proprotor.stability.modes import decomposition
 from proprotor.stability.named_modes import doubtful_numbers, named_modes
 from proprotor.stability.points import growth_rate
 from proprotor.stability.root_error import refined
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.datum import Datum
-    from proprotor.model.configuration import Configuration
+from proprotor.typing import Array, Dataset
 
 _QUANTITIES = ("flutter_speed", "damping", "eigenvalue")
 _NEARLY_DEFECTIVE = 10.0  # times the defect of a mode that nothing couples
@@ -90,7 +86,7 @@ def sensitivity(
     mode: str | None = None,
     level: float = 0.0,
     **options: Any,
-) -> xarray.Dataset:
+) -> Dataset:
     """Return exact derivatives by inputs of a case's deck.
 
     Parameters
@@ -191,7 +187,7 @@ def _of_flutter_speed(
     mode: str | None,
     level: float,
     options: Mapping[str, Any],
-) -> xarray.Dataset:
+) -> Dataset:
     found = flutter_point(case, airspeeds, level=level, **options)
     wanted = [b for b in found.boundaries if (b.onset if mode is None else b.mode == mode)]
     if not wanted:
@@ -207,7 +203,7 @@ def at_boundary(
     inputs: Mapping[str, Datum],
     options: Mapping[str, Any],
     eigen_solves: int = 0,
-) -> xarray.Dataset:
+) -> Dataset:
     """Return derivatives of the airspeed of one boundary, see `sensitivity`, by one more eigen-solve for the vectors.
 
     The level and the options are the boundary's own; options may be repeated.
@@ -247,7 +243,7 @@ def _of_modes(
     airspeed: Any,
     mode: str | None,
     options: Mapping[str, Any],
-) -> xarray.Dataset:
+) -> Dataset:
     names, modes, model, speed = named_modes(case, airspeed, mode, options)
     rates, exact = _rates(case, inputs, speed, modes, model, options)
     value, units = modes.values, "rad/s"
@@ -264,7 +260,7 @@ def _of_modes(
 
 def _dataset(
     inputs: Mapping[str, Datum], derivative: Array, units: str, exact: Array, defects: Array, warning: Any
-) -> xarray.Dataset:
+) -> Dataset:
     """Return the dataset of derivatives (inputs,) of a boundary, or (inputs, modes), with the defect of each mode."""
     import xarray  # here, because it takes long to import
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
 from proprotor.model import stamp
+from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import SECOND
 from proprotor.stability.branches import branch_labels, name_states
@@ -19,17 +20,12 @@ from proprotor.stability.mode_names import Moving, moving, whirl
 from proprotor.stability.modes import at_columns, mode_dataset
 from proprotor.stability.parameter_lines import ParameterLine, line_of_case, with_approach
 from proprotor.stability.root_error import errors_of
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.model.configuration import Configuration
+from proprotor.typing import Array, Dataset
 
 
 def sweep(
     model: LinearModel, line: ParameterLine | None = None, *, approach: ParameterLine | None = None
-) -> xarray.Dataset:
+) -> Dataset:
     """Return the modes of a line of points, named and followed.
 
     Parameters
@@ -118,7 +114,7 @@ def mode_columns(found: Moving, values: Array) -> tuple[Array, list[str]]:
 
 def sweep_case(
     case: Configuration, airspeeds: Any, vary: Mapping[str, ArrayLike] | None = None, **options: Any
-) -> xarray.Dataset:
+) -> Dataset:
     """Return the modes of a case along airspeeds, or along one input at one airspeed: see `sweep`.
 
     Modes have their names by what moves at each point. Branches get their labels at the anchor, the case's own inputs

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from proprotor.case import Case
 from proprotor.errors import InputError
 from proprotor.files.source_code import check_code
 from proprotor.model.first_order import missing_roots
+from proprotor.model.linear_model import LinearModel
 from proprotor.stability.modes import decomposition, eigenvalues
 from proprotor.study.designs import AIRSPEED
 from proprotor.study.flutter_speeds import put_flutter_speeds
@@ -22,10 +24,6 @@ from proprotor.study.followed_modes import doubted, modes_along
 from proprotor.study.roots import least_stable, ordered, vectors
 from proprotor.study.variables import POINT, VARIABLE, VARIABLES, blank
 from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    from proprotor.case import Case
-    from proprotor.model.linear_model import LinearModel
 
 _TOLERANCE = 1e-5  # m/s, on a flutter speed
 _BAD_INPUT = (InputError, np.linalg.LinAlgError)

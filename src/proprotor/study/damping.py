@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from proprotor.errors import InputError, unknown_name
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
+from proprotor.typing import Array, DataArray, Dataset
 
 _LEAST_SHARE = 0.1  # participation of the support in a mode that counts as moving the support
 
 
-def mode_damping(
-    results: xarray.Dataset, mode: str | None = None, named_to: float | None = None
-) -> xarray.DataArray:
+def mode_damping(results: Dataset, mode: str | None = None, named_to: float | None = None) -> DataArray:
     """Return the damping ratio of a mode of the support, or the least of all modes that move the support.
 
     Up to the airspeed `named_to` a mode is at each airspeed the one in which the coordinate of the support moves most:
@@ -60,11 +53,11 @@ def mode_damping(
         damping = _of_name(in_order.mode_name.values, values, ratio, mode, _named_points(results, named_to))
     of_points = in_order.mode_eigenvalue.isel(state=0, drop=True)
     label = "damping ratio of " + (mode or "the modes that move the support")
-    found: xarray.DataArray = of_points.copy(data=damping).rename("damping_ratio")
+    found: DataArray = of_points.copy(data=damping).rename("damping_ratio")
     return found.assign_attrs({"units": "1", "long_name": label})
 
 
-def _named_points(results: xarray.Dataset, named_to: float | None) -> int:
+def _named_points(results: Dataset, named_to: float | None) -> int:
     """Return the number of airspeeds at which the name decides which root is the mode."""
     if named_to is None:
         return results.sizes["airspeed"] // 2 + 1

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES
 
+from proprotor.case import Case
 from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
@@ -19,13 +20,8 @@ from proprotor.study.batch import Analysis, Batch
 from proprotor.study.designs import AIRSPEED, Designs, Plan
 from proprotor.study.sampling import as_plan
 from proprotor.study.variables import ALONG_AIRSPEEDS, POINT, QUANTITIES, bytes_of, shape_of, variables
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 from proprotor.units import in_metres_per_second
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.case import Case
 
 _SHAFT = "drive_train.shaft_stiffness"
 _MOST_TRIED = 25  # airspeeds, to see the coordinates of the model
@@ -97,7 +93,7 @@ class Request:
         states = 2 * len(dofs) - (ROTOR_SPEED in dofs and not held)
         return replace(self, analysis=replace(self.analysis, dofs=dofs, states=states))
 
-    def dataset(self, found: Mapping[str, Array]) -> xarray.Dataset:
+    def dataset(self, found: Mapping[str, Array]) -> Dataset:
         """Return variables of all designs and airspeeds as a dataset over the inputs and airspeeds."""
         import xarray  # here, because it takes long to import
 

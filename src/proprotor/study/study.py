@@ -10,6 +10,7 @@ from warnings import warn
 
 import numpy as np
 
+from proprotor.case import Case
 from proprotor.files.source_code import code_fingerprint
 from proprotor.study import workers as study_workers
 from proprotor.study.batch import Analysis, Batch
@@ -19,13 +20,10 @@ from proprotor.study.division import Block, blocks_of, check_needs, points_at_on
 from proprotor.study.progress import progress_bar
 from proprotor.study.request import Request, requested
 from proprotor.study.variables import DEFAULT_QUANTITIES, POINT, VARIABLE, blank
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 
 if TYPE_CHECKING:
-    import xarray
     from distributed import Client
-
-    from proprotor.case import Case
 
 _SMALL = 4000  # points that are analysed before worker processes have started
 
@@ -43,7 +41,7 @@ def study(
     batch: int | None = None,
     tolerance: float | None = None,
     **options: Any,
-) -> xarray.Dataset:
+) -> Dataset:
     """Return the stability and trim of many designs.
 
     Parameters

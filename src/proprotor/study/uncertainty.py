@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,18 +14,15 @@ from proprotor.model.doubts import reasons_for_doubt
 from proprotor.needs import check_memory, need
 from proprotor.study.designs import check_count
 from proprotor.study.variables import STABLE, UNSTABLE
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
+from proprotor.typing import Array, Dataset
 
 _PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
 _MOST_LEFT_OUT = 0.05  # of the base samples, before indices say little about the sample that was drawn
 
 
 def distribution(
-    results: xarray.Dataset, of: str = "flutter_speed", percentiles: Sequence[float] = _PERCENTILES
-) -> xarray.Dataset:
+    results: Dataset, of: str = "flutter_speed", percentiles: Sequence[float] = _PERCENTILES
+) -> Dataset:
     """Return percentiles of a result over the designs of a sample.
 
     The flutter speed of a design that stays stable lies above the airspeeds of the study, and that of a design that is
@@ -74,7 +71,7 @@ def distribution(
     return xarray.Dataset(table, {"percentile": wanted}, _attributes(results, of, warnings))
 
 
-def _warnings(results: xarray.Dataset, of: str) -> Array:
+def _warnings(results: Dataset, of: str) -> Array:
     """Return the warning that makes the result of each design (designs,) doubtful."""
     name = "flutter_warning" if of.startswith("flutter_") else "warning"
     if name in results and results[name].dims == results[of].dims:
@@ -82,13 +79,13 @@ def _warnings(results: xarray.Dataset, of: str) -> Array:
     return np.full(results[of].shape, "")
 
 
-def _attributes(results: xarray.Dataset, of: str, warnings: Array) -> dict[str, Any]:
+def _attributes(results: Dataset, of: str, warnings: Array) -> dict[str, Any]:
     """Return attributes that say which case and options a result over the designs comes from, and its doubts."""
     doubts = {"doubts": "; ".join(reasons_for_doubt(warnings.tolist()))}
     return stamp.of(results.attrs) | {"of": of} | doubts
 
 
-def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed") -> float:
+def share_below(results: Dataset, limit: float, of: str = "flutter_speed") -> float:
     """Return the share of the designs whose result is below a limit (SI), such as a flutter speed below an airspeed.
 
     Parameters
@@ -123,8 +120,8 @@ def share_below(results: xarray.Dataset, limit: float, of: str = "flutter_speed"
 
 
 def sobol_indices(
-    results: xarray.Dataset, of: str = "flutter_speed", confidence: float = 0.95, resamples: int = 100
-) -> xarray.Dataset:
+    results: Dataset, of: str = "flutter_speed", confidence: float = 0.95, resamples: int = 100
+) -> Dataset:
     """Return the share of the variance that each input of a Saltelli sample causes (SALib).
 
     Parameters
@@ -180,7 +177,7 @@ def sobol_indices(
     return xarray.Dataset(table, coordinates, attributes)
 
 
-def _base_samples(results: xarray.Dataset, of: str, sample: Mapping[str, Any]) -> tuple[Array, Array]:
+def _base_samples(results: Dataset, of: str, sample: Mapping[str, Any]) -> tuple[Array, Array]:
     """Return the values of base samples (samples, designs), and which samples have a value of every design."""
     values, above, below = _one_a_design(results, of)
     values = values.reshape(-1, len(sample["inputs"]) * (2 if sample["second_order"] else 1) + 2)
@@ -207,7 +204,7 @@ def _analysed(values: Array, sample: Mapping[str, Any], **bootstrap: Any) -> Map
     return found
 
 
-def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array]:
+def _one_a_design(results: Dataset, of: str) -> tuple[Array, Array, Array]:
     """Return the values of the designs, and which designs lie above and below the airspeeds of the study."""
     if of not in results.data_vars:
         known = ", ".join(str(name) for name in results.data_vars)
@@ -223,14 +220,14 @@ def _one_a_design(results: xarray.Dataset, of: str) -> tuple[Array, Array, Array
     return found, notes == STABLE, (notes == UNSTABLE) & np.isnan(found)
 
 
-def _range(results: xarray.Dataset) -> tuple[float, float]:
+def _range(results: Dataset) -> tuple[float, float]:
     """Return the lowest and the highest airspeed of a study, m/s; infinite without a range."""
     if "airspeed" not in results.dims:
         return -np.inf, np.inf
     return float(results.airspeed.min()), float(results.airspeed.max())
 
 
-def _saltelli_of(results: xarray.Dataset) -> dict[str, Any]:
+def _saltelli_of(results: Dataset) -> dict[str, Any]:
     """Return how a Saltelli sample was drawn; refuse results of anything else."""
     sample: dict[str, Any] = json.loads(results.attrs.get("sample", "{}"))
     if sample.get("method") != "saltelli":

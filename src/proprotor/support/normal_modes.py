@@ -7,17 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, is_choice, list_choices, nowhere_negative, unknown_name
 from proprotor.rotor.motions import check_support_names
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from proprotor.typing import Array
+from proprotor.typing import Array
 
 HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
 TRANSLATION, ROTATION = slice(0, 3), slice(3, 6)  # of the hub axes, or of the six motions of any node

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from proprotor.case import Case
 from proprotor.datum import deck_unit
 from proprotor.model.doubts import marked
+from proprotor.typing import Dataset
 from proprotor.units import KNOT
-
-if TYPE_CHECKING:
-    import xarray
-
-    from proprotor.case import Case
 
 # For each quantity: the unit that people read, and how many SI units one such unit is.
 READ_IN = {"flutter_speed": ("kt", KNOT), "damping": ("% of critical", 0.01)}
 NEARLY_DEFECTIVE = "The mode nearly coincides with another: derivatives hold in a small range only."
 
 
-def sensitivity_records(case: Case, found: xarray.Dataset, of: str) -> list[dict[str, Any]]:
+def sensitivity_records(case: Case, found: Dataset, of: str) -> list[dict[str, Any]]:
     """Return a record for each input of a sensitivity, the largest effect of 1 % first.
 
     Parameters

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from proprotor.model.doubts import reasons_for_doubt
-
-if TYPE_CHECKING:
-    import xarray
+from proprotor.typing import DataArray, Dataset
 
 
-def study_summary(results: xarray.Dataset) -> dict[str, Any]:
+def study_summary(results: Dataset) -> dict[str, Any]:
     """Return the results of a study in a few numbers, as plain data.
 
     Parameters
@@ -48,17 +46,17 @@ def study_summary(results: xarray.Dataset) -> dict[str, Any]:
     }
 
 
-def _most_frequent(texts: xarray.DataArray) -> dict[str, int]:
+def _most_frequent(texts: DataArray) -> dict[str, int]:
     """Return how often each text stands in an array, the most frequent first; empty texts do not count."""
     return dict(Counter(str(text) for text in texts.values.ravel() if text).most_common())
 
 
-def _doubts(warnings: xarray.DataArray) -> dict[str, int]:
+def _doubts(warnings: DataArray) -> dict[str, int]:
     """Return the number of warnings by reason."""
     return {text: len(places) for text, places in reasons_for_doubt(warnings.values.ravel().tolist()).items()}
 
 
-def _of_flutter_speeds(results: xarray.Dataset) -> dict[str, Any]:
+def _of_flutter_speeds(results: Dataset) -> dict[str, Any]:
     found = np.asarray(results.flutter_speed.values, dtype=float)
     speeds = np.sort(found[np.isfinite(found)])
     return {

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES
 
-from proprotor.typing import Array
-
-if TYPE_CHECKING:
-    import xarray
+from proprotor.typing import Array, Dataset
 
 # Shares of the way that both roots go, and of a root: the line of a name goes on where the name passes no farther.
 _BRIDGED, _NEARLY = 2.0, 0.02
@@ -41,24 +38,24 @@ class UnstableRange(NamedTuple):
     branch: str
 
 
-def damped_frequency(sweep: xarray.Dataset) -> Array:
+def damped_frequency(sweep: Dataset) -> Array:
     """Return |Im s| (airspeed, mode) in rad/s, NaN at failed points."""
     eigenvalue = sweep.eigenvalue.values
     return np.where(np.isnan(eigenvalue), np.nan, np.abs(eigenvalue.imag))
 
 
-def growth_rate(sweep: xarray.Dataset) -> Array:
+def growth_rate(sweep: Dataset) -> Array:
     """Return Re s (airspeed, mode) in rad/s, exactly zero where it is zero within the error of the root."""
     real = sweep.eigenvalue.values.real
     return np.where(np.abs(real) <= sweep.eigenvalue_error.values, 0.0, real)
 
 
-def damping_percent(sweep: xarray.Dataset) -> Array:
+def damping_percent(sweep: Dataset) -> Array:
     """Return the damping ratio -Re s/|s| (airspeed, mode) in percent of critical, negative where a mode is unstable."""
     return np.where(growth_rate(sweep) == 0, 0.0, 100 * sweep.damping_ratio.values)
 
 
-def unstable_ranges(sweep: xarray.Dataset) -> list[UnstableRange]:
+def unstable_ranges(sweep: Dataset) -> list[UnstableRange]:
     """Return the ranges of airspeed in which a root is unstable, by mode in the order of the sweep, then by airspeed.
 
     Roots are followed, whatever their names: a name that passes from a stable root to an unstable one crosses nothing.
@@ -90,7 +87,7 @@ def _zero(airspeed: Array, growth: Array, i: int) -> float:
     return float(airspeed[i] - growth[i] * (airspeed[i + 1] - airspeed[i]) / (growth[i + 1] - growth[i]))
 
 
-def leaps(sweep: xarray.Dataset) -> Array:
+def leaps(sweep: Dataset) -> Array:
     """Return where a name passes to a distant root (points - 1, mode), so that a line between the points is no root.
 
     Two roots that veer and exchange their motions are near each other: from one point to the next, the name goes no
@@ -111,12 +108,12 @@ def leaps(sweep: xarray.Dataset) -> Array:
     return found
 
 
-def support_coordinates(sweep: xarray.Dataset) -> list[str]:
+def support_coordinates(sweep: Dataset) -> list[str]:
     """Return the coordinates of the support, which are all but the rotor's."""
     return [name for name in sweep.dof.values.tolist() if name not in FIXED_COORDINATES]
 
 
-def support_share(sweep: xarray.Dataset) -> Array:
+def support_share(sweep: Dataset) -> Array:
     """Return the largest participation of the support in each mode (mode,) along the sweep, 0 to 1."""
     share = sweep.participation.sel(dof=support_coordinates(sweep)).sum("dof").values
     return np.asarray(np.nanmax(share, axis=0, initial=0))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor import units
+from proprotor.case import Case
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked
 from proprotor.stability.mode_names import DOUBTFUL
 from proprotor.tables.csv_text import csv_of
@@ -24,13 +25,10 @@ from proprotor.tables.sweep_summary import (
     support_share,
     unstable_ranges,
 )
-from proprotor.typing import Array
+from proprotor.typing import Array, Dataset
 
 if TYPE_CHECKING:
-    import xarray
     from rich.text import Text
-
-    from proprotor.case import Case
 
 CONVENTION = (
     "Frequency |Im s| per revolution (/rev); damping -Re s/|s| in percent of critical (%), "
@@ -64,7 +62,7 @@ class SweepTable:
         When the unit is not one of speed.
     """
 
-    sweep: xarray.Dataset
+    sweep: Dataset
     rotor_speed: float
     unit: str = "kt"
 
