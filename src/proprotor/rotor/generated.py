@@ -37,12 +37,12 @@ EQUATION_SETS = {
     for name, package in {"consistent": consistent, "published": published}.items()
 }
 
-_arguments = cache(inspect.getfullargspec)
 
-
-def keywords(function: Callable[..., Any]) -> list[str]:
-    """Return the names of the quantities that a generated function takes."""
-    return _arguments(function).kwonlyargs
+@cache
+def keywords(function: Callable[..., Any]) -> Mapping[str, bool]:
+    """Return the names of the quantities that a generated function takes, each with whether it may be left out."""
+    parameters = inspect.signature(function).parameters.values()
+    return {p.name: p.default is not p.empty for p in parameters if p.kind is p.KEYWORD_ONLY}
 
 
 def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matrices: Any) -> Any:
@@ -55,8 +55,7 @@ def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matri
     KeyError
         When a quantity that the function needs is missing.
     """
-    optional = _arguments(function).kwonlydefaults or {}
-    names = (name for name in keywords(function) if name in quantities or name not in optional)
+    names = (name for name, optional in keywords(function).items() if name in quantities or not optional)
     try:
         given = {name: quantities[name] for name in names}
     except KeyError as missing:

@@ -66,6 +66,7 @@ class Checkpoint:
             When the folder holds another study, is in use by a running study, or cannot be used.
         """
         with self._hold():
+            self._check_ours()
             division = self._begun(identity, division)
             self._study = json.dumps([dict(identity), division], sort_keys=True).encode()
             yield division
@@ -90,7 +91,12 @@ class Checkpoint:
             lock.release()
 
     def _check_ours(self) -> None:
-        if not (self.folder / _MANIFEST).exists() and any(self.folder.glob("[!.]*")):
+        """Refuse a folder with files and without a manifest.
+
+        The files are looked for first: a study that begins meanwhile writes its manifest before any other file.
+        """
+        has_files = any(self.folder.glob("[!.]*"))
+        if has_files and not (self.folder / _MANIFEST).exists():
             rule = "must be an empty folder, or that of a study begun before"
             raise InputError("checkpoint", self.folder, rule)
 
