@@ -286,7 +286,7 @@ def test_help_has_exit_codes(arguments):
 
 
 def test_help_starts_without_the_slow_imports():
-    slow = ("pint", "pydantic", "xarray", "matplotlib", "rich")
+    slow = ("pint", "pydantic", "xarray", "matplotlib", "rich", "proprotor.plots")
     code = f"""
 import sys
 from proprotor.commands.main import main

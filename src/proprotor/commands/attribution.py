@@ -10,7 +10,6 @@ from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.model.doubts import doubts_along, marked
-from proprotor.plots import plot_attribution
 from proprotor.stability.sensitivity import damping_rate
 from proprotor.tables.csv_text import csv_of
 from proprotor.typing import Dataset
@@ -36,6 +35,8 @@ def attribution(request: arguments.Request, outputs: output.Outputs, speed: str,
       proprotor attribution xv15 --speed "380 kt" --mode chord
       proprotor attribution xv15 --speed "380 kt" --plot chord.png --csv chord.csv
     """
+    from proprotor.plots import plot_attribution  # here, so that --help answers without it
+
     airspeed, case = arguments.one_speed(speed), request.load()
     with waiting("Analysing"):
         found = _least_damped(case.attribution(airspeed, mode, **request.options))

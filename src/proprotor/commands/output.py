@@ -21,8 +21,6 @@ from proprotor.files import output as output_file
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK, Doubt, footnotes
 from proprotor.model.provenance import reservations
-from proprotor.plots import rests_on
-from proprotor.plots.headless import drawn
 from proprotor.rotor.options import CHOICES, parse_options
 from proprotor.tables.sweep_table import heading
 from proprotor.typing import Axes, Figure
@@ -262,6 +260,8 @@ def _write_plot(path: str, draw: Callable[[], Axes | Figure]) -> None:
 
     A figure that was made for single axes is cut close to the drawing; a whole figure keeps its margins.
     """
+    from proprotor.plots.headless import drawn  # here, so that --help answers without it
+
     with waiting("Drawing"), drawn(draw) as (plot, figure):
         box = None if plot is figure else "tight"
         form = Path(path).suffix.removeprefix(".").lower()
@@ -270,4 +270,6 @@ def _write_plot(path: str, draw: Callable[[], Axes | Figure]) -> None:
 
 def with_origin(axes: Axes, case: Case) -> Axes:
     """Write the case of a plot and the reservations about its numbers beneath the plot; return the axes."""
+    from proprotor.plots import rests_on
+
     return rests_on(axes, case, f"{heading(case)}.")

@@ -12,7 +12,6 @@ from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubts_along, marked
-from proprotor.plots import plot_sensitivity
 from proprotor.tables.csv_text import csv_of
 from proprotor.tables.sensitivity_summary import (
     NEARLY_DEFECTIVE,
@@ -73,6 +72,8 @@ def sensitivity(
       proprotor sensitivity xv15 --of damping --speed "300 kt" --mode chord
       proprotor sensitivity xv15 --wrt rotor.precone --wrt rotor.control_stiffness --json
     """
+    from proprotor.plots import plot_sensitivity  # here, so that --help answers without it
+
     where, case = _where(of, speed, scan, level), request.load()
     with waiting("Deriving"):
         found = _one_mode(case.sensitivity(of, wrt or None, mode=mode, **where, **request.options))

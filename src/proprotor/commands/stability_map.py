@@ -13,7 +13,6 @@ from proprotor.commands.waiting import waiting
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.model.doubts import MARK, map_doubts, marked
-from proprotor.plots import plot_stability_map
 from proprotor.study.sampling import grid
 from proprotor.tables.csv_text import csv_of
 from proprotor.typing import Array, Dataset
@@ -64,6 +63,8 @@ def stability_map(
       proprotor map xv15 --speed "350 kt" --x "support.modes[beam].frequency=2:5:0.1 Hz"
         --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
     """
+    from proprotor.plots import plot_stability_map  # here, so that --help answers without it
+
     airspeed, case = None if speed is None else arguments.one_speed(speed), request.load()
     axes = _axis("--x", x, case), _axis("--y", y, case)
     if axes[0].path == axes[1].path:

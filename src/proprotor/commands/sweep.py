@@ -12,7 +12,6 @@ from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.model.options_in_force import options_in_result, options_text
 from proprotor.model.provenance import reservations
-from proprotor.plots import plot_sweep
 from proprotor.tables.sweep_summary import unstable_ranges
 from proprotor.tables.sweep_table import CONVENTION, SweepTable, heading
 from proprotor.units import speeds
@@ -42,6 +41,8 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
       proprotor sweep xv15 --speed 50:400:5kt --set rotor.precone="1.5 deg"
       proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
     """
+    from proprotor.plots import plot_sweep  # here, so that --help answers without it
+
     airspeeds = speeds(speed, "--speed")
     with waiting("Analysing"):
         case = request.load()
