@@ -4,8 +4,8 @@
 
 A folder is `src/proprotor` unless others are given, such as that of an earlier commit:
 
-    git archive COMMIT src | tar -x -C /tmp/before
-    python -m benchmarks.code_lines /tmp/before/src/proprotor src/proprotor
+    git archive --prefix=before/ COMMIT src | tar -x -C ..
+    python -m benchmarks.code_lines ../before/src/proprotor src/proprotor
 """
 
 from __future__ import annotations

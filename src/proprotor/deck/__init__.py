@@ -34,13 +34,14 @@ The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `
 from proprotor.deck.build import load
 from proprotor.deck.file import list_cases, read_tables
 from proprotor.deck.per_revolution import as_one_file
-from proprotor.deck.vary import design_inputs, vary
+from proprotor.deck.vary import check_input, design_inputs, vary
 from proprotor.deck.written import FilePath, PerRevolution
 
 __all__ = [
     "FilePath",
     "PerRevolution",
     "as_one_file",
+    "check_input",
     "describe",
     "design_inputs",
     "fields_page",

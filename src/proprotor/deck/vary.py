@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -49,6 +49,18 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
     }
 
 
+def check_input(path: str, known: Collection[str]) -> None:
+    """Refuse a path that is not among the paths of the inputs, `known`.
+
+    Raises
+    ------
+    InputError
+        With the nearest known path or, without a near path, all paths.
+    """
+    if path not in known:
+        raise InputError(path, None, unknown_name(path, known, "input"))
+
+
 def vary(case: C, values: Mapping[str, Any]) -> C:
     """Return the case with other values for some numbers of its deck.
 
@@ -76,8 +88,7 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
     """
     known, numbers = design_inputs(case), dict(case.given)
     for path, value in values.items():
-        if path not in known:
-            raise InputError(path, None, unknown_name(path, known, "input"))
+        check_input(path, known)
         number = _number(path, value, known[path].unit)
         written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
         numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from proprotor.case import Case
 from proprotor.datum import deck_unit
 from proprotor.deck.describe import deck_fields
-from proprotor.deck.vary import design_inputs
-from proprotor.errors import InputError, unknown_name
+from proprotor.deck.vary import check_input, design_inputs
 from proprotor.plots.input_names import short_name
 from proprotor.plots.line_of_sweep import written
 
@@ -98,8 +97,7 @@ def slider_input(case: Case, path: str) -> SliderInput:
         For a path that is no input.
     """
     known = design_inputs(case)
-    if path not in known:
-        raise InputError(path, None, unknown_name(path, known, "input"))
+    check_input(path, known)
     number = known[path]
     unit, factor = deck_unit(number)
     value = float(f"{float(number.si) / factor:.10g}")  # free of the rounding of conversion

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from proprotor.errors import InputError, check_finite, unknown_name
+from proprotor.errors import InputError, check_finite, check_known, unknown_name
 
 _TRIM_TARGETS = ("collective", "thrust_coefficient", "power_coefficient")
 
@@ -54,8 +54,7 @@ class Operation:
             rule = 'must be "windmill" or one target such as {"collective": 0.6}'
             raise InputError("trim", self.trim, rule)
         (name, value), *_ = self.trim.items()
-        if name not in _TRIM_TARGETS:
-            raise InputError("trim", name, unknown_name(name, _TRIM_TARGETS, "trim"))
+        check_known("trim", name, _TRIM_TARGETS, "trim")
         check_finite(f"trim.{name}", value)
 
     @property

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.model.linear_model import SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
 from proprotor.needs import check_memory
@@ -105,8 +105,7 @@ def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> 
     """Return the places of wanted names among known names; of all names where none is wanted."""
     names = known if wanted is None else (wanted,) if isinstance(wanted, str) else tuple(wanted)
     for name in names:
-        if name not in known:
-            raise InputError(what, name, unknown_name(name, known, what.removesuffix("s")))
+        check_known(what, name, known, what.removesuffix("s"))
     return [known.index(name) for name in names]
 
 

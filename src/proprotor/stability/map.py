@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.deck.vary import design_inputs
-from proprotor.errors import InputError, unknown_name
+from proprotor.deck.vary import check_input, design_inputs
+from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
@@ -135,8 +135,8 @@ def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str
         raise InputError("axes", ", ".join(axes), "must be two inputs")
     known, found = design_inputs(case), {}
     for name, given in axes.items():
-        if name != AIRSPEED and name not in known:
-            raise InputError(name, None, unknown_name(name, known, "input"))
+        if name != AIRSPEED:
+            check_input(name, known)
         values = (
             in_metres_per_second(given) if name == AIRSPEED else values_in_si(given, known[name].unit, name)
         )

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.matching import Modes
@@ -51,8 +51,8 @@ def named_modes(
     values, right, left = spectrum.all_modes
     found = moving(model, values, left, right)
     columns, names = mode_columns(found._replace(place=found.place[None]), values[None])
-    if mode is not None and mode not in names:
-        raise InputError("mode", mode, unknown_name(mode, names, "mode"))
+    if mode is not None:
+        check_known("mode", mode, names, "mode")
     chosen = np.array([names.index(name) for name in (names if mode is None else [mode])])
     wanted = spectrum.modes(columns[0, chosen])
     return _NamedModes([names[place] for place in chosen], wanted, model, float(speed[0]))

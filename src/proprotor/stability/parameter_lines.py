@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.deck.vary import design_inputs
+from proprotor.deck.vary import check_input, design_inputs
 from proprotor.deck.vary import vary as vary_case
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
 from proprotor.model.first_order import some_points
 from proprotor.model.linear_model import LinearModel
@@ -135,8 +135,7 @@ def _line_of_input(
         raise InputError("vary", ", ".join(vary), "must be one input to sweep")
     (path, given), *_ = vary.items()
     known = design_inputs(case)
-    if path not in known:
-        raise InputError(path, None, unknown_name(path, known, "input"))
+    check_input(path, known)
     unit = known[path].unit
     values = values_in_si(given, unit, path)
     if len(speed) != 1 or values.ndim != 1:

@@ -17,7 +17,7 @@ import numpy as np
 from proprotor.datum import Datum
 from proprotor.deck.vary import design_inputs
 from proprotor.deck.vary import vary as vary_case
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_known
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
@@ -135,8 +135,7 @@ def sensitivity(
 def _chosen(case: Configuration, wrt: Sequence[str] | None) -> dict[str, Datum]:
     known = design_inputs(case)
     for path in wrt or ():
-        if path not in known:
-            raise InputError("wrt", path, unknown_name(path, known, "input"))
+        check_known("wrt", path, known, "input")
     return known if wrt is None else {path: known[path] for path in wrt}
 
 

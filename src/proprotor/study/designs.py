@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from proprotor.datum import Datum
-from proprotor.errors import InputError, unknown_name
+from proprotor.deck.vary import check_input
+from proprotor.errors import InputError
 from proprotor.needs import check_memory
 from proprotor.study.input_ranges import has_number
 from proprotor.typing import Array
@@ -108,8 +109,7 @@ class Plan:
         """
         known = {**known, AIRSPEED: _SPEED}
         for path in paths_of(self.inputs):
-            if path not in known:
-                raise InputError(path, None, unknown_name(path, known, "input"))
+            check_input(path, known)
         read = {
             name: self.read(label_of(name), given, _number(name, known))
             for name, given in self.inputs.items()
