@@ -142,26 +142,27 @@ def _defined(module: str) -> dict[str, int]:
 
 
 def _in_face(module: str, name: str) -> bool:
-    """Whether other rooms may import a name of a module."""
+    """Return whether other rooms may import a name of a module; a room as a whole, always."""
     room, _, inner = module.partition(".")
     shown = face(room)
     by_module = inner.partition(".")[0] in shown and not name.startswith("_")
-    return by_module or (name in shown if name else False)
+    return by_module or (name in shown if name else not inner)
+
+
+def _between_rooms() -> Iterator[Import]:
+    """Yield the imports of one room by another; the imports of the one exception are left out."""
+    for one in imports():
+        if one.origin not in ("", one.target) and (one.origin, one.target, one.scope) != EXCEPTION:
+            yield one
 
 
 def upward() -> list[str]:
-    """Return the imports of a room by a room above it; those of the one exception are left out."""
-    found = []
-    for one in imports():
-        if not one.origin or one.origin == one.target:
-            continue
-        if (one.origin, one.target, one.scope) == EXCEPTION:
-            continue
-        if ROOMS.index(one.target) > ROOMS.index(one.origin):
-            found.append(
-                f"{one.file}:{one.line}: {one.origin} imports {one.module} {one.name}, which lies below"
-            )
-    return found
+    """Return the imports of a room by a room above it."""
+    return [
+        f"{one.file}:{one.line}: {one.origin} imports {one.module} {one.name}, which lies below"
+        for one in _between_rooms()
+        if ROOMS.index(one.target) > ROOMS.index(one.origin)
+    ]
 
 
 def not_shown() -> list[str]:
@@ -169,13 +170,7 @@ def not_shown() -> list[str]:
     return [
         f"{one.file}:{one.line}: {one.module} {one.name} is not in the face of {one.target}"
         for one in imports()
-        if (one.origin != one.target and one.module != one.target and not _in_face(one.module, one.name))
-        or (
-            one.origin != one.target
-            and one.module == one.target
-            and one.name
-            and one.name not in face(one.target)
-        )
+        if one.origin != one.target and not _in_face(one.module, one.name)
     ]
 
 
@@ -209,12 +204,8 @@ def beside_rooms() -> list[str]:
 
 
 def cycles() -> list[str]:
-    """Return the pairs of rooms that import each other; the one exception is left out."""
-    pairs = {
-        (one.origin, one.target)
-        for one in imports()
-        if one.origin and (one.origin, one.target, one.scope) != EXCEPTION
-    }
+    """Return the pairs of rooms that import each other."""
+    pairs = {(one.origin, one.target) for one in _between_rooms()}
     return [f"{a} and {b} import each other" for a, b in sorted(pairs) if a < b and (b, a) in pairs]
 
 
