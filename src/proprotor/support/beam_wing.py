@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, check_finite, unknown_name
+from proprotor.support.beam import rigid_motion
 from proprotor.support.modal_reduction import ModalSupport, on_modes, symmetric
-from proprotor.support.normal_modes import HUB_AXES, ROTATION, TRANSLATION, NormalModes
+from proprotor.support.normal_modes import HUB_AXES, ROTATION, NormalModes
 from proprotor.typing import Array
 
 _UP, _OUTBOARD, _ = np.eye(3)
@@ -351,16 +352,6 @@ def _pylon_mass(pylon: Pylon) -> Array:
     nacelle = np.diag([pylon.nacelle_mass] * 3 + list(inertia))
     motion = rigid_motion(pylon.nacelle - pylon.hub)
     return motion.T @ nacelle @ motion + pylon.hub_mass * np.diag([1.0] * 3 + [0.0] * 3)
-
-
-def rigid_motion(offset: ArrayLike) -> Array:
-    """Return the motion (6, 6) of a point of a rigid body per motion of a reference point.
-
-    `offset` (3,) is the vector from the reference point to the point, m.
-    """
-    motion = np.eye(6)
-    motion[TRANSLATION, ROTATION] = np.cross(np.eye(3), np.asarray(offset, dtype=float)).T
-    return motion
 
 
 def _means(profile: _SpanwiseProfile, stations: Array) -> Array:
