@@ -134,6 +134,29 @@ def beam_chain(
     return whole(element.mass), {part: whole(getattr(element, f"{part}_stiffness")) for part in _PARTS}
 
 
+def section_motions(positions: Array, places: Array) -> Array:
+    """Return the motions (..., k, p, 6, 12) of sections of a chain of elements, along and about I, J, K.
+
+    Parameters
+    ----------
+    positions : array (..., k + 1, 3)
+        Nodes on the elastic axis, m.
+    places : array (p,)
+        Places of the sections in each element, from 0 to 1.
+
+    Returns
+    -------
+    array (..., k, p, 6, 12)
+        Per motion of the inner and the outer node of the element.
+    """
+    length, axes = _element_axes(np.diff(positions, axis=-2), _UP)
+    own = element.motion(element_length=length[..., None], element_position=places)
+    ends = _motion_of_ends(axes, np.zeros(positions.shape))[..., None, :, :]
+    back = np.swapaxes(ends[..., :PER_NODE, :PER_NODE], -1, -2)
+    motion: Array = back @ own @ ends
+    return motion
+
+
 def rigid_motion(offset: ArrayLike) -> Array:
     """Return the motion (..., 6, 6) of a point of a rigid body per motion of a reference point.
 
