@@ -171,5 +171,4 @@ class AirfoilTable:
 def _first_stop(rises: Array, angles: Array) -> Array:
     """Return the angle (m,) where the first step (n, m) that does not rise begins; `_NO_STALL` if all steps rise."""
     stops = np.vstack([~rises, np.ones(rises.shape[1], dtype=bool)])
-    found: Array = np.append(angles, _NO_STALL)[stops.argmax(axis=0)]
-    return found
+    return np.asarray(np.append(angles, _NO_STALL)[stops.argmax(axis=0)])

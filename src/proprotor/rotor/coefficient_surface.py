@@ -129,8 +129,7 @@ def _first_row(holds: Array, rule: str) -> Iterator[tuple[int, str]]:
 
 def _outside(nodes: Array, x: Array) -> Array:
     """Return whether each x lies below the first node or above the last."""
-    outside: Array = (np.real(x) < nodes[0]) | (np.real(x) > nodes[-1])
-    return outside
+    return np.asarray((np.real(x) < nodes[0]) | (np.real(x) > nodes[-1]))
 
 
 def _place(nodes: Array, x: Array) -> tuple[Array, Array]:

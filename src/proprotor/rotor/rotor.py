@@ -415,8 +415,7 @@ def _interpolate(distribution: _Table | Callable[[Array], Array], r: Array) -> A
     start, end = (np.take_along_axis(stations, panel + step, axis=-1) for step in (0, 1))
     share = (r - start) / (end - start)
     share = np.where(np.real(share) < 0, 0.0, np.where(np.real(share) > 1, 1.0, share))
-    between: Array = values[panel] + share * (values[panel + 1] - values[panel])
-    return between
+    return np.asarray(values[panel] + share * (values[panel + 1] - values[panel]))
 
 
 def _outboard_moment(r: Array, mass: Array, axis: ArrayLike, power: int) -> Any:

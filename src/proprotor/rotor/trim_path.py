@@ -56,8 +56,7 @@ class Path:
     @property
     def arrived(self) -> Array:
         """Which points (n,) have come to all of the loads."""
-        arrived: Array = self.rigid & (self.share == 1)
-        return arrived
+        return np.asarray(self.rigid & (self.share == 1))
 
     def begin(self) -> Array:
         """Correct the undeflected blade at no loads, and return the points that have a path."""

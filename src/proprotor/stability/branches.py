@@ -97,8 +97,7 @@ def named_at(branches: Branches, line: ParameterLine, place: int) -> NamedStates
 def names_of(model: LinearModel, spectrum: Spectrum) -> Array:
     """Return what moves in each state (states,) of a model of one point, by its place in `name_list`."""
     values, right, left = spectrum.all_modes
-    place: Array = moving(model, values, left, right).place[0]
-    return place
+    return np.asarray(moving(model, values, left, right).place[0])
 
 
 def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStates | None:

@@ -137,14 +137,12 @@ def _any_near(distance: Array, values: Array) -> Array:
 
 def _largest(values: Array) -> Array:
     """Return the size of the largest root of each point (..., 1)."""
-    largest: Array = np.fmax.reduce(size_of(values), axis=-1, keepdims=True)
-    return largest
+    return np.asarray(np.fmax.reduce(size_of(values), axis=-1, keepdims=True))
 
 
 def _products(rows: Array, columns: Array) -> Array:
     """Multiply each row (..., modes, n) by its own column (..., n, modes)."""
-    found: Array = (rows * np.swapaxes(columns, -1, -2)).sum(axis=-1)
-    return found
+    return np.asarray((rows * np.swapaxes(columns, -1, -2)).sum(axis=-1))
 
 
 def _nearest(values: Array) -> Array:
@@ -152,5 +150,4 @@ def _nearest(values: Array) -> Array:
     apart = size_of(values[..., :, None] - values[..., None, :])
     states = np.arange(values.shape[-1])
     apart[..., states, states] = np.inf
-    nearest: Array = np.fmin.reduce(apart, axis=-1)
-    return nearest
+    return np.asarray(np.fmin.reduce(apart, axis=-1))
