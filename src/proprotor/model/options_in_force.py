@@ -23,8 +23,7 @@ def in_force(options: Options) -> dict[str, Any]:
 
 def options_in_result(found: Mapping[Any, Any]) -> dict[str, Any]:
     """Return every option in force from the attributes of a result, as plain data."""
-    options: dict[str, Any] = json.loads(found["options"])
-    return options
+    return dict(json.loads(found["options"]))
 
 
 def chosen(options: Mapping[str, Any]) -> dict[str, Any]:

@@ -212,10 +212,12 @@ def _segments(
     if equations is airloads and options.airloads == "full":
         return dict(at_trim)
     segments = segment_quantities(sections, quantities, equations)
-    return segments | _moments(sections, segments, options)
+    return segments | airload_moments(sections, segments, options)
 
 
-def _moments(sections: BladeSections, segments: Mapping[str, Any], options: Options) -> dict[str, Array]:
+def airload_moments(
+    sections: BladeSections, segments: Mapping[str, Any], options: Options
+) -> dict[str, Array]:
     """Return the radial moments of the section loads, in closed form if possible, else by quadrature."""
     if in_closed_form(sections, options):
         return closed_form_moments(sections, segments)

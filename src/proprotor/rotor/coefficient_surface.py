@@ -156,8 +156,7 @@ def _slopes(x: Array, values: Array) -> Array:
         return np.zeros_like(values)
     # Reciprocals of the smallest differences overflow, and become zero slopes.
     with np.errstate(over="ignore"):
-        slopes: Array = PchipInterpolator(x, values, axis=0)(x, nu=1)
-    return slopes
+        return np.asarray(PchipInterpolator(x, values, axis=0)(x, nu=1))
 
 
 def _cubics(x: Array, values: Array, slopes: Array, outside: float) -> Array:

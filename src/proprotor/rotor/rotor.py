@@ -269,12 +269,10 @@ class Rotor:
         array (..., stations)
             Twist from the pitch at 0.75 R, rad.
         """
-        reference = 0.75 * np.asarray(self.radius)[..., None]
+        radius = np.asarray(self.radius)[..., None]
         if isinstance(self.twist, tuple) or callable(self.twist):
-            twist: Array = _interpolate(self.twist, r) - _interpolate(self.twist, reference)
-        else:
-            twist = np.asarray(self.twist)[..., None] * (r - reference) / np.asarray(self.radius)[..., None]
-        return twist
+            return np.asarray(_interpolate(self.twist, r) - _interpolate(self.twist, 0.75 * radius))
+        return np.asarray(np.asarray(self.twist)[..., None] * (r - 0.75 * radius) / radius)
 
     @classmethod
     def from_mass_distribution(

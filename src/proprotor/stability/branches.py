@@ -176,9 +176,8 @@ def _doubts(branches: Branches, label: Array, points: int) -> Array:
     doubt = np.full(points, "", dtype=object)
     own = np.flatnonzero(branches.points < points)  # points of the line, and none between
     if len(own) > 1:
-        poor = (
-            np.minimum.reduceat(branches.quality, own[:-1], axis=0) < POOR
-        )  # in any step since the point before
+        # In any step since the point before.
+        poor = np.minimum.reduceat(branches.quality, own[:-1], axis=0) < POOR
         for row in np.flatnonzero(poor.any(axis=1)):
             point, places = branches.points[own[row + 1]], branches.places[own[row + 1]]
             names = dict.fromkeys(label[point, np.sort(places[poor[row]])])

@@ -176,9 +176,8 @@ def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Ar
     """Match modes of points whose coordinates have different shapes, in the coordinates of the earlier point."""
     turn = np.linalg.pinv(shapes[before]) @ shapes[after]
     states, count = spectrum.values.shape[-1], turn.shape[-1]
-    rates = (
-        states - (states + 1) // 2
-    )  # first place of a rate, after all displacements, or all but the azimuth
+    # First place of a rate, after all displacements, or all but the azimuth.
+    rates = states - (states + 1) // 2
     right = spectrum.right[after]
     for start in (0, rates):
         places = slice(start, start + count)

@@ -21,19 +21,13 @@ from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mount import mount
 from proprotor.model.options_of_result import check_options
 from proprotor.model.quantities import COUPLINGS, batch_shape, couplings, model_quantities
-from proprotor.model.rotor_model import in_closed_form
+from proprotor.model.rotor_model import airload_moments, in_closed_form
 from proprotor.model.rotor_share import without_rotors
 from proprotor.model.stamp import of_model
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options, parse_options
-from proprotor.rotor.section_loads import (
-    BladeSections,
-    closed_form_moments,
-    compressible,
-    load_moments,
-    segment_quantities,
-)
+from proprotor.rotor.section_loads import BladeSections, compressible, segment_quantities
 from proprotor.rotor.trim import UNKNOWNS, with_trim
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
@@ -211,17 +205,12 @@ def _moments(
     section_damping: bool,
 ) -> dict[str, Any]:
     """Return radial moments of the section loads by some of the coefficients, and the quantities of segments."""
-    equations = choice.equation_set.airloads
-    segments = segment_quantities(
-        sections, quantities | {"section_damping": float(section_damping)}, equations
-    )
-    if in_closed_form(sections, choice):
-        return segments | closed_form_moments(sections, segments)
-    some = replace(sections, airfoil=_SomeCoefficients(sections.airfoil, kept, choice.compressibility))
-    alone = choice.airloads == "lift-slope"
-    return segments | load_moments(
-        some, segments, compressibility=False, lift_slope_only=alone, equations=equations
-    )
+    given = quantities | {"section_damping": float(section_damping)}
+    segments = segment_quantities(sections, given, choice.equation_set.airloads)
+    if not in_closed_form(sections, choice):
+        some = _SomeCoefficients(sections.airfoil, kept, choice.compressibility)
+        sections = replace(sections, airfoil=some)
+    return segments | airload_moments(sections, segments, choice)
 
 
 def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> Array:
