@@ -205,9 +205,7 @@ def _segments(
 ) -> dict[str, Any]:
     """Return on which side of the hinges each segment is, and the radial moments of each segment's loads."""
     if options.airloads == "none":
-        hinges = ("beyond_flap_hinge", "beyond_lag_hinge")
-        sides = {name: getattr(sections.quadrature, name) for name in hinges}
-        return dict.fromkeys(LOAD_MOMENTS, 0.0) | sides
+        return dict.fromkeys(LOAD_MOMENTS, 0.0) | sections.sides
     equations = options.equation_set.airloads
     if equations is airloads and options.airloads == "full":
         return dict(at_trim)

@@ -61,8 +61,7 @@ class CoefficientSurface:
         """
         row, angle = _place(self.alpha, self.turned(alpha))
         column, speed = _place(self.mach, mach)
-        cells = self._polynomials[:, :, row, column]
-        along_alpha, by_mach = _horner(cells, speed)
+        along_alpha, by_mach = _horner(self._polynomials[:, :, row, column], speed)
         return *_horner(along_alpha, angle), _horner(by_mach, angle)[0]
 
     def beyond_alpha(self, alpha: Array) -> Array:

@@ -320,8 +320,7 @@ class Rotor:
         if np.any(mass < 0):
             raise InputError("mass_distribution", float(mass.min()), "must not be negative")
         if beyond not in ("", NOTHING):
-            rule = f'must have beyond = "{NOTHING}", or no beyond'
-            raise InputError("mass_distribution", beyond, rule)
+            raise InputError("mass_distribution", beyond, f'must have beyond = "{NOTHING}", or no beyond')
         r = _reaching(r, fields_.get("radius"), beyond, hub_mass)
         _check_distribution("mass_distribution", (r, mass))
         axes = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}

@@ -84,8 +84,7 @@ class Path:
         """Set λ, slopes and tangent of points that came farther."""
         self.share[gained] = share
         self.slopes.put(gained, Slopes(full, airloads))
-        here = self.slopes.of(gained).at(share)
-        self.tangent[gained] = -solve(here, loads[..., None])[..., 0]
+        self.tangent[gained] = -solve(Slopes(full, airloads).at(share), loads[..., None])[..., 0]
 
     def _with_next_step(self, active: Array, good: Array, radius: Array) -> Array:
         """Set the next step by the bound, and return the points with a way to go and a step to take."""

@@ -304,8 +304,7 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     """Return successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
     likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
-    distance = _distance(start[:, None], end, np.nanmax(np.abs(start)))
-    gain = likeness - distance
+    gain = likeness - _distance(start[:, None], end, np.nanmax(np.abs(start)))
     successor = best_assignment(np.where(np.isfinite(gain), gain, -1e300))
     mixing = likeness[:, successor]
     own = np.diagonal(mixing).copy()

@@ -73,12 +73,10 @@ def refined(model: LinearModel, modes: Modes) -> _Refined:
         matrices = np.concatenate([model.M.real, model.C.real, model.K.real[..., held]], axis=-1)
         correction = -_products(left, real_times(matrices, motion))
         rounding = _ROUNDINGS * _EPSILON * _products(size_of(left), np.abs(matrices) @ size_of(motion))
-        apart = _nearest(values)
-        share = size_of(correction) / apart
+        share = size_of(correction) / _nearest(values)
         better = share < 0.5
         error = rounding + size_of(correction) * np.where(better, _OF_CORRECTION + share, 1.0)
-        most = _DOUBLE * _largest(values)
-        error = np.where(np.isnan(values), np.nan, np.fmin(error, most))
+        error = np.where(np.isnan(values), np.nan, np.fmin(error, _DOUBLE * _largest(values)))
     return _Refined(np.where(better, values + correction, values), error)
 
 
