@@ -156,7 +156,7 @@ def _analysed(
     if min(workers, count) > 1:
         try:
             study_workers.check_loadable(analysis)
-            return study_workers.in_processes(analysis, batches, min(workers, count))
+            return study_workers.Processes(analysis, batches, min(workers, count)).results()
         except study_workers.NotLoadable as error:
             reason = f"because others cannot load the case: {error}"
             warn(f"one process analyses the study, {reason}", stacklevel=4)
