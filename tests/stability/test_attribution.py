@@ -37,7 +37,7 @@ SUM = 1e-10
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.mark.parametrize("options", VARIANTS.values(), ids=VARIANTS)
