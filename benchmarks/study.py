@@ -251,7 +251,7 @@ def main() -> None:
         environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
         os.execve(sys.executable, [sys.executable, "-m", "benchmarks.study", *sys.argv[1:]], environment)
     points = int(sys.argv[1]) if len(sys.argv) > 1 else POINTS
-    console, case = Console(width=110, highlight=False), pp.load_case("xv15")
+    console, case = Console(width=110, highlight=False), pp.load_case("xv15-uncoupled")
     print_ratios(console, case, points)
     print_profile(console, case, points)
 

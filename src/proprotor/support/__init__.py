@@ -4,6 +4,7 @@ In: a beam wing, or modes or matrices of any finite-element code. Out: `NormalMo
 This room imports `errors`, `typing`, `needs`, `files` and, for the names of coordinates, `rotor`.
 
     normal_modes       coordinates of a support; two-axis pivot; rigid support
+    airframe           coordinates of an airframe that carries two rotors
     modal_reduction    lowest modes of a structure, and the structure on these modes
     beam_wing          a cantilever wing of beam elements with a pylon
     wing_aerodynamics  airloads of the wing itself, by strips
@@ -14,6 +15,7 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
 All public names of the modules `beam_wing`, `matrix_files`, `nastran` and `wing_aerodynamics` belong to the face.
 """
 
+from proprotor.support.airframe import SYMMETRIES, Airframe
 from proprotor.support.modal_reduction import StructuralModes, lowest_modes
 from proprotor.support.normal_modes import (
     HUB_AXES,
@@ -28,6 +30,8 @@ __all__ = [
     "HUB_AXES",
     "INCLUDES_ROTOR",
     "SHAFT",
+    "SYMMETRIES",
+    "Airframe",
     "NormalModes",
     "StructuralModes",
     "beam_wing",
