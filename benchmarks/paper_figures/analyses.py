@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 import proprotor as pp
 from benchmarks.paper_figures.blade_state import AS_THE_PAPER, BladeState, blade_state, on_rigid_hub
 from benchmarks.paper_figures.input_ranges import RANGES
-from benchmarks.paper_figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES
+from benchmarks.paper_figures.published import PAPER_FREQUENCIES
 from benchmarks.paper_figures.sample_band import Band, damping_band
 from benchmarks.paper_figures.wing_modes import WingModes
 from proprotor.typing import Array
@@ -90,7 +91,7 @@ def own_frequencies(case: pp.Case, airspeeds: Array) -> pp.BladeFrequencies:
     """Return lag as this model has it in a vacuum, and coning at 1.85 per revolution, tabulated against airspeed."""
     vacuum = on_rigid_hub(case, airspeeds, airloads="none", pitch="coupling")
     lag = 1 + vacuum["low cyclic lag"]
-    return pp.BladeFrequencies(flap=CONING_FREQUENCY, lag=lag, against="airspeed", at=airspeeds)
+    return replace(PAPER_FREQUENCIES, lag=lag, at=airspeeds, at_rotor_speed=case.operation.rotor_speed)
 
 
 def _tabulated(frequencies: Callable[[pp.Case, Array], pp.BladeFrequencies]) -> Variant:
