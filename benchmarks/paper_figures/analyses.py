@@ -19,6 +19,7 @@ from proprotor.typing import Array
 from proprotor.units import KNOT
 
 XV15 = "xv15-uncoupled"
+BELL = "xv15-bell-frequencies"
 # kt; slower, the neglected induced velocity is more than a twentieth of the airspeed, or the paper shows nothing
 _AIRSPEEDS = {XV15: (50, 500), "xv15-mass-distribution": (50, 500), "v22-fifth-scale": (50, 250)}
 _WRATS = (60, 180)
@@ -105,6 +106,13 @@ def _tabulated(frequencies: Callable[[pp.Case, Array], pp.BladeFrequencies]) -> 
     )
 
 
+def _with_bell(**options: Any) -> Variant:
+    """Return the variant with the blade frequencies that Bell calculated, in place of the springs of Table 1."""
+    return lambda case, airspeeds: (
+        {"structure": "tabulated", "frequencies": pp.load_case(BELL).frequencies} | options
+    )
+
+
 def _fixed(**options: Any) -> Variant:
     """Return the variant with options that are the same at each airspeed."""
     return lambda case, airspeeds: options
@@ -123,4 +131,7 @@ VARIANTS: dict[str, Variant] = {
     "no flap-lag stiffness, couplings follow": _fixed(structure="diagonal"),
     "given frequencies": _tabulated(lambda case, airspeeds: PAPER_FREQUENCIES),
     "own frequencies given": _tabulated(own_frequencies),
+    "Bell's frequencies, couplings": _with_bell(),
+    "Bell's frequencies, pitch equations": _with_bell(pitch="dynamic"),
+    "Bell's frequencies, pitch equations, section damping": _with_bell(pitch="dynamic", section_damping=True),
 }
