@@ -21,7 +21,7 @@ from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
-from proprotor.units import speeds, to_si
+from proprotor.units import airspeed_unit, speeds, to_si
 
 Command = Callable[..., Any]
 Option = Callable[[Command], Command]  # a decorator
@@ -236,15 +236,15 @@ def _level_of(text: str) -> float:
     return level
 
 
-def one_speed(text: str, option: str = "--speed") -> float:
-    """Return a single airspeed, m/s.
+def one_speed(text: str, case: Case, option: str = "--speed") -> float:
+    """Return a single airspeed in the air of a case, m/s, true.
 
     Raises
     ------
     InputError
         For a text that is not exactly one airspeed.
     """
-    found = speeds(text, option)
+    found = speeds(text, option, case.operation.density)
     if len(found) != 1:
         raise InputError(option, text, 'must be one speed, such as "300 kt"')
     return float(found[0])
@@ -253,6 +253,12 @@ def one_speed(text: str, option: str = "--speed") -> float:
 def unit_of(text: str) -> str:
     """Return the unit of a value or range, as written; "" without a unit."""
     return _RANGE.sub("", text, count=1).strip()
+
+
+def written_speed(text: str) -> str:
+    """Return an airspeed of the command line with its unit as outputs name it: "350 KTAS" for "350kt"."""
+    unit = unit_of(text)
+    return f"{text.strip().removesuffix(unit).strip()} {airspeed_unit(unit)}"
 
 
 def model_options(command: Command) -> Command:

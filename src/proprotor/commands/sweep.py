@@ -20,7 +20,8 @@ from proprotor.units import speeds
 @arguments.command()
 @arguments.case_argument
 @arguments.range_option(
-    'Airspeeds with their unit: "50:400:5kt" is 50 to 400 kt by 5 kt; also "300 kt", "25:200:2.5 m/s".',
+    'Airspeeds with their unit: "50:400:5ktas" is 50 to 400 KTAS by 5 (kt is the same); also "300 keas", '
+    '"25:200:2.5 m/s".',
     required=True,
 )
 @click.option("--all-modes", is_flag=True, help="Show all modes, not only as many as fit into one table.")
@@ -43,9 +44,9 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
     """
     from proprotor.plots import plot_sweep  # here, so that --help answers without it
 
-    airspeeds = speeds(speed, "--speed")
     with waiting("Analysing"):
         case = request.load()
+        airspeeds = speeds(speed, "--speed", case.operation.density)
         found = case.sweep(airspeeds, **request.options)
     table = SweepTable(found, case.operation.rotor_speed, arguments.unit_of(speed))
     outputs.write(

@@ -35,7 +35,7 @@ def plot_frequency(
     rotor_speed : float or array (points,), optional
         rad/s. With a rotor speed frequencies are per revolution, without it in Hz.
     unit : str, optional
-        Unit of the axis of airspeed, "kt" by default, or of the input.
+        Unit of the axis of airspeed, "ktas" by default, or of the input.
     limits : (float, float), optional
         Ends of the frequency axis, in its unit; 0 to 5 per revolution by default. A note above the axes names the modes
         that leave the axis.
@@ -87,7 +87,7 @@ def plot_damping(
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default. Labels stand to its right.
     unit : str, optional
-        Unit of the axis of airspeed, "kt" by default, or of the input.
+        Unit of the axis of airspeed, "ktas" by default, or of the input.
     limits : (float, float)
         Ends of the damping axis, in percent. A note above the axes names the modes that leave the axis.
 

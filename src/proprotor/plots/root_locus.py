@@ -43,7 +43,7 @@ def plot_root_locus(
     rotor_speed : float, optional
         rad/s. With a rotor speed both axes are per revolution, without it in rad/s.
     unit : str, optional
-        Unit of the airspeed, "kt" by default, or of the input.
+        Unit of the airspeed, "ktas" by default, or of the input.
     marks : float, optional
         Distance of the markers, in this unit.
     growth_limits, frequency_limits : (float, float), optional

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from proprotor.model.doubts import map_doubts
+from proprotor.model.stamp import density_of
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.line_of_sweep import Positions, axis_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE
@@ -79,7 +80,7 @@ def plot_stability_map(
 
 def _axis(found: Dataset, name: str, unit: str | None) -> Positions:
     si = "m/s" if name == "airspeed" else str(found[name].attrs.get("units", ""))
-    return axis_of(name, found[name].values, si, unit)
+    return axis_of(name, found[name].values, si, unit, density_of(found.attrs))
 
 
 def _shade(ax: Axes, x: Array, y: Array, growth: Array, vertices: Array) -> None:

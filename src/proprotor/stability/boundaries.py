@@ -99,7 +99,7 @@ def boundaries(
         line = replace(line, positions=_in_small_steps(line.positions, tip_speed(case)))
     search = _search(line, level)
     found = _crossings(line, search, approach_to(case, line, search.scanned.works, options))
-    own = stamp.of_case(case, options)
+    own = stamp.of_case(case, options, vary or ())
     carried = tuple(replace(boundary, stamp=own) for boundary in found.boundaries)
     return found._replace(boundaries=carried, stamp=own)
 
