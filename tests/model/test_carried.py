@@ -561,7 +561,7 @@ def test_doubts_are_grouped_by_their_reason():
         "Mach": [3],
     }
     positions = np.array([10.0, 20.0, 30.0, 40.0])
-    told = list(footnotes(doubts_along(positions, warnings), "kt", 2.0))
+    told = list(footnotes(doubts_along(positions, warnings), "KTAS", 2.0))
     assert told == [
         "Doubtful from 5 KTAS to 20 KTAS: induced velocity, neglected, would be up to 30% of the airspeed.",
         "Doubtful at 20 KTAS: Mach.",
