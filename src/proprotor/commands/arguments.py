@@ -21,6 +21,7 @@ from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
+from proprotor.tables.points import Points, read_points
 from proprotor.units import airspeed_unit, speeds, to_si
 
 Command = Callable[..., Any]
@@ -200,6 +201,23 @@ def scan_option(command: Command) -> Command:
     """Add `--scan`, the airspeeds between which a command searches for boundaries."""
     scan_help = 'Airspeeds between which to search: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed.'
     return click.option("--scan", metavar="RANGE", help=scan_help)(command)
+
+
+def points_option(command: Command) -> Command:
+    """Add `--points`, a file of points to draw; `points_of` reads it."""
+    points_help = 'CSV file of points to draw beside the results: "airspeed [ktas], damping [%], label".'
+    return click.option("--points", metavar="FILE", help=points_help)(command)
+
+
+def points_of(path: str | None) -> Points | None:
+    """Return the points of the file of `--points`; None without a file.
+
+    Raises
+    ------
+    InputError
+        As `proprotor.tables.points.read_points`.
+    """
+    return None if path is None else read_points(path, "--points")
 
 
 def range_option(meaning: str, *, required: bool = False) -> Option:

@@ -28,7 +28,7 @@ from proprotor.stability.matching import Spectrum, conjugate, match_modes
 from proprotor.stability.mode_names import moving
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.typing import Array, Dataset
-from proprotor.units import SEA_LEVEL_DENSITY, in_metres_per_second, values_in_si
+from proprotor.units import KNOT, KTAS, SEA_LEVEL_DENSITY, in_metres_per_second, values_in_si
 
 _AT_ONCE = 2048  # points of one batch
 
@@ -50,10 +50,9 @@ class _Lines(NamedTuple):
 class _Found(NamedTuple):
     """A boundary at one value of the input.
 
-    line; crossing; mode, what moves; warning, what makes the boundary doubtful.
+    crossing; mode, what moves; warning, what makes the boundary doubtful.
     """
 
-    line: int
     crossing: Crossing
     mode: str
     warning: str
@@ -62,6 +61,19 @@ class _Found(NamedTuple):
     def kind(self) -> str:
         """Flutter of a pair, or divergence of a real root."""
         return "flutter" if self.crossing.value.imag else "divergence"
+
+
+class _OfLine(NamedTuple):
+    """What was found at one value of the input.
+
+    boundaries, by airspeed; note, why there is no onset, or that it is not the first instability; reason, why airspeeds
+    failed; searched, the lowest and the highest airspeed that could be analysed, m/s.
+    """
+
+    boundaries: list[_Found]
+    note: str
+    reason: str
+    searched: tuple[float, float] = (np.nan, np.nan)
 
 
 def boundary_against(
@@ -95,8 +107,9 @@ def boundary_against(
         equivalent_airspeed, m/s; frequency, rad/s; mode, what moves at the boundary; kind, flutter or divergence;
         warning, what makes the boundary doubtful. NaN and "" where a branch has no boundary. onset (branch,): whether
         the root becomes unstable. Over the input alone: first, the lowest onset, m/s, and first_branch; note, why there
-        is no onset, or that it is not the first instability; reason, why airspeeds failed; density, kg/m³; rotor_speed,
-        rad/s. Attributes: level, eigen_solves, and the case and its options (`proprotor.model.stamp`).
+        is no onset, or that it is not the first instability; reason, why airspeeds failed; searched (end,), the lowest
+        and the highest airspeed that could be analysed, m/s; density, kg/m³; rotor_speed, rad/s. Attributes: level,
+        eigen_solves, and the case and its options (`proprotor.model.stamp`).
 
     Raises
     ------
@@ -109,16 +122,13 @@ def boundary_against(
     path, values = _input_of(case, against)
     varied = vary_case(case, {path: values})  # raises an error that names what is wrong with the values
     lines = _lines(varied, path, values, airspeeds)
-    found: list[_Found] = []
-    notes, reasons, solves = [], [], 0
+    found: list[_OfLine] = []
+    solves = 0
     for some in _batches(lines):
         own, count = _boundaries_of(case, some, level, options)
-        for line, (boundaries, note, reason) in enumerate(own, start=len(notes)):
-            found += [one._replace(line=line) for one in boundaries]
-            notes.append(note)
-            reasons.append(reason)
+        found += own
         solves += count
-    dataset = _dataset(lines, _branches(found, len(values)), notes, reasons)
+    dataset = _dataset(lines, found)
     dataset["rotor_speed"] = (
         path,
         np.broadcast_to(varied.operation.rotor_speed, values.shape),
@@ -172,28 +182,44 @@ def _batches(lines: _Lines) -> Iterator[_Lines]:
 
 def _boundaries_of(
     case: Configuration, lines: _Lines, level: float, options: Mapping[str, Any]
-) -> tuple[list[tuple[list[_Found], str, str]], int]:
-    """Return the boundaries of each line with its note and its reason of failure, and the number of eigen-solves."""
+) -> tuple[list[_OfLine], int]:
+    """Return what was found on each line, and the number of eigen-solves."""
 
     def models(line: Array, position: Array) -> LinearModel:
         return models_at(case, {lines.path: lines.values[line], AIRSPEED: position}, options)
 
     search = Search(models, lines.line, lines.position, level, forgiving=True)
-    count = len(lines.values)
-    notes, reasons = _notes(search, lines, level), _reasons(search, lines)
+    reasons = [_reason(search, lines, line) for line in range(len(lines.values))]
     if search.scanned.points is None:
-        return [([], note, reason) for note, reason in zip(notes, reasons, strict=True)], 0
+        return [_OfLine([], "no airspeed could be analysed", reason) for reason in reasons], 0
     brackets = Brackets(search)
-    found = _named(each_once(brackets.close()), models)
-    own: list[list[_Found]] = [[one for one in found if one.line == line] for line in range(count)]
+    boundaries = _named(each_once(brackets.close()), models)
     for place, why in brackets.lost.items():
         line = int(brackets.line[place])
         reasons[line] = "; ".join(filter(None, (reasons[line], f"a boundary was lost: {why}")))
-    for line, boundaries in enumerate(own):
-        if any(one.crossing.onset for one in boundaries) and not notes[line].startswith("already"):
-            notes[line] = ""
-    solves = int(search.solves.sum() + brackets.solves.sum())
-    return list(zip(own, notes, reasons, strict=True)), solves
+    found = []
+    for line, reason in enumerate(reasons):
+        own = [one for one in boundaries if one.crossing.line == line]
+        found.append(_OfLine(own, *_note(search, line, own, level, reason)))
+    return found, int(search.solves.sum() + brackets.solves.sum())
+
+
+def _note(
+    search: Search, line: int, own: list[_Found], level: float, reason: str
+) -> tuple[str, str, tuple[float, float]]:
+    """Return the note on a line, the reason again, and the range that could be analysed."""
+    points = search.points
+    places = np.flatnonzero(points.line == line)
+    if not len(places):
+        return "no airspeed could be analysed", reason, (np.nan, np.nan)
+    position = points.position[places]
+    low, high = float(position.min()), float(position.max())
+    first = places[position.argmin()]
+    if np.any(points.growth[first] > points.error[first]):
+        beyond = f"below {100 * level:g} % of critical" if level else "unstable"
+        return f"already {beyond} at the lowest airspeed, {low / KNOT:.4g} {KTAS}", reason, (low, high)
+    stable = not any(one.crossing.onset for one in own)
+    return f"no mode becomes unstable up to {high / KNOT:.4g} {KTAS}" * stable, reason, (low, high)
 
 
 def _named(crossings: Sequence[Crossing], models: Any) -> list[_Found]:
@@ -206,7 +232,7 @@ def _named(crossings: Sequence[Crossing], models: Any) -> list[_Found]:
     every = spectrum.all_modes
     names = moving(model, every.values, every.left, every.right).names
     return [
-        _Found(one.line, one, str(names[row, one.state]), str(model.trim.warning[row]))
+        _Found(one, str(names[row, one.state]), str(model.trim.warning[row]))
         for row, one in enumerate(crossings)
     ]
 
@@ -221,44 +247,29 @@ def _stacked(crossings: Sequence[Crossing]) -> Spectrum:
     return Spectrum(values, right, np.stack(known) if len(known) == len(shapes) else None)
 
 
-def _notes(search: Search, lines: _Lines, level: float) -> list[str]:
-    """Return a sentence on each line before any boundary is known."""
-    beyond = f"below {100 * level:g} % of critical" if level else "unstable"
-    notes = ["no airspeed could be analysed"] * len(lines.values)
-    if search.scanned.points is None:
-        return notes
-    points = search.points
-    order = np.lexsort((points.position, points.line))
-    own, first = np.unique(points.line[order], return_index=True)
-    at_first = order[first]
-    grows = np.any(points.growth[at_first] > points.error[at_first], axis=1)
-    for line, row, unstable in zip(own, at_first, grows, strict=True):
-        lowest = f"{points.position[row]:.4g} m/s"
-        notes[line] = (
-            f"already {beyond} at {lowest}, the lowest airspeed" if unstable else "stable throughout"
-        )
-    return notes
-
-
-def _reasons(search: Search, lines: _Lines) -> list[str]:
-    """Return why airspeeds of each line failed, the first reason of each; empty where all could be analysed."""
-    reasons = [""] * len(lines.values)
-    for line in np.unique(lines.line[~search.scanned.works]):
-        places = np.flatnonzero((lines.line == line) & ~search.scanned.works)
-        where = f"{len(places)} airspeeds from {lines.position[places[0]]:.4g} m/s"
-        reasons[line] = f"{where}: {search.scanned.reason[places[0]]}"
-    return reasons
+def _reason(search: Search, lines: _Lines, line: int) -> str:
+    """Return why airspeeds of a line failed, by the first of them; empty where all could be analysed."""
+    places = np.flatnonzero((lines.line == line) & ~search.scanned.works)
+    if not len(places):
+        return ""
+    where = f"{len(places)} airspeeds from {lines.position[places[0]]:.4g} m/s on"
+    return f"{where}: {search.scanned.reason[places[0]]}"
 
 
 # Branches ------------------------------------------------------------------------------------------------------------
 
 
-def _branches(found: list[_Found], count: int) -> list[list[_Found]]:
-    """Return boundaries as branches, at most one boundary a line in each; the branch with the lowest airspeed first."""
+_Branch = dict[int, _Found]  # boundaries by the place of their value
+
+
+def _branches(lines: list[_OfLine]) -> list[_Branch]:
+    """Return boundaries as branches; the branch with the lowest airspeed first."""
+    found = [one for line in lines for one in line.boundaries]
+    at = [place for place, line in enumerate(lines) for _ in line.boundaries]
     successor: dict[int, int] = {}
     if found:
         spectrum = _stacked([one.crossing for one in found])
-        own = [[k for k, one in enumerate(found) if one.line == line] for line in range(count)]
+        own = [[k for k, place in enumerate(at) if place == line] for line in range(len(lines))]
         for before, after in pairwise(own):
             successor |= _links(found, spectrum, before, after)
     starts = set(range(len(found))) - set(successor.values())
@@ -267,9 +278,8 @@ def _branches(found: list[_Found], count: int) -> list[list[_Found]]:
         chain = [start]
         while chain[-1] in successor:
             chain.append(successor[chain[-1]])
-        branches.append([found[k] for k in chain])
-    lowest = [min(one.crossing.position for one in branch) for branch in branches]
-    return [branch for _, branch in sorted(zip(lowest, branches, strict=True), key=lambda pair: pair[0])]
+        branches.append({at[k]: found[k] for k in chain})
+    return sorted(branches, key=lambda branch: min(one.crossing.position for one in branch.values()))
 
 
 def _links(found: list[_Found], spectrum: Spectrum, before: list[int], after: list[int]) -> dict[int, int]:
@@ -292,32 +302,39 @@ def _links(found: list[_Found], spectrum: Spectrum, before: list[int], after: li
     return links
 
 
-def _labels(branches: list[list[_Found]]) -> list[str]:
+def _begins(branch: _Branch) -> bool:
+    """Return whether the root of a branch becomes unstable, and not stable again."""
+    return next(iter(branch.values())).crossing.onset
+
+
+def _labels(branches: list[_Branch]) -> list[str]:
     """Return a label of each branch: the name that most of its boundaries have, with a number from the second on."""
     taken: Counter[str] = Counter()
     labels = []
     for branch in branches:
-        mode = Counter(one.mode for one in branch).most_common(1)[0][0]
-        name = mode if branch[0].crossing.onset else f"{mode}, stable again"
+        mode = Counter(one.mode for one in branch.values()).most_common(1)[0][0]
+        name = mode if _begins(branch) else f"{mode}, stable again"
         taken[name] += 1
         labels.append(name if taken[name] == 1 else f"{name} ({taken[name]})")
     return labels
 
 
-def _dataset(lines: _Lines, branches: list[list[_Found]], notes: list[str], reasons: list[str]) -> Dataset:
+def _dataset(lines: _Lines, found: list[_OfLine]) -> Dataset:
     """Return the dataset of the branches over the values of the input."""
     import xarray  # here, because it takes long to import
 
+    branches = _branches(found)
     shape = len(lines.values), len(branches)
     speed, frequency = np.full(shape, np.nan), np.full(shape, np.nan)
     mode, kind, warning = (np.full(shape, "", dtype=object) for _ in range(3))
     for place, branch in enumerate(branches):
-        for one in branch:
-            at = one.line, place
+        for line, one in branch.items():
+            at = line, place
             speed[at], frequency[at] = one.crossing.position, abs(one.crossing.value.imag)
             mode[at], kind[at], warning[at] = one.mode, one.kind, one.warning
+    note, reason = (np.array([getattr(one, text) for one in found], dtype=str) for text in ("note", "reason"))
     labels = _labels(branches)
-    onset = np.array([branch[0].crossing.onset for branch in branches], dtype=bool)
+    onset = np.array([_begins(branch) for branch in branches], dtype=bool)
     first, first_branch = _lowest(speed, onset, labels)
     both, per_density = (lines.path, "branch"), np.sqrt(lines.density / SEA_LEVEL_DENSITY)
     return xarray.Dataset(
@@ -335,11 +352,16 @@ def _dataset(lines: _Lines, branches: list[list[_Found]], notes: list[str], reas
             "onset": ("branch", onset, {"long_name": "whether the root becomes unstable"}),
             "first": (lines.path, first, {"units": "m/s", "long_name": "lowest true airspeed of an onset"}),
             "first_branch": (lines.path, first_branch, {"long_name": "branch of the lowest onset"}),
-            "note": (lines.path, np.array(notes, dtype=str), {"long_name": "on the lowest onset"}),
-            "reason": (lines.path, np.array(reasons, dtype=str), {"long_name": "why airspeeds failed"}),
+            "note": (lines.path, note, {"long_name": "on the lowest onset"}),
+            "reason": (lines.path, reason, {"long_name": "why airspeeds failed"}),
+            "searched": (
+                (lines.path, "end"),
+                np.array([one.searched for one in found]),
+                {"units": "m/s", "long_name": "lowest and highest true airspeed that could be analysed"},
+            ),
             "density": (lines.path, lines.density, {"units": "kg/m**3", "long_name": "of the air"}),
         },
-        coords={lines.path: lines.values, "branch": np.array(labels, dtype=str)},
+        coords={lines.path: lines.values, "branch": np.array(labels, dtype=str), "end": ["low", "high"]},
     )
 
 

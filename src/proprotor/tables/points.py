@@ -6,9 +6,9 @@
     458,               285,             10,                    Nixon, "thesis, Fig. 8"
     458,               305,             ,                      Johnson, "NASA TP, Fig. 12"
 
-A column has the name of the quantity of an axis and a unit: ``airspeed``, ``frequency``, ``damping``, or an input by its
-path in the deck or the last word of the path. ``NAME_error``, or ``NAME_low`` and ``NAME_high``, are the ends of an error
-bar, in the unit of NAME; an empty cell is a point without the number. Points of one ``label`` look the same.
+A column has the name of the quantity of an axis and a unit: ``airspeed``, ``frequency``, ``damping``, or an input by
+its path in the deck or the last word of the path. ``NAME_error``, or ``NAME_low`` and ``NAME_high``, are the ends of an
+error bar, in the unit of NAME; an empty cell is a point without the number. Points of one ``label`` look the same.
 `proprotor.files.csv_columns` has the rules of all such files.
 """
 
