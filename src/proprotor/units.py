@@ -78,6 +78,7 @@ _MEANINGS = {
     "m/rad": ("a length per angle", '"4.3 ft/rad"'),
     "m/s": ("a speed", '"300 kt"'),
     "keas": ("an equivalent airspeed", '"250 keas"'),
+    "1/s": ("a rate of growth", '"-0.4 1/s"'),
     "rad/s": ("a rotational speed or frequency", '"458 rpm", "60 rad/s" or "9.5 Hz"'),
     "kg": ("a mass", '"4.1 slug"'),
     "kg*m": ("a first moment of mass", '"14 slug*ft"'),
@@ -101,6 +102,7 @@ _MOST_VALUES = 100_000_000
 _ANY_RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([0-9.eE+-]*[0-9.])\s*(.*?)\s*")
 _MOST_SPEEDS = 100_000
 _EQUIVALENT = re.compile(r"(?<![A-Za-z])(keas|KEAS)\b")
+_INDICATED = ("kcas", "kias")  # which a message must not take for a misspelt ktas
 _KNOTS = ("kt", "kts", "knot", "knots", "ktas", KTAS)
 
 # A unit is a product of names, each with at most a one-digit power: nothing else ever reaches a parser, so
@@ -381,6 +383,8 @@ def _written_speeds(text: str, field: str, unit: str) -> NDArray[np.float64]:
     match = _RANGE_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None or ":" in match[4]:
         raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
+    if match[4].lower() in _INDICATED:
+        raise InputError(field, text, f"must be ktas or keas; {match[4]} is none of the units here")
     try:
         factor = factor_to_si(text, match[4], unit)
         numbers = [_finite(text, float(number)) for number in match.group(1, 2, 3) if number]

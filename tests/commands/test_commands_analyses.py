@@ -92,7 +92,9 @@ def test_the_table_of_boundaries(boundaries, tmp_path):
     assert f"Margin at 350 KTAS: {100 * (speed / 350 - 1):+.1f} % of that airspeed." in result.stdout
     assert "not read in a source" in " ".join(result.stdout.split())
     rows = list(csv.DictReader(without_comments(file)))
-    assert [float(r["airspeed (KTAS)"]) for r in rows] == [b["airspeed (KTAS)"] for b in boundaries["boundaries"]]
+    assert [float(r["airspeed (KTAS)"]) for r in rows] == [
+        b["airspeed (KTAS)"] for b in boundaries["boundaries"]
+    ]
     assert rows[0]["mechanism"].startswith("chord ")
 
 

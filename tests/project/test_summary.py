@@ -57,7 +57,9 @@ def test_a_flutter_point_says_the_speed_in_knots_and_all_boundaries():
     undamped = repr(CASE.flutter_point("100:440:20kt", section_damping=False))
     assert "from the start beyond the level: progressive pitch" in undamped
     nothing = repr(CASE.flutter_point("200:240:20kt"))
-    assert nothing.startswith("FlutterPoint: nothing becomes unstable between 200 and 240 KTAS; least damping ")
+    assert nothing.startswith(
+        "FlutterPoint: nothing becomes unstable between 200 and 240 KTAS; least damping "
+    )
     least = CASE.sweep("200:240:20kt").damping_ratio
     assert f"least damping {100 * float(least.min()):.2g} % of critical: " in nothing
     assert "3 % counts" in repr(CASE.flutter_point("300:440:20kt", level=0.03))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from typing import Any, NamedTuple
 
@@ -21,7 +21,7 @@ from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
-from proprotor.tables.points import Points, read_points
+from proprotor.tables.points import Points, Quantity, read_points
 from proprotor.units import airspeed_unit, speeds, to_si
 
 Command = Callable[..., Any]
@@ -33,6 +33,11 @@ Exit codes:
   1  no speed could be analysed, or an output could not be written
   2  an input cannot be used: the message says which and why
   130  interrupted (Ctrl-C)"""
+
+# Quantities that a file of `--points` may have, in any unit.
+AIRSPEED = Quantity("airspeed", "m/s", 1.0, {"keas": 1.0})
+FREQUENCY = Quantity("frequency", "rad/s", 1.0, {"per rev": 1.0})
+DAMPING = Quantity("damping", "", 1.0)
 
 _NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
 _MODEL = (*CHOICES, *_NUMBERS, "locked")  # the options of the model, in the order in which results list them
@@ -209,15 +214,21 @@ def points_option(command: Command) -> Command:
     return click.option("--points", metavar="FILE", help=points_help)(command)
 
 
-def points_of(path: str | None) -> Points | None:
-    """Return the points of the file of `--points`; None without a file.
+def points_of(path: str | None, plot: str | None, across: Quantity, up: Sequence[Quantity]) -> Points | None:
+    """Return the points of the file of `--points` for a plot with some axes; None without a file.
 
     Raises
     ------
     InputError
-        As `proprotor.tables.points.read_points`.
+        Without `--plot`, and as `read_points` and `Points.check` of `proprotor.tables.points`.
     """
-    return None if path is None else read_points(path, "--points")
+    if path is None:
+        return None
+    if plot is None:
+        raise InputError("--points", path, "goes with --plot")
+    points = read_points(path, "--points")
+    points.check(across, up, "--points")
+    return points
 
 
 def range_option(meaning: str, *, required: bool = False) -> Option:

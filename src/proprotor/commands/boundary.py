@@ -79,10 +79,8 @@ def boundary(
         raise InputError("--first", None, "goes without --mode")
     case, path, given = _case_and_input(request, against)
     unit = arguments.unit_of(given)
-    measured = arguments.points_of(points)
-    if measured:
-        across = Quantity(path, design_inputs(case)[path].unit)
-        measured.check(across, [Quantity("airspeed", "m/s", 1.0, {"keas": 1.0})], "--points")
+    across = Quantity(path, design_inputs(case)[path].unit)
+    measured = arguments.points_of(points, outputs.plot, across, [arguments.AIRSPEED])
     with waiting("Looking for boundaries"):
         found = case.boundary_against({path: given}, _scan_of(case, scan), level=level, **request.options)
     shown = only_first(found) if first else chosen_modes(found, modes) if modes else found

@@ -16,6 +16,7 @@ from proprotor.model import stamp
 from proprotor.model.doubts import MARK, map_doubts, marked
 from proprotor.study.sampling import grid
 from proprotor.tables.csv_text import csv_of
+from proprotor.tables.points import Quantity
 from proprotor.typing import Array, Dataset
 from proprotor.units import airspeed_unit, factor_to_si, speed_factor, speeds
 
@@ -45,12 +46,19 @@ def _axis_option(name: str, meaning: str) -> arguments.Option:
 @_axis_option("--y", "Input on the axis up, and its values, likewise.")
 @click.option("--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 kt".')
 @arguments.level_option
+@arguments.points_option
 @output.output_options(
     csv="Write a row for each point of the grid.", plot="Draw the boundary, the stable side shaded"
 )
 @arguments.model_options
 def stability_map(
-    request: arguments.Request, outputs: output.Outputs, x: str, y: str, speed: str | None, level: float
+    request: arguments.Request,
+    outputs: output.Outputs,
+    x: str,
+    y: str,
+    speed: str | None,
+    level: float,
+    points: str | None,
 ) -> None:
     """Show where in the plane of two inputs a case is stable, and the boundary.
 
@@ -75,6 +83,8 @@ def stability_map(
         raise InputError("--y", y, "must not be the input of --x")
     if airspeed is None and _AIRSPEED not in (axis.path for axis in axes):
         raise InputError("--speed", None, "must be given, or be --x or --y: airspeed=100:400:10kt")
+    across, up = (_quantity(axis, case) for axis in axes)
+    measured = arguments.points_of(points, outputs.plot, across, [up])
     with waiting("Analysing"):
         values = {axis.path: axis.values for axis in axes}
         found = case.stability_map(values, airspeed=airspeed, level=level, **request.options)
@@ -83,7 +93,7 @@ def stability_map(
         document=lambda: output.about(case, request) | _document(found, axes, airspeed),
         table=lambda: _print(case, found, axes),
         csv=lambda: csv_of(records := _records(found, axes), list(records[0]), found.attrs),
-        plot=lambda: output.with_origin(plot_stability_map(found, units=units), case),
+        plot=lambda: output.with_origin(plot_stability_map(found, units=units, points=measured), case),
     )
     if not np.isfinite(found.growth.values).any():
         raise click.exceptions.Exit(1)
@@ -106,6 +116,15 @@ def _axis(option: str, path: str, given: str, case: Case, density: float | None)
     if len(values) < 2:
         raise InputError(option, f"{path}={given}", f"must be a range, start:stop:step, such as {_EXAMPLE}")
     return _Axis(path, values, unit, factor)
+
+
+def _quantity(axis: _Axis, case: Case) -> Quantity:
+    """Return what a column of points for an axis may be."""
+    return (
+        arguments.AIRSPEED
+        if axis.path == _AIRSPEED
+        else Quantity(axis.path, design_inputs(case)[axis.path].unit)
+    )
 
 
 def _label(axis: _Axis) -> str:

@@ -25,9 +25,12 @@ from proprotor.units import speeds
     required=True,
 )
 @click.option("--all-modes", is_flag=True, help="Show all modes, not only as many as fit into one table.")
+@arguments.points_option
 @output.output_options(csv="Write a row for each airspeed and mode.", plot="Draw frequency and damping")
 @arguments.model_options
-def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_modes: bool) -> None:
+def sweep(
+    request: arguments.Request, outputs: output.Outputs, speed: str, all_modes: bool, points: str | None
+) -> None:
     """Show frequency and damping of each mode along a range of airspeeds.
 
     CASE is a bundled case (see `proprotor cases`) or a TOML file.
@@ -40,10 +43,13 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
     Examples:
       proprotor sweep xv15 --speed 50:400:5kt --plot damping.png
       proprotor sweep xv15 --speed 50:400:5kt --set rotor.precone="1.5 deg"
+      proprotor sweep xv15 --speed 50:400:5kt --plot damping.png --points measured.csv
       proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
     """
     from proprotor.plots import plot_sweep  # here, so that --help answers without it
 
+    up = [arguments.FREQUENCY, arguments.DAMPING]
+    measured = arguments.points_of(points, outputs.plot, arguments.AIRSPEED, up)
     with waiting("Analysing"):
         case = request.load()
         airspeeds = speeds(speed, "--speed", case.operation.density)
@@ -59,6 +65,7 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
             unit=table.unit,
             title=heading(case),
             footer=" ".join(reservations(case)),
+            points=measured,
         ),
     )
     if table.failed.all():

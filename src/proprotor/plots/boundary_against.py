@@ -93,7 +93,7 @@ def _airspeed_of(found: Dataset, unit: str) -> Quantity:
     values, density = found[path].values, found.density.values
 
     def equivalent(x: Array) -> Array:
-        return KNOT * np.sqrt(SEA_LEVEL_DENSITY / np.interp(x, values, density))
+        return np.asarray(KNOT * np.sqrt(SEA_LEVEL_DENSITY / np.interp(x, values, density)))
 
     special = {"keas": equivalent} if (density > 0).all() else {}
     if airspeed_unit(unit) == KEAS:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from proprotor.plots.line_of_sweep import Positions
 from proprotor.plots.style import LABEL_SIZE
 from proprotor.tables.points import Column, Points, Quantity
 from proprotor.typing import Array, Axes
+from proprotor.units import KEAS, speed_factor
 
-_MARKERS = "oDs^vP*X"
+FREQUENCY, DAMPING, GROWTH = "frequency", "damping", "growth"  # names of columns
+_MARKERS = "D^sovP*X"
 _FILLS = ("white", "#FFD166", "#9AD1D4", "0.75")  # on white, on grey and in print all differ from the lines
 _WIDTH = 44  # characters of a line of the legend
 
@@ -49,15 +52,43 @@ def draw_points(
     x, y = columns
     there = np.isfinite(x.values) & np.isfinite(y.values)
     series = []
-    for place, label in enumerate(dict.fromkeys(points.label[there].tolist())):
+    for place, label in enumerate(dict.fromkeys(points.label.tolist())):  # one marker in all plots of a file
         own = there & (points.label == label)
+        if not own.any():
+            continue
         sources = list(dict.fromkeys(filter(None, points.source[own].tolist())))
         text = textwrap.fill(f"{label}, {'; '.join(sources)}" if sources else label, _WIDTH)
         series.append(_draw_series(ax, x, y, own, place, text))
-    _widen(ax, [(x, there), (y, there)])
+    ax.set_xlim(*_widened(ax.get_xlim(), x, there))
+    ax.set_ylim(*_widened(ax.get_ylim(), y, there))
     if series:
         ax.legend(handles=series, fontsize=LABEL_SIZE, loc="best", framealpha=0.9).set_zorder(8)
     return bool(series)
+
+
+def quantity_of(line: Positions, si_unit: str, density: float | None = None) -> Quantity:
+    """Return the quantity of an axis of airspeeds or of an input, as a column of points may have it.
+
+    With a density of the air, kg/m³, points may have equivalent airspeeds.
+    """
+    special = {"keas": float(speed_factor(KEAS, density))} if density and si_unit == "m/s" else {}
+    return Quantity(line.name, si_unit, line.factor, special)
+
+
+def frequency_quantity(line: Positions, rotor_speed: ArrayLike | None) -> Quantity:
+    """Return the quantity of an axis of frequency, per revolution with a rotor speed (rad/s), in Hz without.
+
+    A rotor speed may differ from position to position of the line (points,).
+    """
+    if rotor_speed is None:
+        return Quantity(FREQUENCY, "rad/s", 2 * np.pi)
+    order = np.argsort(line.values)
+    across, omega = line.values[order] * line.factor, np.broadcast_to(rotor_speed, line.values.shape)[order]
+
+    def per_rev(x: Array) -> Array:
+        return np.asarray(np.interp(x, across, omega))
+
+    return Quantity(FREQUENCY, "rad/s", per_rev, {"per rev": per_rev})
 
 
 def _draw_series(ax: Axes, x: Column, y: Column, own: Array, place: int, label: str) -> Any:
@@ -85,13 +116,9 @@ def _lengths(column: Column, own: Array) -> Array:
     return np.stack([column.values[own] - column.low[own], column.high[own] - column.values[own]])
 
 
-def _widen(ax: Axes, columns: Sequence[tuple[Column, Array]]) -> None:
-    """Widen the limits of the axes so that they hold all points, with a little room."""
-    for (column, there), limits, put in zip(
-        columns, (ax.get_xlim(), ax.get_ylim()), (ax.set_xlim, ax.set_ylim), strict=True
-    ):
-        low, high = column.low[there], column.high[there]
-        room = 0.03 * abs(limits[1] - limits[0])
-        least = min([limits[0], *(low[low < limits[0]] - room).tolist()])
-        most = max([limits[1], *(high[high > limits[1]] + room).tolist()])
-        put(least, most)
+def _widened(limits: tuple[float, float], column: Column, there: Array) -> tuple[float, float]:
+    """Return limits of an axis that hold all points, with a little room."""
+    low, high = column.low[there], column.high[there]
+    room = 0.03 * abs(limits[1] - limits[0])
+    least = min([limits[0], *(low[low < limits[0]] - room).tolist()])
+    return least, max([limits[1], *(high[high > limits[1]] + room).tolist()])
