@@ -11,7 +11,7 @@ from proprotor.plots.boundary_against import plot_boundary_against
 from proprotor.tables.points import read_points
 
 KNOT = 1852 / 3600
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture(autouse=True)
@@ -69,7 +69,7 @@ def test_frequency_and_damping_have_their_own_columns(sweep, points):
 
 
 def test_equivalent_airspeeds_stand_at_their_true_airspeed(points):
-    high = pp.load_case("xv15", {"operation.altitude": "20000 ft"})
+    high = pp.load_case("xv15-uncoupled", {"operation.altitude": "20000 ft"})
     found = high.sweep("300:400:50kt")
     ax = plots.plot_damping(found, points=points("airspeed [keas], damping [%]\n250, 2\n"))
     assert float(places(ax)["points.csv"][0][0]) == pytest.approx(250 / np.sqrt(0.5328), rel=1e-4)
@@ -102,7 +102,7 @@ def test_maps_root_loci_and_boundaries(sweep, points):
 
 
 def test_points_on_a_boundary_over_altitude(points):
-    case = pp.load_case("xv15", {"operation.altitude": "0 ft"})
+    case = pp.load_case("xv15-uncoupled", {"operation.altitude": "0 ft"})
     found = case.boundary_against({"operation.altitude": "0:20000:20000 ft"}, "300:360:20keas")
     read = points("altitude [ft], airspeed [keas], airspeed_error\n20000, 310, 10\n")
     ratio = np.sqrt(0.5328)
@@ -130,9 +130,9 @@ def test_commands_draw_points(tmp_path):
     file, png = tmp_path / "points.csv", tmp_path / "plot.png"
     file.write_text("airspeed [ktas], damping [%], precone [deg]\n250, 2, 2\n")
     for arguments in (
-        ("sweep", "xv15", "--speed", "200:300:50kt"),
-        ("map", "xv15", "--x", "airspeed=200:300:50kt", "--y", "rotor.precone=0:4:2 deg"),
-        ("boundary", "xv15", "--against", "rotor.precone=0:4:2 deg", "--scan", "300:400:20kt"),
+        ("sweep", "xv15-uncoupled", "--speed", "200:300:50kt"),
+        ("map", "xv15-uncoupled", "--x", "airspeed=200:300:50kt", "--y", "rotor.precone=0:4:2 deg"),
+        ("boundary", "xv15-uncoupled", "--against", "rotor.precone=0:4:2 deg", "--scan", "300:400:20kt"),
     ):
         result = CliRunner().invoke(main, (*arguments, "--points", str(file), "--plot", str(png)))
         assert result.exit_code == 0, result.output

@@ -20,7 +20,7 @@ DENSITY_RATIO = 0.5328
 
 @pytest.fixture(scope="module")
 def high():
-    return pp.load_case("xv15", HIGH)
+    return pp.load_case("xv15-uncoupled", HIGH)
 
 
 def run(*arguments):
@@ -76,7 +76,7 @@ def test_airspeeds_that_cannot_be(given, density, message):
 
 def test_other_speeds_are_true():
     with pytest.raises(pp.InputError, match="speed_of_sound = 600 keas: is an equivalent airspeed"):
-        pp.load_case("xv15", {"operation.speed_of_sound": "600 keas"})
+        pp.load_case("xv15-uncoupled", {"operation.speed_of_sound": "600 keas"})
 
 
 ANALYSES = {
@@ -112,7 +112,9 @@ def test_the_margin_and_the_range_of_a_search(high):
 
 @pytest.mark.parametrize("path", ["operation.altitude", "operation.temperature_offset"])
 def test_points_of_different_density_need_true_airspeeds(path):
-    case = pp.load_case("xv15", {"operation.altitude": "0 ft", "operation.temperature_offset": "0 K"})
+    case = pp.load_case(
+        "xv15-uncoupled", {"operation.altitude": "0 ft", "operation.temperature_offset": "0 K"}
+    )
     for analyse in (
         lambda: case.sweep("250 keas", {path: [0.0, 10.0]}),
         lambda: case.stability_map({path: [0.0, 10.0], "airspeed": "200:300:50keas"}),
@@ -121,7 +123,7 @@ def test_points_of_different_density_need_true_airspeeds(path):
     ):
         with pytest.raises(pp.InputError, match="needs air of one density"):
             analyse()
-    refused = run("map", "xv15", "--set", "operation.altitude=0 ft", "--x", "airspeed=200:300:50keas", "--y",
+    refused = run("map", "xv15-uncoupled", "--set", "operation.altitude=0 ft", "--x", "airspeed=200:300:50keas", "--y",
                   "operation.altitude=0:100:50m")  # fmt: skip
     assert refused.exit_code == 2 and "needs air of one density" in refused.output
 
@@ -147,12 +149,19 @@ def test_tables_and_axes_are_in_the_unit_asked_for(high):
 
 
 def test_a_flutter_speed_at_altitude_has_both(high):
-    arguments = ("flutter", "xv15", "--set", "operation.altitude=20000 ft", "--scan", "250:470:10ktas")
+    arguments = (
+        "flutter",
+        "xv15-uncoupled",
+        "--set",
+        "operation.altitude=20000 ft",
+        "--scan",
+        "250:470:10ktas",
+    )
     document = json.loads(run(*arguments, "--json").stdout)
     true, equivalent = (document[f"flutter speed ({unit})"] for unit in ("KTAS", "KEAS"))
     assert equivalent / true == pytest.approx(np.sqrt(DENSITY_RATIO), rel=1e-4)
     assert f"{true:.2f}? KTAS, {equivalent:.2f} KEAS" in run(*arguments).stdout
-    at_sea_level = run("flutter", "xv15", "--scan", "300:400:10ktas").stdout
+    at_sea_level = run("flutter", "xv15-uncoupled", "--scan", "300:400:10ktas").stdout
     assert "KTAS" in at_sea_level and "KEAS" not in at_sea_level
 
 
@@ -160,7 +169,7 @@ def test_commands_take_both():
     margin = json.loads(
         run(
             "flutter",
-            "xv15",
+            "xv15-uncoupled",
             "--set",
             "operation.altitude=20000 ft",
             "--scan",
@@ -171,7 +180,7 @@ def test_commands_take_both():
         ).stdout
     )["at"]
     assert margin["airspeed (m/s)"] == pytest.approx(200 * KNOT / np.sqrt(DENSITY_RATIO), rel=1e-4)
-    told = run("attribution", "xv15", "--speed", "350keas", "--mode", "chord").stdout
+    told = run("attribution", "xv15-uncoupled", "--speed", "350keas", "--mode", "chord").stdout
     assert "chord at 350 KEAS" in told
-    refused = run("sweep", "xv15", "--set", "operation.density=0 kg/m**3", "--speed", "250 keas")
+    refused = run("sweep", "xv15-uncoupled", "--set", "operation.density=0 kg/m**3", "--speed", "250 keas")
     assert refused.exit_code == 2 and "no meaning in a vacuum" in refused.output

@@ -66,7 +66,7 @@ def test_a_branch_is_one_root(found):
 
 
 def test_equivalent_airspeeds_hold_in_the_air_of_each_altitude():
-    case = pp.load_case("xv15", {"operation.altitude": "0 ft"})
+    case = pp.load_case("xv15-uncoupled", {"operation.altitude": "0 ft"})
     found = case.boundary_against({"operation.altitude": "0:12000:6000 ft"}, "300:400:10keas")
     # Density ratios of the standard atmosphere at 0, 6000 and 12 000 ft, as tables print them.
     ratio = np.array([1.0, 0.8359, 0.6932])
@@ -141,11 +141,11 @@ def test_the_command_writes_what_the_analysis_finds(found, tmp_path):
 
 
 def test_an_altitude_takes_the_place_of_a_density():
-    result = run("boundary", "xv15", "--against", "altitude=0:10000:10000 ft", "--scan", "340:420:10kt", "--mode",
-                 "chord", "--json")  # fmt: skip
+    more = ("--scan", "340:420:10kt", "--mode", "chord", "--json")
+    result = run("boundary", "xv15-uncoupled", "--against", "altitude=0:10000:10000 ft", *more)
     records = json.loads(result.stdout)["boundaries"]
     assert [record["operation.altitude (ft)"] for record in records] == [0, 10000]
-    own = pp.load_case("xv15", {"operation.altitude": "10000 ft"}).flutter_point("340:420:10kt")
+    own = pp.load_case("xv15-uncoupled", {"operation.altitude": "10000 ft"}).flutter_point("340:420:10kt")
     assert records[1]["airspeed (m/s)"] == pytest.approx(own.speed, rel=1e-8)
 
 
@@ -161,5 +161,5 @@ def test_an_altitude_takes_the_place_of_a_density():
     ],
 )
 def test_commands_that_cannot_be(more, message):
-    result = run("boundary", "xv15", *more)
+    result = run("boundary", "xv15-uncoupled", *more)
     assert result.exit_code == 2 and message in result.output, result.output

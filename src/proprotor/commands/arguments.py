@@ -265,17 +265,17 @@ def _level_of(text: str) -> float:
     return level
 
 
-def one_speed(text: str, case: Case, option: str = "--speed") -> float:
-    """Return a single airspeed in the air of a case, m/s, true.
+def one_speed(text: str, case: Case) -> float:
+    """Return the single airspeed of `--speed` in the air of a case, m/s, true.
 
     Raises
     ------
     InputError
         For a text that is not exactly one airspeed.
     """
-    found = speeds(text, option, case.operation.density)
+    found = speeds(text, "--speed", case.operation.density)
     if len(found) != 1:
-        raise InputError(option, text, 'must be one speed, such as "300 kt"')
+        raise InputError("--speed", text, 'must be one speed, such as "300 kt"')
     return float(found[0])
 
 

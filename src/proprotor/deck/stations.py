@@ -20,13 +20,13 @@ from typing import NamedTuple
 
 from proprotor.deck.reading import ANY, Bound
 from proprotor.errors import InputError
-from proprotor.files.csv_columns import Fault, Head, factor_of, fault_at, head_of, number_in, table_of
+from proprotor.files.csv_columns import Fault, Head, Line, factor_of, fault_at, head_of, number_in, table_of
 from proprotor.files.text import read_text
 
 _STATIONS = ("r_over_R", "r")
 
 _LARGEST = 1_000_000  # bytes
-_MOST_STATIONS = 10_000
+MOST_STATIONS = 10_000
 _ROUNDING = 1e-9  # relative to the radius: a tip at 150 inch equals one at 12.5 ft
 
 
@@ -69,14 +69,14 @@ def read_stations(
     """
     try:
         heads, rows = table_of(read_text(Path(path), "file", Path(path).name, _LARGEST))
-        stations, values = _stationshead_of(heads), head_of(heads, column)
+        stations, values = _stations_head(heads), head_of(heads, column)
         to_si, scale = factor_of(values, unit), _scale(stations, radius)
         return _distribution(rows, stations, scale, values, to_si, bound)
     except Fault as fault:
         raise InputError("file", Path(path).name, str(fault)) from None
 
 
-def _stationshead_of(heads: list[Head]) -> Head:
+def _stations_head(heads: list[Head]) -> Head:
     """Return the head of the column of stations."""
     found = [head for head in heads if head.name in _STATIONS]
     if len(found) != 1:
@@ -95,12 +95,7 @@ def _scale(head: Head, radius: float | None) -> float:
 
 
 def _distribution(
-    rows: Iterator[tuple[int, list[str]]],
-    stations: Head,
-    scale: float,
-    values: Head,
-    to_si: float,
-    bound: Bound,
+    rows: Iterator[Line], stations: Head, scale: float, values: Head, to_si: float, bound: Bound
 ) -> _Distribution:
     """Return the stations and values of all lines; refuse a station or value that breaks a rule."""
     r_over_R: list[float] = []
@@ -116,8 +111,8 @@ def _distribution(
             raise fault_at(number, values, bound.rule)
         r_over_R.append(r)
         found.append(value)
-        if len(found) > _MOST_STATIONS:
-            raise Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
+        if len(found) > MOST_STATIONS:
+            raise Fault(f"line {number}: must have at most {MOST_STATIONS} stations")
     if len(found) < 2:
         raise Fault("must have two stations or more")
     return _Distribution(tuple(r_over_R), tuple(found))

@@ -18,6 +18,8 @@ from typing import NamedTuple
 from proprotor.errors import InputError, printable, unknown_name
 from proprotor.units import factor_to_si
 
+Line = tuple[int, list[str]]  # the number of a line in the file, and its cells
+
 _HEAD = re.compile(r"\s*([^\[\]]*?)\s*(?:\[([^\[\]]*)\])?\s*")
 _NUMBER = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*")
 _DELIMITERS = ",;\t"
@@ -36,7 +38,7 @@ class Fault(Exception):
     """A rule that the file breaks."""
 
 
-def table_of(text: str) -> tuple[list[Head], Iterator[tuple[int, list[str]]]]:
+def table_of(text: str) -> tuple[list[Head], Iterator[Line]]:
     """Return the heads of the columns, and the lines of cells below with their line numbers."""
     lines = [
         (number, line)
@@ -55,7 +57,7 @@ def table_of(text: str) -> tuple[list[Head], Iterator[tuple[int, list[str]]]]:
     return heads, _rows(lines[1:], delimiter, len(heads))
 
 
-def _rows(lines: list[tuple[int, str]], delimiter: str, columns: int) -> Iterator[tuple[int, list[str]]]:
+def _rows(lines: list[tuple[int, str]], delimiter: str, columns: int) -> Iterator[Line]:
     """Yield the cells of each line with its line number."""
     for number, line in lines:
         cells = _cells(number, line, delimiter)

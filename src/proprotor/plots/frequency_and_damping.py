@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.model.stamp import density_of
-from proprotor.plots.canvas import RIGHT, add_footer, along, axes_or_new, origin_of, say_origin
+from proprotor.plots.canvas import RIGHT, Limits, add_footer, along, axes_or_new, origin_of, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions
 from proprotor.plots.mode_lines import draw_modes
@@ -68,7 +68,7 @@ def _draw_frequency(
     sweep: Dataset,
     line: Positions,
     rotor_speed: ArrayLike | None,
-    limits: tuple[float, float] | None = None,
+    limits: Limits | None = None,
     points: Points | None = None,
     needed: bool = True,
 ) -> None:
@@ -131,7 +131,7 @@ def _draw_damping(
     ax: Axes,
     sweep: Dataset,
     line: Positions,
-    limits: tuple[float, float],
+    limits: Limits,
     points: Points | None = None,
     needed: bool = True,
 ) -> None:

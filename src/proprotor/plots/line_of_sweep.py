@@ -12,10 +12,8 @@ from proprotor.plots.input_names import short_name
 from proprotor.typing import Array, Dataset
 from proprotor.units import KEAS, KTAS, airspeed_unit, factor_to_si, speed_factor
 
-_RATES = {
-    "rotor_speed": "rpm",
-    "frequency": "Hz",
-}  # usual units of a quantity in rad/s, by the end of its name
+# Usual units of a quantity in rad/s, by the end of its name.
+_RATES = {"rotor_speed": "rpm", "frequency": "Hz"}
 _USUAL = {"rad": "deg", "m/s": "kt", "rad/s": "Hz"}
 _AIRSPEEDS = ("airspeed", "flutter_speed")
 _SYMBOLS = {"**2": "²", "**3": "³", "*": "·"}

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.files.csv_columns import Fault, Head, factor_of, fault_at, number_in, table_of
+from proprotor.files.csv_columns import Fault, Head, Line, factor_of, fault_at, number_in, table_of
 from proprotor.files.text import read_text
 from proprotor.typing import Array
 
@@ -152,7 +152,7 @@ def read_points(path: str | os.PathLike[str], field: str = "points") -> Points:
         raise InputError(field, name, str(fault)) from None
 
 
-def _points(name: str, heads: list[Head], rows: list[tuple[int, list[str]]]) -> Points:
+def _points(name: str, heads: list[Head], rows: list[Line]) -> Points:
     if not rows or len(rows) > _MOST_POINTS:
         raise Fault(f"must have 1 to {_MOST_POINTS} points, a line for each")
     by_name = {head.name: head for head in heads}
@@ -176,7 +176,7 @@ def _base_of(head: Head, by_name: Mapping[str, Head]) -> Head | None:
     return None
 
 
-def _column(head: Head, by_name: Mapping[str, Head], rows: list[tuple[int, list[str]]]) -> Column:
+def _column(head: Head, by_name: Mapping[str, Head], rows: list[Line]) -> Column:
     """Return the values of a column and the ends of their error bars."""
     values = _numbers(head, rows)
     error, low, high = (_numbers(by_name.get(head.name + end), rows) for end in _ENDS)
@@ -192,7 +192,7 @@ def _column(head: Head, by_name: Mapping[str, Head], rows: list[tuple[int, list[
     return Column(values, low, high, head)
 
 
-def _numbers(head: Head | None, rows: list[tuple[int, list[str]]]) -> Array:
+def _numbers(head: Head | None, rows: list[Line]) -> Array:
     """Return the numbers of a column, NaN for empty cells and for a column that the file does not have."""
     if head is None:
         return np.full(len(rows), np.nan)
@@ -205,7 +205,7 @@ def _numbers(head: Head | None, rows: list[tuple[int, list[str]]]) -> Array:
     )
 
 
-def _words(head: Head | None, rows: list[tuple[int, list[str]]]) -> Array:
+def _words(head: Head | None, rows: list[Line]) -> Array:
     """Return the words of a column, "" for empty cells and for a column that the file does not have."""
     cells = [cells[head.place].strip() if head and head.place < len(cells) else "" for _, cells in rows]
     return np.array(cells, dtype=object)
