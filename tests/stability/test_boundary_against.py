@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 import proprotor as pp
 from proprotor.commands.main import main
-from proprotor.tables.boundary_table import boundary_records, chosen_modes, only_first
+from proprotor.tables.boundary_table import boundary_records, of_mode, only_first
 
 KNOT = 1852 / 3600
 SPEEDS = "240:400:20ktas"
@@ -96,13 +96,13 @@ def test_what_has_no_boundary_says_why():
 def test_a_level_and_parts_of_the_result(found):
     with_margin = CASE.boundary_against({"operation.rotor_speed": "430:550:40 rpm"}, SPEEDS, level=0.01)
     assert (with_margin["first"].values < found["first"].values).all()
-    chord = chosen_modes(found, ["chord"])
+    chord = of_mode(found, "chord")
     assert set(chord["mode"].values.ravel()) == {"chord"} or "chord" in chord.branch.values
     first = only_first(found)
     assert first.branch.values.tolist() == ["first instability"]
     np.testing.assert_array_equal(first.airspeed.values[:, 0], found["first"].values)
     with pytest.raises(pp.InputError, match=r"mode = chrod: .*did you mean chord"):
-        chosen_modes(found, ["chrod"])
+        of_mode(found, "chrod")
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,8 @@ from proprotor.model.doubts import doubts_along
 from proprotor.tables.boundary_table import (
     boundary_cells,
     boundary_records,
-    chosen_modes,
     input_of,
+    of_mode,
     only_first,
 )
 from proprotor.tables.csv_text import csv_of
@@ -39,7 +39,7 @@ _OPERATION = "operation."
     help=f'Input by deck path, and its values: {_EXAMPLE}, "altitude=0:20000:2000 ft".',
 )
 @arguments.scan_option
-@click.option("--mode", "modes", multiple=True, help="Show the boundaries of this mode alone. Repeatable.")
+@click.option("--mode", help="Show the boundaries of this mode alone.")
 @click.option("--first", is_flag=True, help="Show the first instability alone, whatever mode it is.")
 @click.option(
     "--speed-unit",
@@ -57,7 +57,7 @@ def boundary(
     outputs: output.Outputs,
     against: str,
     scan: str | None,
-    modes: tuple[str, ...],
+    mode: str | None,
     first: bool,
     speed_unit: str | None,
     level: float,
@@ -75,7 +75,7 @@ def boundary(
       proprotor boundary xv15 --against "altitude=0:20000:2000 ft" --scan 200:450:10keas --mode chord
       proprotor boundary my.toml --against "rotor_speed=400:600:20 rpm" --points measured.csv --plot boundary.png
     """
-    if modes and first:
+    if mode and first:
         raise InputError("--first", None, "goes without --mode")
     case, path, given = _case_and_input(request, against)
     unit = arguments.unit_of(given)
@@ -83,7 +83,7 @@ def boundary(
     measured = arguments.points_of(points, outputs.plot, across, [arguments.AIRSPEED])
     with waiting("Looking for boundaries"):
         found = case.boundary_against({path: given}, _scan_of(case, scan), level=level, **request.options)
-    shown = only_first(found) if first else chosen_modes(found, modes) if modes else found
+    shown = only_first(found) if first else of_mode(found, mode) if mode else found
     records = boundary_records(shown, unit)
     shown_in = speed_unit or ("keas" if scan and is_equivalent(scan) else "ktas")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -21,14 +20,14 @@ def input_of(found: Dataset) -> str:
     return str(found["first"].dims[0])
 
 
-def chosen_modes(found: Dataset, modes: Sequence[str]) -> Dataset:
-    """Return the boundaries of the modes with some names: branches that have the name at any of their points.
+def of_mode(found: Dataset, mode: str) -> Dataset:
+    """Return the boundaries of one mode: branches that have its name at any of their points.
 
     Parameters
     ----------
     found : xarray.Dataset
         Of `Case.boundary_against`.
-    modes : sequence of str
+    mode : str
 
     Raises
     ------
