@@ -59,6 +59,9 @@ RESULTS = {
     "Case.sensitivity": lambda case, **o: case.sensitivity("damping", ["rotor.precone"], airspeed=AT, **o),
     "Case.attribution": lambda case, **o: case.attribution(AT, **o),
     "Case.stability_map": lambda case, **o: case.stability_map(MAP, **o),
+    "Case.boundary_against": lambda case, **o: case.boundary_against(
+        {"rotor.precone": [0.02, 0.03]}, SPEEDS, **o
+    ),
     "boundaries.boundaries": lambda case, **o: boundaries(case, SPEEDS, **o),
     "flutter.flutter_point": lambda case, **o: flutter.flutter_point(case, SPEEDS, **o),
     "sweep_case": lambda case, **o: sweep_case(case, [180.0], {"rotor.precone": [0.02, 0.03]}, **o),

@@ -54,7 +54,18 @@ def scan_speeds(case: Configuration, points: int = _RANGE[2]) -> Array:
 
 
 def scan_shares(points: int = _RANGE[2]) -> Array:
-    """Return the airspeeds of the default scan (points,) as shares of the tip speed."""
+    """Return the airspeeds of the default scan as shares of the tip speed.
+
+    Parameters
+    ----------
+    points : int
+        Number of airspeeds.
+
+    Returns
+    -------
+    array (points,)
+        Dimensionless, rising.
+    """
     return np.linspace(*_RANGE[:2], points)
 
 
@@ -110,9 +121,21 @@ def boundaries(
 
 
 def steps_of_scan(positions: Array, tip: float) -> Array:
-    """Return rising positions (k,) with equally spaced points in each step that is wider than the default scan's.
+    """Return airspeeds with equally spaced points in each step that is wider than the default scan's.
 
-    Wider steps hide crossings. `tip` is the tip speed, m/s.
+    Wider steps hide crossings.
+
+    Parameters
+    ----------
+    positions : array (k,)
+        Rising airspeeds, m/s.
+    tip : float
+        Tip speed, m/s.
+
+    Returns
+    -------
+    array (points,)
+        m/s, rising, the given airspeeds among them.
     """
     low, high, points = _RANGE
     widest = (high - low) / (points - 1) * tip

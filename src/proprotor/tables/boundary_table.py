@@ -36,12 +36,10 @@ def of_mode(found: Dataset, mode: str) -> Dataset:
     """
     names = found["mode"].values
     known = sorted(set(names[names != ""].tolist()))
-    for mode in modes:
-        if mode not in known:
-            raise InputError(
-                "mode", mode, unknown_name(mode, known, "mode with a boundary") if known else "has none"
-            )
-    return found.isel(branch=np.flatnonzero(np.isin(names, list(modes)).any(axis=0)))
+    if mode not in known:
+        rule = unknown_name(mode, known, "mode with a boundary") if known else "has no boundary"
+        raise InputError("mode", mode, rule)
+    return found.isel(branch=np.flatnonzero((names == mode).any(axis=0)))
 
 
 def only_first(found: Dataset) -> Dataset:
