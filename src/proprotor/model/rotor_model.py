@@ -69,10 +69,11 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     points = int(np.prod(shape, dtype=int))
     _check_memory(rotor, choice, points)
     quantities = model_quantities(rotor, operation, choice, speed, shape)
-    sections, coarse = (BladeSections.of(rotor, shape, coarse) for coarse in (False, True))
+    sections = BladeSections.of(rotor, shape)
+    few = sections if rotor.has_effective_sections else BladeSections.of(rotor, shape, few=True)
     target = trim_target(rotor, operation)
     target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
-    settled = solve_trim(sections, coarse, quantities, choice, target, points)
+    settled = solve_trim(sections, few, quantities, choice, target, points)
     reactionless = _reactionless(rotor, choice)
     coordinates = (*FIXED, *(reactionless_coordinates(reactionless) if reactionless else ()))
     matrices: dict[str, Any] = {

@@ -1,10 +1,16 @@
-"""Gauss-Legendre panels along the blade, and radial moments of section loads."""
+"""Gauss-Legendre panels along the blade, and radial moments of section loads.
+
+Long panels, one on most segments, are for loads that are linear in chord and twist: `effective_sections` makes the
+kinks of tables harmless. Short panels with an edge at each kink are for all other loads.
+"""
 
 from __future__ import annotations
 
 import functools
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,9 +31,19 @@ _DIGITS, _MOST_POINTS = 12, 16
 # the axis. Gauss errors fall as rho^(-2n), with rho the size of the ellipse about the panel that reaches the axis; the
 # axis is (rho + 1/rho)/2 half widths from the panel's centre.
 _NEARNESS = 2 / (1 + np.cosh(_DIGITS * np.log(10) / (2 * np.arange(1, _MOST_POINTS))))
-_COARSE_POINTS = 12
+# Long panels: the factors of chord and twist in the loads have singularities at r = ±iV/Ω, where the air stands still,
+# and where the air has the speed of sound. An ellipse about a panel's ends through the nearest singularity has the size
+# rho: a polynomial of degree n comes within rho^(-n) of such a factor. The error of a moment is this times the error of
+# a polynomial for the table, which is below 1e-2 even for jumps: eight digits of rho^n leave 1e-10 of the moment.
+_SLOWEST = 0.02  # of ΩR, airspeed
+_SONIC = (
+    1 / 0.9
+)  # of the radius: for slow air and a tip of Mach 0.9, where a straight lift line has long ended
+_LONG_DIGITS = 8
+_FEWEST = 4  # points: a chord cubed is a polynomial of degree 3
+_GRADES = np.array([0.02, 0.1])  # edges of long panels near the axis, of the radius
 # Nodes and weights on -1 to 1, kept because to find them takes longer than to fill a rotor's panels.
-_gauss = functools.cache(np.polynomial.legendre.leggauss)
+gauss = functools.cache(np.polynomial.legendre.leggauss)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,14 +148,68 @@ def flatten_points(array: Array, shape: tuple[int, ...], own_axes: int) -> Array
     return np.broadcast_to(array, (*shape, *own)).reshape(-1, *own)
 
 
-def gauss_panels(
+class Panels(NamedTuple):
+    """Panels (..., panels) of each blade; panels without points stand at the tip, behind the others.
+
+    starts, widths : inner radius and width, m.
+    points : number of Gauss points.
+    root, tip, flap_hinge, lag_hinge : radii (...), m.
+    """
+
+    starts: Array
+    widths: Array
+    points: Array
+    root: Array
+    tip: Array
+    flap_hinge: Array
+    lag_hinge: Array
+
+    def groups(self) -> Iterator[tuple[int, Array, Array, tuple[Array, Array]]]:
+        """Yield panels with equal numbers of points: number, inner radii and half widths (n,), places of their points.
+
+        The places are (n, 1) of the blade, with all axes of the blades flattened, and (n, number) of the station.
+        """
+        starts, half, points = (
+            part.reshape(-1, self.points.shape[-1]) for part in (self.starts, self.widths / 2, self.points)
+        )
+        ends = np.cumsum(points, axis=-1)
+        for number in np.unique(points[points > 0]).tolist():
+            blade, panel = np.nonzero(points == number)
+            places = blade[:, None], (ends[blade, panel] - number)[:, None] + np.arange(number)
+            yield number, starts[blade, panel], half[blade, panel], places
+
+    def spread(self, shape: tuple[int, ...]) -> Panels:
+        """Return the panels of blades with more axes."""
+        own = (1, 1, 1, 0, 0, 0, 0)
+        parts = zip(self, own, strict=True)
+        return Panels(*(np.broadcast_to(part, (*shape, *part.shape[part.ndim - k :])) for part, k in parts))
+
+    @property
+    def station_count(self) -> int:
+        """Number of stations of the blade that has most of them."""
+        return int(self.points.sum(axis=-1).max(initial=0))
+
+    def quadrature(self) -> RadialQuadrature:
+        """Return stations and weights, divided into segments at the hinges."""
+        count, leading = self.station_count, self.points.shape[:-1]
+        stations = np.repeat(self.tip.reshape(-1, 1), count, axis=-1).astype(self.widths.dtype)
+        weights = np.zeros_like(stations)
+        for number, starts, half, places in self.groups():
+            nodes, of_nodes = gauss(number)
+            stations[places] = starts[:, None] + half[:, None] * (1 + nodes)
+            weights[places] = half[:, None] * of_nodes
+        found = stations.reshape(*leading, count), weights.reshape(*leading, count)
+        return _by_segment(*found, self.root, self.tip, self.flap_hinge, self.lag_hinge)
+
+
+def short_panels(
     *,
     root_cutout: ArrayLike,
     radius: ArrayLike,
     flap_hinge_offset: ArrayLike,
     lag_hinge_offset: ArrayLike,
     knots: Array,
-) -> RadialQuadrature:
+) -> Panels:
     """Return panels from cutout to tip, split at the hinges and at tabulated stations.
 
     Parameters
@@ -159,33 +229,37 @@ def gauss_panels(
         # If a table splits the blade finely already, even panels would only add stations.
         longest = np.max(np.diff(np.sort(np.real(tabulated), axis=-1)), axis=-1, initial=0)
         even = np.where((longest <= _LONGEST_PANEL * np.real(tip))[..., None], inner, even)
-    ends = [inner, outer, flap[..., None], lag[..., None], tabulated, even, outer * _NEAR_ROOT]
-    edges = np.sort(_within(np.concatenate(ends, axis=-1), inner, outer), axis=-1)
-    # Between edges that coincide the last one counts for both sides: with complex radii they may differ a little.
-    # Panels without width stand behind the others, at the tip.
-    starts = np.sort(np.where(_wide(edges, tip), edges[..., :-1], outer), axis=-1)
-    widths = np.diff(starts, axis=-1, append=outer)
-    stations, weights = _gauss_points(starts, widths, _points(starts, widths, tip), tip)
-    return _by_segment(stations, weights, root, tip, flap, lag)
+    starts, widths = _between(root, tip, flap, lag, tabulated, even, outer * _NEAR_ROOT)
+    return Panels(starts, widths, _points(starts, widths, tip), root, tip, flap, lag)
 
 
-def coarse_panels(
+def long_panels(
     *,
     root_cutout: ArrayLike,
     radius: ArrayLike,
     flap_hinge_offset: ArrayLike,
     lag_hinge_offset: ArrayLike,
-) -> RadialQuadrature:
-    """Return one panel for each segment and two outboard of the hinges, with few points; parameters as `gauss_panels`.
-
-    Coarse moments are within some thousandths of the fine moments: enough for first iterations and for slopes.
-    """
+) -> Panels:
+    """Return one panel for each segment, more for a blade that begins near the axis; parameters as `short_panels`."""
     root, tip, flap, lag = np.broadcast_arrays(root_cutout, radius, flap_hinge_offset, lag_hinge_offset)
-    hinges = [_within(hinge, root, tip) for hinge in (flap, lag)]
-    edges = np.stack([root, *hinges, (hinges[-1] + tip) / 2, tip], axis=-1)
-    points = np.where(_wide(edges, tip), _COARSE_POINTS, 0)
-    stations, weights = _gauss_points(edges[..., :-1], np.diff(edges, axis=-1), points, tip)
-    return _by_segment(stations, weights, root, tip, flap, lag)
+    inner, outer = root[..., None], tip[..., None]
+    # A blade that begins beyond half of such a radius has no panel that spans a wide range of radii.
+    grades = np.where(np.real(inner) < np.real(outer) * _GRADES / 2, outer * _GRADES, inner)
+    starts, widths = _between(root, tip, flap, lag, grades)
+    return Panels(starts, widths, _long_points(starts, widths, tip), root, tip, flap, lag)
+
+
+def _between(root: Array, tip: Array, flap: Array, lag: Array, *others: Array) -> tuple[Array, Array]:
+    """Return starts and widths (..., panels) of panels with edges at both ends, at hinges and at other radii."""
+    inner, outer = root[..., None], tip[..., None]
+    edges = _within(
+        np.concatenate([inner, outer, flap[..., None], lag[..., None], *others], axis=-1), inner, outer
+    )
+    edges = np.sort(edges, axis=-1)
+    # Between edges that coincide the last one counts for both sides: with complex radii they may differ a little.
+    # Panels without width stand behind the others, at the tip.
+    starts = np.sort(np.where(_wide(edges, tip), edges[..., :-1], outer), axis=-1)
+    return starts, np.diff(starts, axis=-1, append=outer)
 
 
 def _within(edges: Array, root: Array, tip: Array) -> Array:
@@ -207,21 +281,16 @@ def _points(starts: Array, widths: Array, tip: Array) -> Array:
     return np.where(long > 0, np.maximum(by_share, near_axis), 0)
 
 
-def _gauss_points(starts: Array, widths: Array, points: Array, tip: Array) -> tuple[Array, Array]:
-    """Return stations and weights (..., stations) of panels (..., panels), each with its number of points."""
-    *leading, panels = points.shape
-    starts, half, points = (part.reshape(-1, panels) for part in (starts, widths / 2, points))
-    ends = np.cumsum(points, axis=-1)
-    count = ends[:, -1].max(initial=0)
-    stations = np.repeat(tip.reshape(-1, 1), count, axis=-1).astype(half.dtype)
-    weights = np.zeros_like(stations)
-    for number in np.unique(points[points > 0]):
-        nodes, gauss = _gauss(int(number))
-        blade, panel = np.nonzero(points == number)
-        places = blade[:, None], (ends[blade, panel] - number)[:, None] + np.arange(number)
-        stations[places] = starts[blade, panel, None] + half[blade, panel, None] * (1 + nodes)
-        weights[places] = half[blade, panel, None] * gauss
-    return stations.reshape(*leading, count), weights.reshape(*leading, count)
+def _long_points(starts: Array, widths: Array, tip: Array) -> Array:
+    """Return the number of points of each long panel (..., panels); none on a panel without width."""
+    radius = np.real(tip)[..., None]
+    start, width = np.real(starts) / radius, np.real(widths) / radius
+    there, width = width > 0, np.where(width > 0, width, 1.0)
+    still = np.hypot(start, _SLOWEST) + np.hypot(start + width, _SLOWEST)
+    # Sum of the distances of a point of the ellipse from the panel's ends, by the panel's width: (rho + 1/rho)/2.
+    across = np.minimum(still, 2 * (_SONIC - start) - width) / width
+    degree = np.ceil(_LONG_DIGITS * np.log(10) / np.arccosh(np.where(there, across, 2.0))).astype(int)
+    return np.where(there, np.maximum(degree + 1, _FEWEST), 0)
 
 
 def _by_segment(

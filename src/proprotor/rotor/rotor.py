@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike
 from proprotor_equations import inertia
 
 from proprotor.errors import InputError, check_finite, check_number, nowhere_negative
-from proprotor.rotor.airfoil import SectionModel
+from proprotor.rotor.airfoil import Airfoil, SectionModel
+from proprotor.rotor.effective_sections import EffectiveSections, Line, effective_sections
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.quadrature import RadialQuadrature, coarse_panels, gauss_panels
+from proprotor.rotor.quadrature import Panels, RadialQuadrature, long_panels, short_panels
 from proprotor.typing import Array
 
 MASS_INTEGRALS = (
@@ -221,16 +222,69 @@ class Rotor:
         """I_βζ = ∫ m (r - e_β)(r - e_ζ), kg m²."""
         return self._dependent.flap_lag_inertia
 
-    @functools.cached_property
-    def quadrature(self) -> RadialQuadrature:
-        """Radial stations and weights from cutout to tip, split at hinges and tabulated stations."""
-        knots = [np.asarray(d[0]) for d in (self.chord, self.twist) if isinstance(d, tuple)]
-        return gauss_panels(**self._radii, knots=_joined(knots))
+    @property
+    def has_effective_sections(self) -> bool:
+        """Whether loads are linear in chord and twist, and both are known at every radius.
+
+        The loads are linear with the straight lift line of `Airfoil`. Kinks of tables then need no panels of their own.
+        """
+        return type(self.airfoil) is Airfoil and not (callable(self.chord) or callable(self.twist))
 
     @functools.cached_property
-    def coarse_quadrature(self) -> RadialQuadrature:
-        """Radial stations and weights of a few points, enough to come near the trim."""
-        return coarse_panels(**self._radii)
+    def _panels(self) -> Panels:
+        """Panels of all stations."""
+        if self.has_effective_sections:
+            return long_panels(**self._radii)
+        knots = [np.asarray(d[0]) for d in (self.chord, self.twist) if isinstance(d, tuple)]
+        return short_panels(**self._radii, knots=_joined(knots))
+
+    @functools.cached_property
+    def quadrature(self) -> RadialQuadrature:
+        """Radial stations and weights from cutout to tip, by segments that end at the hinges."""
+        return self._panels.quadrature()
+
+    @functools.cached_property
+    def sections(self) -> EffectiveSections:
+        """Chord and twist at the stations of `quadrature`: the effective ones where the rotor has them."""
+        if self.has_effective_sections:
+            return self._effective_on(self._panels, self.quadrature)
+        return self._sections_at(self.quadrature)
+
+    @functools.cached_property
+    def few_sections(self) -> tuple[RadialQuadrature, EffectiveSections]:
+        """Stations on long panels with chord and twist there, near enough to all stations to begin a trim with."""
+        panels = long_panels(**self._radii)
+        quadrature = panels.quadrature()
+        if callable(self.chord) or callable(self.twist):
+            return quadrature, self._sections_at(quadrature)
+        return quadrature, self._effective_on(panels, quadrature)
+
+    def _sections_at(self, quadrature: RadialQuadrature) -> EffectiveSections:
+        """Return chord and twist at each station."""
+        r = quadrature.stations
+        return EffectiveSections(self.chord_at(r), self.twist_at(r))
+
+    def _effective_on(self, panels: Panels, quadrature: RadialQuadrature) -> EffectiveSections:
+        """Return the effective chord and twist at the stations of panels."""
+        found = effective_sections(self._chord_line, self._twist_line, panels)
+        return found._replace(bent=self.twist_at(quadrature.stations) - found.twist)
+
+    @property
+    def _chord_line(self) -> Line:
+        """The chord as a table or one value."""
+        if isinstance(self.chord, tuple):
+            return Line.through(*(np.asarray(part) for part in self.chord[:2]))
+        chord = np.asarray(self.chord)
+        return Line.straight(chord, 0 * chord)
+
+    @property
+    def _twist_line(self) -> Line:
+        """The twist as a table or linear."""
+        radius = np.asarray(self.radius)
+        if isinstance(self.twist, tuple):
+            r, values = (np.asarray(part) for part in self.twist[:2])
+            return Line.through(r, values - _interpolate(self.twist, 0.75 * radius[..., None]))
+        return Line.straight(-0.75 * np.asarray(self.twist), self.twist / radius)
 
     @property
     def _radii(self) -> dict[str, Any]:

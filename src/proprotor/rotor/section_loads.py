@@ -13,6 +13,7 @@ import numpy as np
 from proprotor_equations import airloads, lift_slope, section
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
+from proprotor.rotor.effective_sections import EffectiveSections
 from proprotor.rotor.generated import evaluate, keywords
 from proprotor.rotor.quadrature import POWERS, RadialQuadrature, flatten_points
 from proprotor.rotor.rotor import Rotor
@@ -43,35 +44,39 @@ class BladeSections:
     Attributes
     ----------
     quadrature : RadialQuadrature
-    chord, twist : array (stations,) or (points, stations); a constant chord has one station
+    along : EffectiveSections
+        Chord and twist, arrays (stations,) or (points, stations).
     airfoil : SectionModel
     """
 
     quadrature: RadialQuadrature
-    chord: Array
-    twist: Array
+    along: EffectiveSections
     airfoil: SectionModel
 
     @classmethod
-    def of(cls, rotor: Rotor, shape: tuple[int, ...], coarse: bool = False) -> BladeSections:
+    def of(cls, rotor: Rotor, shape: tuple[int, ...], few: bool = False) -> BladeSections:
         """Return the sections of a rotor at all stations or at a few, with the axes of many designs flattened."""
-        quadrature = rotor.coarse_quadrature if coarse else rotor.quadrature
-        profiles = (rotor.chord_at, rotor.twist_at)
-        chord, twist = (flatten_points(profile(quadrature.stations), shape, 1) for profile in profiles)
+        quadrature, along = rotor.few_sections if few else (rotor.quadrature, rotor.sections)
         airfoil = rotor.airfoil.flattened(shape) if isinstance(rotor.airfoil, Airfoil) else rotor.airfoil
-        return cls(quadrature.flattened(shape), chord, twist, airfoil)
+        flat = along.each(lambda part: flatten_points(part, shape, 1))
+        return cls(quadrature.flattened(shape), flat, airfoil)
 
     @property
     def is_complex(self) -> bool:
         """Whether any number is complex, for derivatives by a complex step."""
         airfoil = vars(self.airfoil).values() if isinstance(self.airfoil, Airfoil) else ()
-        return any(map(np.iscomplexobj, (self.quadrature.stations, self.chord, self.twist, *airfoil)))
+        return any(map(np.iscomplexobj, (self.quadrature.stations, *self.along, *airfoil)))
 
     @property
     def real(self) -> BladeSections:
         """The same sections without imaginary parts."""
         airfoil = self.airfoil.real if isinstance(self.airfoil, Airfoil) else self.airfoil
-        return BladeSections(self.quadrature.real, np.real(self.chord), np.real(self.twist), airfoil)
+        return BladeSections(self.quadrature.real, self.along.each(np.real), airfoil)
+
+    @property
+    def tapers(self) -> bool:
+        """Whether powers of the chord have effective values of their own."""
+        return bool(self.along.square.shape[-1] > 1)
 
     @property
     def sides(self) -> dict[str, Array]:
@@ -82,9 +87,9 @@ class BladeSections:
         """Return the sections at some of the points."""
         quadrature = self.quadrature.take(rows)
         own = slice(quadrature.stations.shape[-1])
-        chord, twist = (part[rows][:, own] if part.ndim > 1 else part for part in (self.chord, self.twist))
+        along = self.along.each(lambda part: part[rows][:, own] if part.ndim > 1 else part)
         airfoil = self.airfoil.take(rows) if isinstance(self.airfoil, Airfoil) else self.airfoil
-        return BladeSections(quadrature, chord, twist, airfoil)
+        return BladeSections(quadrature, along, airfoil)
 
     def blocks(self, points: int) -> Iterator[tuple[Array | slice, BladeSections]]:
         """Return groups of points with their sections: points whose stations are alike, few enough for the cache."""
@@ -120,7 +125,9 @@ def _air(
     for name, (at_axis, per_radius) in _VELOCITIES.items():
         stations[name] = along_lines(line[..., at_axis], line[..., per_radius])
     stations["section_spin"] = along_lines(line[..., airloads.SPIN]) if spins else 0.0
-    stations |= {"chord": sections.chord, "section_pitch": segments["pitch"] + sections.twist}
+    stations |= {"chord": sections.along.chord, "section_pitch": segments["pitch"] + sections.along.twist}
+    if sections.tapers:  # the lift of the turn has the chord squared
+        stations["section_damping"] = segments["section_damping"] * sections.along.square
     return {**stations, **evaluate(section.air_at_section, stations)._asdict()}
 
 
@@ -172,7 +179,7 @@ def load_moments(
     """
     (points,) = np.broadcast_shapes((1,), *(np.shape(value)[:-1] for value in segments.values()))
     shape = (points, len(sections.quadrature.beyond_lag_hinge), POWERS)
-    numbers = (sections.quadrature.stations, sections.chord, sections.twist, *segments.values())
+    numbers = (sections.quadrature.stations, *sections.along, *segments.values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
     moments: defaultdict[str, Array] = defaultdict(lambda: np.zeros(shape, dtype=kind))
     needed = {name: segments[name] for name in _needed(equations)}
@@ -186,7 +193,7 @@ def load_moments(
             _doubt(doubts, here, block | air, rows, points)
         if lift_slope_only:
             coefficients = SectionCoefficients(lift_coefficient_alpha=coefficients.lift_coefficient_alpha)
-        for name, load in _loads(air, coefficients, spins and not lift_slope_only, steady_only).items():
+        for name, load in _loads(here, air, coefficients, spins and not lift_slope_only, steady_only).items():
             if np.ndim(load):
                 moments[name][rows] = here.quadrature.moments(load)
     found = {
@@ -222,7 +229,11 @@ def _aerodynamics(
 
 
 def _loads(
-    air: _Quantities, coefficients: SectionCoefficients, damps: bool, steady_only: bool
+    sections: BladeSections,
+    air: _Quantities,
+    coefficients: SectionCoefficients,
+    damps: bool,
+    steady_only: bool,
 ) -> dict[str, Any]:
     """Return loads and derivatives at the stations by name; loads that vanish are a plain number or left out.
 
@@ -231,8 +242,11 @@ def _loads(
     given = dict(air) | coefficients._asdict()
     forces = section.steady_forces if steady_only else section.forces
     loads: dict[str, Any] = evaluate(forces, given)._asdict()
-    pitching = [value for name, value in coefficients._asdict().items() if name.startswith("moment")]
-    if damps or _any(*pitching):
+    pitching = {name: value for name, value in coefficients._asdict().items() if name.startswith("moment")}
+    if damps or _any(*pitching.values()):
+        if sections.tapers:  # the moment has the chord squared, its damping the chord cubed
+            given |= {name: value * sections.along.square for name, value in pitching.items() if _any(value)}
+            given["section_damping"] = given["section_damping"] / sections.along.square * sections.along.cube
         loads |= evaluate(section.pitching_moment, given)._asdict()
     return loads
 
@@ -246,7 +260,8 @@ def _doubt(
     radius = np.ravel(np.real(given["radius"]))[:, None]
     outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * radius
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
-    found = sections.airfoil.warnings(*(given[name][..., first:] for name in ("lift_incidence", "mach")))
+    incidence = given["lift_incidence"] + sections.along.bent
+    found = sections.airfoil.warnings(*(array[..., first:] for array in (incidence, given["mach"])))
     for text, mask in found.items():
         if mask.any():
             marks = doubts.setdefault(f"{text} outboard of {_OUTBOARD:g} R", np.zeros(points, dtype=bool))
@@ -255,7 +270,7 @@ def _doubt(
 
 def has_closed_form(sections: BladeSections) -> bool:
     """Return whether the lift-slope airloads of the published set can be computed without quadrature."""
-    return isinstance(sections.airfoil, Airfoil) and sections.chord.shape[-1] == 1
+    return isinstance(sections.airfoil, Airfoil) and sections.along.chord.shape[-1] == 1
 
 
 def closed_form_moments(sections: BladeSections, segments: _Quantities) -> dict[str, Any]:
@@ -263,7 +278,7 @@ def closed_form_moments(sections: BladeSections, segments: _Quantities) -> dict[
     edges = sections.quadrature.edges / np.asarray(segments["radius"])[..., None]
     inflow_ratio = segments["airspeed"] / (segments["rotor_speed"] * segments["radius"])
     given = {
-        "chord": sections.chord,
+        "chord": sections.along.chord,
         "lift_slope": cast(Airfoil, sections.airfoil).lift_slope,  # by `has_closed_form`
         "inflow_ratio": np.maximum(inflow_ratio, _STILL),
         "inner_edge": edges[..., 0],

@@ -1,15 +1,13 @@
 """Newton's method for the trim of all points at once; each point stops when it has converged.
 
-The search has three stages, from cheap to exact:
+The search has two stages:
 
-1. On a few stations Newton comes near the trim. `trim_bound` shows whether this trim is connected with the undeflected
-   blade; if the bound does not show it, `trim_path` leads the point along its path.
-2. Steps with the slopes of few stations but the residual of all stations come closer, at the cost of the steady loads
-   alone.
-3. Full Newton on all stations: a point whose first step is too small to matter takes this step and is done. The loads
-   of that step serve the equations of motion as well.
+1. Newton comes near the trim. `trim_bound` shows whether this trim is connected with the undeflected blade; if the
+   bound does not show it, `trim_path` leads the point along its path. Blades with many stations do so on a few.
+2. Newton on all stations: a point whose first step is too small to matter takes this step and is done. The loads of
+   that step serve the equations of motion as well.
 
-Points whose path is lost on few stations are followed on all stations.
+Points whose path is lost in the first stage are followed on all stations.
 """
 
 from __future__ import annotations
@@ -37,8 +35,7 @@ _CONVERGED = 1e-13
 # million times as stiff as everything else that holds the blade.
 _STALLED = 1e-9
 _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below the error of these stations
-_CLOSE_STEPS = 6
-_ROUNDING = 1e-15  # rad, of the step that would follow
+_ROUNDING = 1e-14  # rad, of the step that would follow
 
 
 class _Loads(NamedTuple):
@@ -67,7 +64,7 @@ class Settled:
 
 def solve_trim(
     sections: BladeSections,
-    coarse: BladeSections,
+    few: BladeSections,
     quantities: Mapping[str, Any],
     options: Options,
     target: Target,
@@ -77,8 +74,8 @@ def solve_trim(
 
     Parameters
     ----------
-    sections, coarse : BladeSections
-        All stations of the blade, and a few.
+    sections, few : BladeSections
+        All stations of the blade, and a few stations on which the search begins; the same object if all are few.
     quantities : mapping
         Numbers or arrays (points,) of rotor, operation and airspeed by name. Complex numbers have small imaginary
         parts, for derivatives by a complex step: the trim is exact to first order in these parts.
@@ -93,11 +90,10 @@ def solve_trim(
     numbers = (*quantities.values(), target.collective, target.load)
     with np.errstate(all="ignore"):
         if sections.is_complex or any(map(np.iscomplexobj, numbers)):
-            return _complex_trim(balance, coarse, points)
+            return _complex_trim(balance, few, points)
         search = _Search.of(balance, points)
         if free:
-            search.come_near(replace(balance, sections=coarse))
-            search.come_close()
+            search.come_near(balance if few is sections else replace(balance, sections=few))
             search.finish()
         return _settle(balance, search.state, search.before, search.reason, search.iterations, search.last)
 
@@ -137,15 +133,16 @@ class _Search:
 
     @property
     def near(self) -> Array:
-        """Points that have not failed and have come to the end of their path on few stations."""
+        """Points that have not failed and have come to the end of their path."""
         known = np.isfinite(self.ends.full).all(axis=(1, 2))
         return np.flatnonzero((self.reason == "") & known)
 
     def come_near(self, few: Balance) -> None:
-        """Run Newton on few stations with all loads at once, and follow the path of points that may have missed it."""
+        """Run Newton with all loads at once, and follow the path of points that may have missed it."""
         rows, k = self.rows, len(few.free)
         first, last = (Slopes.unknown(len(self.reason), k) for _ in range(2))
         active, near = rows, [np.empty(0, dtype=int)]
+        before = np.full(len(self.reason), np.inf)
         for count in range(_ITERATIONS // 2):
             if not len(active):
                 break
@@ -156,8 +153,12 @@ class _Search:
             few.take_step(self.state, active, step)
             self.iterations[active] += 1
             size = np.abs(step).max(axis=1)
-            near.append(active[size <= _NEAR])
-            active = active[size > _NEAR]
+            arrived = size <= _NEAR
+            if few is self.balance:
+                arrived &= _next(size, before[active]) <= _ROUNDING
+            before[active] = size
+            near.append(active[arrived])
+            active = active[~arrived & ~np.isnan(size)]
         arrived = np.sort(np.concatenate(near))
         copy_state(self.start, np.setdiff1d(rows, arrived), onto=self.state)
         known = ~self.followed[arrived]
@@ -174,31 +175,6 @@ class _Search:
         self.ends.put(rows[arrived], path.slopes.of(arrived))
         copy_state(self.start, rows[~path.arrived], onto=self.state)
         return path
-
-    def come_close(self) -> None:
-        """Take steps on the residual of all stations until, at their rate, the next would be lost in rounding.
-
-        The slopes come from few stations, and each step improves the slopes by Broyden's rank-one update.
-        """
-        rows = self.near
-        slopes = self.ends.full[rows]
-        active, before = np.arange(len(rows)), np.full(slopes.shape[:2], np.nan)
-        for count in range(_CLOSE_STEPS):
-            if not len(active):
-                break
-            here = rows[active]
-            left = self.balance.left(self.state, here)
-            if count:
-                last = before[active]
-                slopes[active] -= left[:, :, None] * (last / np.sum(last**2, axis=1)[:, None])[:, None, :]
-            step = newton_step(slopes[active], left)
-            self.balance.take_step(self.state, here, step)
-            self.iterations[here] += 1
-            size, last_size = np.abs(step).max(axis=1), np.abs(before[active]).max(axis=1)
-            lost = np.isnan(size)
-            copy_state(self.start, here[lost], onto=self.state)
-            before[active] = step
-            active = active[~lost & (np.fmin(size, size**2 / last_size) > _ROUNDING)]
 
     def finish(self) -> None:
         """Run full Newton; points that leave the end of their path begin again, on all stations."""
@@ -249,6 +225,11 @@ def _newton(
     return newton_step(here.slopes.full, here.residual), here
 
 
+def _next(size: Array, before: Array) -> Array:
+    """Return the size (n,) of the step that will follow a step, by the quadratic convergence of Newton's method."""
+    return np.asarray(size * (size / before) ** 2)
+
+
 def _first_step(balance: Balance, state: State, rows: Array) -> tuple[Array, Linear]:
     """Return Newton's step (n, k) from the undeflected blade to all of the loads, and the balance where it starts."""
     here = balance.near(state, rows, share=0.0)
@@ -289,13 +270,15 @@ def _settle(
     return Settled(trim, rows, quantities, here.segments)
 
 
-def _complex_trim(balance: Balance, coarse: BladeSections, points: int) -> Settled:
+def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
     """Return the trim of the real parts after one more Newton step: exact to first order in the imaginary parts."""
     target = balance.target
     collective = None if target.collective is None else np.real(target.collective)
     real_target = replace(target, collective=collective, load=np.real(target.load))
     real = {name: np.real(value) for name, value in balance.quantities.items()}
-    trim = solve_trim(balance.sections.real, coarse.real, real, balance.options, real_target, points).trim
+    sections = balance.sections.real
+    few = sections if few is balance.sections else few.real
+    trim = solve_trim(sections, few, real, balance.options, real_target, points).trim
     state = {name: getattr(trim, name).astype(complex) for name in UNKNOWNS}
     if target.collective is not None:
         state["collective"] = state["collective"] + 1j * np.imag(target.collective)
