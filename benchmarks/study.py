@@ -16,6 +16,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from functools import wraps
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -31,12 +32,12 @@ from proprotor.model import configuration
 from proprotor.model.first_order import state_matrix
 from proprotor.rotor import section_loads as blade_airloads
 from proprotor.rotor import trim_balance
-from proprotor.stability import modes
 from proprotor.study import workers as study_workers
 from proprotor.study.study import study
 from proprotor.study.variables import DEFAULT_QUANTITIES
 
-rotor_model = import_module("proprotor.model.rotor_model")  # the package has the function by this name
+# The packages have functions by these names.
+rotor_model, modes = map(import_module, ("proprotor.model.rotor_model", "proprotor.stability.modes"))
 POINTS = 10_000
 TURNS = 3
 BATCH = 2000  # points: as many as a study analyses at once
@@ -123,6 +124,7 @@ class Stopwatch:
     def timed(self, part: str, function: Callable) -> Callable:
         """The function, with its time put down to a part."""
 
+        @wraps(function)  # its arguments are looked up by name
         def run(*arguments: Any, **named: Any) -> Any:
             start = time.process_time()
             self.within.append(0.0)

@@ -226,8 +226,11 @@ def _newton(
 
 
 def _next(size: Array, before: Array) -> Array:
-    """Return the size (n,) of the step that will follow a step, by the quadratic convergence of Newton's method."""
-    return np.asarray(size * (size / before) ** 2)
+    """Return the size (n,) of the step that will follow a step, by the quadratic convergence of Newton's method.
+
+    The slopes change by about themselves per radian, or faster if the last two steps say so.
+    """
+    return np.asarray(size**2 * np.maximum(1.0, size / before**2))
 
 
 def _first_step(balance: Balance, state: State, rows: Array) -> tuple[Array, Linear]:
