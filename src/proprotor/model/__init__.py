@@ -15,6 +15,7 @@ configuration, and the stamp that every result has.
     first_order          which points and coordinates have states, and the state matrix
     state_space          A, B, C, D with names
     structural_damping   structural damping at which a model is neutrally stable
+    side                 the left side of an aircraft where it differs from the right side
     configuration        the record Configuration: rotor, operation, support, sources; `linearize`
     provenance           which numbers of a configuration were not read in a source
     doubts               marks and reasons of doubtful numbers
@@ -34,12 +35,14 @@ from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
 from proprotor.model.mount import mount
 from proprotor.model.rotor_model import in_closed_form, rotor_model
+from proprotor.model.side import Side
 
 __all__ = [
     "INPUTS",
     "SWASHPLATE",
     "Configuration",
     "LinearModel",
+    "Side",
     "deck_fingerprint",
     "doubts",
     "first_order",

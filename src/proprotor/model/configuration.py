@@ -14,6 +14,7 @@ from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
 from proprotor.model.provenance import reservations
 from proprotor.model.rotor_model import rotor_model
+from proprotor.model.side import Side
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
@@ -46,6 +47,9 @@ class Configuration:
         Frequencies of the blades; a case that has some has structure="tabulated" unless an option says otherwise.
     drive_train : DriveTrain, optional
         Drive train on the rotor's azimuth, unless an option says otherwise.
+    left : Side, optional
+        The left side of an aircraft whose sides differ; the support then is an `proprotor.support.airframe.Airframe`
+        with symmetric and antisymmetric coordinates, which the two sides couple.
     deck : Deck, optional
         The deck of the configuration, from which `proprotor.deck.vary` builds other designs.
     given : mapping of str to Datum
@@ -63,6 +67,7 @@ class Configuration:
     sources: Mapping[str, Datum] = field(default_factory=dict)
     frequencies: BladeFrequencies | None = None
     drive_train: DriveTrain | None = None
+    left: Side | None = None
     deck: Any = None
     given: Mapping[str, Datum] = field(default_factory=dict)
 
