@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.errors import check_finite
+from proprotor.support.aircraft_structure import HalfAircraft
 from proprotor.support.airframe import Airframe
 from proprotor.support.beam_wing import rigid_motion
 from proprotor.support.free_airframe import FreeAirframe
-from proprotor.support.aircraft_structure import HalfAircraft
 from proprotor.support.normal_modes import HUB_AXES
 from proprotor.support.wing_aerodynamics import Strips, WingAerodynamics, beam_strips, strip_positions
 from proprotor.typing import Array, Numbers

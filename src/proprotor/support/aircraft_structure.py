@@ -1,9 +1,9 @@
 """Half an aircraft: a free fuselage, the wing from the plane of symmetry to the tip, and the pylon.
 
-The wing is a chain of beam elements: a straight box along J from the plane of symmetry to the side of the fuselage, then the
-wing with its sweep and dihedral to the pylon. At its side the fuselage holds the displacements of the chain, and each of
-the three rotations rigidly, with a spring, or not at all. The datum is the point of the elastic axis in the plane of
-symmetry, as high and as far forward as the elastic axis at the fuselage side; all axes are those of the right rotor.
+The wing is a chain of beam elements: a straight box along J from the plane of symmetry to the side of the fuselage,
+then the wing with its sweep and dihedral to the pylon. At its side the fuselage holds the displacements of the chain,
+and each of the three rotations rigidly, with a spring, or not at all. The datum is the point of the elastic axis in the
+plane of symmetry, as high and as far forward as at the fuselage side; all axes are those of the right rotor.
 """
 
 from __future__ import annotations
@@ -28,8 +28,12 @@ from proprotor.support.normal_modes import HUB_AXES, TRANSLATION
 from proprotor.typing import Array
 
 JOINT = ("held", "free")
-Joint = float | Literal["held", "free"]
-_SLOPES = {"chord_slope": "alpha_x", "twist": "alpha_y", "bending_slope": "alpha_z"}  # in the order of the axes
+_Joint = float | Literal["held", "free"]
+_SLOPES = {
+    "chord_slope": "alpha_x",
+    "twist": "alpha_y",
+    "bending_slope": "alpha_z",
+}  # in the order of the axes
 _X, _Y, _Z, _ALPHA_X, _ALPHA_Y, _ALPHA_Z = range(6)
 _PER_NODE = len(HUB_AXES)
 
@@ -142,9 +146,9 @@ class CarryThrough:
     axial_stiffness: float | None = None
     mass_per_length: float | None = None
     torsional_inertia_per_length: float | None = None
-    bending_slope: Joint = "free"
-    chord_slope: Joint = "free"
-    twist: Joint = "held"
+    bending_slope: _Joint = "free"
+    chord_slope: _Joint = "free"
+    twist: _Joint = "held"
     elements: int = 2
 
     def __post_init__(self) -> None:
@@ -198,7 +202,8 @@ class HalfAircraft(NamedTuple):
 
     def rigid_mass(self, rotor_mass: float) -> Array:
         """Return the mass (6, 6) of both sides of a symmetric aircraft on the motion of the datum, as one body."""
-        return 2 * np.where(_SAME_SYMMETRY, self.loaded(rotor_mass)[:6, :6], 0.0)
+        of_both: Array = 2 * np.where(_SAME_SYMMETRY, self.loaded(rotor_mass)[:6, :6], 0.0)
+        return of_both
 
 
 # Motions along x and z and about y are symmetric, the others antisymmetric: both sides cancel what couples the two.
@@ -251,9 +256,9 @@ def _held_by_fuselage(
     joints = {axis: getattr(side.carry_through, name) for name, axis in _SLOPES.items()}
     turns = [axis for axis, joint in joints.items() if joint != "held"]
     inner = _PER_NODE * side.carry_through.elements
-    names = [
-        f"box_{node}_{axis}" for node in range(side.carry_through.elements) for axis in HUB_AXES
-    ] + [f"side_{axis}" for axis in turns]
+    names = [f"box_{node}_{axis}" for node in range(side.carry_through.elements) for axis in HUB_AXES] + [
+        f"side_{axis}" for axis in turns
+    ]
     own = len(names)
     nodes = np.zeros((len(positions), _PER_NODE, own + len(wing_names)))
     nodes[: side.carry_through.elements, :, :inner] = np.eye(inner).reshape(-1, _PER_NODE, inner)

@@ -7,8 +7,8 @@ K_ee, of a wing on a held fuselage, is positive: no zero is ever looked for amon
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from proprotor.support.beam_wing import kinds_by_energy, numbered, rigid_motion
 from proprotor.support.modal_reduction import lowest_modes, per_mode, symmetric
 from proprotor.typing import Array
 
-CHOICES = ("both", *SYMMETRIES)
+_CHOICES = ("both", *SYMMETRIES)
 KINDS = ("beam", "chord", "torsion", "axial", "pylon yaw")
 _AXES = {"symmetric": SYMMETRIC_AXES, "antisymmetric": ANTISYMMETRIC_AXES}
 _RIGID_BODY = {"symmetric": ("heave", "surge", "pitch"), "antisymmetric": ("sway", "roll", "yaw")}
@@ -93,8 +93,8 @@ def free_airframe(
         When there are fewer modes than asked for, when the wing could turn freely on the fuselage, for one symmetry of
         an unsymmetric aircraft, and for a damping ratio that is missing or out of range.
     """
-    if symmetry not in CHOICES:
-        raise InputError("symmetry", symmetry, f"must be {list_choices(CHOICES)}")
+    if symmetry not in _CHOICES:
+        raise InputError("symmetry", symmetry, f"must be {list_choices(_CHOICES)}")
     if left is not None and symmetry != "both":
         raise InputError("symmetry", symmetry, 'must be "both" for an aircraft whose left side differs')
     for side in (right, left or right):
@@ -107,7 +107,9 @@ def free_airframe(
     if left is not None:
         return _on_columns(_of_the_whole(half, other), body, 2 * modes, ratios, rotor_mass)
     wanted = SYMMETRIES if symmetry == "both" else (symmetry,)
-    return _beside([_on_columns(_of_one_symmetry(half, one), body, modes, ratios, rotor_mass) for one in wanted])
+    return _beside(
+        [_on_columns(_of_one_symmetry(half, one), body, modes, ratios, rotor_mass) for one in wanted]
+    )
 
 
 class _Columns(NamedTuple):
@@ -139,9 +141,7 @@ class _Columns(NamedTuple):
         sides = self.right, self.left
         kinds = dict.fromkeys(kind for side in sides for kind in side.structure.stiffness_parts)
         rigid = 3 * len(self.symmetries)
-        return {
-            kind: self.half(*(_padded(side, kind) for side in sides))[rigid:, rigid:] for kind in kinds
-        }
+        return {kind: self.half(*(_padded(side, kind) for side in sides))[rigid:, rigid:] for kind in kinds}
 
 
 def _padded(side: HalfAircraft, kind: str) -> Array:
@@ -163,14 +163,10 @@ def _of_the_whole(right: HalfAircraft, left: HalfAircraft) -> _Columns:
     """Return the coordinates of an aircraft with two different sides: what both share first, then each side's own."""
     shared = [*SYMMETRIC_AXES, *ANTISYMMETRIC_AXES, *range(6, 12)]
     own = [len(side.mass) - 12 for side in (right, left)]
-    motions = []
-    for place, side in enumerate((right, left)):
-        motion = np.zeros((len(side.mass), 12 + sum(own)))
-        motion[shared, np.arange(12)] = _MIRROR[shared] if place else 1.0
-        start = 12 + place * own[0]
-        motion[12:, start : start + own[place]] = np.eye(own[place])
-        motions.append(motion)
-    return _Columns(right, left, *motions, SYMMETRIES, "")
+    to_right, to_left = (np.zeros((len(side.mass), 12 + sum(own))) for side in (right, left))
+    to_right[shared, np.arange(12)], to_left[shared, np.arange(12)] = 1.0, _MIRROR[shared]
+    to_right[12:, 12 : 12 + own[0]], to_left[12:, 12 + own[0] :] = np.eye(own[0]), np.eye(own[1])
+    return _Columns(right, left, to_right, to_left, SYMMETRIES, "")
 
 
 # The left side sees an antisymmetric motion of the plane of symmetry with the opposite sign.
@@ -210,49 +206,53 @@ def _on_columns(
     still = np.zeros(rigid)
     sides = columns.to_right @ shapes, columns.to_left @ shapes
     airframe = Airframe(
-        names=_names(columns, kinds),
+        names=(
+            *_motions(columns.symmetries),
+            *(f"{columns.mode_symmetry} {kind}".strip() for kind in numbered(kinds)),
+        ),
         mass=symmetric(mass),
         damping=np.diag(np.concatenate([still, 2 * ratio * frequency])),
         stiffness=np.diag(np.concatenate([still, frequency**2])),
         hub=right.hub @ sides[0],
         left_hub=left.hub @ sides[1],
         includes_rotor=False,
-        **_words(columns.symmetries),
+        rigid_body=_motions(columns.symmetries),
+        rates=_motions(columns.symmetries, _RATES),
         symmetry=tuple(np.repeat(columns.symmetries, 3)) + (columns.mode_symmetry,) * count,
     )
     return FreeAirframe(airframe, frequency, *sides, right, left)
 
 
-def _names(columns: _Columns, kinds: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the rigid motions and of the elastic modes, after their symmetry."""
-    rigid = [f"{symmetry} {motion}" for symmetry in columns.symmetries for motion in _RIGID_BODY[symmetry]]
-    return (*rigid, *(f"{columns.mode_symmetry} {kind}".strip() for kind in numbered(kinds)))
-
-
-def _words(symmetries: Sequence[str]) -> dict[str, tuple[str, ...]]:
-    """Return the names of the rigid motions, and of the motions without stiffness."""
-    rigid = [(symmetry, motion) for symmetry in symmetries for motion in _RIGID_BODY[symmetry]]
-    return {
-        "rigid_body": tuple(" ".join(pair) for pair in rigid),
-        "rates": tuple(f"{symmetry} {motion}" for symmetry, motion in rigid if motion in _RATES),
-    }
+def _motions(symmetries: Sequence[str], among: Sequence[str] | None = None) -> tuple[str, ...]:
+    """Return the names of the rigid motions of some symmetries, of all or of some motions."""
+    found = [(symmetry, motion) for symmetry in symmetries for motion in _RIGID_BODY[symmetry]]
+    return tuple(f"{symmetry} {motion}" for symmetry, motion in found if among is None or motion in among)
 
 
 def _beside(parts: Sequence[FreeAirframe]) -> FreeAirframe:
     """Return coordinates that do not couple side by side: the symmetric ones, then the antisymmetric ones."""
-    if len(parts) == 1:
-        return parts[0]
     frames = [part.airframe for part in parts]
-    square = {name: _block_diagonal([getattr(frame, name) for frame in frames]) for name in _SQUARE}
-    along = {name: np.concatenate([getattr(frame, name) for frame in frames], axis=-1) for name in _ALONG}
-    words = {name: sum((getattr(frame, name) for frame in frames), start=()) for name in _LISTS}
-    frequency, *shapes = (np.concatenate(part, axis=-1) for part in list(zip(*parts, strict=True))[1:4])
-    whole = Airframe(**square, **along, **words, includes_rotor=False)
-    return FreeAirframe(whole, frequency, *shapes, parts[0].right, parts[0].left)
+    matrices: dict[str, Any] = {
+        name: _block_diagonal([getattr(frame, name) for frame in frames])
+        for name in ("mass", "damping", "stiffness")
+    }
+    words: dict[str, Any] = {
+        name: tuple(word for frame in frames for word in getattr(frame, name))
+        for name in ("names", "symmetry", "rigid_body", "rates")
+    }
 
+    def along(arrays: Iterable[Array]) -> Array:
+        return np.concatenate(list(arrays), axis=-1)
 
-_SQUARE, _ALONG = ("mass", "damping", "stiffness"), ("hub", "left_hub")
-_LISTS = ("names", "symmetry", "rigid_body", "rates")
+    hub, left_hub = along(frame.hub for frame in frames), along(frame.left_hub for frame in frames)
+    return FreeAirframe(
+        Airframe(**matrices, **words, hub=hub, left_hub=left_hub, includes_rotor=False),
+        along(part.frequency for part in parts),
+        along(part.right_shapes for part in parts),
+        along(part.left_shapes for part in parts),
+        parts[0].right,
+        parts[0].left,
+    )
 
 
 def _block_diagonal(blocks: Sequence[Array]) -> Array:
