@@ -22,8 +22,7 @@ def numbers_of(deck: Deck) -> dict[str, Datum]:
 
     A number that differs on the left side of an aircraft has the path ``left.rotor.control_stiffness``.
     """
-    speed = deck.operation.rotor_speed.si
-    found = {path: _per_second(number, speed) for path, number in _numbers(deck)}
+    found = {path: _per_second(number, deck.operation.rotor_speed.si) for path, number in _numbers(deck)}
     if deck.left is None or deck.left_side is None:
         return found
     differ = left_paths(deck.left.model_dump(exclude_none=True))
