@@ -1,6 +1,7 @@
 """Support: the structure that carries a rotor, as coordinates with mass, damping, stiffness and motion at the hub.
 
-In: a beam wing, a whole aircraft, or modes or matrices of any finite-element code. Out: `NormalModes`, on which `model` mounts rotors.
+In: a beam wing, a whole aircraft, or modes or matrices of any finite-element code. Out: `NormalModes`, on which `model`
+mounts rotors.
 This room imports `errors`, `typing`, `needs`, `files` and, for the names of coordinates, `rotor`.
 
     normal_modes       coordinates of a support; two-axis pivot; rigid support
