@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -12,6 +13,7 @@ import numpy as np
 from proprotor.datum import Datum
 from proprotor.deck.each_design import at_each_point, different_designs, si_values
 from proprotor.deck.numbers import LEFT
+from proprotor.errors import InputError
 from proprotor.support.aircraft_airloads import AircraftMotion, Tail, aircraft_motion, with_airloads
 from proprotor.support.aircraft_structure import CarryThrough, Fuselage, WingSide, half_aircraft
 from proprotor.support.airframe import Airframe
@@ -133,7 +135,17 @@ def _side(given: _Numbers, section: AircraftSection) -> WingSide:
 def _record(kind: type[_R], given: _Numbers, section: str = "") -> _R:
     """Return a record of the numbers that a deck gives for its fields."""
     names = [entry.name for entry in fields(kind) if section + entry.name in given]  # type: ignore[arg-type]
-    return kind(**{name: given[section + name] for name in names})
+    with _errors_within(section.rstrip(".")):
+        return kind(**{name: given[section + name] for name in names})
+
+
+@contextmanager
+def _errors_within(section: str) -> Iterator[None]:
+    """Put the name of a section before the field of an error."""
+    try:
+        yield
+    except InputError as error:
+        raise error.within(section) from None
 
 
 def _fuselage(given: _Numbers, section: AircraftSection, side: WingSide) -> Fuselage:
@@ -141,7 +153,8 @@ def _fuselage(given: _Numbers, section: AircraftSection, side: WingSide) -> Fuse
     body = _record(Fuselage, given, "fuselage.")
     if not section.fuselage.whole_aircraft:
         return body
-    return body.without(half_aircraft(side).rigid_mass(given["rotor_mass"]))
+    with _errors_within("fuselage"):
+        return body.without(half_aircraft(side).rigid_mass(given["rotor_mass"]))
 
 
 def _damping_ratios(given: _Numbers) -> dict[str, Numbers]:

@@ -109,7 +109,7 @@ def free_airframe(
     for side in (right, left or right):
         if symmetry != "antisymmetric" and side.carry_through.turns_freely("twist"):
             rule = "must be held or a stiffness: nothing else keeps the wing from turning on the fuselage"
-            raise InputError("twist", "free", rule)
+            raise InputError("carry_through.twist", "free", rule)
     half = half_aircraft(right)
     other = half if left is None else half_aircraft(left)
     model = partial(_on_columns, fuselage.mass_at_datum, _by_kind(damping_ratio), rotor_mass, tuple(names))
