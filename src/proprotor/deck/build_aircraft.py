@@ -58,7 +58,12 @@ def build_aircraft(
         When a number is not physical.
     """
     given = _of_structure(numbers)
-    designs, place = different_designs(given)
+    elements = (
+        given.get("elements", Wing.elements),
+        given.get("carry_through.elements", CarryThrough.elements),
+    )
+    nodes = (sum(elements) + 1) * (1 if left is None else 2)
+    designs, place = different_designs(given, nodes)
     parts = [_aircraft(part, section, left, names if place.ndim else ()) for part in designs]
     airframe, (fuselage, *strips) = at_each_point(parts, place, own=(2, *(1, 2, 2) * 2))
     motion = AircraftMotion(fuselage, Strips(*strips[:3]), Strips(*strips[3:]))
