@@ -10,6 +10,8 @@ configuration, and the stamp that every result has.
     mass_at_rest         the rotor's mass matrix at rest with locked blades
     rotor_share          the rotor's share, taken off a support whose masses include the rotor
     mount                one rotor on a support
+    pair                 two mirrored rotors on an airframe, in symmetric and antisymmetric coordinates
+    mast                 a mast that twists between a rotor and its engine
     several_rotors       several rotors on a support
     massless             motions that move no mass, which have no eigenvalue
     first_order          which points and coordinates have states, and the state matrix

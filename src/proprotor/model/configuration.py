@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from proprotor.datum import Datum
+from proprotor.errors import InputError
 from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
+from proprotor.model.pair import mount_pair
 from proprotor.model.provenance import reservations
 from proprotor.model.rotor_model import rotor_model
 from proprotor.model.side import Side
@@ -19,6 +21,7 @@ from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
+from proprotor.support.airframe import Airframe
 from proprotor.support.normal_modes import NormalModes
 
 _RPM = math.pi / 30  # rad/s
@@ -103,9 +106,14 @@ class Configuration:
         InputError
             For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
         """
-        rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
+        own = self.model_options(options)
+        rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **own)
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
-        model = mount(rotor_alone, support)
+        if isinstance(support, Airframe):
+            model = mount_pair(rotor_alone, support, self._left(airspeed, options), self._interconnect(own))
+        else:
+            self._check_one_rotor(own)
+            model = mount(rotor_alone, support)
         return model if model.origin is None else replace(model, origin=model.origin._replace(case=self))
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
@@ -122,12 +130,49 @@ class Configuration:
             The options given, with ``structure="tabulated"`` and ``frequencies`` if the case has blade frequencies,
             and with ``drive_train`` if the case has one and the rotor speed is not constant.
         """
-        found = dict(options)
-        if self.frequencies is not None and found.get("structure", "tabulated") == "tabulated":
-            found = {"structure": "tabulated", "frequencies": self.frequencies} | found
-        if self.drive_train is not None and found.get("rotor_speed") != "constant":
-            found = {"drive_train": self.drive_train} | found
-        return found
+        return _completed(options, self.frequencies, self.drive_train)
+
+    def _left(self, airspeed: Any, options: Mapping[str, Any]) -> LinearModel | None:
+        """Return the left rotor alone where the left side differs, with its own blade frequencies and drive train."""
+        if (left := self.left) is None:
+            return None
+        own = {"frequencies": self.frequencies, "drive_train": self.drive_train}
+        given = {name: value for name, value in options.items() if value is None or value is not own.get(name)}
+        completed = _completed(given, left.frequencies, left.drive_train)
+        try:
+            return rotor_model(left.rotor, left.operation, airspeed, **completed)
+        except InputError as error:
+            raise error.within("left") from None
+
+    def _interconnect(self, options: Mapping[str, Any]) -> Any:
+        """Return the stiffness of the interconnect shaft, N m/rad, which must be the same on both sides."""
+        trains = [options.get("drive_train"), None if self.left is None else self.left.drive_train]
+        right, left = (0.0 if train is None else train.interconnect_stiffness for train in trains)
+        if trains[1] is not None and not np.array_equal(right, left):
+            rule = f"must be that of the right side, {right}: one shaft connects both"
+            raise InputError("left.drive_train.interconnect_stiffness", left, rule)
+        return right
+
+    def _check_one_rotor(self, options: Mapping[str, Any]) -> None:
+        """Refuse what only an aircraft with two rotors has."""
+        if self.left is not None:
+            raise InputError("left", self.left, "goes with an aircraft that has two rotors")
+        train = options.get("drive_train")
+        if train is not None and np.any(np.real(train.interconnect_stiffness) > 0):
+            rule = "must be zero without a second rotor"
+            raise InputError("drive_train.interconnect_stiffness", train.interconnect_stiffness, rule)
+
+
+def _completed(
+    options: Mapping[str, Any], frequencies: BladeFrequencies | None, drive_train: DriveTrain | None
+) -> dict[str, Any]:
+    """Return options completed with the blade frequencies and the drive train of a side."""
+    found = dict(options)
+    if frequencies is not None and found.get("structure", "tabulated") == "tabulated":
+        found = {"structure": "tabulated", "frequencies": frequencies} | found
+    if drive_train is not None and found.get("rotor_speed") != "constant":
+        found = {"drive_train": drive_train} | found
+    return found
 
 
 def _held(support: NormalModes) -> str:

@@ -225,7 +225,7 @@ def _named(
         np.stack([*getattr(points.spectrum.at(rows), part), *(getattr(one.spectrum, part) for one in found)])
         for part in ("values", "right")
     )
-    every = Spectrum(values, right).all_modes
+    every = Spectrum(values, right, blocks=points.spectrum.blocks).all_modes
     moves = moving(model, every.values, every.left, every.right)
     names, warnings = moves.names, model.trim.warning.tolist()
     above = (points.growth[rows[0]] > points.error[rows[0]]) & (values[0].imag >= 0)

@@ -72,8 +72,10 @@ def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: 
     """Put the lowest onset of each design in its place, with the name and the main coordinate of the mode."""
     rows, onsets = np.array(list(first)), list(first.values())
     model = models(rows, np.array([one.position for one in onsets]))
-    spectra = (np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right"))
-    values, right, left = Spectrum(*spectra).all_modes
+    found_values, found_right = (
+        np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right")
+    )
+    values, right, left = Spectrum(found_values, found_right, blocks=onsets[0].spectrum.blocks).all_modes
     every, state = np.arange(len(rows)), np.array([one.state for one in onsets])
     held = held_coordinates(model, values.shape[-1])
     shares = coordinate_shares(held, len(model.dofs), left, right)[every, :, state]
