@@ -35,7 +35,9 @@ from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
+from proprotor.model.mast import with_mast
 from proprotor.model.mount import mount
+from proprotor.model.pair import mount_pair, rotors_on, shares
 from proprotor.model.rotor_model import in_closed_form, rotor_model
 from proprotor.model.side import Side
 
@@ -51,6 +53,7 @@ __all__ = [
     "in_closed_form",
     "mass_at_rest",
     "mount",
+    "mount_pair",
     "options_in_force",
     "options_of_result",
     "provenance",
@@ -58,9 +61,12 @@ __all__ = [
     "rigid_propeller",
     "rotor_model",
     "rotor_share",
+    "rotors_on",
     "several_rotors",
+    "shares",
     "stamp",
     "state_space",
     "structural_damping",
+    "with_mast",
     "with_reasons",
 ]

@@ -137,7 +137,9 @@ class Configuration:
         if (left := self.left) is None:
             return None
         own = {"frequencies": self.frequencies, "drive_train": self.drive_train}
-        given = {name: value for name, value in options.items() if value is None or value is not own.get(name)}
+        given = {
+            name: value for name, value in options.items() if value is None or value is not own.get(name)
+        }
         completed = _completed(given, left.frequencies, left.drive_train)
         try:
             return rotor_model(left.rotor, left.operation, airspeed, **completed)

@@ -19,7 +19,9 @@ from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import massless, massless_coordinates
 from proprotor.typing import Array
 
-StateBlocks = tuple[tuple[Array, slice], ...]  # rows of the state vector, and columns of the modes, of each block
+StateBlocks = tuple[
+    tuple[Array, slice], ...
+]  # rows of the state vector, and columns of the modes, of each block
 _NO_SHAFT = "no shaft holds the azimuth: its rate has one root, where a shaft gives two"
 
 
@@ -89,11 +91,12 @@ def some_points(model: LinearModel, points: Any) -> LinearModel:
     """Return the model at some of its points, with M, C and K only."""
     parts = {name: getattr(model, name)[points] for name in "MCK"}
     shapes = None if model.shapes is None else model.shapes[points]
-    return replace(model, **parts, B=None, hub=None, rotor=None, shapes=shapes)
+    none: dict[str, Any] = dict.fromkeys(("B", "hub", "rotor", "left", "left_hub"))
+    return replace(model, **parts, **none, shapes=shapes)
 
 
 def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]:
-    """Return the places of the coordinates whose displacement is a state: all but rates and azimuths that nothing holds.
+    """Return the places of the coordinates whose displacement is a state: all but rates and azimuths without shaft.
 
     Parameters
     ----------
@@ -111,7 +114,7 @@ def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]
 
 
 def lack_azimuths(model: LinearModel) -> Array:
-    """Return which azimuths points (..., azimuths) lack among their states, while other points of the batch have them."""
+    """Return which azimuths points (..., azimuths) lack among their states though other points of the batch do not."""
     holds = model.azimuths_held
     works = np.asarray(np.isfinite(model.K).all(axis=(-2, -1)))[..., None]
     return np.asarray(_anywhere(holds) & ~holds & works)

@@ -192,14 +192,10 @@ class LinearModel:
         places = [self.dofs.index(name) for name in dofs]
         parts = {name: getattr(self, name)[..., places, :][..., places] for name in "MCK"}
         inputs = None if self.B is None else self.B[..., places, :]
-        hub, left = (
-            None if motion is None else motion[..., places] for motion in (self.hub, self.left_hub)
-        )
+        hub, left = (None if motion is None else motion[..., places] for motion in (self.hub, self.left_hub))
         whole = self.shapes is not None and places[: self.shapes.shape[-1]] == [*range(self.shapes.shape[-1])]
         shapes = self.shapes if whole else None
-        rates, rigid = (
-            tuple(name for name in own if name in dofs) for own in (self.rates, self.rigid_body)
-        )
+        rates, rigid = (tuple(name for name in own if name in dofs) for own in (self.rates, self.rigid_body))
         more: dict[str, Any] = {"rates": rates, "rigid_body": rigid, "left_hub": left}
         if self.symmetry:
             more["symmetry"] = tuple(self.symmetry[place] for place in places)

@@ -37,7 +37,9 @@ def with_mast(model: LinearModel, train: DriveTrain) -> LinearModel:
         name: _with_engine(getattr(model, name), evaluate(kind, train.at_engine), model.dofs)
         for name, kind in _KINDS.items()
     }
-    matrices["K"] = matrices["K"] + np.asarray(train.mast_stiffness)[..., None, None] * _twist(len(model.dofs))
+    matrices["K"] = matrices["K"] + np.asarray(train.mast_stiffness)[..., None, None] * _twist(
+        len(model.dofs)
+    )
     inputs = None if model.B is None else np.pad(model.B, [(0, 0)] * (model.B.ndim - 2) + [(0, 1), (0, 0)])
     return replace(model, **matrices, B=inputs, dofs=(*model.dofs, MAST_TWIST))
 

@@ -1,7 +1,7 @@
 """Mount two mirrored rotors that turn opposite ways on an airframe, in symmetric and antisymmetric coordinates.
 
-A coordinate q of the right rotor is q_s + q_a, and that of the left rotor, in its mirrored axes, q_s - q_a. With T_s and
-T_a the coordinates of a rotor alone per unit of symmetric and antisymmetric ones, the virtual work of both rotors,
+A coordinate q of the right rotor is q_s + q_a, and that of the left rotor, in its mirrored axes, q_s - q_a. With T_s
+and T_a the coordinates of a rotor alone per unit of symmetric and antisymmetric ones, the virtual work of both rotors,
 halved like all matrices of an airframe, is
 
     T_sᵀ S T_s + T_aᵀ S T_a + T_sᵀ D T_a + T_aᵀ D T_s,    S = (M_r + M_l)/2,    D = (M_r - M_l)/2
@@ -12,6 +12,7 @@ rotor on the coordinates of its half.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -36,7 +37,7 @@ _ONE_SHAFT = (
 )
 
 
-class Half(NamedTuple):
+class _Half(NamedTuple):
     """One half of the motion of a model of two rotors.
 
     half : "symmetric" or "antisymmetric"; to_rotor (..., 6 + own, n) : coordinates of a rotor alone per unit of each
@@ -87,49 +88,83 @@ def mount_pair(
         symmetry, a rate along which there is stiffness, or an airframe without mass of its own.
     """
     _check(right, airframe, left)
-    halves = [half for half in HALVES if half in airframe.symmetry or "" in airframe.symmetry]
-    own = right.dofs[len(HUB) :]
-    names = (*airframe.names, *(in_half(half, name) for half in halves for name in own))
-    check_distinct("support.names", names)
-    symmetry = (*airframe.symmetry, *(half for half in halves for _ in own))
-    mass, refusal = without_rotors(airframe, _shares(right, airframe, left))
+    check_distinct("support.names", _names(airframe, right))
+    at_rest = None if left is None else left.mass_at_rest
+    mass, refusal = without_rotors(airframe, shares(airframe, right.mass_at_rest, at_rest))
     additions = {"M": mass, "C": airframe.damping, "K": airframe.stiffness}
-    both = [right] if left is None else [right, left]
-    parts = [airframe.hub, *additions.values(), *(model.M for model in both)]
-    shape = np.broadcast_shapes(np.shape(interconnect_stiffness), *(part.shape[:-2] for part in parts))
-    right, left = broadcast(right, shape), None if left is None else broadcast(left, shape)
-    hubs = {side: _padded(getattr(airframe, side), len(names)) for side in ("hub", "left_hub")}
-    motions = _halves(halves, hubs["hub"], hubs["left_hub"], names, own)
-    rotors, shafts = _mean_and_difference(right, left), _interconnect(names, interconnect_stiffness)
-    matrices: dict[str, Any] = {
-        kind: _on_airframe(kind, rotors, motions) + _in_corner(addition, len(names))
-        for kind, addition in additions.items()
-    }
-    matrices["K"] = matrices["K"] + shafts
-    if right.B is not None:
-        matrices["B"] = _inputs(rotors, motions)
+    rotors = rotors_on(right, airframe, left, interconnect_stiffness, additions)
+    right, left = rotors.rotor or right, rotors.left
+    trim = right.trim if left is None else _trim(right, left, interconnect_stiffness)
     coupled = replace(
-        right,
-        **matrices,
-        dofs=names,
-        hub=hubs["hub"],
-        left_hub=hubs["left_hub"],
-        rotor=right,
-        left=left,
-        mass_at_rest=None,
-        shapes=_shapes_by_half(airframe, at_points(airframe.shapes, shape, 2)),
-        trim=with_warning(_trim(right, left, interconnect_stiffness), at_points(airframe.warning, shape, 0)),
-        rates=airframe.rates,
-        rigid_body=airframe.rigid_body,
-        symmetry=symmetry,
+        rotors,
+        trim=with_warning(trim, at_points(airframe.warning, trim.converged.shape, 0)),
         halves_couple=left is not None or _couples(airframe, additions),
-        inputs=tuple(in_half(half, name) for half in halves for name in INPUTS),
     )
     _check_rates(coupled)
     return refused_where(refusal, with_reasons(_without_failed(coupled)), airframe)
 
 
-def halves_of(model: LinearModel) -> list[Half]:
+def rotors_on(
+    right: LinearModel,
+    airframe: Airframe,
+    left: LinearModel | None = None,
+    interconnect_stiffness: ArrayLike = 0.0,
+    additions: Mapping[str, Array] | None = None,
+) -> LinearModel:
+    """Return two rotors on the coordinates of an airframe, with matrices of the airframe to add, none by default.
+
+    Parameters
+    ----------
+    right, airframe, left, interconnect_stiffness
+        As for `mount_pair`; nothing is checked.
+    additions : mapping of str to array (..., n, n), optional
+        Matrices of half an airframe to be added to M, C and K.
+    """
+    names, added = _names(airframe, right), dict(additions or {})
+    both = [right] if left is None else [right, left]
+    parts = [airframe.hub, *added.values(), *(model.M for model in both)]
+    shape = np.broadcast_shapes(np.shape(interconnect_stiffness), *(part.shape[:-2] for part in parts))
+    right, left = broadcast(right, shape), None if left is None else broadcast(left, shape)
+    hubs: dict[str, Any] = {
+        side: _padded(getattr(airframe, side), len(names)) for side in ("hub", "left_hub")
+    }
+    halves, own = _halves_in(airframe), right.dofs[len(HUB) :]
+    motions = _halves(halves, hubs["hub"], hubs["left_hub"], names, own)
+    rotors = _mean_and_difference(right, left)
+    matrices: dict[str, Any] = {kind: _on_airframe(kind, rotors, motions) for kind in _MATRICES}
+    matrices["K"] = matrices["K"] + _interconnect(names, interconnect_stiffness)
+    for kind, matrix in added.items():
+        matrices[kind] = matrices[kind] + _in_corner(matrix, len(names))
+    if right.B is not None:
+        matrices["B"] = _inputs(rotors, motions)
+    return replace(
+        right,
+        **matrices,
+        **hubs,
+        dofs=names,
+        rotor=right,
+        left=left,
+        mass_at_rest=None,
+        shapes=_shapes_by_half(airframe, at_points(airframe.shapes, shape, 2)),
+        rates=airframe.rates,
+        rigid_body=airframe.rigid_body,
+        symmetry=(*airframe.symmetry, *(half for half in halves for _ in own)),
+        inputs=tuple(in_half(half, name) for half in halves for name in INPUTS),
+    )
+
+
+def _halves_in(airframe: Airframe) -> list[str]:
+    """Return the halves of the motion that an airframe has coordinates of."""
+    return [half for half in HALVES if half in airframe.symmetry or "" in airframe.symmetry]
+
+
+def _names(airframe: Airframe, rotor: LinearModel) -> tuple[str, ...]:
+    """Return the names of the coordinates of an airframe with two rotors."""
+    own = rotor.dofs[len(HUB) :]
+    return (*airframe.names, *(in_half(half, name) for half in _halves_in(airframe) for name in own))
+
+
+def halves_of(model: LinearModel) -> list[_Half]:
     """Return the halves of the motion of a model of two rotors."""
     assert model.rotor is not None and model.hub is not None and model.left_hub is not None
     halves = list(dict.fromkeys(half_of(name)[0] for name in model.inputs))
@@ -190,7 +225,7 @@ def _nothing(rotors: _Side) -> dict[str, Array]:
 
 def _halves(
     halves: list[str], hub: Array, left_hub: Array, names: tuple[str, ...], own: tuple[str, ...]
-) -> list[Half]:
+) -> list[_Half]:
     """Return the coordinates of a rotor alone in each half of the motion, per unit of each coordinate."""
     found = []
     for half in halves:
@@ -201,11 +236,11 @@ def _halves(
                 rows[row, names.index(in_half(half, name))] = 1
         at_hub = (hub + sign * left_hub) / 2
         rows = np.broadcast_to(rows, (*at_hub.shape[:-2], *rows.shape))
-        found.append(Half(half, np.concatenate([at_hub, rows], axis=-2)))
+        found.append(_Half(half, np.concatenate([at_hub, rows], axis=-2)))
     return found
 
 
-def _on_airframe(kind: str, rotors: _Side, motions: list[Half]) -> Array:
+def _on_airframe(kind: str, rotors: _Side, motions: list[_Half]) -> Array:
     """Return one of M, C and K of the rotors on the coordinates of the model."""
     whole = sum(np.swapaxes(one.to_rotor, -1, -2) @ rotors.mean[kind] @ one.to_rotor for one in motions)
     if rotors.difference:
@@ -216,7 +251,7 @@ def _on_airframe(kind: str, rotors: _Side, motions: list[Half]) -> Array:
     return np.asarray(whole)
 
 
-def _inputs(rotors: _Side, motions: list[Half]) -> Array:
+def _inputs(rotors: _Side, motions: list[_Half]) -> Array:
     """Return the loads per unit of the inputs of each half of the motion in turn."""
     columns = []
     for of_input in motions:
@@ -230,7 +265,7 @@ def _inputs(rotors: _Side, motions: list[Half]) -> Array:
 
 
 def _interconnect(names: tuple[str, ...], stiffness: ArrayLike) -> Array:
-    """Return the stiffness (..., n, n) of the interconnect shaft: half of its energy k (ψ_r - ψ_l)²/2, ψ_r - ψ_l = 2ψ_a."""
+    """Return the stiffness (..., n, n) of half the interconnect shaft, whose energy is k (ψ_r - ψ_l)²/2 = 2k ψ_a²."""
     strain = np.zeros(len(names))
     for name in (ROTOR_SPEED, MAST_TWIST):
         if (place := in_half(HALVES[1], name)) in names:
@@ -250,7 +285,7 @@ def _padded(hub: Array, count: int) -> Array:
 
 
 def _shapes_by_half(airframe: Airframe, shapes: Array | None) -> Array | None:
-    """Return shapes of the right side as symmetric and antisymmetric shapes of both, so that no two halves look alike."""
+    """Return shapes of the right side as symmetric and antisymmetric shapes, so that no two halves look alike."""
     if shapes is None:
         return None
     own = [np.array([of in (half, "") for of in airframe.symmetry]) for half in HALVES]
@@ -264,25 +299,26 @@ def _couples(airframe: Airframe, additions: dict[str, Array]) -> bool:
     return "" in airframe.symmetry or any(np.any(matrix[..., across]) for matrix in additions.values())
 
 
-def _shares(
-    right: LinearModel, airframe: Airframe, left: LinearModel | None
+def shares(
+    airframe: Airframe, right: Array | None, left: Array | None = None
 ) -> list[tuple[Array, Array | None]]:
-    """Return the motions and masses of rotors whose shares half an airframe may include."""
+    """Return the hub motions and masses at rest of two rotors, whose shares half of an airframe may include.
+
+    The left rotor is alike by default.
+    """
     if left is None:
         hubs = [(airframe.hub + sign * airframe.left_hub) / 2 for sign in (1, -1)]
-        return [(hub, right.mass_at_rest) for hub in hubs]
+        return [(hub, right) for hub in hubs]
     half = np.sqrt(0.5)
-    return [(half * airframe.hub, right.mass_at_rest), (half * airframe.left_hub, left.mass_at_rest)]
+    return [(half * airframe.hub, right), (half * airframe.left_hub, left)]
 
 
 # Trim -----------------------------------------------------------------------------------------------------------------
 
 
-def _trim(right: LinearModel, left: LinearModel | None, interconnect: ArrayLike) -> Trim:
+def _trim(right: LinearModel, left: LinearModel, interconnect: ArrayLike) -> Trim:
     """Return the trim of the right rotor, with the reasons and warnings of both."""
     trim = right.trim
-    if left is None:
-        return trim
     reason = _first_text(trim.reason, left.trim.reason, "left rotor: ")
     reason = np.where((reason == "") & _one_shaft(right, left, interconnect), _ONE_SHAFT, reason)
     warning = _first_text(trim.warning, left.trim.warning, "left rotor: ")

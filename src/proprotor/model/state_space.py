@@ -1,8 +1,8 @@
 """Build the state space of a linear model, with names, for control design, frequency response and simulation.
 
 Inputs are swashplate collective and cyclics (rad) and gusts along I, J, K (m/s). Outputs are hub motion, the rotor's
-loads on the hub and the blades' motion; of two rotors, each of these in symmetric and antisymmetric motion. With the pitch equations kept, the pitch coordinates are the whole
-perturbation of blade pitch.
+loads on the hub and the blades' motion; of two rotors, each of these in symmetric and antisymmetric motion. With the
+pitch equations kept, the pitch coordinates are the whole perturbation of blade pitch.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 class StateSpace:
     """ẋ = A x + B u, y = C x + D u, batched over leading axes; NaN at failed points.
 
-    Of two rotors, an input or output of a half, "symmetric force_x", is that of the right rotor in this half of the motion:
-    the left one is alike in its mirrored axes, or the opposite in the antisymmetric half.
+    Of two rotors, an input or output of a half, "symmetric force_x", is that of the right rotor in this half of the
+    motion: the left one is alike in its mirrored axes, or the opposite in the antisymmetric half.
 
     If a shaft holds the azimuth at some points of a batch only, the azimuth is a state and an output. At the other
     points its row and column of A, its rows of B, C and D and its column of C are NaN. Its rate is an output too.

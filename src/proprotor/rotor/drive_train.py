@@ -64,7 +64,7 @@ class DriveTrain:
 
     @property
     def at_rotor(self) -> dict[str, Any]:
-        """Inertia, damping and shaft stiffness on the rotor's own azimuth; with a rigid mast those of the engine too."""
+        """Inertia, damping and shaft stiffness on the rotor's own azimuth; a rigid mast adds those of the engine."""
         if self.mast_stiffness is not None:
             return {
                 "drive_inertia": self.drive_inertia,

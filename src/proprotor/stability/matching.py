@@ -22,7 +22,9 @@ from proprotor.model.first_order import StateBlocks
 from proprotor.typing import Array
 
 _BLOCK = 64  # steps whose matrices stay in the cache
-_APART = 10.0  # more than likeness and distance can be: taken off where two modes are of blocks that do not couple
+_APART = (
+    10.0  # more than likeness and distance can be: taken off where two modes are of blocks that do not couple
+)
 _COUPLED = 1e-6  # likeness of different modes; below it is rounding, and the modes pass each other uncoupled
 NOT_TOLD = "the step to here does not tell which root is which"
 POOR = 0.5  # quality of a step below which it is divided
