@@ -55,7 +55,7 @@ def pitch_couplings(case: pp.Case, speeds: NDArray) -> PitchCouplings:
 
 
 def main() -> None:
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     found = pitch_couplings(case, SPEEDS)
     headings = ("kt", "K_Pβ", "K_Pζ", "springs/K_θ", "propeller/K_θ", "K_Pβ with all", "K_Pζ with all")
     table = Table(*headings, title=case.title)

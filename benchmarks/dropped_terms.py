@@ -29,7 +29,7 @@ def table_rows(case: pp.Case, **options) -> list[tuple[str, dict[str, float]]]:
 
 
 def main() -> None:
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     for pitch in ("dynamic", "coupling"):
         table = Table("equations", *WING, "change of chord", title=f"XV-15 boundary, kt, pitch={pitch}")
         rows = table_rows(case, pitch=pitch)

@@ -32,10 +32,10 @@ _STAGES = ("analysis", "drawing data", "transfer", "all")
 
 def timed_moves(moves: int, seed: int = 1) -> tuple[dict[str, list[float]], int, int]:
     """Milliseconds of each stage, move by move; bytes of the last transfer; and how many moves were not physical."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     speeds = scan_speeds(case, _POINTS)
     options = {name: default_choice(name, {}) for name in CHOICES}
-    page, document = ExplorePage(case, "xv15", speeds, {}, options), Document()
+    page, document = ExplorePage(case, "xv15-uncoupled", speeds, {}, options), Document()
     page.put_on(document)
     events: list[object] = []
     document.on_change(events.append)

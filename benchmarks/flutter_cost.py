@@ -126,7 +126,7 @@ def fastest(work: Callable[[], object]) -> float:
 
 
 def main() -> None:
-    console, case = Console(width=120), pp.load_case("xv15")
+    console, case = Console(width=120), pp.load_case("xv15-uncoupled")
     in_eigenvalue_problems(console, case)
     crossings(console, case)
     one_bracket(console, case)

@@ -102,8 +102,8 @@ def best(*tasks: tuple[Callable[[], Any], Callable[[], float]]) -> list[float]:
 def processor_time_of_workers() -> float:
     """Of the worker processes that wait for a study, s (Linux)."""
     fields = [
-        Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-        for pid in study_workers.process_ids()
+        Path(f"/proc/{worker.process.pid}/stat").read_text().rpartition(")")[2].split()
+        for worker in study_workers._idle
     ]
     return sum(int(field[11]) + int(field[12]) for field in fields) / os.sysconf("SC_CLK_TCK")
 
@@ -251,7 +251,7 @@ def main() -> None:
         environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
         os.execve(sys.executable, [sys.executable, "-m", "benchmarks.study", *sys.argv[1:]], environment)
     points = int(sys.argv[1]) if len(sys.argv) > 1 else POINTS
-    console, case = Console(width=110, highlight=False), pp.load_case("xv15")
+    console, case = Console(width=110, highlight=False), pp.load_case("xv15-uncoupled")
     print_ratios(console, case, points)
     print_profile(console, case, points)
 

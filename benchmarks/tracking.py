@@ -56,7 +56,7 @@ VARIED = {
 
 def random_designs(count: int) -> list[pp.Case]:
     """Designs with inputs of the XV-15 spread evenly about their values."""
-    rng, case = np.random.default_rng(1), pp.load_case("xv15")
+    rng, case = np.random.default_rng(1), pp.load_case("xv15-uncoupled")
     spread = np.array(list(VARIED.values()))
     own = np.array([case.given[path].si for path in VARIED])
     values = own * (1 + spread * rng.uniform(-1, 1, (count, len(own))))
@@ -64,8 +64,11 @@ def random_designs(count: int) -> list[pp.Case]:
 
 
 def values_of(branches: Branches, points: int) -> NDArray:
-    """Followed eigenvalues (points, states) of the line."""
-    return np.take_along_axis(branches.spectrum.values[:points], branches.order(points), 1)
+    """Followed eigenvalues (points, states) of the first points of the spectrum; NaN at failed points."""
+    values = branches.spectrum.values[:points].copy()
+    own = branches.points < points
+    values[branches.points[own]] = np.take_along_axis(values[branches.points[own]], branches.places[own], 1)
+    return values
 
 
 def judged(case: pp.Case, step: float) -> tuple[int, int, int, int]:
@@ -108,7 +111,7 @@ def _exchangeable(ends: NDArray, arrived: NDArray) -> NDArray:
 
 def cost(console: Console) -> None:
     """Processor time of each part of following 10,000 points, beside `numpy.linalg.eig` on the same matrices."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     speeds = np.linspace(50, 400, POINTS) * KNOT
     model = case.linearize(speeds)
     matrix, spectrum = state_matrix(model), decomposition(model)

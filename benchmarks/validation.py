@@ -108,7 +108,7 @@ def _boundary_section(rows: list[Row]) -> Iterator[str]:
     yield f"unstable. Published: {low:.0f} to {high:.0f} kt:"
     yield "; ".join(f"{speed:.0f} ({source})" for source, speed in XV15_FLUTTER.items()) + "."
     yield "Sections turn without damping, as in the paper, unless a row says otherwise. Pitch equations with section"
-    yield "damping are the default of `proprotor flutter xv15`."
+    yield "damping are the default of `proprotor flutter xv15-uncoupled`."
     yield ""
     head = (
         "mass integrals",

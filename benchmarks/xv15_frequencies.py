@@ -25,7 +25,7 @@ STATEMENTS = (
 
 def main() -> None:
     console = Console(width=120)
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     console.print(f"[bold]{case.title}[/bold]  calibrated: {case.calibration}")
     for airloads in ("none", "full"):
         for rotor_speed in ("windmilling", "constant"):

@@ -258,7 +258,7 @@ def print_one_after_another(console: Console, case: pp.Case, group: list[Effect]
 
 def main() -> None:
     console = Console(width=110, highlight=False)
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     found = effects(case)
     print_alone(console, found)
     print_together(console, case, found)

@@ -100,7 +100,7 @@ def print_blade(console: Console, case: pp.Case) -> None:
 
 def main() -> None:
     console = Console(width=130, highlight=False)
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     for equations in ("consistent", "published"):
         rows = switch_table(case, equations)
         print_switches(console, f"{equations} equations", rows)

@@ -17,7 +17,7 @@ from benchmarks.paper_figures.wing_modes import WingModes
 from proprotor.typing import Array
 from proprotor.units import KNOT
 
-XV15 = "xv15"
+XV15 = "xv15-uncoupled"
 # kt; slower, the neglected induced velocity is more than a twentieth of the airspeed, or the paper shows nothing
 _AIRSPEEDS = {XV15: (50, 500), "xv15-mass-distribution": (50, 500), "v22-fifth-scale": (50, 250)}
 _WRATS = (60, 180)

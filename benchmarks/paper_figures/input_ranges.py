@@ -195,7 +195,7 @@ V22 = (
 )
 
 RANGES = {
-    "xv15": XV15,
+    "xv15-uncoupled": XV15,
     "xv15-mass-distribution": XV15,
     "v22-fifth-scale": V22,
     "wrats-742-off": WRATS,

@@ -54,7 +54,7 @@ def runtime() -> dict[str, float]:
 
     import proprotor as pp
 
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     found = {}
     for count in cost.BATCHES[1:]:
         speeds = np.linspace(60.0, 180.0, count)

@@ -57,7 +57,7 @@ def browser(tmp_path_factory):
 
 @pytest.fixture
 def page(browser):
-    with serving("xv15") as address:
+    with serving("xv15-uncoupled") as address:
         browser.get(address)
         wait(browser, lambda: "Flutter speed" in readout(browser))
         yield browser
@@ -101,7 +101,7 @@ def told_speed(browser):
 
 
 def test_a_slider_moved_with_the_keyboard_moves_curves_and_readout(page):
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     speeds = scan_speeds(case, 60)
     deck = live_modes(case, speeds).flutter
     assert told_speed(page) == pytest.approx(deck.start / KNOT, abs=0.06)
@@ -134,7 +134,7 @@ def test_what_was_set_is_downloaded_as_a_deck_that_runs(page):
       view.shadow_el.querySelector("button").click();""",
         "save",
     )
-    saved = Path(page.downloads, "xv15-explored.toml")
+    saved = Path(page.downloads, "xv15-uncoupled-explored.toml")
     wait(page, saved.exists)
     case = pp.load_case(saved)
     assert np.rad2deg(case.rotor.precone) == pytest.approx(value)

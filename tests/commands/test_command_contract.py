@@ -19,55 +19,58 @@ from proprotor.commands.arguments import EXIT_CODES
 from proprotor.commands.main import main
 
 PROPROTOR = [sys.executable, "-c", "from proprotor.commands.main import main; main()"]
-MAP = ("xv15", "--x", "airspeed=200:300:50kt", "--y", "rotor.precone=1:3:1 deg")
-STUDY = ("xv15", "--vary", "rotor.precone=1:2:1 deg", "--speed", "200 kt", "--workers", "1")
+MAP = ("xv15-uncoupled", "--x", "airspeed=200:300:50kt", "--y", "rotor.precone=1:3:1 deg")
+STUDY = ("xv15-uncoupled", "--vary", "rotor.precone=1:2:1 deg", "--speed", "200 kt", "--workers", "1")
 FAST = ("--pitch", "rigid", "--rotor-speed", "constant")
 # Of each command arguments that succeed, and some that fail with 2; with 1 where it can.
 SUCCEED = {
-    "cases": [(), ("xv15",), ("xv15", "--set", "rotor.precone=1 deg")],
+    "cases": [(), ("xv15-uncoupled",), ("xv15-uncoupled", "--set", "rotor.precone=1 deg")],
     "new": [("new.toml",)],
     "describe": [("rotor.precone",), (), ("beam-wing",)],
-    "sweep": [("xv15", "--speed", "0:200:200kt")],  # no airspeed at the first
-    "flutter": [("xv15", "--speed", "160 kt", *FAST), ("xv15", "--scan", "100:110:5kt")],
+    "sweep": [("xv15-uncoupled", "--speed", "0:200:200kt")],  # no airspeed at the first
+    "flutter": [("xv15-uncoupled", "--speed", "160 kt", *FAST), ("xv15-uncoupled", "--scan", "100:110:5kt")],
     "map": [(*MAP, *FAST)],
     "sensitivity": [
-        ("xv15", "--wrt", "rotor.precone"),
-        ("xv15", "--of", "damping", "--speed", "300 kt", "--mode", "beam", *FAST),
+        ("xv15-uncoupled", "--wrt", "rotor.precone"),
+        ("xv15-uncoupled", "--of", "damping", "--speed", "300 kt", "--mode", "beam", *FAST),
     ],
-    "attribution": [("xv15", "--speed", "300 kt", *FAST)],
+    "attribution": [("xv15-uncoupled", "--speed", "300 kt", *FAST)],
     "study": [STUDY],
 }
 FAIL = {
     "cases": (("xv16",), "did you mean xv15?"),
     "new": (("new.txt",), "FILE = new.txt: must end in .toml"),
     "describe": (("rotor.precon",), "did you mean rotor.precone?"),
-    "sweep": (("xv15", "--speed", "50"), "--speed = 50: needs a unit"),
-    "flutter": (("xv15", "--scan", "50:60"), "--scan = 50:60: must be a speed"),
+    "sweep": (("xv15-uncoupled", "--speed", "50"), "--speed = 50: needs a unit"),
+    "flutter": (("xv15-uncoupled", "--scan", "50:60"), "--scan = 50:60: must be a speed"),
     "map": (
-        ("xv15", "--x", "airspeed=1:2:1kt", "--y", "rotor.precon=1:2:1 deg"),
+        ("xv15-uncoupled", "--x", "airspeed=1:2:1kt", "--y", "rotor.precon=1:2:1 deg"),
         "did you mean rotor.precone?",
     ),
-    "sensitivity": (("xv15", "--wrt", "rotor.precon"), "wrt = rotor.precon: unknown input"),
-    "attribution": (("xv15", "--speed", "300 kt", "--mode", "bean"), "did you mean beam?"),
-    "study": (("xv15", "--vary", "rotor.precone", "--speed", "200 kt"), "--vary = rotor.precone: must be"),
+    "sensitivity": (("xv15-uncoupled", "--wrt", "rotor.precon"), "wrt = rotor.precon: unknown input"),
+    "attribution": (("xv15-uncoupled", "--speed", "300 kt", "--mode", "bean"), "did you mean beam?"),
+    "study": (
+        ("xv15-uncoupled", "--vary", "rotor.precone", "--speed", "200 kt"),
+        "--vary = rotor.precone: must be",
+    ),
 }
 NOTHING_ANALYSED = {
-    "sweep": ("xv15", "--speed", "0 kt"),
-    "flutter": ("xv15", "--scan", "0:0.2:0.1kt"),
-    "map": ("xv15", "--x", "airspeed=0:0.2:0.1kt", "--y", "rotor.precone=1:2:1 deg"),
-    "study": ("xv15", "--vary", "rotor.precone=1 deg", "--speed", "0 kt", "--workers", "1"),
+    "sweep": ("xv15-uncoupled", "--speed", "0 kt"),
+    "flutter": ("xv15-uncoupled", "--scan", "0:0.2:0.1kt"),
+    "map": ("xv15-uncoupled", "--x", "airspeed=0:0.2:0.1kt", "--y", "rotor.precone=1:2:1 deg"),
+    "study": ("xv15-uncoupled", "--vary", "rotor.precone=1 deg", "--speed", "0 kt", "--workers", "1"),
 }
 # Options that write, with arguments that reach them.
 OUTPUTS = [
-    ("sweep", ("xv15", "--speed", "200 kt"), "--csv", "x.csv"),
-    ("sweep", ("xv15", "--speed", "200 kt"), "--plot", "x.png"),
-    ("flutter", ("xv15",), "--csv", "x.csv"),
+    ("sweep", ("xv15-uncoupled", "--speed", "200 kt"), "--csv", "x.csv"),
+    ("sweep", ("xv15-uncoupled", "--speed", "200 kt"), "--plot", "x.png"),
+    ("flutter", ("xv15-uncoupled",), "--csv", "x.csv"),
     ("map", MAP, "--csv", "x.csv"),
     ("map", MAP, "--plot", "x.pdf"),
-    ("sensitivity", ("xv15",), "--csv", "x.csv"),
-    ("sensitivity", ("xv15",), "--plot", "x.svg"),
-    ("attribution", ("xv15", "--speed", "200 kt"), "--csv", "x.csv"),
-    ("attribution", ("xv15", "--speed", "200 kt"), "--plot", "x.png"),
+    ("sensitivity", ("xv15-uncoupled",), "--csv", "x.csv"),
+    ("sensitivity", ("xv15-uncoupled",), "--plot", "x.svg"),
+    ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--csv", "x.csv"),
+    ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--plot", "x.png"),
     ("study", STUDY, "--out", "x.nc"),
 ]
 
@@ -218,18 +221,18 @@ def test_a_file_named_minus_is_standard_output_or_refused(command, arguments, op
 
 @pytest.mark.parametrize("name", ["my deck.toml", "Rotor-Blätter ψ.toml", 'it\'s "quoted".toml'])
 def test_names_of_files_may_have_spaces_and_any_letters(name):
-    Path(name).write_text('base = "xv15"\n[case]\nname = "my"\n')
+    Path(name).write_text('base = "xv15-uncoupled"\n[case]\nname = "my"\n')
     out = Path(name).with_suffix(".csv")
     assert run("sweep", name, "--speed", "200 kt", "--csv", str(out), *FAST).exit_code == 0
     assert out.stat().st_size > 100
     assert run("new", f"new {name}", "--from", name, "--variant").exit_code == 0
-    assert pp.load_case(f"new {name}").rotor.radius == pp.load_case("xv15").rotor.radius
+    assert pp.load_case(f"new {name}").rotor.radius == pp.load_case("xv15-uncoupled").rotor.radius
 
 
 def test_a_figure_needs_no_display(empty_folder):
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
     done = subprocess.run(
-        [*PROPROTOR, "sweep", "xv15", "--speed", "200:300:50kt", "--plot", "x.png"],
+        [*PROPROTOR, "sweep", "xv15-uncoupled", "--speed", "200:300:50kt", "--plot", "x.png"],
         capture_output=True,
         text=True,
         env=environment | {"MPLBACKEND": "TkAgg"},
@@ -248,14 +251,14 @@ def shell(script: str) -> subprocess.CompletedProcess:
 
 @pytest.mark.parametrize(
     "arguments",
-    ["describe", "describe --json", "sweep xv15 --speed 100:300:5kt --json", "describe --markdown"],
+    ["describe", "describe --json", "sweep xv15-uncoupled --speed 100:300:5kt --json", "describe --markdown"],
 )
 def test_a_reader_that_leaves_early_is_told_nothing(arguments):
     done = shell(f"proprotor {arguments} | head -c 1")
     assert (len(done.stdout), done.stderr) == (1, "")
 
 
-@pytest.mark.parametrize("arguments", ["cases", "cases --json", "sweep xv15 --speed '200 kt'"])
+@pytest.mark.parametrize("arguments", ["cases", "cases --json", "sweep xv15-uncoupled --speed '200 kt'"])
 def test_standard_output_that_takes_nothing(arguments):
     if Path("/dev/full").exists():
         done = shell(f"proprotor {arguments} > /dev/full")
@@ -272,7 +275,7 @@ def test_standard_output_that_takes_nothing(arguments):
     [
         (
             "map",
-            "xv15",
+            "xv15-uncoupled",
             "--x",
             "airspeed=100:300:0.1kt",
             "--y",
@@ -282,7 +285,7 @@ def test_standard_output_that_takes_nothing(arguments):
         ),
         (
             "study",
-            "xv15",
+            "xv15-uncoupled",
             "--vary",
             "rotor.precone=0:5:0.0001 deg",
             "--speed",
@@ -342,14 +345,14 @@ def completed(shell_name: str, words: str, incomplete: str = "") -> list[str]:
         ("proprotor sweep", "xv15-w", "xv15-wing"),
         ("proprotor cases", "wrats-7", "wrats-742-off"),
         ("proprotor new my.toml --from", "v22", "v22-fifth-scale"),
-        ("proprotor sweep xv15 --set", "rotor.prec", "rotor.precone="),
-        ("proprotor sweep xv15 --set", "support.modes", "support.modes[beam].frequency="),
-        ("proprotor map xv15 --x", "airs", "airspeed="),
-        ("proprotor study xv15 --vary", "rotor.control_st", "rotor.control_stiffness="),
-        ("proprotor sensitivity xv15 --wrt", "rotor.prec", "rotor.precone"),
+        ("proprotor sweep xv15-uncoupled --set", "rotor.prec", "rotor.precone="),
+        ("proprotor sweep xv15-uncoupled --set", "support.modes", "support.modes[beam].frequency="),
+        ("proprotor map xv15-uncoupled --x", "airs", "airspeed="),
+        ("proprotor study xv15-uncoupled --vary", "rotor.control_st", "rotor.control_stiffness="),
+        ("proprotor sensitivity xv15-uncoupled --wrt", "rotor.prec", "rotor.precone"),
         ("proprotor describe", "rotor.prec", "rotor.precone"),
-        ("proprotor sweep xv15 --pitch", "c", "coupling"),
-        ("proprotor sweep xv15", "--all", "--all-modes"),
+        ("proprotor sweep xv15-uncoupled --pitch", "c", "coupling"),
+        ("proprotor sweep xv15-uncoupled", "--all", "--all-modes"),
     ],
 )
 def test_the_shell_completes(shell_name, words, incomplete, offered):

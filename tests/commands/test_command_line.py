@@ -19,7 +19,7 @@ from proprotor.files.output import write_whole
 from proprotor.rotor.options import CHOICES, LOCKABLE
 from tests.csv_files import without_comments
 
-SWEEP = ("sweep", "xv15", "--speed", "300:400:20kt")
+SWEEP = ("sweep", "xv15-uncoupled", "--speed", "300:400:20kt")
 
 
 def run(*arguments: str | Path) -> Result:
@@ -35,7 +35,7 @@ def table() -> str:
 
 @pytest.fixture(scope="module")
 def expected():
-    return pp.load_case("xv15").sweep("300:400:20kt")
+    return pp.load_case("xv15-uncoupled").sweep("300:400:20kt")
 
 
 def test_table_has_a_row_for_each_airspeed_and_the_support_modes(table, expected):
@@ -43,7 +43,9 @@ def test_table_has_a_row_for_each_airspeed_and_the_support_modes(table, expected
     assert [float(row[0]) for row in rows] == [300, 320, 340, 360, 380, 400]
     header = next(line for line in table.splitlines() if line.strip().startswith("beam"))
     assert {"beam", "chord", "torsion"} <= set(header.split())
-    per_rev = expected.frequency.sel(mode="beam").values[0] / pp.load_case("xv15").operation.rotor_speed
+    per_rev = (
+        expected.frequency.sel(mode="beam").values[0] / pp.load_case("xv15-uncoupled").operation.rotor_speed
+    )
     percent = 100 * expected.damping_ratio.sel(mode="beam").values[0]
     assert f"{per_rev:.3f}   {percent:.2f}" in table
 
@@ -71,10 +73,10 @@ def test_all_modes_appear_when_asked_for(expected):
 
 
 def test_failed_airspeeds_are_rows_with_their_reason():
-    result = run("sweep", "xv15", "--speed", "0:600:200kt")
+    result = run("sweep", "xv15-uncoupled", "--speed", "0:600:200kt")
     rows = {line.split()[0]: line for line in result.stdout.splitlines() if line.strip()[:1].isdigit()}
     assert result.exit_code == 0
-    reasons = pp.load_case("xv15").sweep("0:600:200kt").reason.values
+    reasons = pp.load_case("xv15-uncoupled").sweep("0:600:200kt").reason.values
     assert reasons[0] and reasons[0] in rows["0"]
     assert reasons[3] and reasons[3] in rows["600"]
     assert rows["200"].count(".") > 4
@@ -82,8 +84,8 @@ def test_failed_airspeeds_are_rows_with_their_reason():
 
 def test_doubtful_airspeeds_are_marked_and_explained(tmp_path):
     file = tmp_path / "modes.csv"
-    output = run("sweep", "xv15", "--speed", "400:500:50kt", "--csv", file).stdout
-    points = pp.load_case("xv15").sweep("400:500:50kt")
+    output = run("sweep", "xv15-uncoupled", "--speed", "400:500:50kt", "--csv", file).stdout
+    points = pp.load_case("xv15-uncoupled").sweep("400:500:50kt")
     doubtful = points.warning.values != ""
     assert doubtful.any()
     marks = [
@@ -100,16 +102,16 @@ def test_doubtful_airspeeds_are_marked_and_explained(tmp_path):
 
 
 def test_nothing_but_failed_airspeeds_is_a_failure():
-    result = run("sweep", "xv15", "--speed", "0 kt")
+    result = run("sweep", "xv15-uncoupled", "--speed", "0 kt")
     assert result.exit_code == 1
     assert "No airspeed could be analysed." in result.stdout
 
 
 def test_csv_is_the_sweep(tmp_path):
     file = tmp_path / "modes.csv"
-    assert run("sweep", "xv15", "--speed", "0:200:100kt", "--csv", file).exit_code == 0
+    assert run("sweep", "xv15-uncoupled", "--speed", "0:200:100kt", "--csv", file).exit_code == 0
     rows = list(csv.DictReader(without_comments(file)))
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     modes = case.sweep("0:200:100kt")
     assert len(rows) == modes.damping_ratio.size
     for row in rows:
@@ -128,7 +130,7 @@ def test_json_is_valid_and_has_every_mode(expected):
     def refuse(constant: str):
         raise AssertionError(constant)
 
-    result = run("sweep", "xv15", "--speed", "0:400:200kt", "--json", "--airloads", "lift-slope")
+    result = run("sweep", "xv15-uncoupled", "--speed", "0:400:200kt", "--json", "--airloads", "lift-slope")
     document = json.loads(result.stdout, parse_constant=refuse)
     assert document["options"]["airloads"] == "lift-slope"
     assert {p["mode"] for p in document["points"]} == set(expected.mode.values.tolist())
@@ -164,7 +166,7 @@ def test_airspeeds_are_shown_in_the_unit_they_were_given_in():
         ("250.5kt", "kt", ["250.5"]),
         ("360 km*h**-1", "km*h**-1", ["360"]),
     ):
-        lines = run("sweep", "xv15", "--speed", speed).stdout.splitlines()
+        lines = run("sweep", "xv15-uncoupled", "--speed", speed).stdout.splitlines()
         start = next(i for i, line in enumerate(lines) if "/rev  " in line)
         assert lines[start].split()[0] == unit
         assert [line.split()[0] for line in lines[start + 1 : start + 1 + len(shown)]] == shown
@@ -179,7 +181,7 @@ def test_options_reach_the_model():
         "compressibility": False,
         "locked": ("gimbal", "lag"),
     }
-    modes = pp.load_case("xv15").sweep("300:400:20kt", **options)
+    modes = pp.load_case("xv15-uncoupled").sweep("300:400:20kt", **options)
     assert [p["mode"] for p in document["points"][: len(modes.mode)]] == modes.mode.values.tolist()
     found = [p["damping (% of critical)"] for p in document["points"]]
     np.testing.assert_allclose(found, 100 * modes.damping_ratio.values.ravel(), rtol=1e-9)
@@ -202,17 +204,23 @@ def test_every_option_of_the_model_is_a_flag_that_says_what_it_does():
     [
         (("sweep", "xv16", "--speed", "50kt"), "did you mean xv15?"),
         (("sweep", "no/such.toml", "--speed", "50kt"), "no such file"),
-        (("sweep", "xv15", "--speed", "50"), "--speed = 50: needs a unit"),
-        (("sweep", "xv15", "--speed", "50kg"), "--speed = 50kg: must be a speed"),
-        (("sweep", "xv15", "--speed", "400:50:5kt"), "must rise"),
-        (("sweep", "xv15", "--speed", "-5kt"), "must not be negative"),
-        (("sweep", "xv15", "--speed", "fast"), "must be a speed"),
-        (("sweep", "xv15"), "--speed"),
-        (("sweep", "xv15", "--speed", "50kt", "--pitch", "stiff"), "'dynamic', 'coupling', 'rigid'"),
-        (("sweep", "xv15", "--speed", "50kt", "--locked", "wing"), "'flap', 'lag', 'pitch', 'gimbal'"),
-        (("sweep", "xv15", "--speed", "50kt", "--plot", "damping.gif"), ".png, .pdf, .svg"),
-        (("sweep", "xv15", "--speed", "50kt", "--csv", "/"), "--csv = /: must be a file"),
-        (("sweep", "xv15", "--speed", "50kt", "--pitch-lag-coupling", "-0.3"), 'pitch="coupling"'),
+        (("sweep", "xv15-uncoupled", "--speed", "50"), "--speed = 50: needs a unit"),
+        (("sweep", "xv15-uncoupled", "--speed", "50kg"), "--speed = 50kg: must be a speed"),
+        (("sweep", "xv15-uncoupled", "--speed", "400:50:5kt"), "must rise"),
+        (("sweep", "xv15-uncoupled", "--speed", "-5kt"), "must not be negative"),
+        (("sweep", "xv15-uncoupled", "--speed", "fast"), "must be a speed"),
+        (("sweep", "xv15-uncoupled"), "--speed"),
+        (
+            ("sweep", "xv15-uncoupled", "--speed", "50kt", "--pitch", "stiff"),
+            "'dynamic', 'coupling', 'rigid'",
+        ),
+        (
+            ("sweep", "xv15-uncoupled", "--speed", "50kt", "--locked", "wing"),
+            "'flap', 'lag', 'pitch', 'gimbal'",
+        ),
+        (("sweep", "xv15-uncoupled", "--speed", "50kt", "--plot", "damping.gif"), ".png, .pdf, .svg"),
+        (("sweep", "xv15-uncoupled", "--speed", "50kt", "--csv", "/"), "--csv = /: must be a file"),
+        (("sweep", "xv15-uncoupled", "--speed", "50kt", "--pitch-lag-coupling", "-0.3"), 'pitch="coupling"'),
         (("cases", "xv16"), "did you mean xv15?"),
         (("fly",), "fly"),
     ],
@@ -226,7 +234,7 @@ def test_an_unusable_input_is_told_without_a_traceback(arguments, told):
 
 def test_a_deck_with_several_faults_tells_them_all(tmp_path):
     deck = tmp_path / "wrong.toml"
-    deck.write_text('base = "xv15"\n[rotor]\nradius = "-1 ft"\nprecone = "2 kg"\n')
+    deck.write_text('base = "xv15-uncoupled"\n[rotor]\nradius = "-1 ft"\nprecone = "2 kg"\n')
     result = run("sweep", deck, "--speed", "50kt")
     assert result.exit_code == 2
     assert "rotor.radius" in result.stderr
@@ -235,7 +243,7 @@ def test_a_deck_with_several_faults_tells_them_all(tmp_path):
 
 @pytest.mark.parametrize("option", ["--csv", "--plot"])
 def test_an_output_that_cannot_be_written_is_one_message(tmp_path, option):
-    result = run("sweep", "xv15", "--speed", "50kt", option, tmp_path / "missing" / "out.png")
+    result = run("sweep", "xv15-uncoupled", "--speed", "50kt", option, tmp_path / "missing" / "out.png")
     assert result.exit_code == 1
     assert len(result.stderr.strip().splitlines()) == 1
     assert "cannot be written" in result.stderr
@@ -265,12 +273,12 @@ def test_a_file_behind_a_link_is_replaced_and_the_link_kept(tmp_path):
 def test_cases_are_listed_by_name_and_title():
     output = run("cases").stdout
     assert [line.split()[0] for line in output.splitlines()] == list(pp.list_cases())
-    assert pp.load_case("xv15").title in output
+    assert pp.load_case("xv15-uncoupled").title in output
 
 
 def test_a_case_tells_the_inputs_that_were_not_read_in_a_source():
-    output = run("cases", "xv15").stdout
-    case = pp.load_case("xv15")
+    output = run("cases", "xv15-uncoupled").stdout
+    case = pp.load_case("xv15-uncoupled")
     for path, number in case.sources.items():
         told = f"{path} = {number.written}" in output
         assert told == (number.status not in ("published", "derived"))
@@ -300,7 +308,7 @@ print([name for name in {slow} if name in sys.modules])
 
 def test_a_reader_that_leaves_early_is_no_error():
     command = f"{sys.executable} -c 'from proprotor.commands.main import main; main()'"
-    script = f"{command} sweep xv15 --speed 50:400:1kt | head -1"
+    script = f"{command} sweep xv15-uncoupled --speed 50:400:1kt | head -1"
     done = subprocess.run(["bash", "-c", script], capture_output=True, text=True)
     assert done.stdout.startswith("XV-15")
     assert "Traceback" not in done.stderr

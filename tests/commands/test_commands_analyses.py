@@ -36,7 +36,7 @@ def document(*arguments: object):
 
 def growth(speed, name="chord", **values):
     """Re s of a mode of the XV-15 at an airspeed in kt."""
-    modes = pp.load_case("xv15").vary(values).sweep(f"{speed!r} kt")
+    modes = pp.load_case("xv15-uncoupled").vary(values).sweep(f"{speed!r} kt")
     return float(modes.eigenvalue.sel(mode=name).values.real[0])
 
 
@@ -45,7 +45,7 @@ def growth(speed, name="chord", **values):
 
 @pytest.fixture(scope="module")
 def boundaries():
-    return document("flutter", "xv15", "--scan", SCAN, "--speed", "350 kt")
+    return document("flutter", "xv15-uncoupled", "--scan", SCAN, "--speed", "350 kt")
 
 
 def test_the_mode_is_neutral_at_the_flutter_speed(boundaries):
@@ -62,7 +62,7 @@ def test_boundaries_have_speed_frequency_mode_and_mechanism(boundaries):
     assert first["frequency (Hz)"] * 2 * np.pi == pytest.approx(
         first["frequency (per rev)"] * OMEGA, rel=1e-9
     )
-    modes = pp.load_case("xv15").sweep(f"{first['airspeed (kt)']!r} kt")
+    modes = pp.load_case("xv15-uncoupled").sweep(f"{first['airspeed (kt)']!r} kt")
     frequency = abs(modes.eigenvalue.sel(mode="chord").values.imag[0])
     assert first["frequency (Hz)"] * 2 * np.pi == pytest.approx(frequency, rel=1e-6)
     assert next(iter(first["mechanism"])) == "chord"
@@ -76,7 +76,7 @@ def test_the_margin_is_that_of_the_airspeed_given(boundaries):
     assert at["margin"] == pytest.approx(boundaries["flutter speed (kt)"] / 350 - 1)
     assert at["modes beyond the level"] == 0
     for speed, count in (("390 kt", 1), ("300 kt", None)):
-        again = document("flutter", "xv15", "--scan", SCAN, "--speed", speed)["at"]
+        again = document("flutter", "xv15-uncoupled", "--scan", SCAN, "--speed", speed)["at"]
         assert again["modes beyond the level"] == count, speed
         assert again["margin"] == pytest.approx(
             boundaries["flutter speed (kt)"] * KT / again["airspeed (m/s)"] - 1
@@ -85,7 +85,7 @@ def test_the_margin_is_that_of_the_airspeed_given(boundaries):
 
 def test_the_table_of_boundaries(boundaries, tmp_path):
     file = tmp_path / "boundaries.csv"
-    result = run("flutter", "xv15", "--scan", SCAN, "--speed", "350 kt", "--csv", file)
+    result = run("flutter", "xv15-uncoupled", "--scan", SCAN, "--speed", "350 kt", "--csv", file)
     assert result.exit_code == 0
     speed = boundaries["flutter speed (kt)"]
     assert f"Flutter speed {speed:.2f} kt (chord, flutter)." in result.stdout
@@ -98,20 +98,29 @@ def test_the_table_of_boundaries(boundaries, tmp_path):
 
 def test_flutter_in_another_unit_at_a_level_with_settings():
     lower = document(
-        "flutter", "xv15", "--scan", "150:210:5 m/s", "--level", "0.5 %", "--set", "rotor.precone=2 deg"
+        "flutter",
+        "xv15-uncoupled",
+        "--scan",
+        "150:210:5 m/s",
+        "--level",
+        "0.5 %",
+        "--set",
+        "rotor.precone=2 deg",
     )
     assert lower["level (damping ratio)"] == 0.005
     assert lower["set"] == {"rotor.precone": "2 deg"}
     chord = next(b for b in lower["boundaries"] if b["mode"] == "chord")
-    modes = pp.load_case("xv15", {"rotor.precone": "2 deg"}).sweep(chord["airspeed (m/s)"] * np.ones(1))
+    modes = pp.load_case("xv15-uncoupled", {"rotor.precone": "2 deg"}).sweep(
+        chord["airspeed (m/s)"] * np.ones(1)
+    )
     assert float(modes.damping_ratio.sel(mode="chord").values[0]) == pytest.approx(0.005, abs=1e-8)
 
 
 def test_nothing_that_flutters_is_a_result_and_nothing_that_works_a_failure():
-    stable = run("flutter", "xv15", "--scan", "200:260:20kt")
+    stable = run("flutter", "xv15-uncoupled", "--scan", "200:260:20kt")
     assert stable.exit_code == 0
     assert "No mode becomes unstable between 200 and 260 kt." in stable.stdout
-    found = document("flutter", "xv15", "--scan", "200:260:20kt")
+    found = document("flutter", "xv15-uncoupled", "--scan", "200:260:20kt")
     assert found["flutter speed (kt)"] is None
     least, mode, at = (
         found[name]
@@ -123,9 +132,9 @@ def test_nothing_that_flutters_is_a_result_and_nothing_that_works_a_failure():
     )
     told = f"The least damping there is {least:.2g} % of critical: {mode} at {at:.4g} kt."
     assert told in " ".join(stable.stdout.split())
-    damping = pp.load_case("xv15").sweep("200:260:20kt").damping_ratio
+    damping = pp.load_case("xv15-uncoupled").sweep("200:260:20kt").damping_ratio
     assert least == pytest.approx(100 * float(damping.min()), rel=1e-9)
-    failed = run("flutter", "xv15", "--scan", "0:0.1:0.1kt")
+    failed = run("flutter", "xv15-uncoupled", "--scan", "0:0.1:0.1kt")
     assert failed.exit_code == 1
     assert "No airspeed could be analysed." in failed.stdout
 
@@ -134,7 +143,9 @@ def test_nothing_that_flutters_is_a_result_and_nothing_that_works_a_failure():
 
 
 def test_the_flutter_speed_moves_as_told():
-    found = document("sensitivity", "xv15", "--scan", SCAN, "--wrt", "rotor.precone", "--wrt", CHORD)
+    found = document(
+        "sensitivity", "xv15-uncoupled", "--scan", SCAN, "--wrt", "rotor.precone", "--wrt", CHORD
+    )
     by_input = {record["input"]: record for record in found["sensitivities"]}
     speed = found["value (kt)"]
     precone, chord = by_input["rotor.precone"], by_input[CHORD]
@@ -142,7 +153,7 @@ def test_the_flutter_speed_moves_as_told():
     for text, record, step in (("rotor.precone={} deg", precone, 0.01), (f"{CHORD}={{}}/rev", chord, 0.001)):
         at = float(record["value"].removesuffix("deg").removesuffix("/rev"))
         ends = [
-            document("flutter", "xv15", "--scan", SCAN, "--set", text.format(at + side * step))[
+            document("flutter", "xv15-uncoupled", "--scan", SCAN, "--set", text.format(at + side * step))[
                 "flutter speed (kt)"
             ]
             for side in (-1, 1)
@@ -150,12 +161,12 @@ def test_the_flutter_speed_moves_as_told():
         slope = record["derivative (kt per unit)"]
         assert (ends[1] - ends[0]) / (2 * step) == pytest.approx(slope, rel=1e-4)
         assert record["for +1 % (kt)"] == pytest.approx(0.01 * at * slope, rel=1e-9)
-    assert speed == pytest.approx(pp.load_case("xv15").flutter_point().speed / KT, rel=1e-9)
+    assert speed == pytest.approx(pp.load_case("xv15-uncoupled").flutter_point().speed / KT, rel=1e-9)
 
 
 def test_the_damping_of_a_mode_moves_as_told(tmp_path):
     file = tmp_path / "damping.csv"
-    arguments = ("sensitivity", "xv15", "--of", "damping", "--speed", "300 kt", "--mode", "chord")
+    arguments = ("sensitivity", "xv15-uncoupled", "--of", "damping", "--speed", "300 kt", "--mode", "chord")
     found = document(*arguments)
     result = run(*arguments, "--csv", file, "--top", 3)
     assert result.exit_code == 0
@@ -172,7 +183,7 @@ def test_the_damping_of_a_mode_moves_as_told(tmp_path):
     ends = [
         100
         * float(
-            pp.load_case("xv15", {record["input"]: f"{x} %"})
+            pp.load_case("xv15-uncoupled", {record["input"]: f"{x} %"})
             .sweep("300 kt")
             .damping_ratio.sel(mode="chord")[0]
         )
@@ -184,8 +195,10 @@ def test_the_damping_of_a_mode_moves_as_told(tmp_path):
 
 
 def test_without_a_mode_the_least_damped_is_told():
-    found = document("sensitivity", "xv15", "--of", "damping", "--speed", "300 kt", "--wrt", "rotor.precone")
-    modes = pp.load_case("xv15").sweep("300 kt")
+    found = document(
+        "sensitivity", "xv15-uncoupled", "--of", "damping", "--speed", "300 kt", "--wrt", "rotor.precone"
+    )
+    modes = pp.load_case("xv15-uncoupled").sweep("300 kt")
     assert found["mode"] == str(modes.mode.values[np.nanargmin(modes.damping_ratio.values[0])])
 
 
@@ -194,7 +207,7 @@ def test_without_a_mode_the_least_damped_is_told():
 
 def test_attribution_sums_to_nothing_and_is_sorted(tmp_path):
     file = tmp_path / "chord.csv"
-    arguments = ("attribution", "xv15", "--speed", "390 kt")
+    arguments = ("attribution", "xv15-uncoupled", "--speed", "390 kt")
     found = document(*arguments, "--mode", "chord")
     assert document(*arguments)["mode"] == "chord"  # the only one that is unstable there
     for column in ("growth (1/s)", "frequency (rad/s)", "damping (% of critical)"):
@@ -212,21 +225,21 @@ def test_attribution_sums_to_nothing_and_is_sorted(tmp_path):
 
 def test_damping_of_an_origin_is_what_growing_it_does():
     """The support's damping is an origin that can be grown by itself."""
-    found = document("attribution", "xv15", "--speed", "380 kt", "--mode", "chord")
+    found = document("attribution", "xv15-uncoupled", "--speed", "380 kt", "--mode", "chord")
     told = next(o for o in found["origins"] if o["origin"] == "support damping")["damping (% of critical)"]
     names = ("beam", "chord", "torsion")
     deck = {"beam": 1, "chord": 2, "torsion": 1}
     ends = []
     for share in (0.99, 1.01):
         values = {f"support.modes[{name}].damping_ratio": f"{deck[name] * share} %" for name in names}
-        modes = pp.load_case("xv15", values).sweep("380 kt")
+        modes = pp.load_case("xv15-uncoupled", values).sweep("380 kt")
         ends.append(100 * float(modes.damping_ratio.sel(mode="chord")[0]))
     assert (ends[1] - ends[0]) / 0.02 == pytest.approx(told, rel=1e-3)
 
 
 # map ----------------------------------------------------------------------------------------------------------------
 
-MAP = ("map", "xv15", "--x", "airspeed=360:390:10kt", "--y", "rotor.precone=2:3:0.5 deg")
+MAP = ("map", "xv15-uncoupled", "--x", "airspeed=360:390:10kt", "--y", "rotor.precone=2:3:0.5 deg")
 
 
 def test_a_map_says_where_it_is_stable(tmp_path):
@@ -235,14 +248,14 @@ def test_a_map_says_where_it_is_stable(tmp_path):
     assert (found["x"], found["y"]) == ("airspeed (kt)", "rotor.precone (deg)")
     assert [p["airspeed (kt)"] for p in found["points"][:4]] == [360, 370, 380, 390]
     for point in found["points"]:
-        modes = pp.load_case("xv15", {"rotor.precone": f"{point['rotor.precone (deg)']} deg"}).sweep(
-            f"{point['airspeed (kt)']} kt"
-        )
+        modes = pp.load_case(
+            "xv15-uncoupled", {"rotor.precone": f"{point['rotor.precone (deg)']} deg"}
+        ).sweep(f"{point['airspeed (kt)']} kt")
         largest = np.nanmax(modes.eigenvalue.values.real)
         assert point["largest growth (1/s)"] == pytest.approx(largest, rel=1e-6, abs=1e-8)
     for line in found["boundary"]:
         for speed, precone in line[:2]:
-            case = pp.load_case("xv15", {"rotor.precone": f"{precone!r} deg"})
+            case = pp.load_case("xv15-uncoupled", {"rotor.precone": f"{precone!r} deg"})
             assert abs(np.nanmax(case.sweep(f"{speed!r} kt").eigenvalue.values.real)) < 1e-6
     result = run(*MAP, "--csv", file)
     assert result.exit_code == 0
@@ -264,8 +277,8 @@ def test_a_map_says_where_it_is_stable(tmp_path):
     "arguments",
     [
         (*MAP,),
-        ("sensitivity", "xv15", "--scan", SCAN, "--top", 8),
-        ("attribution", "xv15", "--speed", "380 kt"),
+        ("sensitivity", "xv15-uncoupled", "--scan", SCAN, "--top", 8),
+        ("attribution", "xv15-uncoupled", "--speed", "380 kt"),
     ],
 )
 def test_figures_are_written_and_not_blank(tmp_path, arguments):
@@ -287,49 +300,58 @@ def test_figures_are_written_and_not_blank(tmp_path, arguments):
     ("arguments", "told"),
     [
         (("flutter", "xv16"), "did you mean xv15?"),
-        (("flutter", "xv15", "--scan", "300"), "--scan = 300: needs a unit"),
-        (("flutter", "xv15", "--speed", "300:400:10kt"), "--speed = 300:400:10kt: must be one speed"),
-        (("flutter", "xv15", "--speed", "0 kt"), "--speed = 0 kt: must be above zero"),
+        (("flutter", "xv15-uncoupled", "--scan", "300"), "--scan = 300: needs a unit"),
         (
-            ("flutter", "xv15", "--level", "3"),
+            ("flutter", "xv15-uncoupled", "--speed", "300:400:10kt"),
+            "--speed = 300:400:10kt: must be one speed",
+        ),
+        (("flutter", "xv15-uncoupled", "--speed", "0 kt"), "--speed = 0 kt: must be above zero"),
+        (
+            ("flutter", "xv15-uncoupled", "--level", "3"),
             '--level = 3: must lie between -1 and 1; write three percent as "3 %"',
         ),
-        (("flutter", "xv15", "--level", "3 ft"), "--level = 3 ft: must be a plain number"),
-        (("flutter", "xv15", "--csv", "/"), "--csv = /: must be a file"),
-        (("sensitivity", "xv15", "--wrt", "rotor.precon"), "did you mean rotor.precone?"),
-        (("sensitivity", "xv15", "--of", "damping"), "--speed: must be given"),
-        (("sensitivity", "xv15", "--speed", "300 kt"), "--speed = 300 kt: goes with --of damping"),
+        (("flutter", "xv15-uncoupled", "--level", "3 ft"), "--level = 3 ft: must be a plain number"),
+        (("flutter", "xv15-uncoupled", "--csv", "/"), "--csv = /: must be a file"),
+        (("sensitivity", "xv15-uncoupled", "--wrt", "rotor.precon"), "did you mean rotor.precone?"),
+        (("sensitivity", "xv15-uncoupled", "--of", "damping"), "--speed: must be given"),
+        (("sensitivity", "xv15-uncoupled", "--speed", "300 kt"), "--speed = 300 kt: goes with --of damping"),
         (
-            ("sensitivity", "xv15", "--of", "damping", "--speed", "300 kt", "--scan", SCAN),
+            ("sensitivity", "xv15-uncoupled", "--of", "damping", "--speed", "300 kt", "--scan", SCAN),
             "--scan = 340:400:10kt",
         ),
-        (("sensitivity", "xv15", "--scan", "200:260:20kt"), "nothing becomes unstable"),
-        (("sensitivity", "xv15", "--plot", "tornado.gif"), ".png, .pdf, .svg"),
-        (("attribution", "xv15", "--speed", "300 kt", "--mode", "cord"), "did you mean chord?"),
-        (("attribution", "xv15", "--speed", "0 kt"), "airspeed"),
-        (("attribution", "xv15"), "--speed"),
+        (("sensitivity", "xv15-uncoupled", "--scan", "200:260:20kt"), "nothing becomes unstable"),
+        (("sensitivity", "xv15-uncoupled", "--plot", "tornado.gif"), ".png, .pdf, .svg"),
+        (("attribution", "xv15-uncoupled", "--speed", "300 kt", "--mode", "cord"), "did you mean chord?"),
+        (("attribution", "xv15-uncoupled", "--speed", "0 kt"), "airspeed"),
+        (("attribution", "xv15-uncoupled"), "--speed"),
         (
-            ("map", "xv15", "--x", "airspeed=1:2:1kt", "--y", "rotor.precon=1:2:1 deg"),
+            ("map", "xv15-uncoupled", "--x", "airspeed=1:2:1kt", "--y", "rotor.precon=1:2:1 deg"),
             "did you mean rotor.precone?",
         ),
-        (("map", "xv15", "--x", "airspeed=1:2:1kt", "--y", "rotor.precone=1:2:1 kg"), "must be an angle"),
-        (("map", "xv15", "--x", "airspeed=1:2:1kt", "--y", "rotor.precone=1 deg"), "must be a range"),
         (
-            ("map", "xv15", "--x", "airspeed=1:2:1kt", "--y", "rotor.precone"),
+            ("map", "xv15-uncoupled", "--x", "airspeed=1:2:1kt", "--y", "rotor.precone=1:2:1 kg"),
+            "must be an angle",
+        ),
+        (
+            ("map", "xv15-uncoupled", "--x", "airspeed=1:2:1kt", "--y", "rotor.precone=1 deg"),
+            "must be a range",
+        ),
+        (
+            ("map", "xv15-uncoupled", "--x", "airspeed=1:2:1kt", "--y", "rotor.precone"),
             "must be an input and its values",
         ),
         (
-            ("map", "xv15", "--x", "airspeed=1:2:1kt", "--y", "airspeed=1:2:1kt"),
+            ("map", "xv15-uncoupled", "--x", "airspeed=1:2:1kt", "--y", "airspeed=1:2:1kt"),
             "must not be the input of --x",
         ),
         (
-            ("map", "xv15", "--x", "rotor.precone=1:2:1 deg", "--y", f"{CHORD}=5:6:1 Hz"),
+            ("map", "xv15-uncoupled", "--x", "rotor.precone=1:2:1 deg", "--y", f"{CHORD}=5:6:1 Hz"),
             "--speed: must be given",
         ),
         ((*MAP, "--speed", "300 kt"), "is one of the axes already"),
         (("cases", "--set", "rotor.precone=1 deg"), "needs a case"),
         (
-            ("study", "xv15", "--vary", "rotor.precone=1 deg", "--speed", "9 kt", "--set", "x=1"),
+            ("study", "xv15-uncoupled", "--vary", "rotor.precone=1 deg", "--speed", "9 kt", "--set", "x=1"),
             "unknown field",
         ),
     ],
@@ -347,7 +369,7 @@ def test_an_unusable_input_is_told_without_a_traceback(arguments, told):
 def test_cases_as_json():
     listed = json.loads(run("cases", "--json").stdout)
     assert [entry["name"] for entry in listed] == list(pp.list_cases())
-    found = json.loads(run("cases", "xv15", "--set", "rotor.precone=1 deg", "--json").stdout)
+    found = json.loads(run("cases", "xv15-uncoupled", "--set", "rotor.precone=1 deg", "--json").stdout)
     precone = found["inputs"]["rotor.precone"]
     assert (precone["written"], precone["unit"], precone["status"]) == ("1 deg", "rad", "assumed")
     assert precone["si"] == pytest.approx(math.radians(1))
@@ -355,8 +377,8 @@ def test_cases_as_json():
 
 
 def test_sweep_takes_settings():
-    found = document("sweep", "xv15", "--speed", "300 kt", "--set", "rotor.precone=1 deg")
-    modes = pp.load_case("xv15").vary({"rotor.precone": math.radians(1)}).sweep("300 kt")
+    found = document("sweep", "xv15-uncoupled", "--speed", "300 kt", "--set", "rotor.precone=1 deg")
+    modes = pp.load_case("xv15-uncoupled").vary({"rotor.precone": math.radians(1)}).sweep("300 kt")
     told = {p["mode"]: p["damping (% of critical)"] for p in found["points"]}
     for mode in modes.mode.values.tolist():
         assert told[mode] == pytest.approx(
@@ -365,17 +387,28 @@ def test_sweep_takes_settings():
     assert "(rotor.precone = 1 deg)" in found["title"]
     assert (
         "(rotor.precone = 1 deg)"
-        in run("sweep", "xv15", "--speed", "300 kt", "--set", "rotor.precone=1 deg").stdout.splitlines()[0]
+        in run(
+            "sweep", "xv15-uncoupled", "--speed", "300 kt", "--set", "rotor.precone=1 deg"
+        ).stdout.splitlines()[0]
     )
 
 
 def test_a_study_as_json(tmp_path):
-    arguments = ("study", "xv15", "--vary", "rotor.precone=1 deg, 2 deg", "--speed", "200 kt", "--workers", 1)
+    arguments = (
+        "study",
+        "xv15-uncoupled",
+        "--vary",
+        "rotor.precone=1 deg, 2 deg",
+        "--speed",
+        "200 kt",
+        "--workers",
+        1,
+    )
     found = document(*arguments, "--set", "rotor.control_stiffness=9000 ft*lbf/rad")
     assert (found["points"], found["failed"]) == (2, 0)
     lowest = [
         float(
-            pp.load_case("xv15", {"rotor.control_stiffness": "9000 ft*lbf/rad", "rotor.precone": f"{x} deg"})
+            pp.load_case("xv15-uncoupled", {"rotor.control_stiffness": "9000 ft*lbf/rad", "rotor.precone": f"{x} deg"})
             .sweep("200 kt").damping_ratio.min()
         )
         for x in (1, 2)

@@ -61,7 +61,7 @@ def numbers(case):
     ],
 )
 def test_a_number_is_set_and_nothing_else(path, text, expected):
-    case, deck = load_case("xv15", {path: text}), load_case("xv15")
+    case, deck = load_case("xv15-uncoupled", {path: text}), load_case("xv15-uncoupled")
     named = path.replace("[0]", "[beam]")
     assert case.sources[named].si == pytest.approx(expected, rel=1e-12)
     assert case.sources[named].status == "assumed"
@@ -71,20 +71,20 @@ def test_a_number_is_set_and_nothing_else(path, text, expected):
 
 def test_what_is_no_number_is_set():
     no_warnings = {"case.warnings": "[]", "rotor.gimbal_stiffness": "0 N*m/rad"}  # a hub spring is told of
-    case = load_case("xv15", {"rotor.propeller_moment": "false", "case.title": "3", **no_warnings})
+    case = load_case("xv15-uncoupled", {"rotor.propeller_moment": "false", "case.title": "3", **no_warnings})
     assert (case.rotor.propeller_moment, case.title, case.warnings) == (False, "3", ())
-    case = load_case("xv15", {"operation.trim": '{ collective = "40 deg" }'})
+    case = load_case("xv15-uncoupled", {"operation.trim": '{ collective = "40 deg" }'})
     assert case.operation.trim == {"collective": pytest.approx(40 * DEG)}
-    again = load_case("xv15", {"operation.trim.power_coefficient": "0.01"})
+    again = load_case("xv15-uncoupled", {"operation.trim.power_coefficient": "0.01"})
     assert again.operation.trim == {"power_coefficient": 0.01}
     twist = '{ r_over_R = [0, 1], value = [20, 0], unit = "deg" }'
-    r, angle = load_case("xv15", {"rotor.twist": twist}).rotor.twist
+    r, angle = load_case("xv15-uncoupled", {"rotor.twist": twist}).rotor.twist
     np.testing.assert_allclose(r, [0, 3.81])
     np.testing.assert_allclose(angle, [20 * DEG, 0])
 
 
 def test_an_alternative_gives_way():
-    case = load_case("xv15", {"rotor.lock_number": "3.6", "rotor.flap_stiffness": "1e5 N*m/rad"})
+    case = load_case("xv15-uncoupled", {"rotor.lock_number": "3.6", "rotor.flap_stiffness": "1e5 N*m/rad"})
     assert case.sources["rotor.chord"].status == "derived"
     assert "rotor.flap_frequency" not in case.sources
     assert case.rotor.flap_stiffness == 1e5
@@ -92,7 +92,7 @@ def test_an_alternative_gives_way():
 
 def test_a_trim_target_gives_way_to_another(tmp_path):
     (tmp_path / "a.toml").write_text(
-        'base = "xv15"\n[case]\nname = "a"\n[operation]\ntrim = { collective = "40 deg" }\n'
+        'base = "xv15-uncoupled"\n[case]\nname = "a"\n[operation]\ntrim = { collective = "40 deg" }\n'
     )
     text = 'base = "a.toml"\n[case]\nname = "b"\n[operation.trim]\nthrust_coefficient = 0.004\n'
     (tmp_path / "b.toml").write_text(text)
@@ -102,7 +102,7 @@ def test_a_trim_target_gives_way_to_another(tmp_path):
 
 
 def test_another_kind_of_support_is_set():
-    assert load_case("xv15", {"support.kind": "rigid"}).support.names == ()
+    assert load_case("xv15-uncoupled", {"support.kind": "rigid"}).support.names == ()
     pivot = {
         "kind": "pivot",
         "includes_rotor": "true",
@@ -112,12 +112,12 @@ def test_another_kind_of_support_is_set():
         "pitch_stiffness": "1e6 N*m/rad",
         "yaw_stiffness": "2e6 N*m/rad",
     }
-    case = load_case("xv15", {f"support.{name}": value for name, value in pivot.items()})
+    case = load_case("xv15-uncoupled", {f"support.{name}": value for name, value in pivot.items()})
     np.testing.assert_allclose(np.diag(case.support.stiffness), [1e6, 2e6])
 
 
 def test_the_title_tells_what_was_set_and_tables_stay_as_they_are():
-    tables = read_tables("xv15")
+    tables = read_tables("xv15-uncoupled")
     before = json.dumps(tables)
     changed = with_settings(tables, {"rotor.precone": "1.5 deg", "support.modes[beam].x": "0.9"})
     assert json.dumps(tables) == before
@@ -165,7 +165,7 @@ REFUSED = [
 
 @pytest.mark.parametrize(("settings", "told"), REFUSED, ids=[told[:40] for _, told in REFUSED])
 def test_a_setting_that_cannot_be_used_is_told_in_one_message(settings, told):
-    result = run("cases", "xv15", *(f"--set={text}" for text in settings))
+    result = run("cases", "xv15-uncoupled", *(f"--set={text}" for text in settings))
     assert result.exit_code == 2
     assert result.stdout == ""
     first, *others = result.stderr.strip().removeprefix("Error: ").splitlines()
@@ -299,7 +299,7 @@ def test_bundled_decks_obey_the_schema(schema, name):
     ],
 )
 def test_the_schema_refuses_what_the_reader_refuses(schema, section, name, value):
-    tables = read_tables("xv15")
+    tables = read_tables("xv15-uncoupled")
     if value is None:
         del tables[section][name]
     else:
@@ -310,7 +310,7 @@ def test_the_schema_refuses_what_the_reader_refuses(schema, section, name, value
 
 
 def test_a_deck_with_a_base_may_leave_out_everything(schema):
-    variant = {"base": "xv15", "case": {"name": "b"}, "rotor": {"precone": "1 deg"}}
+    variant = {"base": "xv15-uncoupled", "case": {"name": "b"}, "rotor": {"precone": "1 deg"}}
     assert not list(schema.iter_errors(variant))
     del variant["base"]
     assert list(schema.iter_errors(variant))
@@ -339,7 +339,7 @@ def test_files_of_a_template_start_from_its_folder(tmp_path):
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
     table = '[rotor.airfoil]\ntable = { value = "x.c81", status = "assumed", source = "made up" }\n'
-    (tmp_path / "a" / "one.toml").write_text(f'base = "xv15"\n[case]\nname = "one"\n{table}')
+    (tmp_path / "a" / "one.toml").write_text(f'base = "xv15-uncoupled"\n[case]\nname = "one"\n{table}')
     tables = read_tables(tmp_path / "a" / "one.toml")
     file = tmp_path / "b" / "two.toml"
     file.write_text(deck_text(tables, file))
@@ -347,7 +347,7 @@ def test_files_of_a_template_start_from_its_folder(tmp_path):
     assert read is not None and Path(read.si).resolve() == tmp_path / "a" / "x.c81"
 
 
-@pytest.mark.parametrize("name", ["xv15", "xv15-wing"])
+@pytest.mark.parametrize("name", ["xv15-uncoupled", "xv15-wing"])
 def test_every_field_that_is_left_out_has_an_example_that_can_be_read(tmp_path, name):
     tables, count = read_tables(name), 0
     kind = tables["support"]["kind"]
@@ -416,7 +416,7 @@ def test_a_case_is_named_after_its_file(file, name):
 
 
 def test_text_of_any_kind_comes_back(tmp_path):
-    tables = read_tables("xv15")
+    tables = read_tables("xv15-uncoupled")
     tables["case"]["description"] = 'quotes " and \\ and \n lines, tab\t, é, 雪, \x7f'
     file = tmp_path / "t.toml"
     file.write_text(deck_text(tables, file), encoding="utf-8")
@@ -442,8 +442,8 @@ print([name for name in {slow} if name in sys.modules])
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
-        (["sweep", "xv15-"], {"xv15-wing", "xv15-mass-distribution"}),
-        (["sweep", "xv15", "--set", "rotor.prec"], {"rotor.precone="}),
+        (["sweep", "xv15-"], {"xv15-wing", "xv15-mass-distribution", "xv15-uncoupled"}),
+        (["sweep", "xv15-uncoupled", "--set", "rotor.prec"], {"rotor.precone="}),
         (["describe", "rotor.airfoil.z"], {"rotor.airfoil.zero_lift_angle"}),
         (["fl"], {"flutter"}),
     ],

@@ -25,7 +25,7 @@ from proprotor.stability.sweep import sweep
 from proprotor.study.uncertainty import share_below
 from proprotor.support.modal_reduction import lowest_modes
 
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 PRECONE = "rotor.precone"
 FLUTTER = xr.Dataset(
     {"flutter_speed": ("design", [np.nan, np.nan]), "flutter_note": ("design", ["no trim", "no trim"])}
@@ -84,7 +84,7 @@ def test_a_number_of_a_deck_is_varied_by_numbers():
 
 def test_a_case_without_a_deck_has_no_numbers_to_vary():
     made = Case(**{name: getattr(CASE, name) for name in ("name", "rotor", "operation", "support")})
-    told(lambda: made.vary({PRECONE: 0.02}), "case", "xv15", "must be made from a deck")
+    told(lambda: made.vary({PRECONE: 0.02}), "case", "xv15-uncoupled", "must be made from a deck")
 
 
 def test_modes_are_followed_along_a_list_of_speeds():
@@ -98,7 +98,7 @@ def test_a_boundary_in_an_input_has_one_airspeed():
 
 def test_boundaries_of_many_designs_are_not_one_line():
     many = CASE.vary({PRECONE: [0.02, 0.03]})
-    told(lambda: flutter.boundaries(many, [100.0, 120.0]), "case", "xv15", "must be one design")
+    told(lambda: flutter.boundaries(many, [100.0, 120.0]), "case", "xv15-uncoupled", "must be one design")
 
 
 def test_a_line_that_came_without_its_models_has_none():
@@ -231,7 +231,7 @@ def test_a_folder_is_no_file_to_write(tmp_path):
 )
 def test_what_does_not_go_together_on_a_command_line(tmp_path, monkeypatch, arguments, parts):
     monkeypatch.chdir(tmp_path)
-    own, text = Path("own.toml"), 'base = "xv15"\n[case]\nname = "own"\n'
+    own, text = Path("own.toml"), 'base = "xv15-uncoupled"\n[case]\nname = "own"\n'
     own.write_text(text)
     done = CliRunner().invoke(main, arguments)
     assert done.exit_code == 2 and not done.stdout

@@ -21,7 +21,7 @@ SLUG = LBF / FT
 RPM = np.pi / 30
 
 
-def altered(tmp_path, text: str, base: str = "xv15") -> Case:
+def altered(tmp_path, text: str, base: str = "xv15-uncoupled") -> Case:
     path = tmp_path / "deck.toml"
     path.write_text(f'base = "{base}"\n[case]\nname = "altered"\n{text}')
     return load_case(path)
@@ -36,7 +36,7 @@ def test_bundled_cases_load(name):
 
 
 def test_xv15_in_si():
-    case = load_case("xv15")
+    case = load_case("xv15-uncoupled")
     rotor, operation = case.rotor, case.operation
     assert rotor.n_blades == 3
     assert rotor.radius == pytest.approx(12.5 * FT)
@@ -54,7 +54,7 @@ def test_xv15_in_si():
 
 
 def test_xv15_gimbal_frequency_is_the_published_one():
-    rotor, operation = (case := load_case("xv15")).rotor, case.operation
+    rotor, operation = (case := load_case("xv15-uncoupled")).rotor, case.operation
     squared = 1 + rotor.gimbal_stiffness / (
         rotor.n_blades / 2 * rotor.blade_inertia * operation.rotor_speed**2
     )
@@ -62,7 +62,7 @@ def test_xv15_gimbal_frequency_is_the_published_one():
 
 
 def test_xv15_support():
-    support = load_case("xv15").support
+    support = load_case("xv15-uncoupled").support
     omega = np.array([0.42, 0.70, 1.30]) * 458 * RPM
     mass = np.array([59 * SLUG, 59 * SLUG, 1000 * SLUG * FT**2])
     slope, mast = 1.5 / (1.333 * 12.5 * FT), 0.342 * 12.5 * FT
@@ -94,7 +94,7 @@ def test_the_mass_distribution_gives_the_published_integrals():
 
 
 def test_the_mass_distribution_alters_nothing_else():
-    a, b = load_case("xv15").sources, load_case("xv15-mass-distribution").sources
+    a, b = load_case("xv15-uncoupled").sources, load_case("xv15-mass-distribution").sources
     assert {field for field in a.keys() & b.keys() if a[field] != b[field]} == {
         "rotor.flap_stiffness",
         "rotor.lag_stiffness",
@@ -202,8 +202,8 @@ def test_a_blade_that_cannot_be_is_refused_in_one_line(tmp_path, text):
 
 
 def test_a_case_and_its_error_can_be_sent_to_another_process(tmp_path):
-    case = pickle.loads(pickle.dumps(load_case("xv15")))
-    assert case.sources == load_case("xv15").sources
+    case = pickle.loads(pickle.dumps(load_case("xv15-uncoupled")))
+    assert case.sources == load_case("xv15-uncoupled").sources
     error = pickle.loads(
         pickle.dumps(InputError("a.b", 3, "must be more", [InputError("c", None, "is missing")]))
     )

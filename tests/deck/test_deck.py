@@ -20,7 +20,7 @@ from proprotor.errors import InputError
 from proprotor.units import as_si, speeds, to_si, unit_registry
 
 DECKS = Path(sys.modules["proprotor"].__file__).parent / "deck" / "decks"
-XV15 = (DECKS / "xv15.toml").read_text(encoding="utf-8")
+XV15 = (DECKS / "xv15-uncoupled.toml").read_text(encoding="utf-8")
 
 US_DECK = """
 [case]
@@ -467,7 +467,7 @@ def test_no_number_of_a_bundled_deck_stands_outside_a_table():
 
 
 def test_xv15_chord_is_that_of_its_lock_number():
-    deck = dict(si_values(validate(read_tables("xv15"))))
+    deck = dict(si_values(validate(read_tables("xv15-uncoupled"))))
     slope, density = deck["rotor.airfoil.lift_slope"].si, deck["operation.density"].si
     chord, radius, inertia = (deck[f"rotor.{name}"].si for name in ("chord", "radius", "blade_inertia"))
     assert density * slope * chord * radius**4 / inertia == pytest.approx(3.83, rel=1e-4)
@@ -475,7 +475,7 @@ def test_xv15_chord_is_that_of_its_lock_number():
 
 def test_a_deck_alters_another(tmp_path):
     text = """
-    base = "xv15"
+    base = "xv15-uncoupled"
     [case]
     name = "stiffer"
     [rotor]
@@ -486,7 +486,10 @@ def test_a_deck_alters_another(tmp_path):
     [operation]
     trim = { collective = "30 deg" }
     """
-    base, deck = dict(si_values(validate(read_tables("xv15")))), dict(si_values(read(tmp_path, text)))
+    base, deck = (
+        dict(si_values(validate(read_tables("xv15-uncoupled")))),
+        dict(si_values(read(tmp_path, text))),
+    )
     different = {field for field in base.keys() | deck.keys() if base.get(field) != deck.get(field)}
     assert different == {
         "rotor.control_stiffness",
@@ -507,7 +510,7 @@ def test_a_table_stands_in_for_an_airfoil_and_the_other_way_round(tmp_path):
     folder = tmp_path / "folder"
     folder.mkdir()
     table = '[rotor.airfoil]\ntable = { value = "a.c81", status = "assumed", source = "made up" }\n'
-    (folder / "tabulated.toml").write_text(f'base = "xv15"\n[case]\nname = "tabulated"\n{table}')
+    (folder / "tabulated.toml").write_text(f'base = "xv15-uncoupled"\n[case]\nname = "tabulated"\n{table}')
     deck = dict(si_values(read(folder, (folder / "tabulated.toml").read_text())))
     airfoil = {field: datum for field, datum in deck.items() if field.startswith("rotor.airfoil")}
     assert airfoil == {"rotor.airfoil.table": Datum("a.c81", str(folder / "a.c81"), "", "assumed", "made up")}
@@ -528,7 +531,7 @@ def test_a_table_stands_in_for_an_airfoil_and_the_other_way_round(tmp_path):
         ('base = "folder/../deck.toml"', "base = folder/../deck.toml: must not lead back to the deck itself"),
         ("base = 3", "base = 3: must be the name or path of a deck"),
         ('base = "xv16"', "deck = xv16: unknown deck 'xv16'; did you mean xv15?"),
-        ('base = "xv15"', "case.name: is missing"),
+        ('base = "xv15-uncoupled"', "case.name: is missing"),
     ],
 )
 def test_a_base_that_cannot_be_used(tmp_path, text, line):

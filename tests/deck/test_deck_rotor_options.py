@@ -51,7 +51,7 @@ TABULATED = {"structure": "tabulated", "frequencies": TABLE}
 def deck(tmp_path):
     def written(*sections: str):
         path = tmp_path / "deck.toml"
-        path.write_text('base = "xv15"\n[case]\nname = "my"\n' + "".join(sections))
+        path.write_text('base = "xv15-uncoupled"\n[case]\nname = "my"\n' + "".join(sections))
         return path
 
     return written
@@ -74,7 +74,7 @@ def same(one, other):
 )
 def test_a_deck_gives_what_the_options_give(deck, sections, options):
     speeds = [60.0, 120.0, 180.0]
-    case, plain = pp.load_case(deck(*sections)), pp.load_case("xv15")
+    case, plain = pp.load_case(deck(*sections)), pp.load_case("xv15-uncoupled")
     same(case.linearize(speeds), plain.linearize(speeds, **options))
     found, expected = case.sweep(speeds), plain.sweep(speeds, **options)
     np.testing.assert_array_equal(found.eigenvalue, expected.eigenvalue)
@@ -120,12 +120,12 @@ def test_slopes_of_the_table_reach_a_complex_step(flap):
 def test_an_option_wins(deck, sections, options):
     same(
         pp.load_case(deck(sections)).linearize(150.0, **options),
-        pp.load_case("xv15").linearize(150.0, **options),
+        pp.load_case("xv15-uncoupled").linearize(150.0, **options),
     )
 
 
 def test_commands_take_them_too(deck):
-    path, plain = deck(FREQUENCIES, DRIVE_TRAIN), pp.load_case("xv15")
+    path, plain = deck(FREQUENCIES, DRIVE_TRAIN), pp.load_case("xv15-uncoupled")
 
     def points(*more: str):
         result = CliRunner().invoke(main, ["sweep", str(path), "--speed", "200 kt", "--json", *more])
@@ -146,7 +146,7 @@ def test_commands_take_them_too(deck):
 
 def test_inputs_of_the_drive_train_vary(deck):
     """Many designs at once, and derivatives by a complex step, as of any other input."""
-    case, plain = pp.load_case(deck(DRIVE_TRAIN)), pp.load_case("xv15")
+    case, plain = pp.load_case(deck(DRIVE_TRAIN)), pp.load_case("xv15-uncoupled")
     paths = [f"drive_train.{entry.name}" for entry in fields(pp.DriveTrain)]
     assert set(paths) <= set(pp.design_inputs(case))
     dampings = np.array([0.0, 30.0, 300.0])
@@ -172,7 +172,7 @@ def test_a_study_takes_them(deck):
     found = pp.study(case, inputs, 150.0, workers=1, progress=False)
     for damping in inputs["drive_train.drive_damping"]:
         train = pp.DriveTrain(drive_inertia=20.0, drive_damping=damping, shaft_stiffness=4e4)
-        expected = pp.load_case("xv15").linearize(150.0, drive_train=train, **TABULATED).modes()
+        expected = pp.load_case("xv15-uncoupled").linearize(150.0, drive_train=train, **TABULATED).modes()
         here = found.sel({"drive_train.drive_damping": damping})
         assert here.growth_rate.item() == pytest.approx(expected.eigenvalue.real.max().item(), rel=1e-9)
 

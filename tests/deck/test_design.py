@@ -7,12 +7,12 @@ import proprotor as pp
 from proprotor.errors import InputError
 
 AIRSPEED = 150.0  # m/s
-PATHS = list(pp.design_inputs(pp.load_case("xv15")))
+PATHS = list(pp.design_inputs(pp.load_case("xv15-uncoupled")))
 
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 def matrices(case, airspeed=AIRSPEED, **options):

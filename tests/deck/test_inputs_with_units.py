@@ -9,7 +9,7 @@ import proprotor as pp
 
 KT, DEG = 1852 / 3600, np.pi / 180
 FOREIGN = UnitRegistry()  # not the package's own
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 
 
 def data_array(values, units):

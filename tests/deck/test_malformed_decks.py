@@ -16,8 +16,8 @@ from click.testing import CliRunner
 from proprotor.commands.main import main
 
 DECKS = Path(sys.modules["proprotor"].__file__).parent / "deck" / "decks"
-XV15 = (DECKS / "xv15.toml").read_text(encoding="utf-8")
-VARIANT = 'base = "xv15"\n[case]\nname = "my"\n'
+XV15 = (DECKS / "xv15-uncoupled.toml").read_text(encoding="utf-8")
+VARIANT = 'base = "xv15-uncoupled"\n[case]\nname = "my"\n'
 
 # Arguments that make a command run and write files, beside the deck.
 SPEED = ("--speed", "300 kt")
@@ -114,7 +114,7 @@ MALFORMED = {
         variant('[rotors]\nradius = "12 ft"'), "rotors = { … }: unknown field 'rotors'; did you mean rotor?"
     ),
     "section is a number": Malformed(
-        'base = "xv15"\nrotor = 3\n[case]\nname = "my"\n', "rotor = 3: must be a table"
+        'base = "xv15-uncoupled"\nrotor = 3\n[case]\nname = "my"\n', "rotor = 3: must be a table"
     ),
     "field missing": Malformed(without("radius ="), "rotor.radius: is missing"),
     "field misspelt": Malformed(

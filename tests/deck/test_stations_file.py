@@ -130,7 +130,7 @@ def test_any_content_is_read_or_told(tmp_path_factory, content):
 
 
 def deck(file, rotor):
-    return file(f'base = "xv15"\n[case]\nname = "csv"\n[rotor]\n{rotor}\n', "csv.toml")
+    return file(f'base = "xv15-uncoupled"\n[case]\nname = "csv"\n[rotor]\n{rotor}\n', "csv.toml")
 
 
 def test_a_deck_with_its_stations_in_a_file(file, monkeypatch):
@@ -157,11 +157,11 @@ def test_a_deck_with_its_stations_in_a_file(file, monkeypatch):
 
 def test_the_same_blade_written_in_the_deck_and_in_a_file(file):
     """The twist of the XV-15 as a file of its own numbers."""
-    twist = read_tables("xv15")["rotor"]["twist"]
+    twist = read_tables("xv15-uncoupled")["rotor"]["twist"]
     rows = "\n".join(f"{r},{value}" for r, value in zip(twist["r_over_R"], twist["value"], strict=True))
     file(f"r_over_R,twist [deg]\n{rows}\n")
     case = pp.load_case(deck(file, 'twist = { file = "stations.csv", column = "twist" }'))
-    own = pp.load_case("xv15")
+    own = pp.load_case("xv15-uncoupled")
     np.testing.assert_array_equal(case.linearize(150.0).K, own.linearize(150.0).K)
 
 

@@ -66,7 +66,7 @@ def test_closed_form_is_the_quadrature(inner, outer):
 
 def test_the_model_uses_it():
     """Published, lift-slope and incompressible: the same matrices with a chord that has to be integrated."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     options = {"equations": "published", "airloads": "lift-slope", "compressibility": False}
     as_function = dataclasses.replace(case.rotor, chord=lambda r: np.full_like(r, case.rotor.chord))
     closed = pp.rotor_model(case.rotor, case.operation, [60.0, 150.0], **options)

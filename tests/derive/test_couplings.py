@@ -215,7 +215,7 @@ def spring_curvature(blades):
 @pytest.mark.parametrize("propeller_moment", [True, False])
 def test_propeller_moment_and_bent_springs_share_the_moment_with_the_control_spring(propeller_moment):
     """−∂θ/∂β and −∂θ/∂ζ of the whole pitch equation are K_P K_θ/(K_θ + ∂²U/∂θ² + I_θ Ω² cos 2Θ)."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     rotor = replace(case.rotor, propeller_moment=propeller_moment)
     model = pp.rotor_model(rotor, case.operation, SPEEDS, airloads="none", section_damping=False)
     blades = bent_blades(rotor, model.trim)

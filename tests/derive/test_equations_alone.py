@@ -43,7 +43,7 @@ def page(tmp_path_factory):
 @pytest.fixture(scope="module")
 def stations(page):
     """Stations, weights and segments of the engine's quadrature."""
-    own = pp.load_case("xv15").rotor.quadrature
+    own = pp.load_case("xv15-uncoupled").rotor.quadrature
     hinges = [page["known"][name] for name in ("flap_hinge_offset", "lag_hinge_offset")]
     return own.stations, own.weights[:, 0], np.searchsorted(hinges, own.stations)
 
@@ -56,7 +56,7 @@ def assert_alike(found, expected):
 
 @pytest.mark.parametrize("airspeed", AIRSPEEDS)
 def test_the_rotor_of_generated_functions_is_that_of_the_engine(page, stations, airspeed):
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     model = pp.rotor_model(case.rotor, case.operation, airspeed)
     assert_alike(page["matrices"](airspeed, *stations), (model.M, model.C, model.K, model.B))
 
@@ -84,7 +84,7 @@ def test_the_published_equations_come_by_their_modules(page, stations, monkeypat
     blade = page["at"](page["trimmed"](150.0, *stations), 150.0)
     monkeypatch.setitem(page, "airloads", SimpleNamespace(**published_too))
     given = blade | page["segments"](blade, *stations) | {"equations": published}
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     model = pp.rotor_model(case.rotor, case.operation, 150.0, equations="published", section_damping=False)
     assert_alike(page["call"](rotor.matrices, given), (model.M, model.C, model.K, model.B))
 

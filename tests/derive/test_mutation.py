@@ -66,7 +66,7 @@ def test_every_generated_function_is_of_the_model(monkeypatch):
     for names in generated_functions():
         module, name = generated_modules()[names[0]], names[1]
         monkeypatch.setattr(module, name, counted(names, getattr(module, name)))
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     airfoil = dataclasses.replace(case.rotor.airfoil, moment=-0.02)
     for n_blades in (4, 5):
         rotor = dataclasses.replace(case.rotor, n_blades=n_blades, airfoil=airfoil)

@@ -29,7 +29,7 @@ def all_names(content):
 
 @pytest.fixture(scope="module")
 def model():
-    return pp.load_case("xv15").linearize(np.array([100.0, 140.0, 330.0]))
+    return pp.load_case("xv15-uncoupled").linearize(np.array([100.0, 140.0, 330.0]))
 
 
 def test_a_model(model, tmp_path):
@@ -53,7 +53,7 @@ def test_a_model(model, tmp_path):
 
 
 def test_one_point_has_no_pages(tmp_path):
-    model = pp.load_case("xv15").linearize(140.0)
+    model = pp.load_case("xv15-uncoupled").linearize(140.0)
     found = saved(model, tmp_path)
     np.testing.assert_array_equal(found["K"], model.K)
     assert found["airspeed"] == 140.0

@@ -18,7 +18,7 @@ DIFFERENCES = (
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture

@@ -31,7 +31,7 @@ CHORD = "support.modes[chord].frequency"
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture(scope="module")
@@ -155,11 +155,11 @@ def test_the_saved_deck_is_what_was_set(case, tmp_path):
         CHORD: 0.8 * case.operation.rotor_speed,
         "rotor.gimbal_stiffness": 2e4,
     }
-    text = altered_deck("xv15", case, values, {}, options(pitch="coupling"))
+    text = altered_deck("xv15-uncoupled", case, values, {}, options(pitch="coupling"))
     place = tmp_path / "found.toml"
     place.write_text(text, encoding="utf-8")
     saved = pp.load_case(place)
-    assert tomllib.loads(text)["base"] == "xv15"
+    assert tomllib.loads(text)["base"] == "xv15-uncoupled"
     assert "--pitch coupling" in text
     for path, value in values.items():
         assert saved.sources[path].si == pytest.approx(value, rel=1e-10)
@@ -172,9 +172,11 @@ def test_the_saved_deck_is_what_was_set(case, tmp_path):
 
 def test_fields_set_on_the_command_line_are_saved_too(tmp_path):
     settings = {"rotor.control_stiffness": "9000 ft*lbf/rad", "rotor.precone": "1 deg"}
-    case = pp.load_case("xv15", settings)
+    case = pp.load_case("xv15-uncoupled", settings)
     place = tmp_path / "found.toml"
-    place.write_text(altered_deck("xv15", case, {"rotor.precone": 2 * DEG}, settings), encoding="utf-8")
+    place.write_text(
+        altered_deck("xv15-uncoupled", case, {"rotor.precone": 2 * DEG}, settings), encoding="utf-8"
+    )
     saved = pp.load_case(place)
     assert saved.rotor.precone == pytest.approx(2 * DEG)
     assert saved.rotor.control_stiffness == case.rotor.control_stiffness
@@ -185,7 +187,7 @@ def test_fields_set_on_the_command_line_are_saved_too(tmp_path):
 
 @pytest.fixture
 def page(case):
-    made = ExplorePage(case, "xv15", scan_speeds(case, 20), {}, options())
+    made = ExplorePage(case, "xv15-uncoupled", scan_speeds(case, 20), {}, options())
     made.put_on(Document())
     return made
 
@@ -246,7 +248,7 @@ def test_without_bokeh_one_message_says_what_to_install(monkeypatch):
     import sys
 
     monkeypatch.setitem(sys.modules, "bokeh", None)
-    result = CliRunner().invoke(main, ["explore", "xv15"])
+    result = CliRunner().invoke(main, ["explore", "xv15-uncoupled"])
     assert result.exit_code == 2
     assert 'pip install "proprotor[explore]"' in result.stderr
 
@@ -255,8 +257,8 @@ def test_without_bokeh_one_message_says_what_to_install(monkeypatch):
     ("arguments", "told"),
     [
         (("xv16",), "did you mean xv15?"),
-        (("xv15", "--speed", "300 kt"), "must be a range"),
-        (("xv15", "--set", "rotor.radius=-1 ft"), "rotor.radius"),
+        (("xv15-uncoupled", "--speed", "300 kt"), "must be a range"),
+        (("xv15-uncoupled", "--set", "rotor.radius=-1 ft"), "rotor.radius"),
     ],
 )
 def test_an_unusable_input_is_one_message(arguments, told):
@@ -271,7 +273,7 @@ def test_a_port_that_is_taken_is_one_message():
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = str(taken.getsockname()[1])
-        result = CliRunner().invoke(main, ["explore", "xv15", "--port", port, "--no-browser"])
+        result = CliRunner().invoke(main, ["explore", "xv15-uncoupled", "--port", port, "--no-browser"])
     assert result.exit_code == 1 and f"--port = {port}" in result.stderr
 
 
@@ -302,7 +304,7 @@ async def handshake(address, origin):
 
 
 def test_the_server_answers_this_machine_alone():
-    with serving("xv15") as address:
+    with serving("xv15-uncoupled") as address:
         assert address.startswith("http://127.0.0.1:")
         own = address.removeprefix("http://").rstrip("/")
         port = own.rpartition(":")[2]

@@ -56,9 +56,18 @@ def content(folder):
 
 # A full disk --------------------------------------------------------------------------------------
 
-SWEEP = ("sweep", "xv15", "--speed", "100:200:50kt")
-STUDY = ("study", "xv15", "--speed", "100:200:50kt", "--vary", "rotor.precone=1:3:1 deg", "--workers", "1")
-MAP = ("map", "xv15", "--x", "airspeed=200:260:5kt", "--y", "rotor.precone=1:2:1 deg")
+SWEEP = ("sweep", "xv15-uncoupled", "--speed", "100:200:50kt")
+STUDY = (
+    "study",
+    "xv15-uncoupled",
+    "--speed",
+    "100:200:50kt",
+    "--vary",
+    "rotor.precone=1:3:1 deg",
+    "--workers",
+    "1",
+)
+MAP = ("map", "xv15-uncoupled", "--x", "airspeed=200:260:5kt", "--y", "rotor.precone=1:2:1 deg")
 OUTPUTS = {
     "out.csv": (*SWEEP, "--csv"),
     "out.png": (*SWEEP, "--plot"),
@@ -112,7 +121,7 @@ def test_a_full_disk_under_the_standard_output_is_no_traceback():
 
 
 def test_results_that_do_not_fit_leave_what_was(tmp_path):
-    sweep = pp.load_case("xv15").sweep(np.array([80.0, 90.0]))
+    sweep = pp.load_case("xv15-uncoupled").sweep(np.array([80.0, 90.0]))
     pp.save_results(sweep, tmp_path / "modes.nc")
     before = content(tmp_path)
     for size in (0, 5000, 20000):
@@ -333,7 +342,7 @@ def test_a_pair_that_is_likest_a_rate_alone_gets_a_name_for_two():
 
 
 def test_speeds_that_all_fail_have_a_row_each_in_a_file(tmp_path):
-    done = run("sweep", "xv15", "--speed", "900:920:10kt", "--csv", tmp_path / "modes.csv")
+    done = run("sweep", "xv15-uncoupled", "--speed", "900:920:10kt", "--csv", tmp_path / "modes.csv")
     assert done.exit_code == 1 and isinstance(done.exception, SystemExit)
     lines = without_comments(tmp_path / "modes.csv")
     assert len(lines) == 4
@@ -345,7 +354,7 @@ def test_a_whole_number_beyond_all_floats_is_refused(tmp_path, field):
     deck = tmp_path / "deck.toml"
     number = "9" * 400
     deck.write_text(
-        f'base = "xv15"\n[rotor]\n{field} = {{ r_over_R = [0, 1], value = [1, {number}], unit = "m" }}\n'
+        f'base = "xv15-uncoupled"\n[rotor]\n{field} = {{ r_over_R = [0, 1], value = [1, {number}], unit = "m" }}\n'
     )
     with pytest.raises(pp.InputError):
         pp.load_case(deck)

@@ -28,7 +28,7 @@ import proprotor as pp
 from proprotor.errors import InputError
 from proprotor.files.fingerprint import fingerprint
 
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 SCALE, TABLE, HOLDER = 1.0, np.linspace(1, 2, 5), {"k": [1.0]}
 
 
@@ -329,7 +329,7 @@ def test_what_follows_from_the_rest_does_not_count():
     before = fingerprint(curve)
     assert curve.worked_out.sum() == 3
     assert fingerprint(curve) == before
-    other = pp.load_case("xv15")
+    other = pp.load_case("xv15-uncoupled")
     before = fingerprint(other)
     other.linearize(100.0)
     assert fingerprint(other) == before
@@ -360,7 +360,7 @@ def outer(value):
     return inner
 
 print(fingerprint([
-    pp.load_case("xv15"), Curve(2.0), Curve(2.0).at, outer(3.0), functools.partial(outer(3.0), x=1), NAMES,
+    pp.load_case("xv15-uncoupled"), Curve(2.0), Curve(2.0).at, outer(3.0), functools.partial(outer(3.0), x=1), NAMES,
     collections.Counter("abcabd"), CubicSpline([0, 1, 2], [1, 2, 4]), np.vectorize(math.sin), np.sin, math.sin,
 ]))
 """

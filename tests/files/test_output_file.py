@@ -279,7 +279,7 @@ def test_what_is_written_is_on_the_disk_before_it_takes_its_place(tmp_path, monk
 
 # Every writer -------------------------------------------------------------------------------------
 
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 
 
 def command(*arguments):
@@ -288,20 +288,20 @@ def command(*arguments):
         raise OSError(done.stderr)
 
 
-SWEEP = ("sweep", "xv15", "--speed", "100:200:50kt")
-MAP = ("map", "xv15", "--x", "airspeed=200:260:30kt", "--y", "rotor.precone=1:2:1 deg")
+SWEEP = ("sweep", "xv15-uncoupled", "--speed", "100:200:50kt")
+MAP = ("map", "xv15-uncoupled", "--x", "airspeed=200:260:30kt", "--y", "rotor.precone=1:2:1 deg")
 WRITERS = {
     "sweep.csv": lambda path: command(*SWEEP, "--csv", path),
     "sweep.png": lambda path: command(*SWEEP, "--plot", path),
     "sweep.svg": lambda path: command(*SWEEP, "--plot", path),
-    "flutter.csv": lambda path: command("flutter", "xv15", "--scan", "200:240:20kt", "--csv", path),
+    "flutter.csv": lambda path: command("flutter", "xv15-uncoupled", "--scan", "200:240:20kt", "--csv", path),
     "map.csv": lambda path: command(*MAP, "--csv", path),
     "map.pdf": lambda path: command(*MAP, "--plot", path),
     "study.nc": lambda path: command(
-        "study", "xv15", "--speed", "200 kt", "--vary", "rotor.precone=1:2:1 deg", "--out", path
+        "study", "xv15-uncoupled", "--speed", "200 kt", "--vary", "rotor.precone=1:2:1 deg", "--out", path
     ),
-    "report.html": lambda path: command("report", "xv15", "--speed", "200:220:20kt", "--out", path),
-    "report.pdf": lambda path: command("report", "xv15", "--speed", "200:220:20kt", "--out", path),
+    "report.html": lambda path: command("report", "xv15-uncoupled", "--speed", "200:220:20kt", "--out", path),
+    "report.pdf": lambda path: command("report", "xv15-uncoupled", "--speed", "200:220:20kt", "--out", path),
     "deck.toml": lambda path: command("new", path, "--force"),
     "sweep.nc": lambda path: pp.save_results(CASE.sweep([80.0, 90.0]), path),
     "model.mat": lambda path: save_matlab(CASE.linearize(100.0), path),

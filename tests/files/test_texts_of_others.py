@@ -22,7 +22,7 @@ from proprotor.support.matrix_files import read_matrix_market
 from proprotor.support.matrix_market import read_matrix
 from tests.commands.test_command_contract import SUCCEED
 
-DECK = 'base = "xv15"\n[case]\nname = "mine"\ntitle = "Mine"\n'
+DECK = 'base = "xv15-uncoupled"\n[case]\nname = "mine"\ntitle = "Mine"\n'
 C81 = "MINE" + " " * 26 + " 1 2 1 2 1 2\n" + (" " * 7 + "   0.00\n" + "  -10.0  0.100\n   10.0  0.200\n") * 3
 STATIONS = "r_over_R,twist [deg]\n0.1,30\n1,-5\n"
 SPARSE = "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 2.0\n2 2 3.0\n"
@@ -89,7 +89,7 @@ def test_text_that_steers_a_terminal_is_refused_wherever_a_deck_has_text(tmp_pat
         "rotor.airfoil.table": f"[rotor.airfoil]\ntable = {text}",
     }.items():
         path = tmp_path / "deck.toml"
-        path.write_text(f'base = "xv15"\n[case]\nname = "mine"\n{lines}\n', encoding="utf-8")
+        path.write_text(f'base = "xv15-uncoupled"\n[case]\nname = "mine"\n{lines}\n', encoding="utf-8")
         prose = place.rpartition(".")[2] in ("description", "calibration", "warnings[0]", "source")
         if prose and not hostile.strip():  # ends of lines in prose are spaces
             continue
@@ -98,7 +98,7 @@ def test_text_that_steers_a_terminal_is_refused_wherever_a_deck_has_text(tmp_pat
         assert str(caught.value).startswith(f"{place} = ") and "must be printable text" in str(caught.value)
         assert not unprintable(str(caught.value))
     with pytest.raises(pp.InputError, match="must be printable text"):
-        pp.load_case("xv15", {"case.title": hostile})
+        pp.load_case("xv15-uncoupled", {"case.title": hostile})
 
 
 def test_prose_of_many_lines_is_one(tmp_path):
@@ -132,7 +132,7 @@ def support(*names):
 
 @pytest.mark.parametrize("n_blades", range(3, 13))
 def test_no_support_has_a_name_of_a_motion_of_any_rotor(n_blades):
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     own = case.linearize(100.0).rotor.dofs[len(HUB) :]
     dofs = (*own, *(coordinate.name for coordinate in reactionless_coordinates(n_blades)))
     for name in (*dofs, *name_list(dofs)):
@@ -170,7 +170,7 @@ MARKUP = "[red]a[/] $5 $\\\\foo <script>alert(1)</script> &amp; {{7*7}} #pagebre
 def hostile(tmp_path_factory):
     path = tmp_path_factory.mktemp("hostile") / "deck.toml"
     path.write_text(
-        f'base = "xv15"\n[case]\nname = "mine"\ntitle = "{MARKUP}"\ncalibration = "{MARKUP}"\n'
+        f'base = "xv15-uncoupled"\n[case]\nname = "mine"\ntitle = "{MARKUP}"\ncalibration = "{MARKUP}"\n'
         f'warnings = ["{MARKUP}"]\n[rotor]\n'
         f'precone = {{ value = "1.5 deg", status = "assumed", source = "{MARKUP}" }}\n',
         encoding="utf-8",

@@ -66,8 +66,8 @@ def seeds() -> tuple[str, ...]:
     """The bundled decks, and one for each further kind of support and of airfoil."""
     folder = resources.files("proprotor.deck") / "decks"
     bundled = [(folder / f"{name}.toml").read_text(encoding="utf-8") for name in pp.list_cases()]
-    more = [f'base = "xv15"\n[case]\nname = "fuzz"\n[support]\n{text}' for text in _MORE.values()]
-    table = 'base = "xv15"\n[case]\nname = "fuzz"\n[rotor.airfoil]\ntable = "airfoil.c81"\n'
+    more = [f'base = "xv15-uncoupled"\n[case]\nname = "fuzz"\n[support]\n{text}' for text in _MORE.values()]
+    table = 'base = "xv15-uncoupled"\n[case]\nname = "fuzz"\n[rotor.airfoil]\ntable = "airfoil.c81"\n'
     return (*bundled, *more, table)
 
 

@@ -43,7 +43,7 @@ from tests.csv_files import without_comments
 KNOT = 1852 / 3600
 # Air in which the blades of the XV-15 outrun what its linear sections know, from 340 kt on: its flutter speed is there.
 THIN = {"operation.speed_of_sound": "300 m/s"}
-CASE, DOUBTFUL = pp.load_case("xv15"), pp.load_case("xv15", THIN)
+CASE, DOUBTFUL = pp.load_case("xv15-uncoupled"), pp.load_case("xv15-uncoupled", THIN)
 UNDAMPED = {"section_damping": False}  # with which it flutters in the range of the search
 GIVEN = {"section_damping": True, "pitch": "coupling", "pitch_lag_coupling": -0.1, "locked": "gimbal"}
 MAP = {"airspeed": "340:440:50kt", "rotor.precone": "1:2:0.5 deg"}
@@ -139,11 +139,11 @@ def test_every_result_says_its_case_and_all_options_in_force(name):
     own = stamp_of(found(name, CASE, **GIVEN))
     assert options_in_force.options_in_result(own) == expected(CASE, **GIVEN)
     assert set(options_in_force.options_in_result(own)) == {entry.name for entry in fields(Options)}
-    assert own["case"] == "xv15" and own["title"] == CASE.title
+    assert own["case"] == "xv15-uncoupled" and own["title"] == CASE.title
     assert own["deck"] == deck_fingerprint(CASE) != deck_fingerprint(DOUBTFUL)
     assert "calibrated" in own["reservations"] and "Gram matrix" in own["case_warnings"]
     told = stamp.line(own)
-    assert "case xv15" in told.lower() and "locked gimbal" in told and "pitch coupling" in told
+    assert "case xv15-uncoupled" in told.lower() and "locked gimbal" in told and "pitch coupling" in told
     assert "airloads" not in told  # which is as always
 
 
@@ -293,7 +293,8 @@ def test_the_options_of_a_map_are_those_that_name_its_lines():
 
 def test_another_case_or_airspeed_is_refused():
     with pytest.raises(
-        pp.InputError, match=r"^case = xv15: must be the case of the result, xv15, with the same numbers"
+        pp.InputError,
+        match=r"^case = xv15-uncoupled: must be the case of the result, xv15-uncoupled, with the same numbers",
     ):
         boundary_lines(DOUBTFUL, carried_map())
     with pytest.raises(pp.InputError, match=r"^airspeed = 300 kt: is one of the axes of the map"):
@@ -358,7 +359,7 @@ def test_what_a_deck_brings_is_in_force_and_its_numbers_are_its_fingerprint(name
 def test_frequencies_of_a_deck_are_options_in_force(tmp_path):
     deck = tmp_path / "tabulated.toml"
     deck.write_text(
-        'base = "xv15"\n[case]\nname = "tabulated"\ntitle = "T"\n[rotor.frequencies]\nflap = 1.9\nlag = 1.3\n'
+        'base = "xv15-uncoupled"\n[case]\nname = "tabulated"\ntitle = "T"\n[rotor.frequencies]\nflap = 1.9\nlag = 1.3\n'
         '[drive_train]\ndrive_inertia = "100 kg*m**2"\n'
     )
     case = pp.load_case(deck)
@@ -377,9 +378,9 @@ def test_frequencies_of_a_deck_are_options_in_force(tmp_path):
 def test_the_fingerprint_knows_what_is_no_number():
     settings = ({"operation.trim": "{ collective = '40 deg' }"}, {"support.includes_rotor": "false"})
     plain = deck_fingerprint(CASE)
-    assert deck_fingerprint(pp.load_case("xv15", {"case.title": "another"})) == plain
-    assert deck_fingerprint(pp.load_case("xv15", {"rotor.radius": "150 inch"})) == plain
-    assert deck_fingerprint(pp.load_case("xv15", settings[0])) != plain
+    assert deck_fingerprint(pp.load_case("xv15-uncoupled", {"case.title": "another"})) == plain
+    assert deck_fingerprint(pp.load_case("xv15-uncoupled", {"rotor.radius": "150 inch"})) == plain
+    assert deck_fingerprint(pp.load_case("xv15-uncoupled", settings[0])) != plain
     own = pp.Case("mine", CASE.rotor, CASE.operation, CASE.support)
     assert deck_fingerprint(own) == deck_fingerprint(
         pp.Case("yours", CASE.rotor, CASE.operation, CASE.support)
@@ -457,20 +458,20 @@ def test_every_command_shows_doubts_and_options(command, tmp_path, monkeypatch):
     speed = DOUBTFUL.flutter_point(**UNDAMPED).speed / KNOT
     pattern = pattern.replace("{speed}", re.escape(f"{speed:.2f}"))
     run = CliRunner()
-    plain = run.invoke(main, [command, "xv15", *SET, *arguments], env={"COLUMNS": "200"})
+    plain = run.invoke(main, [command, "xv15-uncoupled", *SET, *arguments], env={"COLUMNS": "200"})
     assert plain.exit_code == 0, plain.output
 
     assert re.search(pattern, plain.stdout, re.DOTALL), plain.stdout
     assert command == "report" or ("? Doubtful" in plain.stdout and MACH in plain.stdout)
-    arguments = [command, "xv15", *SET, *arguments, "--locked", "lag", "--json"]
+    arguments = [command, "xv15-uncoupled", *SET, *arguments, "--locked", "lag", "--json"]
     result = run.invoke(
         main, [*arguments, *(("--csv", "a.csv") if command not in ("study", "report") else ())]
     )
     assert result.exit_code == 0, result.output
     document = json.loads(result.stdout)
-    case = pp.load_case("xv15", {"operation.speed_of_sound": "300 m/s"})
+    case = pp.load_case("xv15-uncoupled", {"operation.speed_of_sound": "300 m/s"})
     assert document["options"] == expected(case, locked=("lag",), **UNDAMPED)
-    assert document["deck"] == deck_fingerprint(case) and document["case"] == "xv15"
+    assert document["deck"] == deck_fingerprint(case) and document["case"] == "xv15-uncoupled"
     assert MACH in result.stdout
     if "--csv" in arguments or (tmp_path / "a.csv").exists():
         head = [line for line in (tmp_path / "a.csv").read_text().splitlines() if line.startswith("# ")]
@@ -482,7 +483,9 @@ def test_every_command_shows_doubts_and_options(command, tmp_path, monkeypatch):
 
 def test_the_tables_without_a_doubt_have_no_question_mark():
     for command in ("flutter", "sensitivity"):
-        result = CliRunner().invoke(main, [command, "xv15", "--no-section-damping"], env={"COLUMNS": "200"})
+        result = CliRunner().invoke(
+            main, [command, "xv15-uncoupled", "--no-section-damping"], env={"COLUMNS": "200"}
+        )
         assert "?" not in result.stdout, result.stdout
 
 
@@ -507,19 +510,29 @@ def test_pictures_say_case_options_and_doubts():
     }
     for name, ax in drawn.items():
         text = " ".join(text.get_text().replace("\n", " ") for text in ax.texts)
-        assert "Case xv15" in text, name
+        assert "Case xv15-uncoupled" in text, name
         assert name == "distribution" or "options: " in text or "default options" in text, name
         assert MACH in text or name == "distribution", name
     figure = plots.plot_sweep(sweep)
     text = " ".join(text.get_text().replace("\n", " ") for text in figure.texts)
-    assert "Case xv15" in text and MACH in text
+    assert "Case xv15-uncoupled" in text and MACH in text
     motion = mode_motion.mode_motion(DOUBTFUL, at, "beam")
     assert "at 380? kt" in title_of(motion)
 
 
 def test_report_and_explorer_say_it(tmp_path):
     page = tmp_path / "a.html"
-    arguments = ["report", "xv15", *SET, "--locked", "lag", "--out", str(page), "--speed", "100:440:20kt"]
+    arguments = [
+        "report",
+        "xv15-uncoupled",
+        *SET,
+        "--locked",
+        "lag",
+        "--out",
+        str(page),
+        "--speed",
+        "100:440:20kt",
+    ]
     assert CliRunner().invoke(main, arguments).exit_code == 0
     text = page.read_text(encoding="utf-8")
     assert "?" in text and MACH in text
@@ -548,7 +561,7 @@ def test_sobol_indices_carry_them():
     assert int(indices.doubtful) == int((results.flutter_warning != "").sum()) > 0
     assert stamp.of(indices.attrs) == stamp.of(results.attrs) and MACH in indices.attrs["doubts"]
     text = " ".join(text.get_text().replace("\n", " ") for text in plots.plot_sobol(indices).texts)
-    assert "Case xv15" in text and MACH in text
+    assert "Case xv15-uncoupled" in text and MACH in text
 
 
 def test_doubts_are_grouped_by_their_reason():
@@ -635,7 +648,7 @@ CASE_SUPPORT = pp.NormalModes(
 
 def test_the_page_of_the_explorer_tells_the_options_as_they_are_switched():
     options = {name: getattr(Options(), name) for name in CHOICES} | {"locked": ("gimbal",)}
-    page = ExplorePage(CASE, "xv15", np.linspace(100, 300, 8) * KNOT, {}, options)
+    page = ExplorePage(CASE, "xv15-uncoupled", np.linspace(100, 300, 8) * KNOT, {}, options)
     page.put_on(Document())
     assert "Options: locked gimbal." in page.foot.text and "calibrated" in page.foot.text
     page.options["pitch"] = "rigid"
@@ -645,11 +658,11 @@ def test_the_page_of_the_explorer_tells_the_options_as_they_are_switched():
 
 def test_that_nothing_flutters_is_as_doubtful_as_the_airspeeds_that_say_so():
     speeds = ("--scan", "300:350:10kt", "--speed", "345 kt", *SET, "--locked", "lag")
-    result = CliRunner().invoke(main, ["flutter", "xv15", *speeds], env={"COLUMNS": "200"})
+    result = CliRunner().invoke(main, ["flutter", "xv15-uncoupled", *speeds], env={"COLUMNS": "200"})
     assert "No mode becomes unstable between 300 and 350? kt." in result.stdout, result.stdout
     assert re.search(r"The least damping there is [\d.]+\?? % of critical", result.stdout)
     assert "? Doubtful" in result.stdout and MACH in result.stdout
-    document = json.loads(CliRunner().invoke(main, ["flutter", "xv15", *speeds, "--json"]).stdout)
+    document = json.loads(CliRunner().invoke(main, ["flutter", "xv15-uncoupled", *speeds, "--json"]).stdout)
     assert document["flutter speed (m/s)"] is None and MACH in str(document["doubts"])
 
 

@@ -119,12 +119,12 @@ class FourBlades:
 
     def linearize(self, airspeed, **options):
         pair = self.case.pair
-        support = pp.load_case("xv15").support
+        support = pp.load_case("xv15-uncoupled").support
         case = pp.Case("four blades", pair.package, self.case.operation, support)
         return case.linearize(airspeed, **options)
 
 
-ROTORS = {"xv15": lambda: pp.load_case("xv15"), "four blades": FourBlades}
+ROTORS = {"xv15-uncoupled": lambda: pp.load_case("xv15-uncoupled"), "four blades": FourBlades}
 OPTIONS = {
     "all free": {},
     "constant speed": {"rotor_speed": "constant"},
@@ -147,7 +147,7 @@ def mounted(request, options):
 
 def without_hub(**options):
     """The XV-15 rotor alone, free to move as a whole: no massless direction with the gimbal locked."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     return pp.rotor_model(
         case.rotor, case.operation, 120.0, rotor_speed="constant", locked=("gimbal",), **options
     )
@@ -239,20 +239,20 @@ def test_names_are_those_of_the_physics_and_unique(mounted):
 
 
 def test_coordinates_held_at_zero_load_the_hub_with_nothing():
-    model = pp.load_case("xv15").linearize(120.0, rotor_speed="constant")
+    model = pp.load_case("xv15-uncoupled").linearize(120.0, rotor_speed="constant")
     part = model.submodel(tuple(name for name in model.dofs if not name.startswith("gimbal")))
     assert_transfer_is_that_of_the_matrices(part)
 
 
 def test_failed_points_are_nan_in_the_state_space():
-    system = pp.load_case("xv15").linearize([120.0, -1.0]).to_state_space()
+    system = pp.load_case("xv15-uncoupled").linearize([120.0, -1.0]).to_state_space()
     for matrix in (system.A, system.B, system.C, system.D):
         assert np.isfinite(matrix[0]).all()
     assert np.isnan(system.A[1]).any()
 
 
 def test_a_batch_is_the_single_points():
-    case, speeds = pp.load_case("xv15"), np.array([100.0, 140.0])
+    case, speeds = pp.load_case("xv15-uncoupled"), np.array([100.0, 140.0])
     batch = case.linearize(speeds).to_state_space()
     for place, speed in enumerate(speeds):
         single = case.linearize(speed).to_state_space()
@@ -276,7 +276,7 @@ def test_python_control_has_the_same_system(mounted):
 
 def test_python_control_takes_one_point():
     pytest.importorskip("control")
-    batch = pp.load_case("xv15").linearize([100.0, 120.0]).to_state_space()
+    batch = pp.load_case("xv15-uncoupled").linearize([100.0, 120.0]).to_state_space()
     with pytest.raises(pp.InputError, match=r"airspeed = array of shape \(2,\): must be one speed"):
         batch.to_control()
 
@@ -287,7 +287,7 @@ def test_python_control_takes_one_point():
 @pytest.mark.parametrize("pitch", ["dynamic", "coupling"])
 def test_no_drive_train_is_one_of_nothing(pitch):
     """Bit for bit."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     without = case.linearize(120.0, pitch=pitch)
     with_nothing = case.linearize(120.0, pitch=pitch, drive_train=pp.DriveTrain())
     for name in ("M", "C", "K", "B"):
@@ -323,7 +323,7 @@ def test_a_rigid_rotor_on_a_shaft_is_a_torsion_pendulum():
 
 
 def test_a_shaft_makes_the_azimuth_a_state():
-    case, train = pp.load_case("xv15"), pp.DriveTrain(shaft_stiffness=1e4)
+    case, train = pp.load_case("xv15-uncoupled"), pp.DriveTrain(shaft_stiffness=1e4)
     n = len(case.linearize(120.0).dofs)
     free, held = (case.linearize(120.0, drive_train=t).to_state_space() for t in (None, train))
     assert (len(free.states), len(held.states)) == (2 * n - 1, 2 * n)
@@ -338,7 +338,7 @@ def roots(model):
 
 def test_a_stiff_shaft_is_constant_speed():
     """To first order in the shaft's flexibility: ten times the stiffness leaves a tenth of the difference."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     constant = roots(case.linearize(120.0, rotor_speed="constant"))
 
     def apart(stiffness):
@@ -360,7 +360,7 @@ def test_a_drive_train_has_no_negative_parts(name, value):
 
 
 def test_a_drive_train_needs_a_rotor_that_may_change_its_speed():
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     with pytest.raises(pp.InputError, match='goes with rotor_speed="windmilling"'):
         case.linearize(120.0, drive_train=pp.DriveTrain(), rotor_speed="constant")
     with pytest.raises(pp.InputError, match="drive_train = 3: must be a DriveTrain"):

@@ -21,7 +21,7 @@ TRAIN = {
     "drive_train.drive_damping": "30 N*m*s/rad",
     SHAFT: "2e4 N*m/rad",
 }
-CASE = pp.load_case("xv15", TRAIN)
+CASE = pp.load_case("xv15-uncoupled", TRAIN)
 STATIONS = pp.load_case("xv15-mass-distribution", TRAIN)  # its integrals follow the hinges wherever these go
 WING = pp.load_case("xv15-wing", TRAIN)
 COMES_AND_GOES = {
@@ -228,7 +228,7 @@ def test_a_map_is_at_every_point_that_of_one_design():
 )
 def test_along_a_shaft_a_root_begins_where_the_shaft_does(own, stiffness):
     """And what is followed on either side is what a design has alone."""
-    case = pp.load_case("xv15", TRAIN | {SHAFT: own})
+    case = pp.load_case("xv15-uncoupled", TRAIN | {SHAFT: own})
     found = case.sweep(SPEED, {SHAFT: np.array(stiffness)})
     for place, value in enumerate(stiffness):
         one = case.vary({SHAFT: value}).sweep(SPEED)
@@ -323,5 +323,5 @@ def test_the_same_design_is_neutral_in_any_company():
 
 def test_many_designs_are_refused_where_one_is_asked_for():
     case = CASE.vary({"rotor.precone": [0.0, 0.02, 0.05]})
-    with pytest.raises(pp.InputError, match="case = xv15: must be one design, not 3"):
+    with pytest.raises(pp.InputError, match="case = xv15-uncoupled: must be one design, not 3"):
         case.attribution(SPEED)

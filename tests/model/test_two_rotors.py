@@ -18,7 +18,7 @@ FLIPPED = np.array([1, -1, 1, -1, 1, -1.0])  # y and the turns about x and z, se
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 def semispan(case, stiffer, **options):

@@ -227,7 +227,7 @@ def test_one_flap_spring_and_one_gimbal_spring_give_two_frequencies(analyses):
     """Fig. 18: coning well above the gimbal mode, whose frequency follows from the hub spring alone at zero cone."""
     curves = {curve.name: curve.values for curve in make_figure(18, analyses).curves}
     assert (curves["coning"] > 1.5).all() and (curves["coning"] < 2.0).all()
-    rotor, operation = pp.load_case("xv15").rotor, pp.load_case("xv15").operation
+    rotor, operation = pp.load_case("xv15-uncoupled").rotor, pp.load_case("xv15-uncoupled").operation
     nu = np.sqrt(1 + rotor.gimbal_stiffness / (1.5 * rotor.blade_inertia * operation.rotor_speed**2))
     np.testing.assert_allclose(curves["cyclic (gimbal), in a vacuum"], nu, atol=0.003)
 
@@ -258,7 +258,7 @@ COUPLING = {"pitch": "coupling"}
 
 
 def test_wing_modes_stay_near_the_frequencies_of_the_wing_and_do_not_jump():
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     wing = WingModes(case, np.arange(60, 301, 5) * KNOT, COUPLING)
     assert wing.names == ("beam", "chord", "torsion")
     for name in wing.names:
@@ -280,14 +280,14 @@ def test_wing_modes_have_the_damping_of_the_sweep_of_the_case(deck):
 def test_beyond_its_boundary_a_wing_mode_is_the_root_that_became_unstable():
     """What moves torsion most beyond 420 kt is another root, well damped."""
     airspeeds = np.arange(50, 501, 5) * KNOT
-    wing = WingModes(pp.load_case("xv15"), airspeeds, COUPLING | {"section_damping": False})
+    wing = WingModes(pp.load_case("xv15-uncoupled"), airspeeds, COUPLING | {"section_damping": False})
     damping = wing.damping("torsion")
     assert (damping[airspeeds / KNOT > wing.speed("torsion")] < 0).all()
     assert 100 * wing.sweep.damping_ratio.sel(mode="torsion").values[damping < 0].max() > 5
 
 
 def test_a_failed_airspeed_is_passed_over():
-    wing = WingModes(pp.load_case("xv15"), np.array([100, 200, 300, 400, 600]) * KNOT, COUPLING)
+    wing = WingModes(pp.load_case("xv15-uncoupled"), np.array([100, 200, 300, 400, 600]) * KNOT, COUPLING)
     for name in wing.names:
         assert np.isfinite(wing.damping(name)[:4]).all() and np.isnan(wing.damping(name)[4])
 
@@ -308,7 +308,7 @@ def test_a_wing_mode_becomes_unstable_where_its_damping_falls_through_zero(analy
 
 
 def test_options_that_depend_on_airspeed_are_those_of_each_airspeed():
-    case, airspeeds = pp.load_case("xv15"), np.arange(200, 301, 25) * KNOT
+    case, airspeeds = pp.load_case("xv15-uncoupled"), np.arange(200, 301, 25) * KNOT
     coupling = np.linspace(-0.4, -0.2, len(airspeeds))
     given = {"pitch_flap_coupling": lambda speed: np.interp(speed.real, airspeeds, coupling)}
     wing = WingModes(case, airspeeds, COUPLING | given)
@@ -340,8 +340,8 @@ def test_ranges_name_numbers_of_the_deck_that_are_doubtful_and_contain_them(deck
 
 
 def test_a_sample_is_stratified_stays_within_its_ranges_and_ties_paths():
-    case = pp.load_case("xv15")
-    values = sample(RANGES["xv15"], 20).resolve(pp.design_inputs(case)).values
+    case = pp.load_case("xv15-uncoupled")
+    values = sample(RANGES["xv15-uncoupled"], 20).resolve(pp.design_inputs(case)).values
     stiffness = values["rotor.control_stiffness"] / (4.4482216152605 * 0.3048)
     strata = np.floor(20 * np.log(stiffness / 5000) / np.log(22400 / 5000) + 1e-9)
     assert sorted(strata) == list(range(20))
@@ -355,10 +355,10 @@ def test_a_sample_is_stratified_stays_within_its_ranges_and_ties_paths():
 
 def test_a_band_holds_what_one_design_at_a_time_gives():
     """Where the first onset is that of a mode of the rotor, the band has that of the wing."""
-    case, airspeeds = pp.load_case("xv15"), np.arange(250, 451, 10) * KNOT
+    case, airspeeds = pp.load_case("xv15-uncoupled"), np.arange(250, 451, 10) * KNOT
     options = {"pitch": "dynamic", "section_damping": False}
-    band = damping_band(case, airspeeds, RANGES["xv15"], 5, seed=3, **options)
-    plan = sample(RANGES["xv15"], 5, seed=3)
+    band = damping_band(case, airspeeds, RANGES["xv15-uncoupled"], 5, seed=3, **options)
+    plan = sample(RANGES["xv15-uncoupled"], 5, seed=3)
     designs = plan.resolve(pp.design_inputs(case)).values
     for design in range(5):
         one = case.vary({path: values[design] for path, values in designs.items()})

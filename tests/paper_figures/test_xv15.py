@@ -13,7 +13,7 @@ from proprotor.units import KNOT
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,7 @@ def test_pitch_lag_coupling_vanishes_at_45_degrees_without_trim_lag(case):
     assert speed == pytest.approx(201, abs=1) and angle == pytest.approx(53.1, abs=0.1)
 
 
-DECK = Path(pp.__file__).parent / "deck" / "decks" / "xv15.toml"
+DECK = Path(pp.__file__).parent / "deck" / "decks" / "xv15-uncoupled.toml"
 WRITTEN = {
     ("chord", "frequency"): ("0.70/rev", "0.91/rev"),
     ("chord", "damping"): ("2 %", "2.6 %"),

@@ -20,7 +20,7 @@ STIFFNESS = "rotor.control_stiffness"
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ SPEED = "350 kt"
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture(scope="module")
@@ -138,7 +138,7 @@ def test_a_wing_is_as_the_deck_says_where_it_does():
     assert sketch_of(wing).span == pytest.approx(165 * 0.0254)
     assert sketch_of(wing).mast == pytest.approx(47.3 * 0.0254)
     assert not sketch_of(wing).assumed
-    assert sketch_of(pp.load_case("xv15")).assumed
+    assert sketch_of(pp.load_case("xv15-uncoupled")).assumed
 
 
 def test_what_cannot_be_shown_is_refused(case):

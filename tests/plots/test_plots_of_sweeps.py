@@ -20,7 +20,7 @@ FOOT_POUND = 0.3048 * 4.4482216152605
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture(scope="module")

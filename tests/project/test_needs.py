@@ -32,7 +32,7 @@ from proprotor.support import nastran
 ROOT = Path(pp.__file__).parent
 PROJECT = tomllib.loads((ROOT.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
 PRECONE = "rotor.precone"
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 MODEL = CASE.linearize(100.0)
 
 
@@ -57,8 +57,18 @@ def command(*arguments):
     return done
 
 
-SAMPLED = ("study", "xv15", "--vary", f"{PRECONE}=1:2 deg", "--speed", "200 kt", "--size", "2", "--sample")
-GRID = ("study", "xv15", "--vary", f"{PRECONE}=1:2:1 deg", "--speed", "200 kt", "--out")
+SAMPLED = (
+    "study",
+    "xv15-uncoupled",
+    "--vary",
+    f"{PRECONE}=1:2 deg",
+    "--speed",
+    "200 kt",
+    "--size",
+    "2",
+    "--sample",
+)
+GRID = ("study", "xv15-uncoupled", "--vary", f"{PRECONE}=1:2:1 deg", "--speed", "200 kt", "--out")
 OF_SALTELLI = xr.Dataset({"growth_rate": ("design", np.ones(3))}, attrs={"sample": json.dumps({})})
 BASE = "a package that comes with proprotor"
 NEEDS = {
@@ -71,15 +81,19 @@ NEEDS = {
     "--out report.pdf": (
         "typst",
         "report",
-        lambda folder: command("report", "xv15", "--out", folder / "x.pdf"),
+        lambda folder: command("report", "xv15-uncoupled", "--out", folder / "x.pdf"),
     ),
     "--pdf": (
         "typst",
         "report",
-        lambda folder: command("report", "xv15", "--out", folder / "x.html", "--pdf"),
+        lambda folder: command("report", "xv15-uncoupled", "--out", folder / "x.html", "--pdf"),
     ),
-    "explore": ("bokeh", "explore", lambda folder: command("explore", "xv15", "--no-browser")),
-    "explore's server": ("tornado", "explore", lambda folder: command("explore", "xv15", "--no-browser")),
+    "explore": ("bokeh", "explore", lambda folder: command("explore", "xv15-uncoupled", "--no-browser")),
+    "explore's server": (
+        "tornado",
+        "explore",
+        lambda folder: command("explore", "xv15-uncoupled", "--no-browser"),
+    ),
     "an .op2 file": ("pyNastran", "nastran", lambda folder: nastran._read(Path(__file__))),
 }
 
@@ -169,14 +183,14 @@ import numpy as np
 import proprotor as pp
 from proprotor.commands.main import main
 
-case = pp.load_case("xv15")
+case = pp.load_case("xv15-uncoupled")
 found = case.sweep([80.0, 90.0])
 pp.save_results(found, f"{sys.argv[1]}/sweep.nc")
 again = pp.load_results(f"{sys.argv[1]}/sweep.nc")
 assert again.eigenvalue.dtype == complex
 assert np.array_equal(again.eigenvalue, found.eigenvalue, equal_nan=True)
-study = ["study", "xv15", "--vary", "rotor.precone=1:2 deg", "--sample", "sobol", "--size", "2", "--workers", "2"]
-main([*study, "--speed", "200 kt", "--out", f"{sys.argv[1]}/study.nc"], standalone_mode=False)
+study = ["study", "xv15-uncoupled", "--vary", "rotor.precone=1:2 deg", "--sample", "sobol", "--size", "2"]
+main([*study, "--workers", "2", "--speed", "200 kt", "--out", f"{sys.argv[1]}/study.nc"], standalone_mode=False)
 print(pp.load_results(f"{sys.argv[1]}/study.nc").eigenvalue.dtype)
 """
 
@@ -225,24 +239,32 @@ TRILLION = 10**12
 FAR = np.broadcast_to(np.float64(100.0), (10**9,))  # takes no memory itself
 VARY = ("--vary", f"{PRECONE}=1:4 deg", "--speed", "100:200:1kt")
 LARGE = {
-    "--size": lambda: command("study", "xv15", *VARY, "--sample", "latin-hypercube", "--size", TRILLION),
-    "--size of sobol": lambda: command("study", "xv15", *VARY, "--sample", "sobol", "--size", 2**50),
-    "--size of saltelli": lambda: command("study", "xv15", *VARY, "--sample", "saltelli", "--size", 2**50),
+    "--size": lambda: command(
+        "study", "xv15-uncoupled", *VARY, "--sample", "latin-hypercube", "--size", TRILLION
+    ),
+    "--size of sobol": lambda: command(
+        "study", "xv15-uncoupled", *VARY, "--sample", "sobol", "--size", 2**50
+    ),
+    "--size of saltelli": lambda: command(
+        "study", "xv15-uncoupled", *VARY, "--sample", "saltelli", "--size", 2**50
+    ),
     "size of results": lambda: pp.study(CASE, pp.sampling.sobol({PRECONE: (0, 0.1)}, 2**20), "1:99:1kt"),
-    "a step": lambda: command("study", "xv15", "--vary", f"{PRECONE}=1:4:1e-300 deg", "--speed", "200 kt"),
+    "a step": lambda: command(
+        "study", "xv15-uncoupled", "--vary", f"{PRECONE}=1:4:1e-300 deg", "--speed", "200 kt"
+    ),
     "a step of nothing": lambda: command(
-        "study", "xv15", "--vary", f"{PRECONE}=1:4:1e-400 deg", "--speed", "9 kt"
+        "study", "xv15-uncoupled", "--vary", f"{PRECONE}=1:4:1e-400 deg", "--speed", "9 kt"
     ),
     "a grid": lambda: pp.study(
         CASE, dict.fromkeys([PRECONE, "rotor.chord", "rotor.radius"], FAR[:4000]), 1.0
     ),
-    "--speed": lambda: command("sweep", "xv15", "--speed", "1:400:1e-9kt"),
-    "--speed without end": lambda: command("sweep", "xv15", "--speed", "1:infkt:1kt"),
-    "--speed of nan": lambda: command("sweep", "xv15", "--speed", "1:400:nankt"),
-    "--speed of a tiny step": lambda: command("sweep", "xv15", "--speed", "1:400:1e-320kt"),
-    "--scan": lambda: command("flutter", "xv15", "--scan", "1:400:1e-9kt"),
+    "--speed": lambda: command("sweep", "xv15-uncoupled", "--speed", "1:400:1e-9kt"),
+    "--speed without end": lambda: command("sweep", "xv15-uncoupled", "--speed", "1:infkt:1kt"),
+    "--speed of nan": lambda: command("sweep", "xv15-uncoupled", "--speed", "1:400:nankt"),
+    "--speed of a tiny step": lambda: command("sweep", "xv15-uncoupled", "--speed", "1:400:1e-320kt"),
+    "--scan": lambda: command("flutter", "xv15-uncoupled", "--scan", "1:400:1e-9kt"),
     "--x": lambda: command(
-        *("map", "xv15", "--x", f"{PRECONE}=1:4:1e-6 deg", "--y", "airspeed=100:400:1e-3kt")
+        *("map", "xv15-uncoupled", "--x", f"{PRECONE}=1:4:1e-6 deg", "--y", "airspeed=100:400:1e-3kt")
     ),
     "airspeeds": lambda: CASE.linearize(FAR),
     "airspeeds of a sweep": lambda: CASE.sweep(FAR),
@@ -253,7 +275,7 @@ LARGE = {
     "frames": lambda: animate_mode(MOTION, "x.gif", frames=TRILLION),
     "dpi": lambda: animate_mode(MOTION, "x.gif", dpi=10**7),
     "frequencies": lambda: frequency_response(MODEL, FAR[: 10**8]),
-    "n_blades": lambda: pp.load_case("xv15", {"rotor.n_blades": "1000000"}).linearize(
+    "n_blades": lambda: pp.load_case("xv15-uncoupled", {"rotor.n_blades": "1000000"}).linearize(
         100.0, reactionless=True
     ),
     "resamples": lambda: pp.sobol_indices(SALTELLI, "growth_rate", resamples=10**11),
@@ -300,7 +322,7 @@ LIMITED = """
 import resource
 import proprotor as pp
 from proprotor.needs import free_memory
-case = pp.load_case("xv15")
+case = pp.load_case("xv15-uncoupled")
 import psutil
 used = psutil.Process().memory_info().vms
 resource.setrlimit(resource.RLIMIT_AS, (used + 400_000_000, resource.RLIM_INFINITY))

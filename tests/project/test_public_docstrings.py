@@ -274,7 +274,7 @@ AXES = {"airspeed": SPEEDS, "rotor.precone": [0.01, 0.04]}
 
 @pytest.fixture(scope="module")
 def case() -> pp.Case:
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 # How each function with options of the model is called.

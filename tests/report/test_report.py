@@ -78,7 +78,7 @@ def table(page, beginning):
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     place = tmp_path_factory.mktemp("report") / "xv15.html"
-    result = run("xv15", "--speed", SPEEDS, "--out", place, "--pdf", "--json")
+    result = run("xv15-uncoupled", "--speed", SPEEDS, "--out", place, "--pdf", "--json")
     assert result.exit_code == 0, result.stderr
     return place, json.loads(result.stdout)
 
@@ -90,7 +90,7 @@ def page(written):
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 def test_the_boundaries_are_those_of_flutter_point(page, written, case):
@@ -173,7 +173,7 @@ def test_the_page_needs_nothing_else_and_tells_what_it_shows(written, page):
 
 def test_the_same_deck_gives_the_same_files_but_for_the_date(written, tmp_path):
     place = tmp_path / "again.html"
-    assert run("xv15", "--speed", SPEEDS, "--out", place, "--pdf").exit_code == 0
+    assert run("xv15-uncoupled", "--speed", SPEEDS, "--out", place, "--pdf").exit_code == 0
     for suffix in (".html", ".pdf"):
         assert place.with_suffix(suffix).read_bytes() == written[0].with_suffix(suffix).read_bytes(), suffix
     assert "2025-10-09" in place.read_text(encoding="utf-8")
@@ -185,14 +185,14 @@ def test_the_pdf_has_the_same_numbers(written, page):
     for row in table(page, "Boundaries")[1:] + table(page, "Damping")[1:]:
         for cell in row[:-1]:
             assert cell in text, cell
-    assert reader.metadata.title == "XV-15 semispan wing and rotor"
+    assert reader.metadata.title == "XV-15 with three uncoupled wing modes"
     assert len(reader.pages) > 4
 
 
 def test_a_hostile_title_is_text(tmp_path):
     deck = tmp_path / "hostile.toml"
     deck.write_text(
-        f"base = \"xv15\"\n[case]\nname = \"hostile\"\ntitle = '''{HOSTILE}'''\n", encoding="utf-8"
+        f"base = \"xv15-uncoupled\"\n[case]\nname = \"hostile\"\ntitle = '''{HOSTILE}'''\n", encoding="utf-8"
     )
     place = tmp_path / "out.html"
     assert run(deck, "--speed", "200kt", "--out", place, "--pdf").exit_code == 0
@@ -205,7 +205,7 @@ def test_a_hostile_title_is_text(tmp_path):
 
 def test_a_case_that_does_not_flutter_is_reported(tmp_path):
     place = tmp_path / "calm.html"
-    result = run("xv15", "--speed", "250:300:25kt", "--out", place)
+    result = run("xv15-uncoupled", "--speed", "250:300:25kt", "--out", place)
     assert result.exit_code == 0
     assert "No mode becomes unstable between 250 and 300 kt." in result.stdout
     page = Page(place.read_text(encoding="utf-8"))
@@ -217,7 +217,7 @@ def test_a_case_that_does_not_flutter_is_reported(tmp_path):
 def test_failed_points_are_reported_with_their_reason(tmp_path, case):
     place = tmp_path / "fast.html"
     speeds = "300:800:100kt"
-    result = run("xv15", "--speed", speeds, "--out", place, "--json")
+    result = run("xv15-uncoupled", "--speed", speeds, "--out", place, "--json")
     modes = case.sweep(speeds)
     failed = modes.reason.values != ""
     assert 0 < failed.sum() < len(failed)
@@ -230,7 +230,7 @@ def test_failed_points_are_reported_with_their_reason(tmp_path, case):
 
 def test_where_nothing_can_be_analysed_the_report_says_so(tmp_path):
     place = tmp_path / "none.html"
-    result = run("xv15", "--speed", "780:800:10kt", "--out", place)
+    result = run("xv15-uncoupled", "--speed", "780:800:10kt", "--out", place)
     assert result.exit_code == 1
     page = Page(place.read_text(encoding="utf-8"))
     assert "No airspeed could be analysed." in page.text
@@ -241,9 +241,9 @@ def test_where_nothing_can_be_analysed_the_report_says_so(tmp_path):
     ("arguments", "told"),
     [
         (("xv16",), "did you mean xv15?"),
-        (("xv15", "--out", "page.txt"), "--out = page.txt: must end in .html or .pdf"),
-        (("xv15", "--speed", "fast"), "--speed"),
-        (("xv15", "--set", "rotor.radius=-1 ft"), "rotor.radius"),
+        (("xv15-uncoupled", "--out", "page.txt"), "--out = page.txt: must end in .html or .pdf"),
+        (("xv15-uncoupled", "--speed", "fast"), "--speed"),
+        (("xv15-uncoupled", "--set", "rotor.radius=-1 ft"), "rotor.radius"),
     ],
 )
 def test_an_unusable_input_is_one_message(arguments, told, tmp_path, monkeypatch):
@@ -256,14 +256,14 @@ def test_an_unusable_input_is_one_message(arguments, told, tmp_path, monkeypatch
 
 def test_a_date_that_is_none_is_told(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    result = run("xv15", SOURCE_DATE_EPOCH="yesterday")
+    result = run("xv15-uncoupled", SOURCE_DATE_EPOCH="yesterday")
     assert result.exit_code == 2 and "SOURCE_DATE_EPOCH" in result.stderr
 
 
 def test_without_typst_a_pdf_is_refused_before_the_analysis(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "typst", None)
     monkeypatch.setattr("proprotor.report.analyse", lambda *_: pytest.fail("analysed"))
-    result = run("xv15", "--out", tmp_path / "x.pdf")
+    result = run("xv15-uncoupled", "--out", tmp_path / "x.pdf")
     assert result.exit_code == 2
     assert 'pip install "proprotor[report]"' in result.stderr
     assert list(tmp_path.iterdir()) == []
@@ -277,7 +277,7 @@ def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("proprotor.files.output.os.replace", full)
-    result = run("xv15", "--speed", "200kt", "--out", place)
+    result = run("xv15-uncoupled", "--speed", "200kt", "--out", place)
     assert result.exit_code == 1
     assert "No space left on device" in result.stderr
     assert place.read_text(encoding="utf-8") == "as it was"

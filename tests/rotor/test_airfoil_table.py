@@ -276,7 +276,7 @@ def test_a_table_keeps_its_values_and_can_be_pickled():
 # What the rotor makes of a table: the same matrices as of the linear airfoil it was sampled from.
 
 LINEAR = pp.Airfoil(lift_slope=5.8, zero_lift_angle=-0.03, drag=0.009, moment=-0.02)
-XV15 = pp.load_case("xv15")
+XV15 = pp.load_case("xv15-uncoupled")
 SPEEDS = np.array([60.0, 110.0, 150.0])
 
 

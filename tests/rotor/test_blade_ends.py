@@ -121,7 +121,7 @@ def test_held_ends_are_the_same_table_written_out():
 # Refused, by every way in -------------------------------------------------------------------------------------------
 
 
-def deck(folder, rotor, base="xv15"):
+def deck(folder, rotor, base="xv15-uncoupled"):
     path = folder / "ends.toml"
     path.write_text(f'base = "{base}"\n[case]\nname = "ends"\n[rotor]\n{rotor}\n', encoding="utf-8")
     return pp.load_case(path)
@@ -148,11 +148,11 @@ def in_a_file_by_radius(folder, column, stations, said):
 def as_a_setting(folder, column, stations, said):
     unit, values, _ = COLUMNS[column]
     table = f'{{ r_over_R = {list(stations)}, value = {list(values)}, unit = "{unit}"{said} }}'
-    return pp.load_case("xv15", {f"rotor.{column}": table})
+    return pp.load_case("xv15-uncoupled", {f"rotor.{column}": table})
 
 
 def in_python(folder, column, stations, said):
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     table = np.array(stations) * RADIUS, np.array([2.0, 1.0]), *((COLUMNS[column][2],) if said else ())
     if column != "mass_distribution":
         return replace(case, rotor=replace(case.rotor, **{column: table}))
@@ -254,7 +254,7 @@ def test_a_hub_mass_that_would_count_twice(tmp_path):
     with pytest.raises(
         InputError, match=r"^rotor\.hub_mass = 90 lb: must be given with mass_distribution; blade_mass"
     ):
-        pp.load_case("xv15", {"rotor.hub_mass": "90 lb"})
+        pp.load_case("xv15-uncoupled", {"rotor.hub_mass": "90 lb"})
     with pytest.raises(
         InputError, match=r"rotor\.hub_mass = 90 lb: must not be given with a mass_distribution that"
     ):
@@ -267,8 +267,8 @@ def test_a_hub_mass_that_would_count_twice(tmp_path):
 def test_integrals_replace_a_distribution_and_its_hub(tmp_path):
     deck(tmp_path, f'{BEGINS}hub_mass = "90 lb"\n')
     (tmp_path / "ends.toml").rename(tmp_path / "first.toml")
-    own = read_tables("xv15")["rotor"]
+    own = read_tables("xv15-uncoupled")["rotor"]
     lines = "\n".join(f'{name} = "{own[name]["value"]}"' for name in MASS_INTEGRALS)
     case = deck(tmp_path, lines, base="first.toml")
-    assert case.rotor.blade_mass == pp.load_case("xv15").rotor.blade_mass
+    assert case.rotor.blade_mass == pp.load_case("xv15-uncoupled").rotor.blade_mass
     assert "rotor.hub_mass" not in case.sources

@@ -20,7 +20,7 @@ from tests.rotors import flights, random_support, seeds
 
 any_rotor = settings(max_examples=12, derandomize=True, deadline=None, phases=[Phase.generate])
 AIRSPEED = 100.0
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 ROTOR, OPERATION = CASE.rotor, CASE.operation
 BASE = CASE.linearize(AIRSPEED)
 
@@ -363,7 +363,7 @@ TOGETHER = (
     "lag_first_moment",
     "hinge_offset",
 )
-INPUTS = [("xv15", path) for path in pp.design_inputs(CASE) if not path.endswith(TOGETHER)]
+INPUTS = [("xv15-uncoupled", path) for path in pp.design_inputs(CASE) if not path.endswith(TOGETHER)]
 INPUTS += [("xv15-mass-distribution", f"rotor.{hinge}_hinge_offset") for hinge in ("flap", "lag")]
 
 

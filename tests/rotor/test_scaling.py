@@ -193,7 +193,7 @@ def test_a_froude_scaled_model_has_them_where_the_air_does_not_compress(flight, 
 
 def test_a_froude_scaled_model_has_other_modes_in_air_that_compresses():
     """The XV-15 at a fifth of its size: the test above could not tell if it left compressibility out by itself."""
-    case, model = pp.load_case("xv15"), Model(0.2, 0.2**3, np.sqrt(0.2))
+    case, model = pp.load_case("xv15-uncoupled"), Model(0.2, 0.2**3, np.sqrt(0.2))
     rotor, operation = model.rotor(case.rotor), model.operation(case.operation, same_air=True)
     rigid = {"airspeed": 130.0}
     full = pp.rotor_model(case.rotor, case.operation, rigid["airspeed"], pitch="coupling")

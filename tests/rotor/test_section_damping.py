@@ -82,7 +82,7 @@ def test_lift_and_moment_grow_with_the_speed_alone_when_a_section_turns():
 
 def flat_rotor() -> tuple[pp.Rotor, pp.Operation]:
     """The XV-15's rotor without precone: its blades lie in the disk when flap and lag are locked."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     rotor = dataclasses.replace(case.rotor, precone=0.0, chord=lambda r: 0.3 + 0.01 * r)
     return rotor, dataclasses.replace(case.operation, trim={"collective": 0.7})
 
@@ -275,7 +275,7 @@ def test_damping_is_on_where_nothing_is_said_but_for_the_published_equations():
     "options", [{}, {"equations": "published"}, {"pitch": "coupling"}, {"pitch": "rigid"}]
 )
 def test_what_is_not_said_is_what_is_meant(options):
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     meant = Options(**options).section_damping
     unsaid = case.linearize(SPEED, **options)
     said, other = (case.linearize(SPEED, section_damping=choice, **options) for choice in (meant, not meant))

@@ -245,7 +245,7 @@ def test_the_induced_velocity_is_told_as_a_share_of_the_airspeed():
 
 
 def test_warnings_are_told_with_the_modes():
-    pair, case = random_rotor(9, n_blades=3), pp.load_case("xv15")
+    pair, case = random_rotor(9, n_blades=3), pp.load_case("xv15-uncoupled")
     flown = pp.Case("doubtful", pair.package, operated(pair, {"collective": 0.6}), case.support)
     speeds = np.array([20.0, 100.0])
     model = flown.linearize(speeds)

@@ -29,7 +29,7 @@ TABULATED = {
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 def crossings(matrices, positions, **options):

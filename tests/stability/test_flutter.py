@@ -192,7 +192,7 @@ def test_growth_has_the_sign_of_what_damping_lacks():
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture(scope="module")

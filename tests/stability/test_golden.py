@@ -42,7 +42,7 @@ def test_a_small_change_is_found_told_and_alone_accepted(moved):
     now = {points[0]: [rounded, mode], points[1]: [rounded, mode._replace(**moved)]}
     (change,) = changes(was, now)
     assert change == (points[1], mode, mode._replace(**moved))
-    told = record("xv15").told([change], 2)
+    told = record("xv15-uncoupled").told([change], 2)
     assert "chord" in told and "0.7 1" in told
     assert accepted(was, now) == {points[0]: was[points[0]], points[1]: now[points[1]]}
 

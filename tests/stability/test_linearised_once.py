@@ -39,13 +39,13 @@ def test_a_sweep_linearises_points_and_approach_in_one_call(name, asked):
 
 
 def test_a_sweep_whose_steps_tell_roots_apart_is_one_call(asked):
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     case.sweep(np.linspace(0.6, 0.75, 16) * tip(case))
     assert len(asked) == 1
 
 
 def test_a_sweep_of_an_input_is_one_call(asked):
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     own = case.given["rotor.control_stiffness"].si
     case.sweep(0.7 * tip(case), {"rotor.control_stiffness": np.linspace(0.9, 1.1, 21) * own})
     assert len(asked) == 1 and len(asked[0]) > 21
@@ -53,7 +53,7 @@ def test_a_sweep_of_an_input_is_one_call(asked):
 
 def test_a_sweep_looks_for_a_lower_anchor_where_the_first_has_no_trim(asked):
     """The tip is supersonic at seven tenths of its speed."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     slow = case.vary({"operation.speed_of_sound": 1.15 * tip(case)})
     speeds = np.array([50.0, 60.0, 70.0])
     assert slow.sweep(speeds).named_at == f"airspeed {0.5 * tip(case):.6g} m/s"
@@ -62,7 +62,7 @@ def test_a_sweep_looks_for_a_lower_anchor_where_the_first_has_no_trim(asked):
 
 def test_a_search_for_boundaries_linearises_its_scan_once(asked):
     """As a complex step; the approach is a second call, and what follows are points between and the boundaries."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     scan = np.linspace(0.3, 1.1, 41) * tip(case)
     found = case.flutter_point(scan)
     assert found.boundaries

@@ -25,14 +25,16 @@ from proprotor.stability.modes import decomposition
 from tests.known_systems import continued, roots
 
 KNOT, RPM = 1852 / 3600, np.pi / 30
-DECKS = ("xv15", "xv15-wing", "wrats-770-on", "v22-fifth-scale")
+DECKS = ("xv15-uncoupled", "xv15-wing", "wrats-770-on", "v22-fifth-scale")
 SPRINGS = ("stiffness", "frequency", "pitch_inertia")
 
 
 def random_case(seed):
     """A bundled case with other springs, rotor speed and number of blades."""
     rng = np.random.default_rng(seed)
-    case = pp.load_case(rng.choice(["xv15", "xv15-mass-distribution", "wrats-770-on", "v22-fifth-scale"]))
+    case = pp.load_case(
+        rng.choice(["xv15-uncoupled", "xv15-mass-distribution", "wrats-770-on", "v22-fifth-scale"])
+    )
     springs = [
         path for path, number in case.given.items() if path.endswith(SPRINGS) and np.ndim(number.si) == 0
     ]
@@ -49,7 +51,7 @@ def random_case(seed):
 
 def slow_four_blades():
     """The rotor of the XV-15 with four blades at 200 rpm, where participations are mixed most."""
-    case = pp.load_case("xv15").vary({"operation.rotor_speed": 200 * RPM})
+    case = pp.load_case("xv15-uncoupled").vary({"operation.rotor_speed": 200 * RPM})
     return replace(case, rotor=replace(case.rotor, n_blades=4))
 
 
@@ -168,7 +170,9 @@ def judged_shares(model, point):
     return values[above], (shares / shares.sum(axis=0))[:, above]
 
 
-@pytest.mark.parametrize("case", [pp.load_case("xv15"), slow_four_blades(), random_case(3), random_case(8)])
+@pytest.mark.parametrize(
+    "case", [pp.load_case("xv15-uncoupled"), slow_four_blades(), random_case(3), random_case(8)]
+)
 def test_the_sum_of_shares_is_the_largest_possible(case):
     model = case.linearize(airspeeds(case, 25))
     values, found = named(model)
@@ -199,7 +203,7 @@ def test_the_sum_of_shares_is_the_largest_possible(case):
 
 def test_the_names_of_the_xv15_at_50_knots_are_what_moves():
     """Chord was 94 % cyclic lag there, and regressive lag 97 % wing chord."""
-    modes = pp.load_case("xv15").sweep("50 kt").isel(airspeed=0)
+    modes = pp.load_case("xv15-uncoupled").sweep("50 kt").isel(airspeed=0)
     assert modes.participation.sel(mode="chord", dof="chord") > 0.9
     assert modes.participation.sel(mode="regressive lag", dof=["lag_1c", "lag_1s"]).sum() > 0.9
     assert set(
@@ -330,7 +334,7 @@ def test_names_and_branches_are_those_of_any_step_and_range(case, damping):
             assert_same(found, [expected[np.flatnonzero(common == speed)[0]] for speed in np.sort(some)])
 
 
-@pytest.mark.parametrize("case", [pp.load_case("xv15"), slow_four_blades(), random_case(1)])
+@pytest.mark.parametrize("case", [pp.load_case("xv15-uncoupled"), slow_four_blades(), random_case(1)])
 def test_every_analysis_calls_a_mode_by_the_same_name(case):
     """Sweep, modes of one model, attribution, sensitivity, explorer, animation: one name, one eigenvalue."""
     speed = float(airspeeds(case)[3])
@@ -355,7 +359,7 @@ def test_every_analysis_calls_a_mode_by_the_same_name(case):
     assert mode_motion(case, speed, "chord").eigenvalue == pytest.approx(by_name["chord"], rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ["xv15", "wrats-888-on"])
+@pytest.mark.parametrize("name", ["xv15-uncoupled", "wrats-888-on"])
 def test_a_boundary_is_named_as_the_mode_is_at_its_airspeed(name):
     case = pp.load_case(name)
     found = case.boundaries().boundaries
@@ -371,7 +375,7 @@ def test_a_boundary_is_named_as_the_mode_is_at_its_airspeed(name):
 
 def test_names_go_with_the_rotor_speed_of_the_point():
     """Where the rotor speed varies, progressive is what goes round faster than the rotor of that point."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     speeds = np.array([300.0, 458.0, 600.0]) * RPM
     along = case.sweep(60.0, {"operation.rotor_speed": speeds})
     for place, speed in enumerate(speeds):
@@ -384,7 +388,7 @@ def test_names_go_with_the_rotor_speed_of_the_point():
 
 
 def test_the_lines_of_a_map_are_named_by_what_is_neutral_there():
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     axes = {"airspeed": np.arange(340, 421, 20) * KNOT, "rotor.precone": np.deg2rad([1.0, 1.5, 2.0])}
     for line in boundary_lines(case, case.stability_map(axes)):
         middle = len(line.x) // 2
@@ -395,7 +399,7 @@ def test_the_lines_of_a_map_are_named_by_what_is_neutral_there():
 
 
 def test_a_study_names_modes_as_a_sweep_does():
-    case, speeds = pp.load_case("xv15"), np.arange(60, 180, 20.0)
+    case, speeds = pp.load_case("xv15-uncoupled"), np.arange(60, 180, 20.0)
     found = pp.study(case, {"rotor.precone": np.deg2rad([1.0, 2.5])}, speeds, ["modes", "flutter"], workers=1)
     for design, precone in enumerate(np.deg2rad([1.0, 2.5])):
         sweep = case.vary({"rotor.precone": precone}).sweep(speeds)
@@ -522,7 +526,7 @@ def test_branches_of_a_beam_wing_have_the_labels_of_the_anchor_wherever_a_line_b
 
 
 def test_a_sweep_by_branch_has_the_same_roots_each_in_one_place():
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     sweep = case.sweep("50:400:10kt")
     roots_of = by_branch(sweep)
     assert set(roots_of.branch.values) == {str(name) for name in np.unique(sweep.branch.values)}
@@ -539,7 +543,7 @@ def test_a_sweep_by_branch_has_the_same_roots_each_in_one_place():
 
 def test_a_step_of_no_quality_is_a_warning_of_a_study():
     """Steps of 60 kt leave out where roots meet."""
-    case, speeds = pp.load_case("xv15"), np.array([60.0, 91.0, 122.0, 153.0, 184.0])
+    case, speeds = pp.load_case("xv15-uncoupled"), np.array([60.0, 91.0, 122.0, 153.0, 184.0])
     found = pp.study(case, {"rotor.precone": [0.03, 0.05]}, speeds, "modes", workers=1)
     lost = (found.mode_quality <= 0).any("state")
     assert lost.any() and not lost.all()

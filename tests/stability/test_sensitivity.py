@@ -53,7 +53,7 @@ def largest_step(case, path):
 @pytest.fixture(scope="module")
 def case():
     """The XV-15 with all flexibility a little away from the end of its range, so that it may vary both ways."""
-    own = pp.load_case("xv15")
+    own = pp.load_case("xv15-uncoupled")
     inside = {
         "rotor.flap_outboard_fraction": 0.9,
         "rotor.lag_outboard_fraction": 0.9,
@@ -192,7 +192,7 @@ def test_density_and_chord_act_alike():
     p dV/dp is the same.
     """
     inputs = ["operation.density", "rotor.chord"]
-    relative = pp.load_case("xv15").sensitivity(wrt=inputs, section_damping=False).relative.values
+    relative = pp.load_case("xv15-uncoupled").sensitivity(wrt=inputs, section_damping=False).relative.values
     assert relative[0] == pytest.approx(relative[1], rel=1e-10)
 
 

@@ -14,7 +14,7 @@ STIFFNESS = "rotor.control_stiffness"
 
 @pytest.fixture(scope="module")
 def case():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +115,7 @@ def test_what_cannot_be_mapped_is_told(case, axes, options, message):
 
 def test_the_lines_of_a_damping_level_are_named_after_the_modes_that_have_it():
     """The root at the level has a real part, by which another may be nearer to the imaginary axis."""
-    case, level = pp.load_case("xv15"), -0.1
+    case, level = pp.load_case("xv15-uncoupled"), -0.1
     axes = {"airspeed": np.linspace(160.0, 280.0, 8), "rotor.precone": np.deg2rad([1.0, 1.5, 2.0])}
     lines = boundary_lines(case, case.stability_map(axes, level=level))
     assert lines

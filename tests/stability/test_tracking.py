@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
+from benchmarks.tracking import values_of
 from proprotor.rotor.motions import motions, name_list
 from proprotor.stability.following import follow
 from proprotor.stability.matching import POOR, match_modes
@@ -24,9 +25,7 @@ KNOT = 1852 / 3600
 def followed(linearize, positions):
     """Eigenvalues of the points in their places, of those states that start in the upper half plane or real."""
     path = follow(linearize(positions), ParameterLine(positions, linearize))
-    order = path.order(len(positions))
-    values = np.take_along_axis(path.spectrum.values[: len(positions)], order, 1)
-    return values, path
+    return values_of(path, len(positions)), path
 
 
 def by_start(values):
@@ -163,7 +162,7 @@ def test_three_real_roots_of_which_two_join():
 
 def test_steps_are_the_best_assignments():
     """The short way by the best of each row is the assignment scipy finds on the whole matrix."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     spectrum = decomposition(case.linearize(np.linspace(60, 200, 40)))
     steps, left = match_modes(spectrum, np.arange(39), np.arange(1, 40)), np.linalg.inv(spectrum.right)
     for step in range(39):
@@ -178,7 +177,7 @@ def test_steps_are_the_best_assignments():
 
 
 def test_left_vectors_are_the_inverse_of_the_right_ones():
-    spectrum = decomposition(pp.load_case("xv15").linearize(np.array([60.0, 120.0, 190.0])))
+    spectrum = decomposition(pp.load_case("xv15-uncoupled").linearize(np.array([60.0, 120.0, 190.0])))
     product = spectrum.all_modes.left @ spectrum.right
     np.testing.assert_allclose(product, np.broadcast_to(np.eye(product.shape[-1]), product.shape), atol=1e-10)
 
@@ -264,7 +263,7 @@ def test_a_pair_has_one_name_though_its_halves_would_go_apart():
     assert names.tolist() == [0, 0, 1, 1]
 
 
-@pytest.mark.parametrize("name", ["xv15", "xv15-mass-distribution"])
+@pytest.mark.parametrize("name", ["xv15-uncoupled", "xv15-mass-distribution"])
 def test_every_mode_has_a_name_of_its_own_in_any_range(name):
     case = pp.load_case(name)
     whole = case.sweep("50:400:10kt")
@@ -285,7 +284,7 @@ def test_every_mode_has_a_name_of_its_own_in_any_range(name):
 
 
 def test_names_are_those_of_cruise_where_an_input_varies():
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     own = case.sweep([150.0]).isel(airspeed=0)
     springs = np.linspace(0.9, 1.1, 5) * case.given["rotor.control_stiffness"].si
     modes = case.sweep(150.0, {"rotor.control_stiffness": springs})
@@ -297,7 +296,7 @@ def test_names_are_those_of_cruise_where_an_input_varies():
 
 
 def test_a_sweep_of_an_input_takes_one_input_and_one_airspeed():
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     with pytest.raises(pp.InputError, match="one input"):
         case.sweep(150.0, {"rotor.precone": [0.0, 0.1], "rotor.radius": [3.0, 4.0]})
     with pytest.raises(pp.InputError, match="one airspeed"):
@@ -308,7 +307,7 @@ def test_a_sweep_of_an_input_takes_one_input_and_one_airspeed():
 
 def test_the_anchor_falls_back_to_a_speed_that_has_a_trim():
     """Where the tip is supersonic at seven tenths of the tip speed, a lower airspeed serves."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     tip = case.operation.rotor_speed * case.rotor.radius
     slow = case.vary({"operation.speed_of_sound": 1.15 * tip})
     for design, share in ((case, 0.7), (slow, 0.5)):
@@ -324,8 +323,7 @@ def swaps(case, coarse, times):
     fine = np.linspace(coarse[0], coarse[-1], times * (len(coarse) - 1) + 1)
     judge = follow(case.linearize(fine))
     path = follow(case.linearize(coarse), ParameterLine(coarse, case.linearize))
-    expected = np.take_along_axis(judge.spectrum.values, judge.order(len(fine)), 1)[::times]
-    found = np.take_along_axis(path.spectrum.values[: len(coarse)], path.order(len(coarse)), 1)
+    expected, found = values_of(judge, len(fine))[::times], values_of(path, len(coarse))
     started = np.abs(found[0][:, None] - expected[0]).argmin(axis=1)
     apart = np.abs(found - expected[:, started])
     return int((apart > 1e-6 * np.abs(found)).sum())
@@ -333,13 +331,13 @@ def swaps(case, coarse, times):
 
 def test_no_swap_on_the_xv15_in_steps_of_5_knots():
     """Judged in steps of 0.1 kt where branches meet; benchmarks/tracking.py judges the whole range and more cases."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     assert swaps(case, np.arange(100, 200.1, 5) * KNOT, 50) == 0
 
 
 def test_no_swap_on_random_designs():
     rng = np.random.default_rng(11)
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     for _ in range(2):
         scale = rng.uniform(0.8, 1.25, 4)
         paths = (
@@ -353,7 +351,7 @@ def test_no_swap_on_random_designs():
 
 
 def test_no_two_modes_take_the_same_root():
-    modes = pp.load_case("xv15").sweep("50:400:5kt")
+    modes = pp.load_case("xv15-uncoupled").sweep("50:400:5kt")
     for values in modes.eigenvalue.values:
         values = values[np.isfinite(values)]
         apart = np.abs(values[:, None] - values) + 1e9 * np.eye(len(values))

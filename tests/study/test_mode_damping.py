@@ -83,7 +83,7 @@ def test_modes_that_keep_their_names_are_those_of_the_sweep(deck):
 
 
 def test_the_share_of_the_support_is_that_of_left_times_right_vectors():
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     found = study(case, {}, [100.0, 120.0], "modes", workers=1, pitch="coupling").isel(design=0, airspeed=1)
     model = case.linearize(120.0, pitch="coupling")
     n, inverse = len(model.dofs), np.linalg.inv(model.M)

@@ -28,7 +28,7 @@ from proprotor.units import unit_registry
 
 DEG, KT = np.pi / 180, 1852 / 3600
 PRECONE, CHORD_MODE = "rotor.precone", "support.modes[chord].frequency"
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 
 
 def eigenvalues(numbers, airspeed, **options):
@@ -89,7 +89,7 @@ def test_every_variable_has_its_unit_and_meaning():
     assert (units["growth_rate"], units["thrust"], units["torque"]) == ("1/s", "N", "N*m")
     assert (units[PRECONE], units["airspeed"], units["flutter_speed"]) == ("rad", "m/s", "m/s")
     assert all("long_name" in it.attrs for it in found.data_vars.values())
-    assert "assumed" in found.attrs["reservations"] and found.attrs["case"] == "xv15"
+    assert "assumed" in found.attrs["reservations"] and found.attrs["case"] == "xv15-uncoupled"
 
 
 def test_the_least_stable_mode_is_that_of_the_eigenvalues():
@@ -418,7 +418,7 @@ def test_a_batch_that_kills_every_worker_is_told(deadly):
     deadly.deaths = 100
     batch = Batch({PRECONE: np.array([0.04])}, np.array([100.0]))
     with pytest.raises(RuntimeError, match="has killed 3 worker processes"):
-        list(study_workers.in_processes(Analysis(CASE, ("trim",)), [(0, batch)], 1))
+        list(study_workers.Processes(Analysis(CASE, ("trim",)), [(0, batch)], 1).results())
     assert deadly.deaths == 97 and study_workers.idle_workers() == 0
 
 
@@ -506,8 +506,8 @@ def run():
 
 def test_the_command_writes_what_the_function_finds(run, tmp_path):
     path = tmp_path / "study.nc"
-    done = run("xv15", "--vary", f"{PRECONE}=1:3:1 deg", "--vary", f"{CHORD_MODE}=5 Hz, 6 Hz", "--speed", "200 kt",
-               "--pitch", "coupling", "--out", str(path))  # fmt: skip
+    done = run("xv15-uncoupled", "--vary", f"{PRECONE}=1:3:1 deg", "--vary", f"{CHORD_MODE}=5 Hz, 6 Hz",
+               "--speed", "200 kt", "--pitch", "coupling", "--out", str(path))  # fmt: skip
     assert done.exit_code == 0, done.output
     assert "6 points, 0 failed" in done.output and "assumed" in done.output
     expected = study(CASE, {PRECONE: "1:3:1 deg", CHORD_MODE: ["5 Hz", "6 Hz"]}, "200 kt", pitch="coupling")
@@ -520,7 +520,7 @@ def test_the_command_writes_what_the_function_finds(run, tmp_path):
 
 def test_the_command_samples_and_finds_flutter_speeds(run, tmp_path):
     path = tmp_path / "study.nc"
-    done = run("xv15", "--vary", f"{PRECONE}=1:3 deg", "--vary", f"{CHORD_MODE}=0.9:1.1 of deck", "--sample",
+    done = run("xv15-uncoupled", "--vary", f"{PRECONE}=1:3 deg", "--vary", f"{CHORD_MODE}=0.9:1.1 of deck", "--sample",
                "sobol", "--size", "8", "--speed", "160:460:30kt", "--flutter", "--out", str(path))  # fmt: skip
     assert done.exit_code == 0, done.output
     assert "flutter speed" in done.output
@@ -539,12 +539,12 @@ def test_the_command_tells_what_is_wrong(run, tmp_path):
         (("--vary", f"{PRECONE}=1 deg", *speed, "--out", "study.csv"), "must end in .nc"),
         (("--vary", f"{PRECONE}=1 deg", "--speed", "200"), "unit"),
     ):
-        done = run("xv15", *arguments)
+        done = run("xv15-uncoupled", *arguments)
         assert done.exit_code == 2 and told in done.output, done.output
 
 
 def test_a_study_in_which_all_fails_ends_with_code_1(run):
-    done = run("xv15", "--vary", f"{PRECONE}=100 deg", "--speed", "200 kt")
+    done = run("xv15-uncoupled", "--vary", f"{PRECONE}=100 deg", "--speed", "200 kt")
     assert done.exit_code == 1 and "1 failed" in done.output and "within 90 deg" in done.output
 
 

@@ -17,7 +17,7 @@ from proprotor.study.workers import on_cluster
 # Ends of connections to the killed worker are the cluster's own affair.
 pytestmark = pytest.mark.filterwarnings("default")
 
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 PLAN = sampling.latin_hypercube({"rotor.precone": ("1 deg", "4 deg"), "operation.density": (1.0, 1.3)}, 60)
 SPEEDS = np.array([100.0, 140.0, 330.0])
 

@@ -24,7 +24,7 @@ from proprotor.study.checkpoint import Checkpoint
 from proprotor.study.study import study
 
 PRECONE = "rotor.precone"
-CASE = pp.load_case("xv15")
+CASE = pp.load_case("xv15-uncoupled")
 PLAN = sampling.sobol(
     {PRECONE: ("1 deg", "4 deg"), "support.modes[chord].frequency": ("4.9 Hz", "5.9 Hz")}, 32
 )

@@ -139,7 +139,7 @@ def test_a_distribution_of_nothing_is_told():
 
 def test_the_flutter_speed_of_the_xv15_hangs_on_its_control_system():
     """Control stiffness from 5000 to 22400 ft lbf/rad moves the boundary by 95 kt, the density by 5 % a few."""
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     inputs = {
         "rotor.control_stiffness": ("8000 ft*lbf/rad", "16000 ft*lbf/rad"),
         "operation.density": sampling.Relative(0.98, 1.02),

@@ -118,7 +118,8 @@ def test_with_the_rotor_they_are_the_wing_they_came_from(file):
 def test_a_deck_of_nastran_results(file, tmp_path):
     path = tmp_path / "deck.toml"
     path.write_text(
-        f'base = "xv15"\n[case]\nname = "n"\ntitle = "n"\n[support]\nkind = "nastran"\nfile = "{file}"\ngrid = {HUB}\n'
+        'base = "xv15-uncoupled"\n[case]\nname = "n"\ntitle = "n"\n'
+        f'[support]\nkind = "nastran"\nfile = "{file}"\ngrid = {HUB}\n'
         'includes_rotor = false\nlength_unit = "1 in"\nmass_unit = "1 lbf*s**2/in"\ndamping_ratio = "1 %"\n',
         encoding="utf-8",
     )

@@ -33,7 +33,7 @@ REFUSED += (
 
 @pytest.fixture(scope="module")
 def xv15():
-    return pp.load_case("xv15")
+    return pp.load_case("xv15-uncoupled")
 
 
 # The share --------------------------------------------------------------------------------------------------------
@@ -185,7 +185,7 @@ def test_torsion_given_with_the_rotor_on_comes_out_as_given(xv15):
 @pytest.mark.parametrize("held", ["gimballed", "rigid"])
 def test_modes_come_out_as_given_when_the_rotor_is_held_as_it_was(xv15, held, shaft):
     case = pp.load_case(
-        "xv15",
+        "xv15-uncoupled",
         {"support.includes_rotor": held, "support.shaft": shaft, "rotor.gimbal_stiffness": "0 N*m/rad"},
     )
     locked = ("flap", "lag") + ("gimbal",) * (held == "rigid")
@@ -198,8 +198,8 @@ def test_a_hub_spring_is_told_where_it_moves_a_mode(xv15):
     assert told.startswith(
         "At rest the hub spring moves torsion at 9.923 Hz by +0.19 % from the frequency given"
     )
-    soft = pp.load_case("xv15", {"rotor.gimbal_stiffness": "1000 in*lbf/deg"})  # 0.7 per mille
-    rigid = pp.load_case("xv15", {"support.includes_rotor": "rigid"})
+    soft = pp.load_case("xv15-uncoupled", {"rotor.gimbal_stiffness": "1000 in*lbf/deg"})  # 0.7 per mille
+    rigid = pp.load_case("xv15-uncoupled", {"support.includes_rotor": "rigid"})
     assert not any("hub spring" in warning for case in (soft, rigid) for warning in case.warnings)
 
 
@@ -224,13 +224,13 @@ def test_the_result_says_how_the_rotor_was_held(xv15):
         "gimballed",
         "held",
     )
-    plain = pp.load_case("xv15", {"support.includes_rotor": "true"})
+    plain = pp.load_case("xv15-uncoupled", {"support.includes_rotor": "true"})
     assert plain.support.includes_rotor == plain.sources["support.includes_rotor"].si == "gimballed"
     assert plain.sources["support.includes_rotor"].source.endswith(
         'true: taken as "gimballed", for there is a gimbal'
     )
     np.testing.assert_array_equal(plain.linearize(100.0).M, xv15.linearize(100.0).M)
-    without = pp.load_case("xv15", {"support.includes_rotor": "false"})
+    without = pp.load_case("xv15-uncoupled", {"support.includes_rotor": "false"})
     assert without.support.includes_rotor is False and "rotor on" not in repr(without)
 
 
@@ -299,7 +299,7 @@ def folder(tmp_path_factory):
 
 
 def light_deck(folder, kind, held):
-    text = f'base = "xv15"\n[case]\nname = "light"\ntitle = "light"\n[support]\nkind = "{kind}"\n'
+    text = f'base = "xv15-uncoupled"\n[case]\nname = "light"\ntitle = "light"\n[support]\nkind = "{kind}"\n'
     word = str(held).lower() if isinstance(held, bool) else f'"{held}"'
     path = folder / f"{kind}-{word.strip(chr(34)).replace(' ', '-')}.toml"
     path.write_text(f"{text}includes_rotor = {word}\n{LIGHT[kind]}", encoding="utf-8")
@@ -358,7 +358,7 @@ def test_one_design_is_refused_before_anything_is_computed(xv15):
         xv15.vary({LIGHT_TORSION: 200.0})
     with pytest.raises(InputError, match=r"leaves no mass: in beam .*, gimballed, is 14\.7 times"):
         slips = {f"support.modes[{mode}].generalized_mass": "59 lb" for mode in ("beam", "chord")}
-        pp.load_case("xv15", slips | {LIGHT_TORSION: "1000 lb*ft**2"})
+        pp.load_case("xv15-uncoupled", slips | {LIGHT_TORSION: "1000 lb*ft**2"})
     with pytest.raises(InputError, match="leaves no mass"):  # heavier blades on the same modes
         xv15.vary({"rotor.blade_mass": 700.0})
 
@@ -415,7 +415,7 @@ def test_what_is_left_of_a_finite_element_wing_is_the_wing(tmp_path):
 
     wing, pylon, _ = xv15_wing()
     structure = beam_structure(wing, pylon)
-    case = pp.load_case("xv15")
+    case = pp.load_case("xv15-uncoupled")
     weight = float(case.rotor.n_blades * case.rotor.blade_mass)
     loaded = structure.mass + weight * structure.hub.T @ np.diag([1.0] * 3 + [0.0] * 3) @ structure.hub
     support = pp.NormalModes(
@@ -447,7 +447,7 @@ def test_unknown_words_are_refused(xv15):
         ({"support.shaft": "locked"}, 'must be "held" or "free"'),
     ):
         with pytest.raises(InputError, match=message):
-            pp.load_case("xv15", settings)
+            pp.load_case("xv15-uncoupled", settings)
     with pytest.raises(InputError, match='includes_rotor = 1: must be "gimballed"'):
         replace(xv15.support, includes_rotor=1)
     with pytest.raises(InputError, match='shaft = loose: must be "held" or "free"'):

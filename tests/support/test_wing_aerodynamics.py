@@ -167,7 +167,7 @@ elastic_axis = 0.35
 
 
 @pytest.mark.parametrize(
-    ("base", "more"), [("xv15", 'span = "1.333 ft"\nmast_length = "4.275 ft"'), ("xv15-wing", "")]
+    ("base", "more"), [("xv15-uncoupled", 'span = "1.333 ft"\nmast_length = "4.275 ft"'), ("xv15-wing", "")]
 )
 def test_a_deck_turns_airloads_on(tmp_path, base, more):
     """The beam mode gains ½ρVcaL 33/140 for a unit rise of the tip; a little less where it pitches up too."""
@@ -177,9 +177,9 @@ def test_a_deck_turns_airloads_on(tmp_path, base, more):
     assert type(still.support.at(speeds, 1.2)) is pp.NormalModes
     damped = flown.linearize(speeds).C - still.linearize(speeds).C
     place = flown.support.names.index("beam")
-    span = 16.66 * 0.3048 if base == "xv15" else 165 * 0.0254
+    span = 16.66 * 0.3048 if base == "xv15-uncoupled" else 165 * 0.0254
     expected = still.operation.density * speeds * 5.7 * 5.25 * 0.3048 * span / 2 * 33 / 140
-    mast = 4.275 * 0.3048 if base == "xv15" else 47.3 * 0.0254
+    mast = 4.275 * 0.3048 if base == "xv15-uncoupled" else 47.3 * 0.0254
     hub = flown.support.hub[:, place]
     tip = hub[0] - mast * hub[4]  # the hub pitches up with the beam mode
     np.testing.assert_allclose(damped[:, place, place], expected * tip**2, rtol=0.1)
@@ -193,13 +193,15 @@ def test_airloads_that_cannot_be(tmp_path):
     with pytest.raises(InputError, match=r"^sweep = nan: must be finite"):
         WingAerodynamics(lift_slope=A, chord=C, elastic_axis=0.3, sweep=np.nan)
     with pytest.raises(InputError, match=r"^span = .*: must be above zero"):
-        cantilever_strips(pp.load_case("xv15").support, 0.0, 1.0)
+        cantilever_strips(pp.load_case("xv15-uncoupled").support, 0.0, 1.0)
     with pytest.raises(InputError, match=r"^strips = 1: must move with the 3 coordinates"):
         strips = Strips(np.ones(2), np.ones((2, 1)), np.ones((2, 1)))
         in_airstream(
-            pp.load_case("xv15").support, strips, WingAerodynamics(lift_slope=A, chord=C, elastic_axis=0.3)
+            pp.load_case("xv15-uncoupled").support,
+            strips,
+            WingAerodynamics(lift_slope=A, chord=C, elastic_axis=0.3),
         )
     with pytest.raises(InputError, match=r"^support.wing_aerodynamics.span: is missing"):
-        deck(tmp_path, AIRLOADS.format(base="xv15", more='mast_length = "1 ft"'))
+        deck(tmp_path, AIRLOADS.format(base="xv15-uncoupled", more='mast_length = "1 ft"'))
     with pytest.raises(InputError, match=r"^support.wing_aerodynamics.sapn = 1 ft: unknown field 'sapn'"):
         deck(tmp_path, AIRLOADS.format(base="xv15-wing", more='sapn = "1 ft"'))

@@ -97,8 +97,7 @@ def study(
         output.print_json(output.about(case, request) | study_summary(results) | {"results": out})
     else:
         _print(results)
-    if bool((results.reason != "").all()):
-        raise click.exceptions.Exit(1)
+    output.exit_without((results.reason == "").any())
 
 
 def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> sampling.Plan:
@@ -138,8 +137,7 @@ def _print(results: Dataset) -> None:
     if "flutter_speed" in results:
         _print_flutter(results)
     elif "points unstable" in found:
-        lowest = found["lowest damping (% of critical)"]
-        damping = marked(f"{lowest:.3g}", found["points doubtful"])
+        damping = marked(f"{found['lowest damping (% of critical)']:.3g}", found["points doubtful"])
         out.print(f"{found['points unstable']} points unstable; lowest damping {damping} %")
     doubts = found["doubts of points"].items()
     output.print_footnotes(

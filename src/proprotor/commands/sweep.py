@@ -60,8 +60,7 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
             footer=" ".join(reservations(case)),
         ),
     )
-    if table.failed.all():
-        raise click.exceptions.Exit(1)
+    output.exit_without(not table.failed.all())
 
 
 def _document(table: SweepTable) -> dict[str, Any]:
@@ -75,13 +74,12 @@ def _document(table: SweepTable) -> dict[str, Any]:
 def _print(case: Case, table: SweepTable, all_modes: bool) -> None:
     """Print the case with its reservations, the table of a sweep, and where modes are unstable."""
     out = output.console()
-    warnings = [_shortened(f"Warning: {text}", case, out.width) for text in case.warnings]
     for line in (
         heading(case),
         f"Model: {options_text(options_in_result(table.sweep.attrs))}.",
         CONVENTION,
         *reservations(case),
-        *warnings,
+        *(_shortened(f"Warning: {text}", case, out.width) for text in case.warnings),
         "",
     ):
         out.print(line)

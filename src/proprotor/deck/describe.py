@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterator
-from dataclasses import MISSING, asdict, dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from functools import cache
 from typing import Any, Literal, get_args, get_origin
 
@@ -17,7 +17,6 @@ from pydantic.fields import FieldInfo
 from proprotor.deck import sections as deck
 from proprotor.deck import support_sections
 from proprotor.deck.fields import AfterChoice, Reading, Section
-from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.deck.sections import section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
@@ -27,12 +26,6 @@ from proprotor.support.beam_wing import Pylon, Wing
 from proprotor.support.wing_aerodynamics import WingAerodynamics
 from proprotor.units import meaning
 
-_RANGES: dict[Bound, str] = {
-    POSITIVE: "above 0",
-    NOT_NEGATIVE: "0 or more",
-    FRACTION: "0 to 1",
-    BELOW_CRITICAL: "0 to below 1",
-}
 _ALONG = {
     "along the blade": "one value, { r_over_R = [...], value = [...], unit = ... }, or { file = ..., column = ... }",
     "distribution": "{ r_over_R = [...], value = [...], unit = ... } or { file = ..., column = ... }",
@@ -122,9 +115,8 @@ def find_fields(path: str) -> tuple[DeckField, ...]:
 
 def _hint(wanted: str) -> str:
     """Return a hint at the nearest field, by its whole path or its last name."""
-    known = {plain_path(field.path): plain_path(field.path) for field in deck_fields()}
-    by_last_name = {path.rpartition(".")[2]: path for path in known}
-    names = known if "." in wanted else by_last_name
+    known = [plain_path(field.path) for field in deck_fields()]
+    names = {path if "." in wanted else path.rpartition(".")[2]: path for path in known}
     nearest = difflib.get_close_matches(wanted.lower(), names, n=1)
     return f"did you mean {names[nearest[0]]}?" if nearest else "`proprotor describe` lists them"
 
@@ -136,7 +128,6 @@ def plain_path(path: str) -> str:
 
 def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckField]:
     """Yield the fields of a section at a place of the deck."""
-    defaults = _defaults(section)
     for name, field in section.model_fields.items():
         number = next((part for part in field.metadata if isinstance(part, Reading)), None)
         takes = _takes_plain(field.annotation) if number is None else _takes(number)
@@ -150,9 +141,9 @@ def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckF
             meaning=field.description or "",
             takes=takes,
             unit=_unit(reading),
-            range=_range(reading),
+            range=f"{reading.least} or more" if reading.form == "count" else reading.bound.range,
             required=field.is_required() or (is_one_side and name not in section.may_lack),
-            default=_default(field, reading, defaults.get(name, MISSING)),
+            default=_default(field, reading, _defaults(section).get(name, MISSING)),
             instead_of=_instead_of(section, name),
             form=reading.form,
         )
@@ -188,10 +179,6 @@ def _unit(reading: Reading) -> str:
     if isinstance(reading, AfterChoice):
         return f"{reading.unit or '1'} or {reading.other_unit or '1'}"
     return reading.unit
-
-
-def _range(reading: Reading) -> str:
-    return f"{reading.least} or more" if reading.form == "count" else _RANGES.get(reading.bound, "")
 
 
 def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
@@ -231,6 +218,7 @@ def _default(field: FieldInfo, reading: Reading, constructed: Any) -> str:
 
 def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:
     """Yield label and text of each property of a field."""
+    others = ", ".join(field.instead_of)
     texts = {
         "means": field.meaning,
         "of": f'[support] of kind "{field.kind}"' if field.kind else "",
@@ -238,17 +226,7 @@ def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:
         "SI unit": field.unit,
         "range": field.range,
         "default": field.default,
-        "instead of": ", ".join(field.instead_of),
-        "needed": "yes" if field.required and not field.instead_of else _needed(field),
+        "instead of": others,
+        "needed": ", or ".join(filter(None, ("yes", others))) if field.required else "no",
     }
     yield from ((label, text) for label, text in texts.items() if text)
-
-
-def _needed(field: DeckField) -> str:
-    """Return whether a deck must give a field with alternatives, in words."""
-    return f"yes, or {', '.join(field.instead_of)}" if field.required else "no"
-
-
-def field_records(found: tuple[DeckField, ...]) -> list[dict[str, Any]]:
-    """Return fields as plain data, for JSON."""
-    return [asdict(field) for field in found]

@@ -38,7 +38,7 @@ from proprotor.model.massless import with_reasons
 from proprotor.model.mast import with_mast
 from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair, rotors_on, shares
-from proprotor.model.rotor_model import in_closed_form, rotor_model
+from proprotor.model.rotor_model import airload_moments, in_closed_form, rotor_model
 from proprotor.model.side import Side
 
 __all__ = [
@@ -47,6 +47,7 @@ __all__ = [
     "Configuration",
     "LinearModel",
     "Side",
+    "airload_moments",
     "deck_fingerprint",
     "doubts",
     "first_order",

@@ -13,7 +13,7 @@ the largest entries of the rows. Elsewhere `scipy.optimize.linear_sum_assignment
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -108,8 +108,7 @@ class Spectrum(NamedTuple):
     def nearest(self, roots: Array) -> Array:
         """Return the places (..., k) of the states that are nearest to some roots (..., k) of the points."""
         apart = size_of(self.values[..., None, :] - roots[..., :, None])
-        place: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1)
-        return place
+        return np.asarray(np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1))
 
     @property
     def all_modes(self) -> Modes:
@@ -321,8 +320,7 @@ def _trust(likeness: Array, choice: Array, start: Array, end: Array) -> Array:
     mixing[...] = 0
     mixing[step, one, other] = index
     worst = np.maximum(mixing.max(axis=2, initial=0), mixing.max(axis=1, initial=0))
-    quality: Array = np.clip(np.minimum(own, 1) - worst, 0, 1)
-    return quality
+    return np.asarray(np.clip(np.minimum(own, 1) - worst, 0, 1))
 
 
 def _index(mixing: Array, apart: Array, later: Array) -> Array:
@@ -337,8 +335,8 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     """Return successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
     likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
-    distance = _distance(start[:, None], end, np.nanmax(np.abs(start)))
-    gain = likeness - distance - _APART * (first.block[:, None] != last.block)
+    gain = likeness - _distance(start[:, None], end, np.nanmax(np.abs(start)))
+    gain -= _APART * (first.block[:, None] != last.block)
     successor = best_assignment(np.where(np.isfinite(gain), gain, -1e300))
     mixing = likeness[:, successor]
     own = np.diagonal(mixing).copy()
@@ -356,8 +354,7 @@ def best_assignment(gain: Array) -> Array:
     """Return the column of each row in the assignment of columns to rows with the largest sum."""
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
-    columns: Array = linear_sum_assignment(gain, maximize=True)[1]
-    return columns
+    return np.asarray(linear_sum_assignment(gain, maximize=True)[1])
 
 
 def _as_slice(points: Array) -> slice | Array:
@@ -374,8 +371,7 @@ def conjugate(values: Array) -> Array:
 
 def size_of(numbers: Array) -> Array:
     """Return |z| without np.abs's overflow guard, twice as fast."""
-    size: Array = np.sqrt(numbers.real**2 + numbers.imag**2)
-    return size
+    return np.asarray(np.sqrt(numbers.real**2 + numbers.imag**2))
 
 
 def _distance(start: Array, end: Array, scale: Array) -> Array:
@@ -389,17 +385,12 @@ def way_to_zero(start: Array, end: Array) -> Array:
     way = end - start
     length = np.abs(way) ** 2
     at = np.clip(-(start.conj() * way).real / np.where(length > 0, length, 1), 0, 1)
-    distance: Array = np.abs(start + at * way)
-    return distance
+    return np.asarray(np.abs(start + at * way))
 
 
 def chain(successor: Array, start: Array) -> Array:
     """Return places (steps + 1, states) of states along consecutive steps (steps, states), from places (states,)."""
-    order = np.empty((len(successor) + 1, successor.shape[-1]), dtype=int)
-    order[0] = start
-    for step, places in enumerate(successor):
-        places.take(order[step], out=order[step + 1])
-    return order
+    return np.stack(list(accumulate(successor, lambda places, step: step.take(places), initial=start)))
 
 
 def keep_upper(values: Array, block: Array) -> Array:

@@ -24,7 +24,7 @@ from proprotor.model.mount import mount
 from proprotor.model.options_of_result import check_options
 from proprotor.model.pair import rotors_on, shares
 from proprotor.model.quantities import COUPLINGS, couplings, model_quantities
-from proprotor.model.rotor_model import in_closed_form
+from proprotor.model.rotor_model import airload_moments, in_closed_form
 from proprotor.model.rotor_share import without_rotors
 from proprotor.model.stamp import of_model
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
@@ -33,13 +33,7 @@ from proprotor.rotor.motions import MAST_TWIST
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
-from proprotor.rotor.section_loads import (
-    BladeSections,
-    closed_form_moments,
-    compressible,
-    load_moments,
-    segment_quantities,
-)
+from proprotor.rotor.section_loads import BladeSections, compressible, segment_quantities
 from proprotor.rotor.trim import UNKNOWNS, Trim, with_trim
 from proprotor.support.airframe import Airframe
 from proprotor.support.normal_modes import NormalModes
@@ -63,7 +57,7 @@ _COEFFICIENTS = {
 }
 
 
-class Part(NamedTuple):
+class _Part(NamedTuple):
     """M, C, K (..., n, n) of one origin, on the coordinates of the model."""
 
     M: Array
@@ -89,7 +83,7 @@ class _SomeCoefficients:
         return found._replace(**dropped)
 
 
-def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict[str, Part]:
+def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict[str, _Part]:
     """Return M, C and K of a case by origin; their sum is the model.
 
     Parameters
@@ -103,7 +97,7 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
 
     Returns
     -------
-    dict of str to Part
+    dict of str to M, C and K
         Origins that contribute nothing are left out.
 
     Raises
@@ -127,7 +121,7 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
     nothing = np.zeros_like(support.mass)
     carrier = replace(support, mass=nothing, damping=nothing, stiffness=nothing, includes_rotor=False)
     names = dict.fromkeys(name for parts in by_rotor for name in parts)
-    none = Part(*[np.zeros((len(FIXED_COORDINATES),) * 2)] * 3)
+    none = _Part(*[np.zeros((len(FIXED_COORDINATES),) * 2)] * 3)
     found = {}
     for name in names:
         alone = [
@@ -149,7 +143,7 @@ class _Rotor(NamedTuple):
     trim: Trim
 
 
-def _rotor_parts(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dict[str, Part]:
+def _rotor_parts(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dict[str, _Part]:
     """Return M, C and K of a rotor alone by origin (points, 18, 18)."""
     quantities = _quantities(own, model, shape)
     blade = _structure(quantities, own.choice) | dict(
@@ -167,24 +161,24 @@ def _quantities(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dict
     return trimmed | couplings(own.choice, trimmed)
 
 
-def _structure(quantities: dict[str, Any], choice: Options) -> dict[str, Part]:
+def _structure(quantities: dict[str, Any], choice: Options) -> dict[str, _Part]:
     """Return inertia, springs and dampers of one blade (points, 12, 12)."""
     equations = choice.equation_set
     quantities = quantities | evaluate(equations.inertia.trim_integrals, quantities)._asdict()
     zero = np.zeros((12, 12))
     mass = evaluate(equations.inertia.mass, quantities) + evaluate(equations.pitch.mass, quantities)
     parts = {
-        "inertia": Part(mass, zero, zero),
-        "gyroscopic": Part(zero, evaluate(equations.inertia.gyroscopic, quantities), zero),
-        "centrifugal": Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, quantities)),
-        "dampers": Part(zero, evaluate(pitch.damping, quantities), zero),
+        "inertia": _Part(mass, zero, zero),
+        "gyroscopic": _Part(zero, evaluate(equations.inertia.gyroscopic, quantities), zero),
+        "centrifugal": _Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, quantities)),
+        "dampers": _Part(zero, evaluate(pitch.damping, quantities), zero),
     }
     for origin, name in _RESTRAINTS.items():
         others = dict.fromkeys(set(_RESTRAINTS.values()) - {name}, 0.0)
-        parts[origin] = Part(zero, zero, evaluate(equations.pitch.stiffness, quantities | others))
+        parts[origin] = _Part(zero, zero, evaluate(equations.pitch.stiffness, quantities | others))
     springs = evaluate(equations.flap_lag_springs.stiffness, quantities)
     return parts | {
-        origin: Part(zero, zero, np.where(mask, springs, 0)) for origin, mask in _spring_entries().items()
+        origin: _Part(zero, zero, np.where(mask, springs, 0)) for origin, mask in _spring_entries().items()
     }
 
 
@@ -211,7 +205,7 @@ def _spring_entries() -> dict[str, Array]:
 
 def _airloads(
     sections: BladeSections, quantities: dict[str, Any], choice: Options
-) -> Iterator[tuple[str, Part]]:
+) -> Iterator[tuple[str, _Part]]:
     """Yield airloads of one blade (points, 12, 12) by coefficient, and by coupling of the blade's pitch."""
     if choice.airloads == "none":
         return
@@ -219,18 +213,18 @@ def _airloads(
     kinds = {"lift slope": _COEFFICIENTS["lift slope"]} if choice.airloads == "lift-slope" else _COEFFICIENTS
     for origin, kept in kinds.items():
         loads = _moments(sections, quantities, choice, kept, section_damping=False)
-        yield f"airloads: {origin}", Part(zero, *_loads(uncoupled, choice, loads))
+        yield f"airloads: {origin}", _Part(zero, *_loads(uncoupled, choice, loads))
     every = tuple(name for kept in kinds.values() for name in kept)
     whole = _moments(sections, quantities, choice, every, section_damping=False)
     alone = _loads(uncoupled, choice, whole)
     if choice.section_damping:
         whole = _moments(sections, quantities, choice, every, section_damping=True)
         undamped, alone = alone, _loads(uncoupled, choice, whole)
-        yield "section pitch damping", Part(zero, *(alone - undamped))
+        yield "section pitch damping", _Part(zero, *(alone - undamped))
     for name, origin in _COUPLING_ORIGINS.items():
         if np.any(quantities[name]):
             coupled = _loads(uncoupled | {name: quantities[name]}, choice, whole)
-            yield origin, Part(zero, *(coupled - alone))
+            yield origin, _Part(zero, *(coupled - alone))
 
 
 def _moments(
@@ -241,17 +235,12 @@ def _moments(
     section_damping: bool,
 ) -> dict[str, Any]:
     """Return radial moments of the section loads by some of the coefficients, and the quantities of segments."""
-    equations = choice.equation_set.airloads
-    segments = segment_quantities(
-        sections, quantities | {"section_damping": float(section_damping)}, equations
-    )
-    if in_closed_form(sections, choice):
-        return segments | closed_form_moments(sections, segments)
-    some = replace(sections, airfoil=_SomeCoefficients(sections.airfoil, kept, choice.compressibility))
-    alone = choice.airloads == "lift-slope"
-    return segments | load_moments(
-        some, segments, compressibility=False, lift_slope_only=alone, equations=equations
-    )
+    given = quantities | {"section_damping": float(section_damping)}
+    segments = segment_quantities(sections, given, choice.equation_set.airloads)
+    if not in_closed_form(sections, choice):
+        some = _SomeCoefficients(sections.airfoil, kept, choice.compressibility)
+        sections = replace(sections, airfoil=some)
+    return segments | airload_moments(sections, segments, choice)
 
 
 def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> Array:
@@ -261,27 +250,29 @@ def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, A
     return np.stack([damping, stiffness])
 
 
-def _in_fixed_frame(part: Part, quantities: Mapping[str, Any]) -> Part:
+def _in_fixed_frame(part: _Part, quantities: Mapping[str, Any]) -> _Part:
     """Return a part of one blade as a part of the rotor (points, 18, 18)."""
-    return Part(
+    return _Part(
         evaluate(multiblade.mass, quantities, part.M),
         evaluate(multiblade.damping, quantities, part.M, part.C),
         evaluate(multiblade.stiffness, quantities, part.M, part.C, part.K),
     )
 
 
-def _other_parts(quantities: Mapping[str, Any], choice: Options) -> dict[str, Part]:
+def _other_parts(quantities: Mapping[str, Any], choice: Options) -> dict[str, _Part]:
     """Return the parts that are added in the fixed frame (18, 18)."""
     zero, parts = np.zeros((len(FIXED_COORDINATES),) * 2), {}
     if choice.drive_train is not None:
         kinds = (drive_train.mass, drive_train.damping, drive_train.stiffness)
-        parts["drive train"] = Part(*(evaluate(kind, quantities) for kind in kinds))
+        parts["drive train"] = _Part(*(evaluate(kind, quantities) for kind in kinds))
     if "cyclic_flap_stiffness_excess" in quantities:
-        parts["cyclic flap restraint"] = Part(zero, zero, evaluate(multiblade.cyclic_restraint, quantities))
+        parts["cyclic flap restraint"] = _Part(zero, zero, evaluate(multiblade.cyclic_restraint, quantities))
     return parts
 
 
-def _alone(name: str, part: Part, choice: Options, model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
+def _alone(
+    name: str, part: _Part, choice: Options, model: LinearModel, shape: tuple[int, ...]
+) -> LinearModel:
     """Return a part of a rotor as a rotor alone, with the twist of its mast; the drive train with its engine."""
     n, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
     matrices: dict[str, Any] = {
@@ -302,7 +293,7 @@ def _alone(name: str, part: Part, choice: Options, model: LinearModel, shape: tu
 
 def _mounted(
     rotors: list[LinearModel], carrier: NormalModes, model: LinearModel, interconnect: ArrayLike = 0.0
-) -> Part:
+) -> _Part:
     """Return a part of one rotor, or of two, on the coordinates of the model."""
     if isinstance(carrier, Airframe):
         left = rotors[1] if len(rotors) > 1 else None
@@ -310,12 +301,12 @@ def _mounted(
     else:
         whole = mount(rotors[0], carrier)
     whole = whole.submodel(model.dofs)
-    return Part(whole.M, whole.C, whole.K)
+    return _Part(whole.M, whole.C, whole.K)
 
 
 def _interconnect(
     nothing: LinearModel, carrier: NormalModes, model: LinearModel, choice: Options
-) -> dict[str, Part]:
+) -> dict[str, _Part]:
     """Return the part of the interconnect shaft, if the drive train has one."""
     train = choice.drive_train
     if train is None or not np.any(train.interconnect_stiffness):
@@ -325,7 +316,7 @@ def _interconnect(
 
 def _support_parts(
     case: Configuration, support: NormalModes, model: LinearModel, shape: tuple[int, ...]
-) -> dict[str, Part]:
+) -> dict[str, _Part]:
     """Return the parts of the support; its mass is taken without the rotor's."""
     n, modes = len(model.dofs), len(support.names)
 
@@ -340,14 +331,14 @@ def _support_parts(
         rotors = shares(support, at_rest, None if case.left is None else mass_at_rest(case.left.rotor))
     mass, _ = without_rotors(support, rotors)
     zero, own = np.zeros((*shape, n, n)), case.support
-    air = Part(
+    air = _Part(
         whole(mass * 0 + support.mass - own.mass),
         whole(support.damping - own.damping),
         whole(support.stiffness - own.stiffness),
     )
     return {
-        "support inertia": Part(whole(mass) - air.M, zero, zero),
-        "support damping": Part(zero, whole(own.damping), zero),
-        "support stiffness": Part(zero, zero, whole(own.stiffness)),
+        "support inertia": _Part(whole(mass) - air.M, zero, zero),
+        "support damping": _Part(zero, whole(own.damping), zero),
+        "support stiffness": _Part(zero, zero, whole(own.stiffness)),
         "wing airloads": air,
     }

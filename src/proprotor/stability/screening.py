@@ -22,9 +22,8 @@ def steps_by_values(values: Array, block: Array, before: Array, after: Array) ->
 
     Each root stays in its block (states,), which does not couple with others.
     """
-    count = len(before)
-    successor = np.empty((count, values.shape[1]), dtype=int)
-    for start in range(0, count, _BLOCK):
+    successor = np.empty((len(before), values.shape[1]), dtype=int)
+    for start in range(0, len(before), _BLOCK):
         rows = slice(start, start + _BLOCK)
         successor[rows] = _nearest(values[before[rows]], values[after[rows]], block)
     return first_steps(before, after, successor, np.full(successor.shape, np.nan))

@@ -140,8 +140,7 @@ def requested(
     plan = as_plan(inputs)
     from proprotor.deck.vary import design_inputs
 
-    deck = design_inputs(case) if set(plan.inputs) - {AIRSPEED} else {}
-    designs = plan.resolve(deck)
+    designs = plan.resolve(design_inputs(case) if set(plan.inputs) - {AIRSPEED} else {})
     own = AIRSPEED in plan.inputs
     if own == (airspeed is not None):
         raise InputError(AIRSPEED, airspeed, "must be given, either for all designs or among the inputs")
