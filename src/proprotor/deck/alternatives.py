@@ -42,10 +42,10 @@ def altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     superseded = [
         place for section, choices in _BY_SECTION for place in _superseded(changes, section, choices)
     ]
-    if _is_section(changes.get("support")) and "kind" in changes["support"]:
+    if is_section(changes.get("support")) and "kind" in changes["support"]:
         superseded.append(("support",))
     rotor: Any = changes.get("rotor")
-    if _is_section(rotor) and not rotor.keys().isdisjoint(MASS_INTEGRALS):
+    if is_section(rotor) and not rotor.keys().isdisjoint(MASS_INTEGRALS):
         superseded.append(("rotor", "hub_mass"))  # belongs to a distribution; the integrals contain the hub
     for place in superseded:
         base = without(base, place)
@@ -81,11 +81,11 @@ def _merged(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     """Return tables with changes, section by section."""
     result = base | changes
     for key, change in changes.items():
-        if _is_section(change) and _is_section(base.get(key)):
+        if is_section(change) and is_section(base.get(key)):
             result[key] = _merged(base[key], change)
     return result
 
 
-def _is_section(entry: Any) -> bool:
+def is_section(entry: Any) -> bool:
     """Return whether an entry is a section, rather than a number written as a table."""
     return isinstance(entry, dict) and "value" not in entry and "column" not in entry

@@ -22,6 +22,8 @@ from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.rotor import Rotor
+from proprotor.support.aircraft_airloads import Tail
+from proprotor.support.aircraft_structure import CarryThrough, Fuselage
 from proprotor.support.beam_wing import Pylon, Wing
 from proprotor.support.wing_aerodynamics import WingAerodynamics
 from proprotor.units import meaning
@@ -155,6 +157,8 @@ def _takes(reading: Reading) -> str:
         return _FORMS[reading.form]
     if reading.form == "choice":
         return list_choices(reading.choices)
+    if reading.form == "joint":
+        return f"{list_choices(reading.choices)}, or {meaning(reading.unit)}"
     values = meaning(reading.unit)
     if isinstance(reading, AfterChoice):
         values = f"of a length {values}; of an angle {meaning(reading.other_unit)}"
@@ -200,6 +204,10 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
         deck.AirfoilSection: (Airfoil,),
         deck.DriveTrainSection: (DriveTrain,),
         support_sections.BeamWingSection: (Wing, Pylon),
+        support_sections.AircraftSection: (Wing, Pylon),
+        support_sections.FuselageSection: (Fuselage,),
+        support_sections.CarryThroughSection: (CarryThrough,),
+        support_sections.TailSection: (Tail,),
         support_sections.WingAerodynamicsSection: (WingAerodynamics,),
         support_sections.AssumedShapeSection: (WingAerodynamics,),
     }

@@ -11,6 +11,12 @@
     downstop_stiffness_on and downstop_stiffness_off, rigid if left out. rotor_mass, the mass of the rotor model at the
     hub. modes, the number of modes, all coordinates if left out; damping_ratio or loss_factor of every mode, and
     beam_damping_ratio, chord_damping_ratio, torsion_damping_ratio of the modes of these kinds.
+``kind = "aircraft"``
+    The fields of a beam wing, for each side of the aircraft; spindle_yaw_stiffness_on, spindle_yaw_stiffness_off and
+    pylon_yaw_damping_ratio; modes, the number of elastic modes of each symmetry; symmetry, "both", "symmetric" or
+    "antisymmetric". Tables fuselage, carry_through, horizontal_tail, vertical_tail: see
+    `proprotor.support.aircraft_structure`, `free_airframe` and `aircraft_airloads`. A table ``[left]`` at the top of
+    the deck has what differs on the left side.
 ``kind = "matrices"``
     file, an .npz file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names: see
     `proprotor.support.matrix_files`. A table hub; includes_rotor, shaft, rotor_mass, modes, damping_ratio, length_unit,
@@ -31,7 +37,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -107,12 +113,12 @@ class NormalModesSection(Section):
         return self
 
 
-class BeamWingSection(Section):
-    """A cantilever wing of beam elements with a rigid pylon."""
+class _WingSection(Section):
+    """A wing of beam elements with a pylon: what a cantilever and one side of an aircraft have in common."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = DAMPING_ALTERNATIVES
 
-    kind: Literal["beam-wing"] = needed("A wing of beam elements.")
+    kind: Any = needed("")
     span: fields.PositiveLength = needed("Span, from the mount outboard to the pylon.")
     beam_stiffness: fields.BendingStiffness = needed("Stiffness EI of bending up and down.")
     chord_stiffness: fields.BendingStiffness = needed("Stiffness EI of bending fore and aft.")
@@ -155,9 +161,106 @@ class BeamWingSection(Section):
     wing_aerodynamics: WingAerodynamicsSection | None = optional("Airloads of the wing; none if left out.")
 
     @model_validator(mode="after")
-    def _one_damping(self) -> BeamWingSection:
+    def _one_damping(self) -> Self:
         _exactly_one(self, "damping_ratio", "loss_factor")
         return self
+
+
+class BeamWingSection(_WingSection):
+    """A cantilever wing of beam elements with a rigid pylon."""
+
+    kind: Literal["beam-wing"] = needed("A wing of beam elements.")
+
+
+class FuselageSection(Section):
+    """A free rigid fuselage, by its own mass or by that of the whole aircraft."""
+
+    whole_aircraft: bool = needed(
+        "Whether the numbers are those of the whole aircraft; what wings, nacelles and rotors have is then taken off."
+    )
+    mass: fields.Mass = needed("Mass.")
+    roll_inertia: fields.Inertia = needed("Inertia about the axis forward through the centre of mass.")
+    pitch_inertia: fields.Inertia = needed("Inertia about the axis outboard through the centre of mass.")
+    yaw_inertia: fields.Inertia = needed("Inertia about the axis upward through the centre of mass.")
+    product_of_inertia: fields.ProductOfInertia = optional(
+        "Integral of distance forward times distance up from the centre of mass."
+    )
+    centre_forward: fields.Offset = needed(
+        "Centre of mass ahead of the elastic axis of the wing at the fuselage side."
+    )
+    centre_up: fields.Offset = needed(
+        "Centre of mass above the elastic axis of the wing at the fuselage side."
+    )
+
+
+class CarryThroughSection(Section):
+    """The box that carries the wing through the fuselage, and what the fuselage holds at its side.
+
+    Displacements are held; properties left out are those of the wing root."""
+
+    half_width: fields.PositiveLength = needed("Distance from the plane of symmetry to the fuselage side.")
+    beam_stiffness: fields.UniformStiffness = optional("Stiffness EI of bending up and down.")
+    chord_stiffness: fields.UniformStiffness = optional("Stiffness EI of bending fore and aft.")
+    torsion_stiffness: fields.UniformStiffness = optional("Torsion stiffness GJ.")
+    axial_stiffness: fields.UniformAxialStiffness = optional("Axial stiffness EA.")
+    mass_per_length: fields.UniformMass = optional("Mass per length.")
+    torsional_inertia_per_length: fields.UniformInertia = optional(
+        "Inertia per length about the elastic axis."
+    )
+    bending_slope: fields.Joint = optional(
+        'Turn of the wing against the fuselage about the forward axis: "held", "free" or a stiffness at each side; '
+        "free if left out."
+    )
+    chord_slope: fields.Joint = optional(
+        'Turn of the wing against the fuselage about the upward axis: "held", "free" or a stiffness at each side; '
+        "free if left out."
+    )
+    twist: fields.Joint = optional(
+        'Turn of the wing against the fuselage about the outboard axis: "held" or a stiffness at each side, or "free" '
+        "with antisymmetric motion alone; held if left out."
+    )
+    elements: fields.Size = optional("Number of elements of equal length.")
+
+
+class TailSection(Section):
+    """A tail of the aircraft: quasi-steady airloads on the motion of the fuselage."""
+
+    area: fields.Area = needed("Area; of all vertical tails together.")
+    lift_slope: fields.Slope = needed("Lift slope of the whole tail on its area.")
+    arm: fields.Offset = needed(
+        "Aerodynamic centre behind the elastic axis of the wing at the fuselage side."
+    )
+    height: fields.Offset = optional(
+        "Aerodynamic centre above the elastic axis of the wing at the fuselage side."
+    )
+    wash: fields.Fraction = optional(
+        "Downwash dε/dα or sidewash: share of the incidence that is lost at the tail."
+    )
+
+
+class AircraftSection(_WingSection):
+    """A whole aircraft with two mirrored rotors: free fuselage, box, wings, and pylons on springs.
+
+    The fields of the wing and the pylon are those of each side, the span from the fuselage side to the pylon."""
+
+    kind: Literal["aircraft"] = needed("A whole aircraft.")
+    modes: fields.Size = needed("Number of lowest elastic modes of each symmetry.")
+    symmetry: Literal["both", "symmetric", "antisymmetric"] = optional(
+        "Which motions of the aircraft the model has.", "both"
+    )
+    spindle_yaw_stiffness_on: fields.PositiveStiffness = optional(
+        "Yaw stiffness from pylon to wing, on the downstop; rigid if left out."
+    )
+    spindle_yaw_stiffness_off: fields.PositiveStiffness = optional(
+        "Yaw stiffness from pylon to wing, off the downstop; rigid if left out."
+    )
+    pylon_yaw_damping_ratio: fields.DampingRatio = optional(
+        "Damping ratio of pylon yaw modes, if it differs."
+    )
+    fuselage: FuselageSection = needed("The fuselage.")
+    carry_through: CarryThroughSection = needed("The box through the fuselage.")
+    horizontal_tail: TailSection | None = optional("Airloads of the horizontal tail; none if left out.")
+    vertical_tail: TailSection | None = optional("Airloads of the vertical tails; none if left out.")
 
 
 class MatricesSection(Section):
@@ -243,7 +346,13 @@ class RigidSection(Section):
 
 
 SupportSection = Annotated[
-    NormalModesSection | BeamWingSection | MatricesSection | NastranSection | PivotSection | RigidSection,
+    NormalModesSection
+    | BeamWingSection
+    | AircraftSection
+    | MatricesSection
+    | NastranSection
+    | PivotSection
+    | RigidSection,
     Field(discriminator="kind"),
 ]
 

@@ -8,7 +8,7 @@ the wing tip, the downstop.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ from proprotor.support.normal_modes import HUB_AXES, ROTATION, TRANSLATION, Norm
 from proprotor.typing import Array
 
 _UP, _OUTBOARD, _ = np.eye(3)
-_PYLON_PITCH = "pylon_pitch"
+_PYLON_PITCH, _PYLON_YAW = "pylon_pitch", "pylon_yaw"
 _SpanwiseProfile = float | tuple[ArrayLike, ArrayLike]
 _MOST_ELEMENTS = 200
 _PER_NODE = len(HUB_AXES)
@@ -108,13 +108,14 @@ class Pylon:
         Distances from the elastic axis at the tip to the nacelle's centre of mass along K, I and J, m.
     hub_mass : float
         Mass at the hub that belongs to the rotor but not to its blades, kg.
-    pitch_stiffness : float or None
-        Stiffness of the downstop about J, N m/rad; with None the pylon is rigidly attached to the wing tip.
+    pitch_stiffness, yaw_stiffness : float or None
+        Stiffness of the downstop about J, and of the spindle about I, N m/rad; with None the pylon does not turn
+        against the wing tip about this axis.
 
     Raises
     ------
     InputError
-        When a value is not finite, a mass or inertia negative, or the spring not above zero.
+        When a value is not finite, a mass or inertia negative, or a spring not above zero.
     """
 
     nacelle_mass: float
@@ -129,14 +130,16 @@ class Pylon:
     nacelle_outboard: float = 0.0
     hub_mass: float = 0.0
     pitch_stiffness: float | None = None
+    yaw_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         given = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        downstop = given.pop("pitch_stiffness")
+        springs = {name: given.pop(name) for name in ("pitch_stiffness", "yaw_stiffness")}
         for name, value in given.items():
             _check(name, value, "not negative" if name.endswith(("mass", "inertia")) else "")
-        if downstop is not None:
-            _check("pitch_stiffness", downstop, "above zero")
+        for name, value in springs.items():
+            if value is not None:
+                _check(name, value, "above zero")
 
     @property
     def hub(self) -> Array:
@@ -148,16 +151,24 @@ class Pylon:
         """Vector from the elastic axis at the tip to the nacelle's centre of mass, m (3,)."""
         return np.array([self.nacelle_up, self.nacelle_outboard, self.nacelle_forward])
 
+    @property
+    def mass_at_hub(self) -> Array:
+        """Mass of nacelle and hub hardware (6, 6) on the motion of the hub, SI."""
+        inertia = (self.nacelle_yaw_inertia, self.nacelle_pitch_inertia, self.nacelle_roll_inertia)
+        nacelle = np.diag([self.nacelle_mass] * 3 + list(inertia))
+        motion = rigid_motion(self.nacelle - self.hub)
+        return motion.T @ nacelle @ motion + self.hub_mass * np.diag([1.0] * 3 + [0.0] * 3)
+
 
 class BeamStructure(NamedTuple):
     """Mass and stiffness of wing and pylon on the motions of the nodes between mount and tip, then of the hub.
 
     names : tuple of str
-        Names of the n coordinates: six for each node, six of the hub (m and rad), and with a downstop the pitch of the
-        pylon against the wing tip, nose up.
+        Names of the n coordinates: six for each node, six of the hub (m and rad), and with a spring the pitch of the
+        pylon against the wing tip, nose up, and the yaw about I.
     mass : array (n, n)
     stiffness_parts : mapping of str to array (n, n)
-        Parts of the stiffness: beam, chord, torsion (with the downstop) and axial.
+        Parts of the stiffness: beam, chord, torsion (with the downstop), axial, and with a spindle pylon yaw.
     hub : array (6, n)
         Motion of the hub for each coordinate.
     nodes : array (elements + 1, 6, n)
@@ -182,20 +193,42 @@ class BeamStructure(NamedTuple):
 def beam_structure(wing: Wing, pylon: Pylon) -> BeamStructure:
     """Return the finite-element matrices of wing and pylon, without the rotor."""
     mass, parts, positions = wing_elements(wing)
-    nodes, hub, names = _coordinates(wing, pylon)
+    nodes, hub, names = pylon_coordinates(wing, pylon)
     motion = nodes.reshape(-1, len(names))
-    parts = {name: motion.T @ part @ motion for name, part in parts.items()}
-    if pylon.pitch_stiffness is not None:
-        parts["torsion"][-1, -1] += pylon.pitch_stiffness
-    mass = motion.T @ mass @ motion + hub.T @ _pylon_mass(pylon) @ hub
     return BeamStructure(
         names=names,
-        mass=symmetric(mass),
-        stiffness_parts={name: symmetric(part) for name, part in parts.items()},
+        mass=symmetric(motion.T @ mass @ motion + hub.T @ pylon.mass_at_hub @ hub),
+        stiffness_parts=stiffness_on(motion, parts, names, pylon),
         hub=hub,
         nodes=nodes,
         positions=positions,
     )
+
+
+def stiffness_on(
+    motion: Array, parts: Mapping[str, Array], names: Sequence[str], pylon: Pylon
+) -> dict[str, Array]:
+    """Return the parts of the stiffness on the named coordinates, with the springs of the pylon.
+
+    Parameters
+    ----------
+    motion : array (m, n)
+        Motion of the nodes for each coordinate.
+    parts : mapping of str to array (m, m)
+        Parts of the stiffness on the motion of the nodes.
+    names : sequence of str
+        Names of the n coordinates, among these the pitch and the yaw of a pylon on springs.
+    pylon : Pylon
+    """
+    found = {name: symmetric(motion.T @ part @ motion) for name, part in parts.items()}
+    if pylon.pitch_stiffness is not None:
+        place = names.index(_PYLON_PITCH)
+        found["torsion"][place, place] += pylon.pitch_stiffness
+    if pylon.yaw_stiffness is not None:
+        place = names.index(_PYLON_YAW)
+        found["pylon yaw"] = np.zeros_like(found["beam"])
+        found["pylon yaw"][place, place] = pylon.yaw_stiffness
+    return found
 
 
 def beam_wing(
@@ -272,21 +305,25 @@ def _check_kinds(damping_ratio: Mapping[str, float], structure: BeamStructure) -
             raise InputError("damping_ratio", kind, rule)
 
 
-def _dominant(structure: BeamStructure, shapes: Array) -> list[str]:
+def kinds_by_energy(stiffness_parts: Mapping[str, Array], shapes: Array) -> list[str]:
     """Return for each mode the part of the stiffness that has most of the strain energy."""
-    energy = [np.einsum("ij,ij->j", shapes, part @ shapes) for part in structure.stiffness_parts.values()]
-    kinds = list(structure.stiffness_parts)
+    energy = [np.einsum("ij,ij->j", shapes, part @ shapes) for part in stiffness_parts.values()]
+    kinds = list(stiffness_parts)
     return [kinds[place] for place in np.argmax(energy, axis=0)]
 
 
 def _ratios_by_kind(structure: BeamStructure, ratios: Mapping[str, float], shapes: Array) -> list[float]:
     """Return the damping ratio of each mode from the ratio of its kind."""
-    return [ratios[kind] for kind in _dominant(structure, shapes)]
+    return [ratios[kind] for kind in kinds_by_energy(structure.stiffness_parts, shapes)]
 
 
 def _names_by_energy(structure: BeamStructure, shapes: Array) -> list[str]:
     """Return the names of modes by their kind, from the second mode of a kind on with a number."""
-    kinds = _dominant(structure, shapes)
+    return numbered(kinds_by_energy(structure.stiffness_parts, shapes))
+
+
+def numbered(kinds: Sequence[str]) -> list[str]:
+    """Return the kinds of modes, from the second mode of a kind on with a number."""
     counts = [kinds[: place + 1].count(kind) for place, kind in enumerate(kinds)]
     return [kind if count == 1 else f"{kind}_{count}" for kind, count in zip(kinds, counts, strict=True)]
 
@@ -329,37 +366,32 @@ def _stiffness_sections(own: Mapping[str, float]) -> dict[str, dict[str, float]]
     }
 
 
-def _coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:
+def pylon_coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:
     """Return the motion of the nodes and of the hub for each coordinate, and the names of the coordinates."""
     inner = _PER_NODE * (wing.elements - 1)
-    free = pylon.pitch_stiffness is not None
+    axes = {_PYLON_PITCH: (pylon.pitch_stiffness, _OUTBOARD), _PYLON_YAW: (pylon.yaw_stiffness, _UP)}
+    turns = {name: axis for name, (stiffness, axis) in axes.items() if stiffness is not None}
     names = [f"wing_{node}_{axis}" for node in range(1, wing.elements) for axis in HUB_AXES]
-    names += [f"hub_{axis}" for axis in HUB_AXES] + [_PYLON_PITCH] * free
+    names += [*(f"hub_{axis}" for axis in HUB_AXES), *turns]
     nodes = np.zeros((wing.elements + 1, _PER_NODE, len(names)))
     nodes[1:-1, :, :inner] = np.eye(inner).reshape(wing.elements - 1, _PER_NODE, inner)
     hub = np.zeros((_PER_NODE, len(names)))
     hub[:, inner : inner + _PER_NODE] = np.eye(_PER_NODE)
     nodes[-1] = rigid_motion(-pylon.hub) @ hub
-    if free:
-        nodes[-1, ROTATION, -1] = -_OUTBOARD  # the wing tip turns by the rotation of the hub less this pitch
+    for name, axis in turns.items():  # the wing tip turns by the rotation of the hub less these turns
+        nodes[-1, ROTATION, names.index(name)] = -axis
     return nodes, hub, tuple(names)
 
 
-def _pylon_mass(pylon: Pylon) -> Array:
-    """Return the mass of nacelle and hub hardware (6, 6) on the motion of the hub."""
-    inertia = (pylon.nacelle_yaw_inertia, pylon.nacelle_pitch_inertia, pylon.nacelle_roll_inertia)
-    nacelle = np.diag([pylon.nacelle_mass] * 3 + list(inertia))
-    motion = rigid_motion(pylon.nacelle - pylon.hub)
-    return motion.T @ nacelle @ motion + pylon.hub_mass * np.diag([1.0] * 3 + [0.0] * 3)
-
-
 def rigid_motion(offset: ArrayLike) -> Array:
-    """Return the motion (6, 6) of a point of a rigid body per motion of a reference point.
+    """Return the motion (..., 6, 6) of a point of a rigid body per motion of a reference point.
 
-    `offset` (3,) is the vector from the reference point to the point, m.
+    `offset` (..., 3) is the vector from the reference point to the point, m.
     """
-    motion = np.eye(6)
-    motion[TRANSLATION, ROTATION] = np.cross(np.eye(3), np.asarray(offset, dtype=float)).T
+    offset = np.asarray(offset)
+    motion = np.zeros((*offset.shape[:-1], _PER_NODE, _PER_NODE), dtype=np.result_type(offset, float))
+    motion[...] = np.eye(_PER_NODE)
+    motion[..., TRANSLATION, ROTATION] = np.swapaxes(np.cross(np.eye(3), offset[..., None, :]), -1, -2)
     return motion
 
 

@@ -145,6 +145,14 @@ def beam_strips(structure: BeamStructure, shapes: ArrayLike) -> Strips:
     return Strips(np.array(widths), np.array(rises), np.array(pitches))
 
 
+def strip_positions(positions: Array) -> Array:
+    """Return the positions (k, 3) of the strips of `beam_strips` on the elastic axis through nodes (m, 3), m."""
+    points, _ = np.polynomial.legendre.leggauss(_PER_ELEMENT)
+    share = ((1 + points) / 2)[:, None]
+    found: Array = positions[:-1, None] + share * np.diff(positions, axis=0)[:, None]
+    return found.reshape(-1, 3)
+
+
 def _motion_within(axis: Array, left: Array, right: Array, point: float) -> tuple[Array, Array]:
     """Return rise and pitch (n,) of a beam element at a point from -1 to 1 along the element.
 
