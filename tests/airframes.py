@@ -94,16 +94,9 @@ def joined(one: Airframe, other: Airframe) -> Airframe:
 MATRICES = ("mass", "damping", "stiffness", "airload_damping", "airload_stiffness")
 
 
-def aircraft(airframe: Airframe | None = None, deck: str = "xv15", **more: object) -> pp.Case:
+def aircraft(airframe: Airframe | None = None, deck: str = "xv15-uncoupled", **more: object) -> pp.Case:
     """Return the case of a bundled deck with its rotor on both sides of an airframe."""
     base = pp.load_case(deck)
     return replace(
         base, name="aircraft", support=whole() if airframe is None else airframe, deck=None, **more
     )
-
-
-def one_rotor(airframe: Airframe, deck: str = "xv15") -> pp.Case:
-    """Return the case of a bundled deck with one rotor on half of an airframe, as on any support."""
-    base = pp.load_case(deck)
-    at = airframe
-    return replace(base, support=at, deck=None)

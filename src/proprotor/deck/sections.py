@@ -44,8 +44,8 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
 ``[left]``
     Optional, for a support of kind "aircraft": fields that differ on the left side, ``support.downstop = false`` or
     ``rotor.control_stiffness = "8000 ft*lbf/rad"``; of [rotor] all but the number of blades and the radius, of
-    [operation] the trim, of [drive_train] all but the interconnect shaft, and of [support] the wing, the carry-through box, the pylon and its
-    springs. The whole unsymmetric aircraft is then one problem.
+    [operation] the trim, of [drive_train] all but the interconnect shaft, and of [support] the wing, the
+    carry-through box, the pylon and its springs. The whole unsymmetric aircraft is then one problem.
 
 A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
 written in the same file, or in the base if the file gives none. The frequency is then fixed in hertz: a deck that

@@ -43,6 +43,9 @@ class StateSpace:
     Of two rotors, an input or output of a half, "symmetric force_x", is that of the right rotor in this half of the
     motion: the left one is alike in its mirrored axes, or the opposite in the antisymmetric half.
 
+    Along an axis in which a coordinate without displacement moves the hub, as heave does an aircraft, rate and
+    acceleration of the hub are outputs and the displacement is none.
+
     If a shaft holds the azimuth at some points of a batch only, the azimuth is a state and an output. At the other
     points its row and column of A, its rows of B, C and D and its column of C are NaN. Its rate is an output too.
 
@@ -169,8 +172,9 @@ def _outputs(
     for part in _hubs(model):
         hub = part.to_rotor[..., : len(HUB), :]
         loads, loads_by_input = _hub_loads(part, motion, acceleration_by_input)
+        known = _with_displacement(hub, displacement)
         blocks += [
-            (part.names(HUB), hub @ displacement, None),
+            (part.names(tuple(HUB[axis] for axis in known)), (hub @ displacement)[..., known, :], None),
             (part.names(HUB, " rate"), hub @ rate, None),
             (part.names(HUB, " acceleration"), hub @ acceleration, hub @ acceleration_by_input),
             (part.names(LOADS), loads, loads_by_input),
@@ -181,6 +185,13 @@ def _outputs(
     none = np.zeros((1, len(model.inputs)))
     feedthrough = [none.repeat(len(part), axis=0) if d is None else d for part, _, d in blocks]
     return names, _stacked(rows, shape), _stacked(feedthrough, shape)
+
+
+def _with_displacement(hub: Array, displacement: Array) -> list[int]:
+    """Return the hub axes whose displacement follows from states: no coordinate that has a rate alone moves them."""
+    free = ~displacement.any(axis=-1)
+    moved = (hub[..., free] != 0).any(axis=-1)
+    return [axis for axis in range(len(HUB)) if not moved[..., axis].any()]
 
 
 def _stacked(parts: list[Array], shape: tuple[int, ...]) -> Array:
