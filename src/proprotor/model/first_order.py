@@ -55,7 +55,7 @@ def first_order(model: LinearModel) -> Array:
     held = held_coordinates(model)
     acceleration = -np.linalg.solve(model.M, np.concatenate([model.K[..., held], model.C], axis=-1))
     matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
-    matrix[..., np.arange(len(held)), len(held) + np.array(held)] = 1
+    matrix[..., np.arange(len(held)), len(held) + np.array(held, dtype=int)] = 1
     matrix[..., len(held) :, :] = acceleration
     for state, free in lacking_states(model):
         matrix[free, state, :] = np.nan
