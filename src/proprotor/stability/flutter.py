@@ -141,7 +141,10 @@ def boundary_of(found: FlutterPoint, mode: str | None) -> Boundary:
     named = next((one for one in found.boundaries if one.mode == mode), None)
     wanted = found.boundary if mode is None else named
     if wanted is None:
-        rule = "nothing becomes unstable" if mode is None else "has no boundary"
+        nothing = (
+            "no flutter begins" if any(one.onset for one in found.boundaries) else "nothing becomes unstable"
+        )
+        rule = nothing if mode is None else "has no boundary"
         low, high = found.searched
         raise InputError("flutter_speed", mode, f"{rule} between {low:.6g} and {high:.6g} m/s")
     return wanted

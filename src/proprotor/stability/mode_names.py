@@ -276,6 +276,9 @@ def _assigned(gain: Array, slots: Array, values: Array) -> Array:
     # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
     counts = np.bincount(slots)
     whole, half = np.flatnonzero(counts == 2), np.flatnonzero(counts == 1)
+    if len(upper) > len(whole):  # two rates swing as one pair, which has one of their names
+        given[upper + 1] = given[upper]
+        return given
     largest = -np.inf
     for left in combinations(whole.tolist(), len(whole) - len(upper)):
         of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)

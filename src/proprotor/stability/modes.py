@@ -29,8 +29,10 @@ from proprotor.model.first_order import (
 )
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
-from proprotor.stability.matching import Modes, Spectrum
+from proprotor.stability.matching import Modes, Spectrum, size_of
 from proprotor.typing import Array, Dataset
+
+_ROUNDING = 10 * float(np.finfo(float).eps)  # of the largest root: what a root at zero may be off by
 
 if TYPE_CHECKING:
     from proprotor.stability.parameter_lines import ParameterLine
@@ -63,6 +65,7 @@ def eigenvalues(model: LinearModel) -> Array:
     for points, part in _alike(_real(model)):
         for (_, columns), own in zip(places, part.blocks, strict=True):
             found = np.linalg.eigvals(first_order(_of_block(part, own)))
+            found = np.where(_pairs_of_noise(found), 0, found)
             values[points, columns.start : columns.start + found.shape[-1]] = found
     return values
 
@@ -145,7 +148,23 @@ def with_azimuths(spectrum: Spectrum, model: LinearModel, states: int) -> Spectr
 def _solved(matrix: Array) -> tuple[Array, Array]:
     """Return eigenvalues and right vectors as complex numbers, also where all of them are real."""
     values, right = np.linalg.eig(matrix)
-    return values.astype(complex, copy=False), right.astype(complex, copy=False)
+    values, right = values.astype(complex, copy=False), right.astype(complex, copy=False)
+    if not (noise := _pairs_of_noise(values)).any():
+        return values, right
+    upper = (noise & (values.imag > 0))[..., None, :]
+    right = np.where(upper, right.real, np.where(noise[..., None, :], right.imag, right))
+    right = np.where(noise[..., None, :], right / np.linalg.norm(right, axis=-2, keepdims=True), right)
+    return np.where(noise, 0, values), right
+
+
+def _pairs_of_noise(values: Array) -> Array:
+    """Return which eigenvalues (..., states) are pairs that rounding has made of two real roots at zero.
+
+    Coordinates that have a rate alone have such roots, as many as nothing damps.
+    """
+    size = size_of(values)
+    noise = _ROUNDING * size.max(axis=-1, keepdims=True, initial=0)
+    return np.asarray((values.imag != 0) & (size <= noise))
 
 
 def _real(model: LinearModel) -> LinearModel:
