@@ -76,7 +76,7 @@ def refined(model: LinearModel, modes: Modes) -> _Refined:
         apart = _nearest(values, blocks(model, held) if values.shape[-1] == right.shape[-2] else ())
         share = size_of(correction) / apart
         better = share < 0.5
-        error = rounding + size_of(correction) * np.where(better, _OF_CORRECTION + share, 1.0)
+        error = rounding + size_of(correction) * (_OF_CORRECTION + np.where(better, share, 1.0))
         error = np.where(np.isnan(values), np.nan, np.fmin(error, _DOUBLE * _largest(values)))
     return _Refined(np.where(better, values + correction, values), error)
 
