@@ -130,6 +130,16 @@ class FlutterPoint:
 def boundary_of(found: FlutterPoint, mode: str | None) -> Boundary:
     """Return the boundary at the flutter speed, or the first one of the mode with a name.
 
+    Parameters
+    ----------
+    found : FlutterPoint
+    mode : str or None
+        Name of the mode; None for the boundary at the flutter speed.
+
+    Returns
+    -------
+    Boundary
+
     Raises
     ------
     InputError
