@@ -135,7 +135,7 @@ class Configuration:
     def _pair(
         self, right: LinearModel, airframe: Airframe, airspeed: Any, options: Mapping[str, Any]
     ) -> LinearModel:
-        """Return the model of an aircraft with its right rotor and the mirror image of that rotor, or another left one."""
+        """Return the model of an aircraft: its right rotor, and the mirror image of that rotor or another left one."""
         own = self.model_options(options)
         if self.left is None:
             return mount_pair(right, airframe, None, _interconnect(own, own))
