@@ -9,7 +9,8 @@ from proprotor.deck.alternatives import altered, is_section
 from proprotor.errors import InputError
 
 _WHOLE_SECTIONS = ("rotor", "drive_train")
-_ONE_ROTOR = ("rotor.n_blades", "rotor.radius")  # both sides have the blades and the size of one rotor
+# Both sides have the blades and the size of one rotor, and one shaft between them.
+_SHARED = ("rotor.n_blades", "rotor.radius", "drive_train.interconnect_stiffness")
 _OF_BOTH = (
     *("kind", "symmetry", "modes", "elements", "rotor_mass", "damping_ratio", "loss_factor"),
     *(f"{kind}_damping_ratio" for kind in ("beam", "chord", "torsion", "pylon_yaw")),
@@ -91,7 +92,7 @@ def _may_differ(path: str) -> bool:
     """Return whether a field may differ on the left side."""
     section, _, name = path.partition(".")
     if section in _WHOLE_SECTIONS:
-        return path not in _ONE_ROTOR
+        return path not in _SHARED
     if section == "support":
         first, _, inner = name.partition(".")
         return first not in _OF_BOTH and not (first == "carry_through" and inner in _OF_BOTH_IN_BOX)

@@ -38,15 +38,16 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
     { power_coefficient = 0.01 }; density and speed_of_sound, or instead: altitude, a pressure altitude in the
     standard atmosphere, and temperature_offset (`proprotor.rotor.atmosphere`).
 ``[drive_train]``
-    Optional; the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness.
+    Optional; the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness, mast_stiffness,
+    engine_inertia, engine_damping and, of an aircraft, interconnect_stiffness.
 ``[support]``
     kind and the fields of that kind: `proprotor.deck.support_sections` lists them.
 
 ``[left]``
     Optional, for a support of kind "aircraft": fields that differ on the left side, ``support.downstop = false`` or
     ``rotor.control_stiffness = "8000 ft*lbf/rad"``; of [rotor] all but the number of blades and the radius, of
-    [operation] the trim, of [drive_train] all, and of [support] the wing, the carry-through box, the pylon and its
-    springs. The whole unsymmetric aircraft is then one problem.
+    [operation] the trim, of [drive_train] all but the interconnect shaft, and of [support] the wing, the
+    carry-through box, the pylon and its springs. The whole unsymmetric aircraft is then one problem.
 
 A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
 written in the same file, or in the base if the file gives none. The frequency is then fixed in hertz: a deck that
@@ -285,6 +286,16 @@ class DriveTrainSection(Section):
     drive_damping: fields.Damping = optional("Torque per change of rotor speed.")
     shaft_stiffness: fields.Stiffness = optional(
         "Torque per azimuth of a shaft with an end of constant speed; 0 for a rotor whose speed is free."
+    )
+    mast_stiffness: fields.PositiveStiffness = optional(
+        "Torque per twist of the mast between the rotor and its gearbox; a rigid mast if left out."
+    )
+    engine_inertia: fields.InertiaOrNone = optional(
+        "Inertia of gearbox and engine, behind the mast; above 0 with mast_stiffness."
+    )
+    engine_damping: fields.Damping = optional("Torque per change of the speed of gearbox and engine.")
+    interconnect_stiffness: fields.Stiffness = optional(
+        "Of an aircraft: torque of the shaft between both gearboxes per difference of their azimuths."
     )
 
 
