@@ -185,7 +185,7 @@ def test_the_pdf_has_the_same_numbers(written, page):
     for row in table(page, "Boundaries")[1:] + table(page, "Damping")[1:]:
         for cell in row[:-1]:
             assert cell in text, cell
-    assert reader.metadata.title == "XV-15 rotor on three uncoupled wing modes"
+    assert reader.metadata.title == "XV-15 with three uncoupled wing modes"
     assert len(reader.pages) > 4
 
 
