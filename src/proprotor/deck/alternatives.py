@@ -20,7 +20,7 @@ AIR_ALTERNATIVES = ((("density", "speed_of_sound"), ("altitude", "temperature_of
 # Fields of [operation.trim] and of [support]: one side only.
 TRIM_ALTERNATIVES = ((("collective",), ("thrust_coefficient",), ("power_coefficient",)),)
 DAMPING_ALTERNATIVES = ((("damping_ratio",), ("loss_factor",)),)
-FILE_ALTERNATIVES = ((("file",), ("mass", "stiffness", "damping", "dofs")),)
+FILE_ALTERNATIVES = ((("file",), ("mass", "stiffness", "damping", "dofs", "hub_motion")),)
 _BY_SECTION = (
     (("rotor",), ALTERNATIVES),
     (("rotor", "airfoil"), AIRFOIL_ALTERNATIVES),

@@ -18,7 +18,7 @@ from proprotor.datum import Datum
 from proprotor.deck import reading, reading_lists
 from proprotor.deck.reading import ANY, BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.rotor.rotor import HELD, NOTHING
-from proprotor.support.normal_modes import INCLUDES_ROTOR, SHAFT
+from proprotor.support.normal_modes import CARRIES, INCLUDES_ROTOR, SHAFT
 
 
 @dataclass(frozen=True)
@@ -166,6 +166,7 @@ Abscissa = Annotated[
 File = Annotated[Datum | None, Reading("file")]
 IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
 Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
+Carries = Annotated[Datum | None, Reading("choice", choices=CARRIES)]
 
 _of_mode = partial(AfterChoice, "number", choice="coordinate", usual="length")
 GeneralizedMass = Annotated[Datum | None, _of_mode("kg", POSITIVE, other_unit="kg*m**2")]

@@ -18,6 +18,7 @@ All public names of the modules `beam_wing`, `matrix_files`, `nastran` and `wing
 from proprotor.support.airframe import SYMMETRIES, Airframe
 from proprotor.support.modal_reduction import StructuralModes, lowest_modes
 from proprotor.support.normal_modes import (
+    CARRIES,
     HUB_AXES,
     INCLUDES_ROTOR,
     SHAFT,
@@ -27,6 +28,7 @@ from proprotor.support.normal_modes import (
 )
 
 __all__ = [
+    "CARRIES",
     "HUB_AXES",
     "INCLUDES_ROTOR",
     "SHAFT",
