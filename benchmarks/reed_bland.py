@@ -19,8 +19,8 @@ from scipy.optimize import brentq
 from scipy.special import hankel2
 
 import proprotor as pp
-from proprotor.model.rigid_propeller import whirl_derivatives
 from proprotor.model.structural_damping import NeutralDamping
+from proprotor.rotor.motions import HUB
 
 FT = 0.3048
 SLUG = 0.45359237 * 9.80665 / FT
@@ -153,6 +153,35 @@ def rotor_derivatives(
     still = rotor_on_hub(rotor, advance_ratio, airloads="none")
     moving = lagging(rotor, advance_ratio, lift, **options)
     return whirl_derivatives(moving.C - still.C, moving.K - still.K, AIRSPEED, RADIUS, DENSITY)
+
+
+def whirl_derivatives(
+    damping: NDArray, stiffness: NDArray, airspeed: ArrayLike, radius: ArrayLike, density: ArrayLike
+) -> pp.WhirlDerivatives:
+    """Return the whirl derivatives that the airloads of any axisymmetric rotor contain.
+
+    Parameters
+    ----------
+    damping, stiffness : array (..., n, n)
+        Contribution of the airloads to C and K, SI; the six hub coordinates are the first.
+    airspeed, radius, density : float or array (...)
+        m/s, above zero; m; kg/m³.
+
+    Returns
+    -------
+    WhirlDerivatives
+        Dimensionless, (...).
+    """
+    speed, radius, density = (np.asarray(value, dtype=float) for value in (airspeed, radius, density))
+    force = density * speed**2 * np.pi * radius**2 / 2
+    x, y, alpha_x, alpha_y = (HUB.index(name) for name in ("x", "y", "alpha_x", "alpha_y"))
+    return pp.WhirlDerivatives(
+        z_theta=stiffness[..., x, alpha_y] / force,
+        z_psi=-stiffness[..., y, alpha_y] / force,
+        z_r=-damping[..., y, alpha_y] * speed / (force * radius),
+        m_psi=-stiffness[..., alpha_x, alpha_y] / (2 * force * radius),
+        m_q=-damping[..., alpha_y, alpha_y] * speed / (2 * force * radius**2),
+    )
 
 
 def theodorsen(reduced_frequency: ArrayLike) -> NDArray:

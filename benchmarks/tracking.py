@@ -64,8 +64,11 @@ def random_designs(count: int) -> list[pp.Case]:
 
 
 def values_of(branches: Branches, points: int) -> NDArray:
-    """Followed eigenvalues (points, states) of the line."""
-    return np.take_along_axis(branches.spectrum.values[:points], branches.order(points), 1)
+    """Followed eigenvalues (points, states) of the first points of the spectrum; NaN at failed points."""
+    values = branches.spectrum.values[:points].copy()
+    own = branches.points < points
+    values[branches.points[own]] = np.take_along_axis(values[branches.points[own]], branches.places[own], 1)
+    return values
 
 
 def judged(case: pp.Case, step: float) -> tuple[int, int, int, int]:

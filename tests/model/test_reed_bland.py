@@ -10,7 +10,7 @@ import proprotor as pp
 from benchmarks import reed_bland as report
 from proprotor.errors import InputError
 from proprotor.model.mount import mount
-from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller, whirl_derivatives
+from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.model.structural_damping import neutral_damping
 from proprotor.rotor.motions import HUB
 from proprotor.stability.sweep import sweep
@@ -223,7 +223,7 @@ def test_the_convention_of_the_report_holds_all_of_the_rotor():
     """Airloads rebuilt from the rotor's five derivatives are its own, in all entries across the shaft."""
     rotor = report.bladed_rotor(chord=0.4)
     still, moving = (report.rotor_on_hub(rotor, J, airloads=airloads) for airloads in ("none", "lift-slope"))
-    derivatives = whirl_derivatives(
+    derivatives = report.whirl_derivatives(
         moving.C - still.C, moving.K - still.K, report.AIRSPEED, report.RADIUS, report.DENSITY
     )
     rebuilt, unloaded = (

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.stability.attribution import _contributions, attribution
+from proprotor.stability.attribution import attribution
+from proprotor.stability.eigenvalue_derivatives import eigenvalue_change
 from proprotor.stability.modes import decomposition
-from proprotor.stability.origins import Part, model_parts
+from proprotor.stability.origins import _Part, model_parts
 from tests.known_systems import linear_model
 
 VARIANTS = {
@@ -63,12 +64,17 @@ def test_parts_of_every_bundled_case(name):
         )
 
 
+def contributions(model, parts, modes):
+    """λ_g (parts, modes) of each part, rad/s."""
+    return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()])
+
+
 @pytest.mark.parametrize("options", VARIANTS.values(), ids=VARIANTS)
 def test_contributions_sum_to_nothing(case, options):
     """Every term grown alike moves no eigenvalue."""
     model = case.linearize(150.0, **options)
     modes = decomposition(model).all_modes
-    found = _contributions(model, model_parts(case, model, **options), modes)
+    found = contributions(model, model_parts(case, model, **options), modes)
     assert np.abs(found.sum(axis=0)).max() < SUM * np.abs(found).sum(axis=0).max()
 
 
@@ -89,12 +95,12 @@ def test_an_oscillator():
     model = linear_model(np.array([[2.0]]), np.array([[0.6]]), np.array([[50.0]]))
     zero = np.zeros((1, 1))
     parts = {
-        "mass": Part(model.M, zero, zero),
-        "damper": Part(zero, model.C, zero),
-        "spring": Part(zero, zero, model.K),
+        "mass": _Part(model.M, zero, zero),
+        "damper": _Part(zero, model.C, zero),
+        "spring": _Part(zero, zero, model.K),
     }
     spectrum = decomposition(model).all_modes
-    found = _contributions(model, parts, spectrum)
+    found = contributions(model, parts, spectrum)
     value = spectrum.values
     slope = 4 * value + 0.6
     np.testing.assert_allclose(found, [-2 * value**2 / slope, -0.6 * value / slope, -50 / slope], rtol=1e-12)
@@ -104,7 +110,7 @@ def test_a_contribution_is_the_derivative_by_the_size_of_its_terms(case):
     """The modes with one part grown by a small step, both ways."""
     model = case.linearize(180.0)
     parts, spectrum = model_parts(case, model), decomposition(model).all_modes
-    found = _contributions(model, parts, spectrum)
+    found = contributions(model, parts, spectrum)
     step = 1e-4
     for place, name in enumerate(parts):
         values = []

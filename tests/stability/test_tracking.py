@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
+from benchmarks.tracking import values_of
 from proprotor.rotor.motions import motions, name_list
 from proprotor.stability.following import follow
 from proprotor.stability.matching import POOR, match_modes
@@ -24,9 +25,7 @@ KNOT = 1852 / 3600
 def followed(linearize, positions):
     """Eigenvalues of the points in their places, of those states that start in the upper half plane or real."""
     path = follow(linearize(positions), ParameterLine(positions, linearize))
-    order = path.order(len(positions))
-    values = np.take_along_axis(path.spectrum.values[: len(positions)], order, 1)
-    return values, path
+    return values_of(path, len(positions)), path
 
 
 def by_start(values):
@@ -324,8 +323,7 @@ def swaps(case, coarse, times):
     fine = np.linspace(coarse[0], coarse[-1], times * (len(coarse) - 1) + 1)
     judge = follow(case.linearize(fine))
     path = follow(case.linearize(coarse), ParameterLine(coarse, case.linearize))
-    expected = np.take_along_axis(judge.spectrum.values, judge.order(len(fine)), 1)[::times]
-    found = np.take_along_axis(path.spectrum.values[: len(coarse)], path.order(len(coarse)), 1)
+    expected, found = values_of(judge, len(fine))[::times], values_of(path, len(coarse))
     started = np.abs(found[0][:, None] - expected[0]).argmin(axis=1)
     apart = np.abs(found - expected[:, started])
     return int((apart > 1e-6 * np.abs(found)).sum())

@@ -418,7 +418,7 @@ def test_a_batch_that_kills_every_worker_is_told(deadly):
     deadly.deaths = 100
     batch = Batch({PRECONE: np.array([0.04])}, np.array([100.0]))
     with pytest.raises(RuntimeError, match="has killed 3 worker processes"):
-        list(study_workers.in_processes(Analysis(CASE, ("trim",)), [(0, batch)], 1))
+        list(study_workers.Processes(Analysis(CASE, ("trim",)), [(0, batch)], 1).results())
     assert deadly.deaths == 97 and study_workers.idle_workers() == 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import click
@@ -50,7 +51,7 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
         return
     found = fields.deck_fields() if field is None else fields.find_fields(field)
     if as_json:
-        output.print_json(fields.field_records(found))
+        output.print_json([asdict(field) for field in found])
     elif len(found) <= _MOST_IN_FULL:
         _print_in_full(found)
     else:

@@ -36,9 +36,6 @@ class _UnusableInput(click.ClickException):
 class _Interrupted(click.ClickException):
     exit_code = 130  # 128 and the number of the signal, as shells have it
 
-    def __init__(self) -> None:
-        super().__init__("interrupted; no file was left half-written")
-
     def show(self, file: IO[Any] | None = None) -> None:
         click.echo(f"\n{self.format_message()}", err=True, file=file)
 
@@ -51,7 +48,7 @@ def errors_as_messages() -> Iterator[None]:
     except InputError as error:
         raise _UnusableInput(str(error)) from None
     except KeyboardInterrupt:
-        raise _Interrupted from None
+        raise _Interrupted("interrupted; no file was left half-written") from None
     except OSError as error:
         if error.errno == errno.EPIPE:  # a reader such as `head` has left: click ends quietly
             raise

@@ -53,8 +53,7 @@ def new(file: str, base: str, variant: bool, force: bool, as_json: bool) -> None
         if place.resolve() == Path(base).resolve():
             raise InputError("FILE", file, "must not be the deck that it alters")
         base = os.path.relpath(base, place.parent).replace(os.sep, "/")
-    text = deck_text(tables, place, base, variant)
-    output.write("FILE", file, text.encode())
+    output.write("FILE", file, deck_text(tables, place, base, variant).encode())
     if as_json:
         output.print_json({"written": file, "from": base, "variant": variant})
     else:

@@ -138,8 +138,7 @@ def _print(results: Dataset) -> None:
     if "flutter_speed" in results:
         _print_flutter(results)
     elif "points unstable" in found:
-        lowest = found["lowest damping (% of critical)"]
-        damping = marked(f"{lowest:.3g}", found["points doubtful"])
+        damping = marked(f"{found['lowest damping (% of critical)']:.3g}", found["points doubtful"])
         out.print(f"{found['points unstable']} points unstable; lowest damping {damping} %")
     doubts = found["doubts of points"].items()
     output.print_footnotes(

@@ -75,13 +75,12 @@ def _document(table: SweepTable) -> dict[str, Any]:
 def _print(case: Case, table: SweepTable, all_modes: bool) -> None:
     """Print the case with its reservations, the table of a sweep, and where modes are unstable."""
     out = output.console()
-    warnings = [_shortened(f"Warning: {text}", case, out.width) for text in case.warnings]
     for line in (
         heading(case),
         f"Model: {options_text(options_in_result(table.sweep.attrs))}.",
         CONVENTION,
         *reservations(case),
-        *warnings,
+        *(_shortened(f"Warning: {text}", case, out.width) for text in case.warnings),
         "",
     ):
         out.print(line)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterator
-from dataclasses import MISSING, asdict, dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from functools import cache
 from typing import Any, Literal, get_args, get_origin
 
@@ -17,7 +17,6 @@ from pydantic.fields import FieldInfo
 from proprotor.deck import sections as deck
 from proprotor.deck import support_sections
 from proprotor.deck.fields import AfterChoice, Reading, Section
-from proprotor.deck.reading import BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.deck.sections import section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
@@ -27,12 +26,6 @@ from proprotor.support.beam_wing import Pylon, Wing
 from proprotor.support.wing_aerodynamics import WingAerodynamics
 from proprotor.units import meaning
 
-_RANGES: dict[Bound, str] = {
-    POSITIVE: "above 0",
-    NOT_NEGATIVE: "0 or more",
-    FRACTION: "0 to 1",
-    BELOW_CRITICAL: "0 to below 1",
-}
 _ALONG = {
     "along the blade": "one value, { r_over_R = [...], value = [...], unit = ... }, or { file = ..., column = ... }",
     "distribution": "{ r_over_R = [...], value = [...], unit = ... } or { file = ..., column = ... }",
@@ -150,7 +143,7 @@ def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckF
             meaning=field.description or "",
             takes=takes,
             unit=_unit(reading),
-            range=_range(reading),
+            range=f"{reading.least} or more" if reading.form == "count" else reading.bound.range,
             required=field.is_required() or (is_one_side and name not in section.may_lack),
             default=_default(field, reading, defaults.get(name, MISSING)),
             instead_of=_instead_of(section, name),
@@ -190,10 +183,6 @@ def _unit(reading: Reading) -> str:
     return reading.unit
 
 
-def _range(reading: Reading) -> str:
-    return f"{reading.least} or more" if reading.form == "count" else _RANGES.get(reading.bound, "")
-
-
 def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
     """Return the fields on the other sides of the choices that a field belongs to."""
     return tuple(
@@ -231,6 +220,7 @@ def _default(field: FieldInfo, reading: Reading, constructed: Any) -> str:
 
 def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:
     """Yield label and text of each property of a field."""
+    others = ", ".join(field.instead_of)
     texts = {
         "means": field.meaning,
         "of": f'[support] of kind "{field.kind}"' if field.kind else "",
@@ -238,17 +228,7 @@ def field_lines(field: DeckField) -> Iterator[tuple[str, str]]:
         "SI unit": field.unit,
         "range": field.range,
         "default": field.default,
-        "instead of": ", ".join(field.instead_of),
-        "needed": "yes" if field.required and not field.instead_of else _needed(field),
+        "instead of": others,
+        "needed": ", or ".join(filter(None, ("yes", others))) if field.required else "no",
     }
     yield from ((label, text) for label, text in texts.items() if text)
-
-
-def _needed(field: DeckField) -> str:
-    """Return whether a deck must give a field with alternatives, in words."""
-    return f"yes, or {', '.join(field.instead_of)}" if field.required else "no"
-
-
-def field_records(found: tuple[DeckField, ...]) -> list[dict[str, Any]]:
-    """Return fields as plain data, for JSON."""
-    return [asdict(field) for field in found]

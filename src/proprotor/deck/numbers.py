@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 
 def numbers_of(deck: Deck) -> dict[str, Datum]:
     """Return every number of a deck by path, frequencies per revolution in rad/s."""
-    speed = deck.operation.rotor_speed.si
-    return {path: _per_second(number, speed) for path, number in _numbers(deck)}
+    return {path: _per_second(number, deck.operation.rotor_speed.si) for path, number in _numbers(deck)}
 
 
 def own_numbers(numbers: Mapping[str, Datum], section: str) -> dict[str, Datum]:

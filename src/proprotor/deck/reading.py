@@ -13,17 +13,19 @@ from proprotor.units import meaning, to_si
 
 
 class Bound(NamedTuple):
-    """A condition on the SI value, and its rule for a message."""
+    """A condition on the SI value, the range of the value in words, and the rule for a message."""
 
     holds: Callable[[float], bool]
+    range: str
     rule: str
 
 
-ANY = Bound(lambda x: True, "")
-POSITIVE = Bound(lambda x: x > 0, "must be positive")
-NOT_NEGATIVE = Bound(lambda x: x >= 0, "must not be negative")
-FRACTION = Bound(lambda x: 0 <= x <= 1, "must lie between 0 and 1")
-BELOW_CRITICAL = Bound(lambda x: 0 <= x < 1, 'must be at least 0 and below 1; write one percent as "1 %"')
+_BELOW_1 = 'must be at least 0 and below 1; write one percent as "1 %"'
+ANY = Bound(lambda x: True, "", "")
+POSITIVE = Bound(lambda x: x > 0, "above 0", "must be positive")
+NOT_NEGATIVE = Bound(lambda x: x >= 0, "0 or more", "must not be negative")
+FRACTION = Bound(lambda x: 0 <= x <= 1, "0 to 1", "must lie between 0 and 1")
+BELOW_CRITICAL = Bound(lambda x: 0 <= x < 1, "0 to below 1", _BELOW_1)
 
 
 def read_quantity(raw: Any, unit: str, bound: Bound = ANY) -> Datum:

@@ -10,11 +10,9 @@ from typing import Any
 
 from proprotor.datum import Datum
 from proprotor.deck.reading import ANY, Bound, as_table, datum, is_number, read_file, read_quantity
-from proprotor.deck.stations import read_stations
+from proprotor.deck.stations import MOST_STATIONS, read_stations
 from proprotor.errors import InputError
 from proprotor.units import LARGEST, factor_to_si, meaning
-
-_MOST_STATIONS = 10_000
 
 
 def read_profile(raw: Any, unit: str, bound: Bound = ANY, beyond: str = "") -> Datum:
@@ -164,8 +162,8 @@ def _check_numbers(key: str, values: Any) -> None:
     """Refuse anything but a list of finite numbers."""
     if not isinstance(values, list) or not all(is_number(value) for value in values):
         raise InputError(key, values, "must be a list of numbers")
-    if len(values) > _MOST_STATIONS:
-        raise InputError(key, f"{len(values)} values", f"must have at most {_MOST_STATIONS} values")
+    if len(values) > MOST_STATIONS:
+        raise InputError(key, f"{len(values)} values", f"must have at most {MOST_STATIONS} values")
     for value in values:
         if not abs(value) <= sys.float_info.max:  # math.isfinite fails for a larger integer
             raise InputError(key, value, "must be finite")

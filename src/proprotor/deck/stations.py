@@ -26,10 +26,12 @@ from proprotor.errors import InputError, printable, unknown_name
 from proprotor.files.text import read_text
 from proprotor.units import factor_to_si
 
+_Line = tuple[int, list[str]]  # the number of a line in the file, and its cells
+
 _STATIONS = ("r_over_R", "r")
 
 _LARGEST = 1_000_000  # bytes
-_MOST_STATIONS = 10_000
+MOST_STATIONS = 10_000
 _HEAD = re.compile(r"\s*([^\[\]]*?)\s*(?:\[([^\[\]]*)\])?\s*")
 _NUMBER = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*")
 _DELIMITERS = ",;\t"
@@ -95,7 +97,7 @@ def read_stations(
         raise InputError("file", Path(path).name, str(fault)) from None
 
 
-def _table(text: str) -> tuple[list[_Head], Iterator[tuple[int, list[str]]]]:
+def _table(text: str) -> tuple[list[_Head], Iterator[_Line]]:
     """Return the heads of the columns, and the lines of cells below with their line numbers."""
     lines = [
         (number, line)
@@ -114,7 +116,7 @@ def _table(text: str) -> tuple[list[_Head], Iterator[tuple[int, list[str]]]]:
     return heads, _rows(lines[1:], delimiter, len(heads))
 
 
-def _rows(lines: list[tuple[int, str]], delimiter: str, columns: int) -> Iterator[tuple[int, list[str]]]:
+def _rows(lines: list[tuple[int, str]], delimiter: str, columns: int) -> Iterator[_Line]:
     """Yield the cells of each line with its line number."""
     for number, line in lines:
         cells = _cells(number, line, delimiter)
@@ -177,12 +179,7 @@ def _scale(head: _Head, radius: float | None) -> float:
 
 
 def _distribution(
-    rows: Iterator[tuple[int, list[str]]],
-    stations: _Head,
-    scale: float,
-    values: _Head,
-    to_si: float,
-    bound: Bound,
+    rows: Iterator[_Line], stations: _Head, scale: float, values: _Head, to_si: float, bound: Bound
 ) -> _Distribution:
     """Return the stations and values of all lines; refuse a station or value that breaks a rule."""
     r_over_R: list[float] = []
@@ -198,8 +195,8 @@ def _distribution(
             raise _at(number, values, bound.rule)
         r_over_R.append(r)
         found.append(value)
-        if len(found) > _MOST_STATIONS:
-            raise _Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
+        if len(found) > MOST_STATIONS:
+            raise _Fault(f"line {number}: must have at most {MOST_STATIONS} stations")
     if len(found) < 2:
         raise _Fault("must have two stations or more")
     return _Distribution(tuple(r_over_R), tuple(found))

@@ -139,14 +139,8 @@ def _name(field: DeckField) -> str:
 
 def _comment(field: DeckField) -> str:
     """Return meaning, range, default and alternatives of a field."""
-    parts = [field.meaning.rstrip(".")]
-    if field.range:
-        parts.append(field.range)
-    if field.default:
-        parts.append(f"default {field.default}")
-    if field.instead_of:
-        parts.append(f"instead of {', '.join(field.instead_of)}")
-    return "; ".join(parts)
+    texts = {"": field.range, "default ": field.default, "instead of ": ", ".join(field.instead_of)}
+    return "; ".join([field.meaning.rstrip("."), *(label + text for label, text in texts.items() if text)])
 
 
 def _from(value: Any, place: Path) -> Any:

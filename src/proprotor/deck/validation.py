@@ -12,15 +12,12 @@ from proprotor.errors import InputError, unknown_name
 
 # Rules in messages, by pydantic's name of an error.
 _RULES = {
-    "model_type": "must be a table",
-    "model_attributes_type": "must be a table",
-    "dict_type": "must be a table",
+    **dict.fromkeys(("model_type", "model_attributes_type", "dict_type"), "must be a table"),
     "int_type": "must be a whole number",
     "list_type": "must be a list",
     "string_type": "must be text",
     "bool_type": "must be true or false",
-    "too_short": "must not be empty",
-    "string_too_short": "must not be empty",
+    **dict.fromkeys(("too_short", "string_too_short"), "must not be empty"),
     "string_pattern_mismatch": "must be letters, digits, spaces, dots, dashes and underscores",
 }
 

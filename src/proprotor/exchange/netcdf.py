@@ -124,8 +124,7 @@ def _in_parts(results: Dataset) -> Dataset:
 
 def _whole(stored: Dataset) -> Dataset:
     """Return a dataset with complex variables made of their two parts."""
-    names = dict.fromkeys(v.attrs[_COMPLEX] for v in stored.data_vars.values() if _COMPLEX in v.attrs)
-    for name in names:
+    for name in dict.fromkeys(v.attrs[_COMPLEX] for v in stored.data_vars.values() if _COMPLEX in v.attrs):
         real, imaginary = (stored[f"{name}{ending}"] for ending in _PARTS)
         number = np.empty(real.shape, dtype=complex)  # real + 1j * imaginary would lose signs and infinities
         number.real, number.imag = real.values, imaginary.values

@@ -35,7 +35,7 @@ except ImportError as missing:
 from numpy.typing import NDArray
 
 from proprotor.case import Case, load_case
-from proprotor.datum import Datum
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError, check_known
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
@@ -128,8 +128,9 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         self._found: dict[tuple[float, ...], Boundary] = {}  # by the inputs of the last flutter search
         if not (self.options["flutter_speed"] or self._damping):
             raise InputError("damping", None, "must name a mode, or flutter_speed must be true")
+        numbers = design_inputs(self._case)
         for name, path in self._paths.items():
-            number = self._numbers[path]
+            number = numbers[path]
             self.add_input(name, float(number.si), units=_UNITS.get(number.unit, number.unit), desc=path)
         if self.options["flutter_speed"]:
             self.add_output("flutter_speed", 100.0, units="m/s")
@@ -207,12 +208,6 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             raise om.AnalysisError(str(error)) from None
 
     @property
-    def _numbers(self) -> dict[str, Datum]:
-        from proprotor.deck.vary import design_inputs
-
-        return design_inputs(self._case)
-
-    @property
     def _model_options(self) -> dict[str, Any]:
         return dict(self.options["model_options"])
 
@@ -220,7 +215,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         """Return the paths of the inputs by the names of their variables."""
         given = self._listed("inputs", "paths")
         paths = dict(given) if isinstance(given, Mapping) else {variable_name(path): path for path in given}
-        known = self._numbers
+        known = design_inputs(self._case)
         for path in paths.values():
             check_known("inputs", path, known, "input")
         return paths

@@ -141,10 +141,6 @@ def _as_sweep(airspeeds: Array, names: list[str], eigenvalue: Array, labels: Arr
     """Return the part of a sweep that its summary reads."""
     import xarray
 
-    by_mode = ("airspeed", "mode")
-    data = {
-        "eigenvalue": (by_mode, eigenvalue),
-        "branch": (by_mode, labels),
-        "eigenvalue_error": (by_mode, error),
-    }
+    arrays = {"eigenvalue": eigenvalue, "branch": labels, "eigenvalue_error": error}
+    data = {name: (("airspeed", "mode"), array) for name, array in arrays.items()}
     return xarray.Dataset(data, coords={"airspeed": airspeeds, "mode": names})

@@ -310,11 +310,9 @@ def readout(found: LiveModes, values: Mapping[str, float], inputs: Mapping[str, 
     elif onset is None:
         verdict = f"No mode becomes unstable between {low} and {high} kt."
     else:
-        doubtful = doubtful_near(found.airspeed, found.warning, onset.start)
-        speed = marked(f"{onset.start / KNOT:.1f}", doubtful)
+        speed = marked(f"{onset.start / KNOT:.1f}", doubtful_near(found.airspeed, found.warning, onset.start))
         verdict = f"Flutter speed {speed} kt ({escape(onset.mode)}), interpolated."
-    already = [one.mode for one in found.unstable if one.open_start]
-    if already:
+    if already := [one.mode for one in found.unstable if one.open_start]:
         verdict += f" Already unstable at {low} kt: {escape(', '.join(already))}."
     changed = [
         f"{given.name} {value / given.factor:.4g} {given.unit} (deck {given.value:.4g})"

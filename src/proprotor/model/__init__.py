@@ -33,13 +33,14 @@ from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
 from proprotor.model.mount import mount
-from proprotor.model.rotor_model import in_closed_form, rotor_model
+from proprotor.model.rotor_model import airload_moments, in_closed_form, rotor_model
 
 __all__ = [
     "INPUTS",
     "SWASHPLATE",
     "Configuration",
     "LinearModel",
+    "airload_moments",
     "deck_fingerprint",
     "doubts",
     "first_order",

@@ -31,5 +31,4 @@ def mass_at_rest(rotor: Rotor) -> Array:
     quantities |= evaluate(inertia.trim_integrals, quantities)._asdict()
     blade = evaluate(inertia.mass, quantities) + evaluate(pitch.mass, quantities)
     places = np.array([FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
-    mass: Array = evaluate(multiblade.mass, quantities, blade)[..., places[:, None], places]
-    return mass
+    return np.asarray(evaluate(multiblade.mass, quantities, blade)[..., places[:, None], places])

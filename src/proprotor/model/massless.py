@@ -53,8 +53,7 @@ def _scaled(mass: Array) -> Array:
     """Return mass matrices scaled to a unit diagonal."""
     diagonal = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
     diagonal = np.where(diagonal > 0, diagonal, 1)
-    scaled: Array = mass / diagonal[..., None, :] / diagonal[..., None]
-    return scaled
+    return np.asarray(mass / diagonal[..., None, :] / diagonal[..., None])
 
 
 def _clearly_positive(mass: Array) -> bool:

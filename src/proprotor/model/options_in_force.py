@@ -23,16 +23,13 @@ def in_force(options: Options) -> dict[str, Any]:
 
 def options_in_result(found: Mapping[Any, Any]) -> dict[str, Any]:
     """Return every option in force from the attributes of a result, as plain data."""
-    options: dict[str, Any] = json.loads(found["options"])
-    return options
+    return dict(json.loads(found["options"]))
 
 
 def chosen(options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the options in force, as plain data, that differ from the defaults of their equations."""
     equations = options["equations"] if options["equations"] in EQUATION_SETS else "consistent"
-    usual = in_force(Options()) | {
-        name: value for name, value in in_force(Options(equations=equations)).items() if name != "equations"
-    }
+    usual = in_force(Options(equations=equations)) | {"equations": Options().equations}
     return {name: value for name, value in options.items() if value != usual.get(name)}
 
 
@@ -68,9 +65,7 @@ def option_text(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, Mapping):
-        return ", ".join(
-            f"{name.replace('_', ' ')} {option_text(part)}" for name, part in value.items() if part
-        )
+        return options_text({name: part for name, part in value.items() if part})
     if isinstance(value, list | tuple):
         return " and ".join(map(str, value)) or "nothing"
     return f"{value:g}" if isinstance(value, float) else str(value)

@@ -45,8 +45,8 @@ def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str
     return {
         name: _keyword(case, name, value, given)
         for name, value in own.items()
-        if value is not None
-        or name == "drive_train"  # without None here, the drive train of the case would count
+        # Without None here, the drive train of the case would count.
+        if value is not None or name == "drive_train"
     }
 
 

@@ -116,7 +116,7 @@ def rigid_propeller(
     values = (np.asarray(value, dtype=float) for value in (*given.values(), *derivatives))
     speed, radius, omega, density, mass, polar, diametral, *numbers = np.broadcast_arrays(*values)
     damping, stiffness = _airloads(speed, radius, density, WhirlDerivatives(*numbers))
-    inertia = _diagonal(mass, mass, mass, diametral, diametral, polar)
+    inertia = np.stack([mass, mass, mass, diametral, diametral, polar], axis=-1)[..., None] * np.eye(len(HUB))
     return LinearModel(
         M=inertia,
         C=_gyroscopic(polar * omega) + damping,
@@ -125,35 +125,6 @@ def rigid_propeller(
         trim=_unloaded(speed.shape),
         airspeed=speed,
         mass_at_rest=inertia.copy(),
-    )
-
-
-def whirl_derivatives(
-    damping: Array, stiffness: Array, airspeed: ArrayLike, radius: ArrayLike, density: ArrayLike
-) -> WhirlDerivatives:
-    """Return the whirl derivatives that the airloads of any axisymmetric rotor contain.
-
-    Parameters
-    ----------
-    damping, stiffness : array (..., n, n)
-        Contribution of the airloads to C and K, SI; the six hub coordinates are the first.
-    airspeed, radius, density : float or array (...)
-        m/s, above zero; m; kg/m³.
-
-    Returns
-    -------
-    WhirlDerivatives
-        Dimensionless, (...).
-    """
-    speed, radius, density = (np.asarray(value, dtype=float) for value in (airspeed, radius, density))
-    force = density * speed**2 * np.pi * radius**2 / 2
-    x, y, alpha_x, alpha_y = _LOADS
-    return WhirlDerivatives(
-        z_theta=stiffness[..., x, alpha_y] / force,
-        z_psi=-stiffness[..., y, alpha_y] / force,
-        z_r=-damping[..., y, alpha_y] * speed / (force * radius),
-        m_psi=-stiffness[..., alpha_x, alpha_y] / (2 * force * radius),
-        m_q=-damping[..., alpha_y, alpha_y] * speed / (2 * force * radius**2),
     )
 
 
@@ -188,11 +159,6 @@ def _gyroscopic(momentum: Array) -> Array:
     alpha_x, alpha_y = _ANGLES
     matrix[..., alpha_x, alpha_y], matrix[..., alpha_y, alpha_x] = momentum, -momentum
     return matrix
-
-
-def _diagonal(*entries: Array) -> Array:
-    """Return diagonal matrices (..., n, n) of n entries (...)."""
-    return np.stack(entries, axis=-1)[..., None] * np.eye(len(entries))
 
 
 def _unloaded(shape: tuple[int, ...]) -> Trim:

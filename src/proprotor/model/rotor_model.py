@@ -205,17 +205,17 @@ def _segments(
 ) -> dict[str, Any]:
     """Return on which side of the hinges each segment is, and the radial moments of each segment's loads."""
     if options.airloads == "none":
-        hinges = ("beyond_flap_hinge", "beyond_lag_hinge")
-        sides = {name: getattr(sections.quadrature, name) for name in hinges}
-        return dict.fromkeys(LOAD_MOMENTS, 0.0) | sides
+        return dict.fromkeys(LOAD_MOMENTS, 0.0) | sections.sides
     equations = options.equation_set.airloads
     if equations is airloads and options.airloads == "full":
         return dict(at_trim)
     segments = segment_quantities(sections, quantities, equations)
-    return segments | _moments(sections, segments, options)
+    return segments | airload_moments(sections, segments, options)
 
 
-def _moments(sections: BladeSections, segments: Mapping[str, Any], options: Options) -> dict[str, Array]:
+def airload_moments(
+    sections: BladeSections, segments: Mapping[str, Any], options: Options
+) -> dict[str, Array]:
     """Return the radial moments of the section loads, in closed form if possible, else by quadrature."""
     if in_closed_form(sections, options):
         return closed_form_moments(sections, segments)

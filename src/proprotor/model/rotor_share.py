@@ -60,8 +60,7 @@ def rotor_share(mass_at_rest: ArrayLike, held: str, shaft: str = "held") -> Arra
     if mass.shape[-2:] not in ((len(HUB),) * 2, (len(MASS_AT_REST),) * 2):
         raise InputError("mass_at_rest", f"array of shape {mass.shape}", "must be (..., 6, 6) or (..., 8, 8)")
     if held == "mass only":
-        point: Array = mass[..., :1, :1] * _TRANSLATION
-        return point
+        return np.asarray(mass[..., :1, :1] * _TRANSLATION)
     if held == "gimballed" and mass.shape[-1] == len(HUB):
         raise InputError("includes_rotor", held, 'needs a rotor with a gimbal; this one has none: "rigid"')
     free = (_GIMBAL if held == "gimballed" else []) + (_ABOUT_SHAFT if shaft == "free" else [])
@@ -74,8 +73,7 @@ def _released(mass: Array, free: list[int]) -> Array:
     without = np.diagonal(own, axis1=-2, axis2=-1) == 0  # a coordinate without mass does not follow
     own = own + without[..., None] * np.eye(len(free))
     at_hub = mass[..., : len(HUB), : len(HUB)]
-    released: Array = at_hub - np.swapaxes(coupling, -1, -2) @ np.linalg.solve(own, coupling)
-    return released
+    return np.asarray(at_hub - np.swapaxes(coupling, -1, -2) @ np.linalg.solve(own, coupling))
 
 
 def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | None]]) -> tuple[Array, Array]:

@@ -195,9 +195,7 @@ def _rotor_alone(model: LinearModel) -> tuple[LinearModel, Array]:
     if model.rotor is None or model.hub is None:
         return model, np.eye(len(model.dofs))
     own = model.rotor.dofs[len(HUB) :]
-    rows = np.zeros((len(own), len(model.dofs)))
-    for place, name in enumerate(own):
-        if name in model.dofs:  # a coordinate that a submodel leaves out stays at zero
-            rows[place, model.dofs.index(name)] = 1
+    # A coordinate that a submodel leaves out stays at zero.
+    rows = (np.array(own, dtype=object)[:, None] == np.array(model.dofs, dtype=object)).astype(float)
     rows = np.broadcast_to(rows, (*model.hub.shape[:-2], *rows.shape))
     return model.rotor, np.concatenate([model.hub, rows], axis=-2)

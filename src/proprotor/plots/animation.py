@@ -64,7 +64,6 @@ def animate_mode(
         For another ending, a file that cannot be written, numbers that make no animation, or pictures that do not fit
         into memory.
     """
-    target = Path(path)
     check_place(path, ".gif")
     if frames < 4 or not frames_per_second > 0 or not dpi > 0:
         given = f"{frames} frames, {frames_per_second} per second, {dpi} dpi"
@@ -74,8 +73,8 @@ def animate_mode(
     first, *others = _frames(motion, frames, dpi)
     milliseconds = round(1000 / frames_per_second)
     how: dict[str, Any] = {"append_images": others, "duration": milliseconds, "loop": 0, "optimize": True}
-    write_whole(target, lambda file: first.save(file, format="GIF", save_all=True, **how))
-    return target
+    write_whole(path, lambda file: first.save(file, format="GIF", save_all=True, **how))
+    return Path(path)
 
 
 def title_of(motion: ModeMotion) -> str:
@@ -135,8 +134,7 @@ def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
         draw_still(ax, motion, view)
         ax.set_axis_off()
         ax.set_title(_TITLES[view], fontsize=8, color="0.3")
-    heading = f"{motion.case}\n{title_of(motion)}"
-    figure.text(0.02, 0.975, heading, fontsize=9, va="top", parse_math=False)
+    figure.text(0.02, 0.975, f"{motion.case}\n{title_of(motion)}", fontsize=9, va="top", parse_math=False)
     figure.text(0.02, 0.02, _small_print(motion), fontsize=6.5, color="0.35", va="bottom", parse_math=False)
     canvas.draw()
     return canvas, axes

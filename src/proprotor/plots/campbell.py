@@ -12,7 +12,7 @@ from proprotor.plots.canvas import along, axes_or_new, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import positions
 from proprotor.plots.mode_lines import draw_modes
-from proprotor.plots.style import LABEL_SIZE
+from proprotor.plots.style import LABEL_SIZE, white_box
 from proprotor.tables.sweep_summary import damped_frequency
 from proprotor.typing import Axes, Dataset
 
@@ -74,10 +74,11 @@ def plot_campbell(
     if rotor_speed is not None:
         at = rotor_speed / line.factor
         ax.axvline(at, color="0.35", linewidth=1.0, linestyle="-.", zorder=1)
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-        style: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": "0.25", "rotation": 90, "bbox": box}
+        style: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": "0.25", "rotation": 90}
         style |= {"ha": "right", "va": "top", "zorder": 4, "textcoords": "offset points", "xytext": (-3, 0)}
-        ax.annotate(f"{at:.0f} {unit}", (at, 0.98), xycoords=ax.get_xaxis_transform(), **style)
+        ax.annotate(
+            f"{at:.0f} {unit}", (at, 0.98), xycoords=ax.get_xaxis_transform(), bbox=white_box(1), **style
+        )
     ax.set_ylabel("Frequency |Im s| in the fixed frame (Hz)")
     label_lines(ax, lines, "at some rotor speeds or all")
     say_origin(ax, sweep.attrs, along(sweep, line))
@@ -93,5 +94,5 @@ def _draw_rays(ax: Axes, harmonics: Sequence[int], hertz: float, n_blades: int |
         style: dict[str, Any] = {"color": "0.1" if strong else "0.55", "zorder": 1}
         ax.plot([0, end], [0, n * hertz * end], linewidth=1.1 if strong else 0.7, dashes=(2, 2), **style)
         near = 0.955 * end
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-        ax.text(near, n * hertz * near, f"{n}/rev", fontsize=7, ha="center", va="center", bbox=box, **style)
+        style |= {"fontsize": 7, "ha": "center", "va": "center"}
+        ax.text(near, n * hertz * near, f"{n}/rev", bbox=white_box(0.8), **style)

@@ -15,6 +15,7 @@ from proprotor.plots.line_of_sweep import Positions, written
 from proprotor.plots.style import GREY, LABEL_SIZE
 from proprotor.typing import Axes, Dataset, Figure
 
+Limits = tuple[float, float]  # ends of an axis
 RIGHT = 0.75  # right edge of the axes as a share of the width, if labels stand beside the axes
 _NOTE_SIZE = 7  # points
 _INCHES = _NOTE_SIZE * 1.25 / 72  # between lines of the note

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.plots.canvas import RIGHT, add_footer, along, axes_or_new, origin_of, say_origin
+from proprotor.plots.canvas import RIGHT, Limits, add_footer, along, axes_or_new, origin_of, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions
 from proprotor.plots.mode_lines import draw_modes
@@ -58,11 +58,7 @@ def plot_frequency(
 
 
 def _draw_frequency(
-    ax: Axes,
-    sweep: Dataset,
-    line: Positions,
-    rotor_speed: ArrayLike | None,
-    limits: tuple[float, float] | None = None,
+    ax: Axes, sweep: Dataset, line: Positions, rotor_speed: ArrayLike | None, limits: Limits | None = None
 ) -> None:
     per = 2 * np.pi if rotor_speed is None else np.asarray(rotor_speed)[..., None]
     _draw(ax, sweep, damped_frequency(sweep) / per, line, limits or (0, None if rotor_speed is None else 5))
@@ -108,7 +104,7 @@ def plot_damping(
     return ax
 
 
-def _draw_damping(ax: Axes, sweep: Dataset, line: Positions, limits: tuple[float, float]) -> None:
+def _draw_damping(ax: Axes, sweep: Dataset, line: Positions, limits: Limits) -> None:
     _draw(ax, sweep, damping_percent(sweep), line, limits)
     _mark_instability(ax, sweep, line)
     ax.set_ylabel("Damping −Re s/|s| (% of critical)")

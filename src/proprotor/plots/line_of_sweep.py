@@ -11,10 +11,8 @@ from proprotor.plots.input_names import short_name
 from proprotor.typing import Array, Dataset
 from proprotor.units import factor_to_si
 
-_RATES = {
-    "rotor_speed": "rpm",
-    "frequency": "Hz",
-}  # usual units of a quantity in rad/s, by the end of its name
+# Usual units of a quantity in rad/s, by the end of its name.
+_RATES = {"rotor_speed": "rpm", "frequency": "Hz"}
 _USUAL = {"rad": "deg", "m/s": "kt", "rad/s": "Hz"}
 _SYMBOLS = {"**2": "²", "**3": "³", "*": "·"}
 

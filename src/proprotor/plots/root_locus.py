@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from proprotor.plots.canvas import along, axes_or_new, grid, note, points_per_pixel, say_origin
+from proprotor.plots.canvas import Limits, along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
-from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles
+from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles, white_box
 from proprotor.tables.sweep_summary import growth_rate, leaps
 from proprotor.typing import Array, Axes, Dataset, Line2D
 
@@ -73,8 +73,7 @@ def plot_root_locus(
     ax.axvline(0, color="black", linewidth=0.8)
     ax.text(0.99, 0.01, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3", ha="right")
     shown_in = "per rev" if rotor_speed is not None else "rad/s"
-    ax.set_xlabel(f"Growth Re s ({shown_in})")
-    ax.set_ylabel(f"Frequency |Im s| ({shown_in})")
+    ax.set(xlabel=f"Growth Re s ({shown_in})", ylabel=f"Frequency |Im s| ({shown_in})")
     grid(ax)
     if len(at) > 1:
         ends = f"from {at[0]:g} to {at[-1]:g} {written(line.unit)}"
@@ -85,12 +84,7 @@ def plot_root_locus(
 
 
 def _set_limits(
-    ax: Axes,
-    sweep: Dataset,
-    real: Array,
-    imaginary: Array,
-    growth: tuple[float, float] | None,
-    frequency: tuple[float, float] | None,
+    ax: Axes, sweep: Dataset, real: Array, imaginary: Array, growth: Limits | None, frequency: Limits | None
 ) -> None:
     """Set limits that hold the broad modes, or all modes if none is broad."""
     broad = broad_modes(sweep)
@@ -104,7 +98,7 @@ def _set_limits(
 def _range(values: Array) -> tuple[float, float]:
     """Return the ends of values and zero, or -1 and 1 if no value differs from zero."""
     finite = values[np.isfinite(values)]
-    low, high = (min(finite.min(), 0.0), max(finite.max(), 0.0)) if finite.size else (0.0, 0.0)
+    low, high = finite.min(initial=0.0), finite.max(initial=0.0)
     return (float(low), float(high)) if high > low else (-1.0, 1.0)
 
 
@@ -165,9 +159,8 @@ def _draw_rays(ax: Axes) -> None:
         slope = -ratio / np.sqrt(1 - ratio**2)  # Re s over |Im s|
         length = min(top, left / slope)
         ax.plot([0, slope * length], [0, length], color="0.6", linewidth=0.6, dashes=(6, 3), zorder=1)
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
-        style: dict[str, Any] = {"fontsize": 6.5, "color": "0.45", "textcoords": "offset points", "bbox": box}
+        style: dict[str, Any] = {"fontsize": 6.5, "color": "0.45", "textcoords": "offset points"}
         place: dict[str, Any] = {"xytext": (0, -3), "va": "top", "ha": "center"}
         if length < top:
             place = {"xytext": (3, 0), "va": "center"}
-        ax.annotate(f"{100 * ratio:g} %", (slope * length, length), **place, **style)
+        ax.annotate(f"{100 * ratio:g} %", (slope * length, length), bbox=white_box(0.5), **place, **style)

@@ -10,7 +10,7 @@ import numpy as np
 from proprotor.model.doubts import map_doubts
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.line_of_sweep import Positions, axis_of
-from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE
+from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE, white_box
 from proprotor.stability.boundary_lines import BoundaryLine
 from proprotor.typing import Array, Axes, Dataset
 
@@ -61,10 +61,8 @@ def plot_stability_map(
         ax.plot(*vertices.T, color="black", linewidth=1.8)
     failed = np.argwhere(np.isnan(growth))
     ax.plot(x.values[failed[:, 1]], y.values[failed[:, 0]], "x", color="0.4", markersize=4)
-    ax.set_xlim(x.values[0], x.values[-1])
-    ax.set_ylim(y.values[0], y.values[-1])
-    ax.set_xlabel(x.label)
-    ax.set_ylabel(y.label)
+    ax.set(xlim=x.values[[0, -1]], xlabel=x.label)
+    ax.set(ylim=y.values[[0, -1]], ylabel=y.label)
     _draw_named(ax, lines, x, y)
     _name_regions(ax, x.values, y.values, growth)
     level = float(found.attrs.get("level", 0.0))
@@ -135,8 +133,7 @@ def _stable_part(
 
 def _draw_named(ax: Axes, lines: Sequence[BoundaryLine], x: Positions, y: Positions) -> None:
     """Draw the lines of each mode in one style, with the name of the mode beside its longest line."""
-    modes = list(dict.fromkeys(line.mode for line in lines))
-    for place, mode in enumerate(modes):
+    for place, mode in enumerate(dict.fromkeys(line.mode for line in lines)):
         own = [line for line in lines if line.mode == mode]
         colour, dashes = COLOURS[place % len(COLOURS)], _DASHES[place % len(_DASHES)]
         style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 2.0, "zorder": 3}
@@ -145,7 +142,7 @@ def _draw_named(ax: Axes, lines: Sequence[BoundaryLine], x: Positions, y: Positi
             ax.plot(line.x / x.factor, line.y / y.factor, label=label, **style)
         longest = max(own, key=lambda line: float(_steps(line, x, y).sum()))
         at, offset = _beside(ax, longest, x, y)
-        box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.2}
+        box = white_box(1.2) | {"alpha": 0.85}
         text: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": colour, "bbox": box, "zorder": 4}
         text |= {"ha": "center" if abs(offset[0]) < 6 else "left" if offset[0] > 0 else "right"}
         text |= {"va": "center" if abs(offset[1]) < 6 else "bottom" if offset[1] > 0 else "top"}

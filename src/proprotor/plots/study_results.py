@@ -12,7 +12,7 @@ from proprotor.plots.bars import name_bars
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.input_names import short_names
 from proprotor.plots.line_of_sweep import axis_of
-from proprotor.plots.style import COLOURS, LABEL_SIZE
+from proprotor.plots.style import COLOURS, LABEL_SIZE, white_box
 from proprotor.study.uncertainty import distribution
 from proprotor.typing import Axes, Dataset
 
@@ -72,11 +72,9 @@ def plot_distribution(
     for percentile, value, dashes in zip(percentiles, values, cycle(_DASHES), strict=False):
         if np.isfinite(value):
             ax.axvline(value, color="black", linewidth=1.2, linestyle=dashes)
-            box: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 1}
-            style: dict[str, Any] = {"fontsize": LABEL_SIZE, "ha": "center", "va": "top", "bbox": box}
-            ax.text(value, 1.18 * top, f"{percentile:g} %\n{value:.4g}", **style)
-    ax.set_xlabel(axis.label)
-    ax.set_ylabel("Share of the designs (%)")
+            style: dict[str, Any] = {"fontsize": LABEL_SIZE, "ha": "center", "va": "top"}
+            ax.text(value, 1.18 * top, f"{percentile:g} %\n{value:.4g}", bbox=white_box(1), **style)
+    ax.set(xlabel=axis.label, ylabel="Share of the designs (%)")
     grid(ax)
     others = [f"{int(found[name])} {text}" for name, text in _BEYOND.items() if int(found[name])]
     failed = f"; {int(found.failed)} failed and are left out" if int(found.failed) else ""

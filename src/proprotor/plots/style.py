@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import cycle
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from proprotor.tables.sweep_summary import growth_rate, support_coordinates
 from proprotor.typing import Dataset
@@ -20,6 +20,11 @@ _MARKERS = "s^DvP<>"  # on broad lines, because their colours alone do not diffe
 
 # Hatches of bars by the status of a number; the bar of a number that was read in a source has no hatch.
 STATUS_HATCHES = {"recalled": "////", "assumed": "xxxx", "calibrated": "...."}
+
+
+def white_box(pad: float) -> dict[str, Any]:
+    """Return the box of a text that stands over lines; `pad` is the room around the text, points."""
+    return {"facecolor": "white", "edgecolor": "none", "pad": pad}
 
 
 class ModeStyle(NamedTuple):

@@ -89,8 +89,7 @@ def _scale(found: Dataset, unit: str) -> tuple[float, str]:
     if found.derivative.size != found.sizes["input"]:
         raise InputError("found", f"{found.sizes['mode']} modes", "must be of one mode: choose it with mode=")
     if of == "damping":
-        mode = str(found.mode.values.reshape(-1)[0])
-        return 100.0, f"damping of {mode} (% of critical)"
+        return 100.0, f"damping of {found.mode.values.reshape(-1)[0]} (% of critical)"
     factor = factor_to_si(unit, unit, "m/s")
     value = marked(f"{found.attrs['value'] / factor:.0f}", found.warning.item())
     return 1 / factor, f"flutter speed, {value} {unit} ({found.attrs['mode']}), in {unit}"

@@ -111,5 +111,4 @@ def _causes(
         rates = case.sensitivity("flutter_speed", airspeed=airspeeds, **options)
     else:
         rates = case.sensitivity("damping", airspeed=speed, mode=mode, **options)
-    modes = case.sweep(np.array([speed]), **options)
-    return Causes(modes, rates, case.attribution(speed, mode, **options))
+    return Causes(case.sweep(np.array([speed]), **options), rates, case.attribution(speed, mode, **options))

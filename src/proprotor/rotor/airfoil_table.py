@@ -15,9 +15,6 @@ from proprotor.rotor.c81 import COEFFICIENTS, Table, read_c81
 from proprotor.rotor.coefficient_surface import CoefficientSurface, broken_rules
 from proprotor.typing import Array
 
-_BEYOND_STALL = "angle of attack beyond stall"
-_BEYOND_ALPHA = "angle of attack outside the airfoil table"
-_BEYOND_MACH = "Mach number outside the airfoil table"
 _NO_STALL = 100.0  # rad, beyond every angle
 
 
@@ -130,11 +127,11 @@ class AirfoilTable:
         alpha, mach = np.broadcast_arrays(alpha, mach)
         angle = np.real(self._surfaces["lift"].turned(alpha))
         lowest, highest = (np.interp(np.real(mach), *stall) for stall in self._stall)
-        surfaces = self._surfaces.values()
+        surfaces, outside = self._surfaces.values(), "outside the airfoil table"
         return {
-            _BEYOND_STALL: (angle < lowest) | (angle > highest),
-            _BEYOND_ALPHA: np.logical_or.reduce([surface.beyond_alpha(alpha) for surface in surfaces]),
-            _BEYOND_MACH: np.logical_or.reduce([surface.beyond_mach(mach) for surface in surfaces]),
+            "angle of attack beyond stall": (angle < lowest) | (angle > highest),
+            f"angle of attack {outside}": np.any([s.beyond_alpha(alpha) for s in surfaces], axis=0),
+            f"Mach number {outside}": np.any([s.beyond_mach(mach) for s in surfaces], axis=0),
         }
 
     @cached_property
@@ -171,5 +168,4 @@ class AirfoilTable:
 def _first_stop(rises: Array, angles: Array) -> Array:
     """Return the angle (m,) where the first step (n, m) that does not rise begins; `_NO_STALL` if all steps rise."""
     stops = np.vstack([~rises, np.ones(rises.shape[1], dtype=bool)])
-    found: Array = np.append(angles, _NO_STALL)[stops.argmax(axis=0)]
-    return found
+    return np.asarray(np.append(angles, _NO_STALL)[stops.argmax(axis=0)])

@@ -61,8 +61,7 @@ class CoefficientSurface:
         """
         row, angle = _place(self.alpha, self.turned(alpha))
         column, speed = _place(self.mach, mach)
-        cells = self._polynomials[:, :, row, column]
-        along_alpha, by_mach = _horner(cells, speed)
+        along_alpha, by_mach = _horner(self._polynomials[:, :, row, column], speed)
         return *_horner(along_alpha, angle), _horner(by_mach, angle)[0]
 
     def beyond_alpha(self, alpha: Array) -> Array:
@@ -129,8 +128,7 @@ def _first_row(holds: Array, rule: str) -> Iterator[tuple[int, str]]:
 
 def _outside(nodes: Array, x: Array) -> Array:
     """Return whether each x lies below the first node or above the last."""
-    outside: Array = (np.real(x) < nodes[0]) | (np.real(x) > nodes[-1])
-    return outside
+    return np.asarray((np.real(x) < nodes[0]) | (np.real(x) > nodes[-1]))
 
 
 def _place(nodes: Array, x: Array) -> tuple[Array, Array]:
@@ -157,8 +155,7 @@ def _slopes(x: Array, values: Array) -> Array:
         return np.zeros_like(values)
     # Reciprocals of the smallest differences overflow, and become zero slopes.
     with np.errstate(over="ignore"):
-        slopes: Array = PchipInterpolator(x, values, axis=0)(x, nu=1)
-    return slopes
+        return np.asarray(PchipInterpolator(x, values, axis=0)(x, nu=1))
 
 
 def _cubics(x: Array, values: Array, slopes: Array, outside: float) -> Array:

@@ -48,8 +48,7 @@ class Operation:
         if self.windmilling:
             return
         if isinstance(self.trim, str):
-            rule = unknown_name(self.trim, ("windmill", *_TRIM_TARGETS), "trim")
-            raise InputError("trim", self.trim, rule)
+            raise InputError("trim", self.trim, unknown_name(self.trim, ("windmill", *_TRIM_TARGETS), "trim"))
         if not isinstance(self.trim, Mapping) or len(self.trim) != 1:
             rule = 'must be "windmill" or one target such as {"collective": 0.6}'
             raise InputError("trim", self.trim, rule)

@@ -269,12 +269,10 @@ class Rotor:
         array (..., stations)
             Twist from the pitch at 0.75 R, rad.
         """
-        reference = 0.75 * np.asarray(self.radius)[..., None]
+        radius = np.asarray(self.radius)[..., None]
         if isinstance(self.twist, tuple) or callable(self.twist):
-            twist: Array = _interpolate(self.twist, r) - _interpolate(self.twist, reference)
-        else:
-            twist = np.asarray(self.twist)[..., None] * (r - reference) / np.asarray(self.radius)[..., None]
-        return twist
+            return np.asarray(_interpolate(self.twist, r) - _interpolate(self.twist, 0.75 * radius))
+        return np.asarray(np.asarray(self.twist)[..., None] * (r - 0.75 * radius) / radius)
 
     @classmethod
     def from_mass_distribution(
@@ -322,8 +320,7 @@ class Rotor:
         if np.any(mass < 0):
             raise InputError("mass_distribution", float(mass.min()), "must not be negative")
         if beyond not in ("", NOTHING):
-            rule = f'must have beyond = "{NOTHING}", or no beyond'
-            raise InputError("mass_distribution", beyond, rule)
+            raise InputError("mass_distribution", beyond, f'must have beyond = "{NOTHING}", or no beyond')
         r = _reaching(r, fields_.get("radius"), beyond, hub_mass)
         _check_distribution("mass_distribution", (r, mass))
         axes = {name: fields_.get(f"{name}_hinge_offset", 0.0) for name in ("flap", "lag")}
@@ -415,8 +412,7 @@ def _interpolate(distribution: _Table | Callable[[Array], Array], r: Array) -> A
     start, end = (np.take_along_axis(stations, panel + step, axis=-1) for step in (0, 1))
     share = (r - start) / (end - start)
     share = np.where(np.real(share) < 0, 0.0, np.where(np.real(share) > 1, 1.0, share))
-    between: Array = values[panel] + share * (values[panel + 1] - values[panel])
-    return between
+    return np.asarray(values[panel] + share * (values[panel + 1] - values[panel]))
 
 
 def _outboard_moment(r: Array, mass: Array, axis: ArrayLike, power: int) -> Any:

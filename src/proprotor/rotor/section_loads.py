@@ -73,6 +73,11 @@ class BladeSections:
         airfoil = self.airfoil.real if isinstance(self.airfoil, Airfoil) else self.airfoil
         return BladeSections(self.quadrature.real, np.real(self.chord), np.real(self.twist), airfoil)
 
+    @property
+    def sides(self) -> dict[str, Array]:
+        """On which side of the hinges each segment is, by the names of the derivation."""
+        return {name: getattr(self.quadrature, name) for name in ("beyond_flap_hinge", "beyond_lag_hinge")}
+
     def take(self, rows: Array | slice) -> BladeSections:
         """Return the sections at some of the points."""
         quadrature = self.quadrature.take(rows)
@@ -101,8 +106,7 @@ def segment_quantities(
     `equations` is the generated airload module, here and below.
     """
     segments = {name: np.asarray(value)[..., None] for name, value in quantities.items()}
-    for name in ("beyond_flap_hinge", "beyond_lag_hinge"):
-        segments[name] = getattr(sections.quadrature, name)
+    segments |= sections.sides
     return {**segments, **evaluate(equations.segment_geometry, segments)._asdict()}
 
 

@@ -46,8 +46,7 @@ class Slopes(NamedTuple):
 
     def at(self, share: Array) -> Array:
         """Return the slopes (n, k, k) at a share (n,) of the loads."""
-        slopes: Array = self.full - (1 - share[:, None, None]) * self.airloads
-        return slopes
+        return np.asarray(self.full - (1 - share[:, None, None]) * self.airloads)
 
     def by_moments(self, sprung: Array) -> Slopes:
         """Return the slopes per unit of the moments that springs and centrifugal force set against flap and lag.
@@ -138,8 +137,7 @@ class Balance:
     def relieved(self, here: Linear, share: Array) -> Array:
         """Return the residual (n, k) at a share (n,) of the airloads."""
         work = here.work[:, self.rows] * self.hinged
-        relieved: Array = here.residual + (1 - share[:, None]) * work
-        return relieved
+        return np.asarray(here.residual + (1 - share[:, None]) * work)
 
     def precone_load(self, rows: Array) -> Array:
         """Return the part of precone in the residual (n, k) of the undeflected blade."""
@@ -211,8 +209,7 @@ class Balance:
         real["collective"] = real["collective"] + 1j * _COMPLEX_STEP
         given = {name: np.real(value) for name, value in take(self.quantities, rows).items()}
         quantities = with_trim(given, self.options, take(real, rows))
-        change: Array = evaluate(equations.residual, quantities)[..., equations.TRIM].imag / _COMPLEX_STEP
-        return change
+        return np.asarray(evaluate(equations.residual, quantities)[..., equations.TRIM].imag / _COMPLEX_STEP)
 
 
 def solve(slopes: Array, right: Array) -> Array:

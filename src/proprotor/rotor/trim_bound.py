@@ -61,8 +61,7 @@ def contraction(
         middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
         again = np.tile(np.arange(n), windows)  # all windows at once
         moved = _moved(half[again], middles.ravel(), *(part.of(again) for part in slopes))
-        largest: Array = _radius(moved).reshape(windows, n).max(axis=0)
-        return largest
+        return np.asarray(_radius(moved).reshape(windows, n).max(axis=0))
 
     slopes = (before, after) if between is None else (before, after, between)
     return _by_moments_or_angles(sprung, radius, *slopes, enough=enough)
@@ -120,8 +119,7 @@ def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: 
     parts = [half[:, None, None] * mean.airloads, *(part.at(middle) for part in (change, *aside))]
     moved = np.abs(solve(mean.at(middle), np.concatenate(parts, axis=-1)))
     in_share, *in_place = np.split(moved, len(parts), axis=-1)
-    largest: Array = in_share + _REACH * np.maximum.reduce(in_place)
-    return largest
+    return np.asarray(in_share + _REACH * np.maximum.reduce(in_place))
 
 
 def _radius(matrix: Array) -> Array:
@@ -132,5 +130,4 @@ def _radius(matrix: Array) -> Array:
     weight = np.ones((*matrix.shape[:2], 1))
     for _ in range(_POWER_STEPS):
         weight = matrix @ weight + _FLOOR * weight
-    bound: Array = (matrix @ weight / weight)[..., 0].max(axis=1, initial=0.0)
-    return bound
+    return np.asarray((matrix @ weight / weight)[..., 0].max(axis=1, initial=0.0))

@@ -56,8 +56,7 @@ class Path:
     @property
     def arrived(self) -> Array:
         """Which points (n,) have come to all of the loads."""
-        arrived: Array = self.rigid & (self.share == 1)
-        return arrived
+        return np.asarray(self.rigid & (self.share == 1))
 
     def begin(self) -> Array:
         """Correct the undeflected blade at no loads, and return the points that have a path."""
@@ -85,8 +84,7 @@ class Path:
         """Set λ, slopes and tangent of points that came farther."""
         self.share[gained] = share
         self.slopes.put(gained, Slopes(full, airloads))
-        here = self.slopes.of(gained).at(share)
-        self.tangent[gained] = -solve(here, loads[..., None])[..., 0]
+        self.tangent[gained] = -solve(Slopes(full, airloads).at(share), loads[..., None])[..., 0]
 
     def _with_next_step(self, active: Array, good: Array, radius: Array) -> Array:
         """Set the next step by the bound, and return the points with a way to go and a step to take."""

@@ -257,8 +257,7 @@ def _first_step(balance: Balance, state: State, rows: Array) -> tuple[Array, Lin
 
 def _after(here: Linear, step: Array) -> Array:
     """Return the virtual work (n, 5) of the airloads after a step."""
-    work: Array = here.work + (here.work_slopes @ step[..., None])[..., 0]
-    return work
+    return np.asarray(here.work + (here.work_slopes @ step[..., None])[..., 0])
 
 
 def _settle(

@@ -10,24 +10,16 @@ origin drives the mode. If the terms of all origins grow alike nothing moves: th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
-from proprotor.model.linear_model import LinearModel
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change
-from proprotor.stability.matching import Modes
 from proprotor.stability.named_modes import doubtful_numbers, named_modes
-from proprotor.stability.origins import Part, model_parts
-from proprotor.typing import Array, Dataset
-
-
-def _contributions(model: LinearModel, parts: Mapping[str, Part], modes: Modes) -> Array:
-    """Return λ_g of each part and mode (..., parts, modes), rad/s; the sum over all parts of a model is zero."""
-    return np.stack([eigenvalue_change(model, part, modes) for part in parts.values()], axis=-2)
+from proprotor.stability.origins import model_parts
+from proprotor.typing import Dataset
 
 
 def attribution(case: Configuration, airspeed: Any, mode: str | None = None, **options: Any) -> Dataset:
@@ -58,7 +50,8 @@ def attribution(case: Configuration, airspeed: Any, mode: str | None = None, **o
 
     found = named_modes(case, airspeed, mode, options)
     parts = model_parts(case, found.model, **options)
-    changes = _contributions(found.model, parts, found.modes)
+    # λ_g of each part and mode; the sum over all parts is zero.
+    changes = np.stack([eigenvalue_change(found.model, part, found.modes) for part in parts.values()])
     by_origin, units = ("origin", "mode"), {"units": "rad/s"}
     return xarray.Dataset(
         {

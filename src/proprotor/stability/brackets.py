@@ -156,8 +156,7 @@ class Brackets:
         better = np.where(quality.max(axis=0) < POOR, beyond, quality.argmax(axis=0))
         clear = np.where(quality[nearer, rows] < POOR, better, nearer)
         chosen = np.where(alike[0] == alike[1], clear, alike[1].astype(int))
-        followed: Array = places[chosen, rows]
-        return followed
+        return np.asarray(places[chosen, rows])
 
     def _narrow(self, active: Array, beyond: Array, points: Points, place: Array) -> None:
         """Replace the end of each bracket that lies on the same side of the level as its trial point by this point."""

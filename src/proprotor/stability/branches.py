@@ -97,8 +97,7 @@ def named_at(branches: Branches, line: ParameterLine, place: int) -> NamedStates
 def names_of(model: LinearModel, spectrum: Spectrum) -> Array:
     """Return what moves in each state (states,) of a model of one point, by its place in `name_list`."""
     values, right, left = spectrum.all_modes
-    place: Array = moving(model, values, left, right).place[0]
-    return place
+    return np.asarray(moving(model, values, left, right).place[0])
 
 
 def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStates | None:
@@ -177,9 +176,8 @@ def _doubts(branches: Branches, label: Array, points: int) -> Array:
     doubt = np.full(points, "", dtype=object)
     own = np.flatnonzero(branches.points < points)  # points of the line, and none between
     if len(own) > 1:
-        poor = (
-            np.minimum.reduceat(branches.quality, own[:-1], axis=0) < POOR
-        )  # in any step since the point before
+        # In any step since the point before.
+        poor = np.minimum.reduceat(branches.quality, own[:-1], axis=0) < POOR
         for row in np.flatnonzero(poor.any(axis=1)):
             point, places = branches.points[own[row + 1]], branches.places[own[row + 1]]
             names = dict.fromkeys(label[point, np.sort(places[poor[row]])])

@@ -96,8 +96,7 @@ class Search:
         Differences from point to point stand for derivatives; cubics by differences are trusted half as much.
         """
         points, steps = _with_differences(self.points, self.steps, self.level), self.steps
-        share = where_to_part(steps, points, False, self.level, _TRUST, along_scan)
-        asked = np.isfinite(share)
+        asked = np.isfinite(where_to_part(steps, points, False, self.level, _TRUST, along_scan))
         asked[steps.crossing(points)[0]] = True
         few = np.bincount(points.line) < MANY  # points of a line, for differences to be of use
         asked |= few[points.line[steps.before]]

@@ -12,8 +12,7 @@ def hermite(t: Array, ends: Array) -> Array:
     value0, value1, slope0, slope1 = ends
     rise = value1 - value0
     a, b = slope0 - rise, rise - slope1
-    value: Array = value0 + t * (rise + (1 - t) * (a + t * (b - a)))
-    return value
+    return np.asarray(value0 + t * (rise + (1 - t) * (a + t * (b - a))))
 
 
 def hermite_slope(t: Array, ends: Array) -> Array:
@@ -27,14 +26,12 @@ def hermite_slope(t: Array, ends: Array) -> Array:
 def bend(ends: Array) -> Array:
     """Return how far cubics, by their ends (4, ...), may leave the straight line between the ends."""
     rise = ends[1] - ends[0]
-    found: Array = np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4
-    return found
+    return np.asarray(np.maximum(np.abs(ends[2] - rise), np.abs(ends[3] - rise)) / 4)
 
 
 def band(t: Array) -> Array:
     """Return how the error of a cubic is spread over the step: 0 at both ends, 1 in the middle."""
-    spread: Array = 16 * t**2 * (1 - t) ** 2
-    return spread
+    return np.asarray(16 * t**2 * (1 - t) ** 2)
 
 
 def hermite_extrema(ends: Array) -> Array:

@@ -83,8 +83,7 @@ def eigenvalue_change(
     load = real_times(np.concatenate([mass, damping, stiffness[..., held]], axis=-1), motion)
     for place in set(range(n)) - set(held):  # an azimuth that nothing holds, and that a shaft would hold
         load = load + _pull(stiffness[..., place], rates[..., place, :], values)
-    change: Array = -(second_order_left(model, left) * np.swapaxes(load, -1, -2)).sum(axis=-1)
-    return change
+    return np.asarray(-(second_order_left(model, left) * np.swapaxes(load, -1, -2)).sum(axis=-1))
 
 
 def _pull(stiffness: Array, rate: Array, values: Array) -> Array:
@@ -99,8 +98,7 @@ def real_times(matrices: Array, vectors: Array) -> Array:
     """Multiply real matrices by complex columns in real numbers, which is half the work."""
     count = vectors.shape[-1]
     parts = matrices @ np.concatenate([vectors.real, vectors.imag], axis=-1)
-    product: Array = parts[..., :count] + 1j * parts[..., count:]
-    return product
+    return np.asarray(parts[..., :count] + 1j * parts[..., count:])
 
 
 def defect(modes: Modes) -> Array:
@@ -108,5 +106,4 @@ def defect(modes: Modes) -> Array:
 
     The sum grows without bound where two modes fall into one and derivatives cease to exist.
     """
-    sums: Array = np.abs(np.swapaxes(modes.left, -1, -2) * modes.right).sum(axis=-2)
-    return sums
+    return np.asarray(np.abs(np.swapaxes(modes.left, -1, -2) * modes.right).sum(axis=-2))

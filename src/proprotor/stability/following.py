@@ -54,13 +54,6 @@ class Branches:
         """Trust in each step of each branch (k - 1, states)."""
         return np.take_along_axis(self.steps.quality, self.places[:-1], 1)
 
-    def order(self, points: int) -> Array:
-        """Return `places` (points, states) at the first points of the spectrum; meaningless at failed points."""
-        order = np.tile(np.arange(self.spectrum.values.shape[1]), (points, 1))
-        own = self.points < points
-        order[self.points[own]] = self.places[own]
-        return order
-
     def _with_points(self, after: Array, positions: Array, between: Spectrum) -> Branches:
         """Return the branches with one more point in each of the steps `after`, at `positions` within the steps."""
         first = len(self.spectrum.values)

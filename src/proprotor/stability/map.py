@@ -113,11 +113,8 @@ def stability_map(
     )
     edges, solves = _crossings(plane, x, y, largest, level)
     found = _dataset(names, values, largest, value, edges)
-    for name, texts, meaning in (
-        ("reason", reason, "why a point failed"),
-        ("warning", warning, "what makes a point doubtful"),
-    ):
-        found[name] = names[::-1], texts.astype(str), {"long_name": meaning}
+    found["reason"] = names[::-1], reason.astype(str), {"long_name": "why a point failed"}
+    found["warning"] = names[::-1], warning.astype(str), {"long_name": "what makes a point doubtful"}
     doubtful = _warnings_at(plane, found.boundary.values)
     found["boundary_warning"] = "vertex", doubtful, {"long_name": "what makes the boundary doubtful"}
     found.attrs = stamp.of_case(case, options) | {"level": level}

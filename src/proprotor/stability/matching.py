@@ -92,8 +92,7 @@ class Spectrum(NamedTuple):
     def nearest(self, roots: Array) -> Array:
         """Return the places (..., k) of the states that are nearest to some roots (..., k) of the points."""
         apart = size_of(self.values[..., None, :] - roots[..., :, None])
-        place: Array = np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1)
-        return place
+        return np.asarray(np.where(np.isnan(apart), np.inf, apart).argmin(axis=-1))
 
     @property
     def all_modes(self) -> Modes:
@@ -177,9 +176,8 @@ def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Ar
     """Match modes of points whose coordinates have different shapes, in the coordinates of the earlier point."""
     turn = np.linalg.pinv(shapes[before]) @ shapes[after]
     states, count = spectrum.values.shape[-1], turn.shape[-1]
-    rates = (
-        states - (states + 1) // 2
-    )  # first place of a rate, after all displacements, or all but the azimuth
+    # First place of a rate, after all displacements, or all but the azimuth.
+    rates = states - (states + 1) // 2
     right = spectrum.right[after]
     for start in (0, rates):
         places = slice(start, start + count)
@@ -291,8 +289,7 @@ def _trust(likeness: Array, choice: Array, start: Array, end: Array) -> Array:
     mixing[...] = 0
     mixing[step, one, other] = index
     worst = np.maximum(mixing.max(axis=2, initial=0), mixing.max(axis=1, initial=0))
-    quality: Array = np.clip(np.minimum(own, 1) - worst, 0, 1)
-    return quality
+    return np.asarray(np.clip(np.minimum(own, 1) - worst, 0, 1))
 
 
 def _index(mixing: Array, apart: Array, later: Array) -> Array:
@@ -307,8 +304,7 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     """Return successors and quality (states,) of one step of any kind, by the assignment with the largest sum."""
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
     likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
-    distance = _distance(start[:, None], end, np.nanmax(np.abs(start)))
-    gain = likeness - distance
+    gain = likeness - _distance(start[:, None], end, np.nanmax(np.abs(start)))
     successor = best_assignment(np.where(np.isfinite(gain), gain, -1e300))
     mixing = likeness[:, successor]
     own = np.diagonal(mixing).copy()
@@ -326,8 +322,7 @@ def best_assignment(gain: Array) -> Array:
     """Return the column of each row in the assignment of columns to rows with the largest sum."""
     from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
 
-    columns: Array = linear_sum_assignment(gain, maximize=True)[1]
-    return columns
+    return np.asarray(linear_sum_assignment(gain, maximize=True)[1])
 
 
 def _as_slice(points: Array) -> slice | Array:
@@ -344,8 +339,7 @@ def conjugate(values: Array) -> Array:
 
 def size_of(numbers: Array) -> Array:
     """Return |z| without np.abs's overflow guard, twice as fast."""
-    size: Array = np.sqrt(numbers.real**2 + numbers.imag**2)
-    return size
+    return np.asarray(np.sqrt(numbers.real**2 + numbers.imag**2))
 
 
 def _distance(start: Array, end: Array, scale: Array) -> Array:
@@ -359,8 +353,7 @@ def way_to_zero(start: Array, end: Array) -> Array:
     way = end - start
     length = np.abs(way) ** 2
     at = np.clip(-(start.conj() * way).real / np.where(length > 0, length, 1), 0, 1)
-    distance: Array = np.abs(start + at * way)
-    return distance
+    return np.asarray(np.abs(start + at * way))
 
 
 def chain(successor: Array, start: Array) -> Array:

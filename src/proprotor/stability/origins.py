@@ -21,19 +21,13 @@ from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mount import mount
 from proprotor.model.options_of_result import check_options
 from proprotor.model.quantities import COUPLINGS, batch_shape, couplings, model_quantities
-from proprotor.model.rotor_model import in_closed_form
+from proprotor.model.rotor_model import airload_moments, in_closed_form
 from proprotor.model.rotor_share import without_rotors
 from proprotor.model.stamp import of_model
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options, parse_options
-from proprotor.rotor.section_loads import (
-    BladeSections,
-    closed_form_moments,
-    compressible,
-    load_moments,
-    segment_quantities,
-)
+from proprotor.rotor.section_loads import BladeSections, compressible, segment_quantities
 from proprotor.rotor.trim import UNKNOWNS, with_trim
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
@@ -56,7 +50,7 @@ _COEFFICIENTS = {
 }
 
 
-class Part(NamedTuple):
+class _Part(NamedTuple):
     """M, C, K (..., n, n) of one origin, on the coordinates of the model."""
 
     M: Array
@@ -82,7 +76,7 @@ class _SomeCoefficients:
         return found._replace(**dropped)
 
 
-def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict[str, Part]:
+def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict[str, _Part]:
     """Return M, C and K of a case by origin; their sum is the model.
 
     Parameters
@@ -96,7 +90,7 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
 
     Returns
     -------
-    dict of str to Part
+    dict of str to M, C and K
         Origins that contribute nothing are left out.
 
     Raises
@@ -137,24 +131,24 @@ def _quantities(
     return trimmed | couplings(choice, trimmed)
 
 
-def _structure(quantities: dict[str, Any], choice: Options) -> dict[str, Part]:
+def _structure(quantities: dict[str, Any], choice: Options) -> dict[str, _Part]:
     """Return inertia, springs and dampers of one blade (points, 12, 12)."""
     equations = choice.equation_set
     quantities = quantities | evaluate(equations.inertia.trim_integrals, quantities)._asdict()
     zero = np.zeros((12, 12))
     mass = evaluate(equations.inertia.mass, quantities) + evaluate(equations.pitch.mass, quantities)
     parts = {
-        "inertia": Part(mass, zero, zero),
-        "gyroscopic": Part(zero, evaluate(equations.inertia.gyroscopic, quantities), zero),
-        "centrifugal": Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, quantities)),
-        "dampers": Part(zero, evaluate(pitch.damping, quantities), zero),
+        "inertia": _Part(mass, zero, zero),
+        "gyroscopic": _Part(zero, evaluate(equations.inertia.gyroscopic, quantities), zero),
+        "centrifugal": _Part(zero, zero, evaluate(equations.inertia.centrifugal_stiffness, quantities)),
+        "dampers": _Part(zero, evaluate(pitch.damping, quantities), zero),
     }
     for origin, name in _RESTRAINTS.items():
         others = dict.fromkeys(set(_RESTRAINTS.values()) - {name}, 0.0)
-        parts[origin] = Part(zero, zero, evaluate(equations.pitch.stiffness, quantities | others))
+        parts[origin] = _Part(zero, zero, evaluate(equations.pitch.stiffness, quantities | others))
     springs = evaluate(equations.flap_lag_springs.stiffness, quantities)
     return parts | {
-        origin: Part(zero, zero, np.where(mask, springs, 0)) for origin, mask in _spring_entries().items()
+        origin: _Part(zero, zero, np.where(mask, springs, 0)) for origin, mask in _spring_entries().items()
     }
 
 
@@ -181,7 +175,7 @@ def _spring_entries() -> dict[str, Array]:
 
 def _airloads(
     sections: BladeSections, quantities: dict[str, Any], choice: Options
-) -> Iterator[tuple[str, Part]]:
+) -> Iterator[tuple[str, _Part]]:
     """Yield airloads of one blade (points, 12, 12) by coefficient, and by coupling of the blade's pitch."""
     if choice.airloads == "none":
         return
@@ -189,18 +183,18 @@ def _airloads(
     kinds = {"lift slope": _COEFFICIENTS["lift slope"]} if choice.airloads == "lift-slope" else _COEFFICIENTS
     for origin, kept in kinds.items():
         loads = _moments(sections, quantities, choice, kept, section_damping=False)
-        yield f"airloads: {origin}", Part(zero, *_loads(uncoupled, choice, loads))
+        yield f"airloads: {origin}", _Part(zero, *_loads(uncoupled, choice, loads))
     every = tuple(name for kept in kinds.values() for name in kept)
     whole = _moments(sections, quantities, choice, every, section_damping=False)
     alone = _loads(uncoupled, choice, whole)
     if choice.section_damping:
         whole = _moments(sections, quantities, choice, every, section_damping=True)
         undamped, alone = alone, _loads(uncoupled, choice, whole)
-        yield "section pitch damping", Part(zero, *(alone - undamped))
+        yield "section pitch damping", _Part(zero, *(alone - undamped))
     for name, origin in _COUPLING_ORIGINS.items():
         if np.any(quantities[name]):
             coupled = _loads(uncoupled | {name: quantities[name]}, choice, whole)
-            yield origin, Part(zero, *(coupled - alone))
+            yield origin, _Part(zero, *(coupled - alone))
 
 
 def _moments(
@@ -211,17 +205,12 @@ def _moments(
     section_damping: bool,
 ) -> dict[str, Any]:
     """Return radial moments of the section loads by some of the coefficients, and the quantities of segments."""
-    equations = choice.equation_set.airloads
-    segments = segment_quantities(
-        sections, quantities | {"section_damping": float(section_damping)}, equations
-    )
-    if in_closed_form(sections, choice):
-        return segments | closed_form_moments(sections, segments)
-    some = replace(sections, airfoil=_SomeCoefficients(sections.airfoil, kept, choice.compressibility))
-    alone = choice.airloads == "lift-slope"
-    return segments | load_moments(
-        some, segments, compressibility=False, lift_slope_only=alone, equations=equations
-    )
+    given = quantities | {"section_damping": float(section_damping)}
+    segments = segment_quantities(sections, given, choice.equation_set.airloads)
+    if not in_closed_form(sections, choice):
+        some = _SomeCoefficients(sections.airfoil, kept, choice.compressibility)
+        sections = replace(sections, airfoil=some)
+    return segments | airload_moments(sections, segments, choice)
 
 
 def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, Any]) -> Array:
@@ -231,27 +220,27 @@ def _loads(quantities: dict[str, Any], choice: Options, segments: Mapping[str, A
     return np.stack([damping, stiffness])
 
 
-def _in_fixed_frame(part: Part, quantities: Mapping[str, Any]) -> Part:
+def _in_fixed_frame(part: _Part, quantities: Mapping[str, Any]) -> _Part:
     """Return a part of one blade as a part of the rotor (points, 18, 18)."""
-    return Part(
+    return _Part(
         evaluate(multiblade.mass, quantities, part.M),
         evaluate(multiblade.damping, quantities, part.M, part.C),
         evaluate(multiblade.stiffness, quantities, part.M, part.C, part.K),
     )
 
 
-def _other_parts(quantities: Mapping[str, Any], choice: Options) -> dict[str, Part]:
+def _other_parts(quantities: Mapping[str, Any], choice: Options) -> dict[str, _Part]:
     """Return the parts that are added in the fixed frame (18, 18)."""
     zero, parts = np.zeros((len(FIXED_COORDINATES),) * 2), {}
     if choice.drive_train is not None:
         kinds = (drive_train.mass, drive_train.damping, drive_train.stiffness)
-        parts["drive train"] = Part(*(evaluate(kind, quantities) for kind in kinds))
+        parts["drive train"] = _Part(*(evaluate(kind, quantities) for kind in kinds))
     if "cyclic_flap_stiffness_excess" in quantities:
-        parts["cyclic flap restraint"] = Part(zero, zero, evaluate(multiblade.cyclic_restraint, quantities))
+        parts["cyclic flap restraint"] = _Part(zero, zero, evaluate(multiblade.cyclic_restraint, quantities))
     return parts
 
 
-def _mounted(part: Part, carrier: NormalModes, model: LinearModel, shape: tuple[int, ...]) -> Part:
+def _mounted(part: _Part, carrier: NormalModes, model: LinearModel, shape: tuple[int, ...]) -> _Part:
     """Return a part of the rotor on the coordinates of the model."""
     n, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
     matrices: dict[str, Any] = {
@@ -260,12 +249,12 @@ def _mounted(part: Part, carrier: NormalModes, model: LinearModel, shape: tuple[
     }
     alone = LinearModel(**matrices, dofs=FIXED_COORDINATES, trim=model.trim, airspeed=model.airspeed)
     whole = mount(alone, carrier).submodel(model.dofs)
-    return Part(whole.M, whole.C, whole.K)
+    return _Part(whole.M, whole.C, whole.K)
 
 
 def _support_parts(
     case: Configuration, support: NormalModes, model: LinearModel, shape: tuple[int, ...]
-) -> dict[str, Part]:
+) -> dict[str, _Part]:
     """Return the parts of the support; its mass is taken without the rotor's."""
     n, modes = len(model.dofs), len(support.names)
 
@@ -276,14 +265,14 @@ def _support_parts(
 
     mass, _ = without_rotors(support, [(support.hub, mass_at_rest(case.rotor))])
     zero, own = np.zeros((*shape, n, n)), case.support
-    air = Part(
+    air = _Part(
         whole(mass * 0 + support.mass - own.mass),
         whole(support.damping - own.damping),
         whole(support.stiffness - own.stiffness),
     )
     return {
-        "support inertia": Part(whole(mass) - air.M, zero, zero),
-        "support damping": Part(zero, whole(own.damping), zero),
-        "support stiffness": Part(zero, zero, whole(own.stiffness)),
+        "support inertia": _Part(whole(mass) - air.M, zero, zero),
+        "support damping": _Part(zero, whole(own.damping), zero),
+        "support stiffness": _Part(zero, zero, whole(own.stiffness)),
         "wing airloads": air,
     }

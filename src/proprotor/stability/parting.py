@@ -170,8 +170,7 @@ def _most_parted(square: Array, width: Array) -> Array:
     """
     rise = square[1] - square[0]
     away = 4 / 27 * (np.abs(square[2] - rise) + np.abs(square[3] - rise))
-    most: Array = np.sqrt(np.maximum(away + width - square[:2].min(axis=0), 0))
-    return most
+    return np.asarray(np.sqrt(np.maximum(away + width - square[:2].min(axis=0), 0)))
 
 
 def _open_at(

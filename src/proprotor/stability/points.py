@@ -104,16 +104,13 @@ def solve_points(
     InputError
         For an impossible input, unless `forgiving`.
     """
+    failures = (np.linalg.LinAlgError, InputError) if forgiving else np.linalg.LinAlgError
     try:
         return _solved(models, line, position, level, states, plain)
-    except np.linalg.LinAlgError as error:
-        failure: Exception = error
-    except InputError as error:
-        if not forgiving:
-            raise
-        failure = error
+    except failures as error:
+        failure = str(error)
     if len(line) == 1:
-        reason = np.array([" ".join(str(failure).split("\n"))], dtype=object)
+        reason = np.array([" ".join(failure.split("\n"))], dtype=object)
         nothing = np.array([""], dtype=object)
         return Solved(None, np.array([False]), reason, nothing, nothing)
     halves = [

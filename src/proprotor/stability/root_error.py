@@ -73,12 +73,10 @@ def refined(model: LinearModel, modes: Modes) -> _Refined:
         matrices = np.concatenate([model.M.real, model.C.real, model.K.real[..., held]], axis=-1)
         correction = -_products(left, real_times(matrices, motion))
         rounding = _ROUNDINGS * _EPSILON * _products(size_of(left), np.abs(matrices) @ size_of(motion))
-        apart = _nearest(values)
-        share = size_of(correction) / apart
+        share = size_of(correction) / _nearest(values)
         better = share < 0.5
         error = rounding + size_of(correction) * np.where(better, _OF_CORRECTION + share, 1.0)
-        most = _DOUBLE * _largest(values)
-        error = np.where(np.isnan(values), np.nan, np.fmin(error, most))
+        error = np.where(np.isnan(values), np.nan, np.fmin(error, _DOUBLE * _largest(values)))
     return _Refined(np.where(better, values + correction, values), error)
 
 
@@ -137,14 +135,12 @@ def _any_near(distance: Array, values: Array) -> Array:
 
 def _largest(values: Array) -> Array:
     """Return the size of the largest root of each point (..., 1)."""
-    largest: Array = np.fmax.reduce(size_of(values), axis=-1, keepdims=True)
-    return largest
+    return np.asarray(np.fmax.reduce(size_of(values), axis=-1, keepdims=True))
 
 
 def _products(rows: Array, columns: Array) -> Array:
     """Multiply each row (..., modes, n) by its own column (..., n, modes)."""
-    found: Array = (rows * np.swapaxes(columns, -1, -2)).sum(axis=-1)
-    return found
+    return np.asarray((rows * np.swapaxes(columns, -1, -2)).sum(axis=-1))
 
 
 def _nearest(values: Array) -> Array:
@@ -152,5 +148,4 @@ def _nearest(values: Array) -> Array:
     apart = size_of(values[..., :, None] - values[..., None, :])
     states = np.arange(values.shape[-1])
     apart[..., states, states] = np.inf
-    nearest: Array = np.fmin.reduce(apart, axis=-1)
-    return nearest
+    return np.asarray(np.fmin.reduce(apart, axis=-1))

@@ -9,7 +9,6 @@ parts into two real roots is such a case.
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -125,15 +124,13 @@ def _couples(steps: Steps, points: Points) -> tuple[Array, Array, Array]:
     found = []
     for end in (0, 1):
         mixed = real[end] & ~real[1 - end] & np.isfinite(ends[0]) & np.isfinite(ends[1])
-        for row in np.flatnonzero(mixed.sum(axis=1) > 1).tolist():
-            pair = ends[1 - end, row]
-            found += [
-                (row, one, other, end)
-                for one, other in combinations(np.flatnonzero(mixed[row]).tolist(), 2)
-                if pair[one] == pair[other].conjugate()
-            ]
-    rows, *couples, ends_of = np.array(found, dtype=int).reshape(-1, 4).T
-    return np.asarray(rows), np.stack(couples), np.asarray(ends_of)
+        some = np.flatnonzero(mixed.sum(axis=1) > 1)
+        own, pair = mixed[some], ends[1 - end, some]
+        join = own[:, :, None] & own[:, None, :] & (pair[:, :, None] == pair[:, None, :].conj())
+        row, one, other = np.nonzero(np.triu(join, 1))
+        found.append(np.stack([some[row], one, other, np.full(len(row), end)]))
+    rows, *couples, ends_of = np.concatenate(found, axis=1)
+    return rows, np.stack(couples), ends_of
 
 
 def joining_roots(steps: Steps, points: Points) -> tuple[Array, Array, Array, Array, Array]:
@@ -174,8 +171,7 @@ def along_scan(
     nearest = np.clip(here - _FEW // 2 + 1, 0, MANY - _FEW) + np.arange(_FEW)[:, None]
     found = []
     for y in (values[0] + values[1], (values[0] - values[1]) ** 2):
-        exact = _polynomial(x, y, wanted)
-        value = np.where(enough[:, None], exact, np.nan)
+        value = np.where(enough[:, None], _polynomial(x, y, wanted), np.nan)
         rough, chord = (
             _polynomial(np.take_along_axis(x, some, 0), np.take_along_axis(y, some, 0), wanted)
             for some in (nearest, here + np.array([[0], [1]]))

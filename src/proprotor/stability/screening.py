@@ -18,9 +18,8 @@ _NEVER = 1e300  # the distance between a root and a state that a point does not 
 
 def steps_by_values(values: Array, before: Array, after: Array) -> Steps:
     """Return steps from points to the next points, by eigenvalues (points, states); their quality is not known."""
-    count = len(before)
-    successor = np.empty((count, values.shape[1]), dtype=int)
-    for start in range(0, count, _BLOCK):
+    successor = np.empty((len(before), values.shape[1]), dtype=int)
+    for start in range(0, len(before), _BLOCK):
         rows = slice(start, start + _BLOCK)
         successor[rows] = _nearest(values[before[rows]], values[after[rows]])
     return first_steps(before, after, successor, np.full(successor.shape, np.nan))

@@ -35,10 +35,6 @@ class Steps(NamedTuple):
         """Return some of the steps."""
         return Steps(*(part[rows] for part in self))
 
-    def joined(self, other: Steps) -> Steps:
-        """Return the steps of both."""
-        return Steps(*map(np.concatenate, zip(self, other, strict=True)))
-
     def ends(self, points: Points) -> Array:
         """Return growth at both ends, and both slopes times the length of the step (4, steps, states)."""
         slopes = self.at_ends(points.slope) * self.length(points)
@@ -80,8 +76,7 @@ class Steps(NamedTuple):
 
 def first_steps(before: Array, after: Array, successor: Array, quality: Array) -> Steps:
     """Return steps from points to the points that follow, none of them parted yet."""
-    count = len(before)
-    depth, is_open = np.zeros(count, dtype=int), np.ones(count, dtype=bool)
+    depth, is_open = np.zeros(len(before), dtype=int), np.ones(len(before), dtype=bool)
     return Steps(before, after, successor, quality, np.full(successor.shape, np.nan), depth, is_open)
 
 
@@ -95,8 +90,6 @@ def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:
     later = np.take_along_axis(wrong, halves[0].successor.argsort(axis=1), 1)
     rest = np.delete(np.arange(len(steps.before)), rows)
     depth, is_open = old.depth + 1, np.ones(len(rows), dtype=bool)
-    return (
-        steps.at(rest)
-        .joined(Steps(old.before, new, *halves[0], wrong, depth, is_open))
-        .joined(Steps(new, old.after, *halves[1], later, depth, is_open))
-    )
+    earlier = Steps(old.before, new, *halves[0], wrong, depth, is_open)
+    further = Steps(new, old.after, *halves[1], later, depth, is_open)
+    return Steps(*map(np.concatenate, zip(steps.at(rest), earlier, further, strict=True)))

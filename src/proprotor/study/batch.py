@@ -189,8 +189,7 @@ class Analysis:
     def _points(self, batch: Batch) -> dict[str, Array]:
         """Return variables of the points of a batch: at least the variables of the chosen quantities."""
         shape = np.broadcast_shapes(np.shape(batch.speeds), (batch.shape[0], 1))
-        speeds = np.broadcast_to(batch.speeds, shape)
-        model = self._varied(batch.numbers).linearize(speeds, **self.options)
+        model = self._varied(batch.numbers).linearize(np.broadcast_to(batch.speeds, shape), **self.options)
         of_trim = ("reason", "warning", *VARIABLES["trim"])
         found: dict[str, Array] = {name: getattr(model.trim, name) for name in of_trim}
         found["missing"] = missing_roots(model, self.states)

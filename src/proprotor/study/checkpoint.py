@@ -95,8 +95,7 @@ class Checkpoint:
 
         The files are looked for first: a study that begins meanwhile writes its manifest before any other file.
         """
-        has_files = any(self.folder.glob("[!.]*"))
-        if has_files and not (self.folder / _MANIFEST).exists():
+        if any(self.folder.glob("[!.]*")) and not (self.folder / _MANIFEST).exists():
             rule = "must be an empty folder, or that of a study begun before"
             raise InputError("checkpoint", self.folder, rule)
 

@@ -51,10 +51,9 @@ def mode_damping(results: Dataset, mode: str | None = None, named_to: float | No
         damping = np.where(np.isfinite(least), least, np.nan)
     else:
         damping = _of_name(in_order.mode_name.values, values, ratio, mode, _named_points(results, named_to))
-    of_points = in_order.mode_eigenvalue.isel(state=0, drop=True)
+    of_points = in_order["mode_eigenvalue"].isel(state=0, drop=True)
     label = "damping ratio of " + (mode or "the modes that move the support")
-    found: DataArray = of_points.copy(data=damping).rename("damping_ratio")
-    return found.assign_attrs({"units": "1", "long_name": label})
+    return of_points.copy(data=damping).rename("damping_ratio").assign_attrs(units="1", long_name=label)
 
 
 def _named_points(results: Dataset, named_to: float | None) -> int:

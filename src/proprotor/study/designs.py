@@ -13,17 +13,13 @@ import numpy as np
 from proprotor.datum import Datum
 from proprotor.deck.vary import check_input
 from proprotor.errors import InputError
-from proprotor.needs import check_memory
 from proprotor.study.input_ranges import has_number
 from proprotor.typing import Array
 
 AIRSPEED = "airspeed"
-_DESIGN = "design"  # the dimension of a list or a sample
+DESIGN = "design"  # the dimension of a list or a sample
 _SPEED = Datum("", None, "m/s")  # airspeed is no number of the deck
 _FACTOR = Datum("", 1.0, "")  # on several numbers of the deck, which vary together
-_MOST_DESIGNS = 100_000_000
-# Of each design, while designs are laid out: the number drawn, its value, and a copy of both.
-_BYTES_OF_INPUT = 32
 
 _Path = str | tuple[str, ...]  # of one input, or of several that vary together
 
@@ -59,10 +55,10 @@ class Designs:
     @property
     def coordinates(self) -> dict[str, tuple[Any, ...]]:
         """Coordinates of an `xarray.Dataset` over the axes: the inputs, with units."""
-        if _DESIGN not in self.axes:
+        if DESIGN not in self.axes:
             return {name: (name, axis, {"units": self.units[name]}) for name, axis in self.axes.items()}
-        own = {name: (_DESIGN, array, {"units": self.units[name]}) for name, array in self.values.items()}
-        return {_DESIGN: (_DESIGN, self.axes[_DESIGN])} | own
+        own = {name: (DESIGN, array, {"units": self.units[name]}) for name, array in self.values.items()}
+        return {DESIGN: (DESIGN, self.axes[DESIGN])} | own
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -135,70 +131,6 @@ def _number(name: _Path, known: Mapping[str, Datum]) -> Datum:
         if not has_number(known[path]):
             raise InputError(path, None, "must be a number of the deck, to vary together with others")
     return _FACTOR
-
-
-def outer_product(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs:
-    """Return every combination of the values of each input."""
-    axes = {name: np.atleast_1d(values) for name, values in read.items()}
-    designs = math.prod(len(axis) for axis in axes.values())
-    check_size("inputs", f"{designs:.4g} designs", designs, len(axes))
-    values = [part.reshape(-1) for part in np.meshgrid(*axes.values(), indexing="ij")]
-    along = axes or {_DESIGN: np.arange(1)}  # a study of nothing but airspeeds
-    return Designs(dict(zip(axes, values, strict=True)), along, _units(axes, known))
-
-
-def side_by_side(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs:
-    """Return the designs whose values stand at the same place of each list.
-
-    Raises
-    ------
-    InputError
-        For lists of unequal lengths.
-    """
-    lengths = {name: values.size for name, values in read.items() if values.ndim}
-    if len(set(lengths.values())) > 1:
-        given = ", ".join(f"{name} has {length}" for name, length in lengths.items())
-        raise InputError("inputs", given, "must be lists of equal lengths")
-    size = max(lengths.values(), default=1)
-    values = {name: np.broadcast_to(array, (size,)).copy() for name, array in read.items()}
-    return Designs(values, {_DESIGN: np.arange(size)}, _units(values, known))
-
-
-def drawn(read: dict[Any, Any], known: Mapping[str, Datum], shares: Array, sample: dict[str, Any]) -> Designs:
-    """Return the designs of a sample.
-
-    Parameters
-    ----------
-    read : dict
-        A distribution, with a method ``ppf``, of each input.
-    known : mapping
-        The numbers of the deck by path.
-    shares : array (designs, inputs)
-        0 to 1: the share of each distribution that lies below the value of a design.
-    sample : dict
-        How the shares were drawn.
-    """
-    of_each = {
-        name: np.asarray(distribution.ppf(column), dtype=float)
-        for (name, distribution), column in zip(read.items(), shares.T, strict=True)
-    }
-    values = {name: found for name, found in of_each.items() if isinstance(name, str)}
-    for name, factor in of_each.items():
-        for path in () if isinstance(name, str) else name:
-            values[path] = values.get(path, known[path].si) * factor
-    return Designs(values, {_DESIGN: np.arange(len(shares))}, _units(values, known), sample)
-
-
-def _units(values: Mapping[str, Array], known: Mapping[str, Datum]) -> dict[str, str]:
-    return {path: known[path].unit for path in values}
-
-
-def check_size(field: str, given: object, designs: int, inputs: int) -> None:
-    """Refuse designs whose inputs do not fit into memory, before the designs are laid out."""
-    if designs > _MOST_DESIGNS:
-        raise InputError(field, given, f"must be at most {_MOST_DESIGNS} designs")
-    size = float(_BYTES_OF_INPUT * designs * max(1, inputs))
-    check_memory(field, given, size, f"the inputs of {designs:.4g} designs")
 
 
 def check_count(field: str, count: object) -> None:

@@ -45,7 +45,6 @@ def progress_bar(points: int, kept: int, shown: bool | None) -> Iterator[_Advanc
         def advance(computed: int, failed: int) -> None:
             nonlocal failures
             failures += failed
-            count = f"{failures} failed" if failures else ""
-            progress.update(task, advance=computed, failed=count)
+            progress.update(task, advance=computed, failed=f"{failures} failed" if failures else "")
 
         yield advance

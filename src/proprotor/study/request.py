@@ -89,8 +89,7 @@ class Request:
         case, options = self.analysis.case, self.analysis.options
         tried = self.designs.values[AIRSPEED] if self.airspeed is None else self.airspeed
         dofs = _coordinates(case, tried, options)
-        held = _a_shaft_holds(case, self.designs, options)
-        states = 2 * len(dofs) - (ROTOR_SPEED in dofs and not held)
+        states = 2 * len(dofs) - (ROTOR_SPEED in dofs and not _a_shaft_holds(case, self.designs, options))
         return replace(self, analysis=replace(self.analysis, dofs=dofs, states=states))
 
     def dataset(self, found: Mapping[str, Array]) -> Dataset:
@@ -138,8 +137,7 @@ def requested(
     plan = as_plan(inputs)
     from proprotor.deck.vary import design_inputs
 
-    deck = design_inputs(case) if set(plan.inputs) - {AIRSPEED} else {}
-    designs = plan.resolve(deck)
+    designs = plan.resolve(design_inputs(case) if set(plan.inputs) - {AIRSPEED} else {})
     own = AIRSPEED in plan.inputs
     if own == (airspeed is not None):
         raise InputError(AIRSPEED, airspeed, "must be given, either for all designs or among the inputs")

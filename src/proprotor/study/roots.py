@@ -34,8 +34,7 @@ def vectors(model: LinearModel, spectrum: Spectrum) -> Array:
         rows = slice(start, start + _BLOCK)
         shapes = coordinate_motion(held, n, flat[rows], columns[rows])
         shapes = np.where(np.isnan(flat[rows])[:, None, :], np.nan, shapes)
-        order = by_frequency(flat[rows])
-        found[rows] = _largest_one(np.take_along_axis(shapes, order[:, None, :], -1))
+        found[rows] = _largest_one(np.take_along_axis(shapes, by_frequency(flat[rows])[:, None, :], -1))
     return found.reshape(*values.shape[:-1], n, states)
 
 
@@ -43,8 +42,7 @@ def _largest_one(shapes: Array) -> Array:
     """Return columns divided by their largest component."""
     size = np.nan_to_num(shapes.real**2 + shapes.imag**2)
     with np.errstate(all="ignore"):
-        scaled: Array = shapes / np.take_along_axis(shapes, size.argmax(axis=-2)[..., None, :], -2)
-    return scaled
+        return np.asarray(shapes / np.take_along_axis(shapes, size.argmax(axis=-2)[..., None, :], -2))
 
 
 def least_stable(model: LinearModel, values: Array) -> dict[str, Array]:

@@ -5,6 +5,7 @@ A plan says how inputs vary, in any unit; with the numbers of a deck it becomes 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
@@ -13,18 +14,8 @@ import numpy as np
 
 from proprotor.datum import Datum
 from proprotor.errors import InputError
-from proprotor.needs import need
-from proprotor.study.designs import (
-    Designs,
-    Plan,
-    check_count,
-    check_size,
-    drawn,
-    label_of,
-    outer_product,
-    paths_of,
-    side_by_side,
-)
+from proprotor.needs import check_memory, need
+from proprotor.study.designs import DESIGN, Designs, Plan, check_count, label_of, paths_of
 from proprotor.study.input_ranges import LogRange, Normal, Range, Relative, read_distribution, read_values
 from proprotor.typing import Array
 
@@ -43,6 +34,10 @@ __all__ = [
     "sobol",
 ]
 
+_MOST_DESIGNS = 100_000_000
+# Of each design, while designs are laid out: the number drawn, its value, and a copy of both.
+_BYTES_OF_INPUT = 32
+
 
 def grid(inputs: Mapping[str, Any]) -> Plan:
     """Return the plan of every combination of the values of each input.
@@ -57,7 +52,7 @@ def grid(inputs: Mapping[str, Any]) -> Plan:
     -------
     Plan
     """
-    return _plan_of_values(inputs, outer_product)
+    return _plan_of_values(inputs, _outer_product)
 
 
 def points(inputs: Mapping[str, Any]) -> Plan:
@@ -72,7 +67,7 @@ def points(inputs: Mapping[str, Any]) -> Plan:
     -------
     Plan
     """
-    return _plan_of_values(inputs, side_by_side)
+    return _plan_of_values(inputs, _side_by_side)
 
 
 def latin_hypercube(inputs: Mapping[Any, Any], size: int, seed: int = 0) -> Plan:
@@ -178,6 +173,45 @@ def _plan_of_values(inputs: Mapping[str, Any], lay_out: Callable[..., Designs]) 
     return Plan(dict(inputs), lay_out, read_values)
 
 
+def _outer_product(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs:
+    """Return every combination of the values of each input."""
+    axes = {name: np.atleast_1d(values) for name, values in read.items()}
+    designs = math.prod(len(axis) for axis in axes.values())
+    _check_size("inputs", f"{designs:.4g} designs", designs, len(axes))
+    values = [part.reshape(-1) for part in np.meshgrid(*axes.values(), indexing="ij")]
+    along = axes or {DESIGN: np.arange(1)}  # a study of nothing but airspeeds
+    return Designs(dict(zip(axes, values, strict=True)), along, _units(axes, known))
+
+
+def _side_by_side(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs:
+    """Return the designs whose values stand at the same place of each list.
+
+    Raises
+    ------
+    InputError
+        For lists of unequal lengths.
+    """
+    lengths = {name: values.size for name, values in read.items() if values.ndim}
+    if len(set(lengths.values())) > 1:
+        given = ", ".join(f"{name} has {length}" for name, length in lengths.items())
+        raise InputError("inputs", given, "must be lists of equal lengths")
+    size = max(lengths.values(), default=1)
+    values = {name: np.broadcast_to(array, (size,)).copy() for name, array in read.items()}
+    return Designs(values, {DESIGN: np.arange(size)}, _units(values, known))
+
+
+def _check_size(field: str, given: object, designs: int, inputs: int) -> None:
+    """Refuse designs whose inputs do not fit into memory, before the designs are laid out."""
+    if designs > _MOST_DESIGNS:
+        raise InputError(field, given, f"must be at most {_MOST_DESIGNS} designs")
+    size = float(_BYTES_OF_INPUT * designs * max(1, inputs))
+    check_memory(field, given, size, f"the inputs of {designs:.4g} designs")
+
+
+def _units(values: Mapping[str, Array], known: Mapping[str, Datum]) -> dict[str, str]:
+    return {path: known[path].unit for path in values}
+
+
 # Samples ------------------------------------------------------------------------------------------
 
 
@@ -191,15 +225,42 @@ def _sampled(
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError("seed", seed, "must be a whole number, not negative")
     rows = {"saltelli": (2 if extra.get("second_order") else 1) * len(inputs) + 2}.get(method, 1)
-    check_size("size", int(size), rows * int(size), len(paths_of(inputs)))
+    _check_size("size", int(size), rows * int(size), len(paths_of(inputs)))
 
     def lay_out(read: dict[Any, Any], known: Mapping[str, Datum]) -> Designs:
         shares = draw(len(read), int(size), seed, **extra)
         labels = [label_of(name) for name in read]
         sample = {"method": method, "size": int(size), "seed": seed, "inputs": labels} | extra
-        return drawn(read, known, shares, sample)
+        return _drawn(read, known, shares, sample)
 
     return Plan(dict(inputs), lay_out, read_distribution)
+
+
+def _drawn(
+    read: dict[Any, Any], known: Mapping[str, Datum], shares: Array, sample: dict[str, Any]
+) -> Designs:
+    """Return the designs of a sample.
+
+    Parameters
+    ----------
+    read : dict
+        A distribution, with a method ``ppf``, of each input.
+    known : mapping
+        The numbers of the deck by path.
+    shares : array (designs, inputs)
+        0 to 1: the share of each distribution that lies below the value of a design.
+    sample : dict
+        How the shares were drawn.
+    """
+    of_each = {
+        name: np.asarray(distribution.ppf(column), dtype=float)
+        for (name, distribution), column in zip(read.items(), shares.T, strict=True)
+    }
+    values = {name: found for name, found in of_each.items() if isinstance(name, str)}
+    for name, factor in of_each.items():
+        for path in () if isinstance(name, str) else name:
+            values[path] = values.get(path, known[path].si) * factor
+    return Designs(values, {DESIGN: np.arange(len(shares))}, _units(values, known), sample)
 
 
 def _draw(engine: str, inputs: int, size: int, seed: int) -> Array:

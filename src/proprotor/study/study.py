@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 from warnings import warn
@@ -13,7 +13,6 @@ import numpy as np
 from proprotor.case import Case
 from proprotor.files.source_code import code_fingerprint
 from proprotor.study import workers as study_workers
-from proprotor.study.batch import Analysis, Batch
 from proprotor.study.checkpoint import Checkpoint
 from proprotor.study.designs import Plan
 from proprotor.study.division import Block, blocks_of, check_needs, points_at_once
@@ -117,10 +116,9 @@ def _found(
     remaining = sum(map(_points_in, todo.values()))
     if not todo:
         return found
-    batches = ((number, request.batch(block)) for number, block in todo.items())
     points = int(np.prod(request.shape))
     with progress_bar(points, points - remaining, progress) as advance:
-        for number, results in _analysed(analysis, batches, len(todo), remaining, workers, client):
+        for number, results in _analysed(request, todo, remaining, workers, client):
             if kept:
                 kept.save(number, results)
             _put(found, blocks[number], results)
@@ -140,23 +138,21 @@ def _points_in(block: Block) -> int:
 
 
 def _analysed(
-    analysis: Analysis,
-    batches: Iterator[tuple[int, Batch]],
-    count: int,
-    points: int,
-    workers: int | None,
-    client: Client | None,
+    request: Request, todo: Mapping[int, Block], points: int, workers: int | None, client: Client | None
 ) -> study_workers.Found:
     """Return the results of batches as they come: from this process, from worker processes or from a cluster."""
+    analysis = request.analysis
+    batches = ((number, request.batch(block)) for number, block in todo.items())
     if client is not None:
         return study_workers.on_cluster(analysis, batches, client)
     if workers is None:
         small = points <= _SMALL and not study_workers.idle_workers()
         workers = 1 if small else study_workers.cores()
-    if min(workers, count) > 1:
+    workers = min(workers, len(todo))
+    if workers > 1:
         try:
             study_workers.check_loadable(analysis)
-            return study_workers.in_processes(analysis, batches, min(workers, count))
+            return study_workers.Processes(analysis, batches, workers).results()
         except study_workers.NotLoadable as error:
             reason = f"because others cannot load the case: {error}"
             warn(f"one process analyses the study, {reason}", stacklevel=4)

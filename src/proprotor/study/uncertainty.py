@@ -173,8 +173,7 @@ def sobol_indices(
         upper = found["S2"]  # SALib fills half of a symmetric table; its diagonal is NaN
         table["second"] = (("input", "other_input"), np.where(np.isnan(upper), upper.T, upper))
         coordinates["other_input"] = names
-    attributes = _attributes(results, of, warnings) | {"confidence": confidence}
-    return xarray.Dataset(table, coordinates, attributes)
+    return xarray.Dataset(table, coordinates, _attributes(results, of, warnings) | {"confidence": confidence})
 
 
 def _base_samples(results: Dataset, of: str, sample: Mapping[str, Any]) -> tuple[Array, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,11 +28,26 @@ class _Variable(NamedTuple):
     on: str = POINT
 
 
-def _text(meaning: str, *dims: str, on: str = POINT) -> _Variable:
-    """Return a variable of texts, which have no unit."""
-    return _Variable(meaning, "", dims, str, on)
+_text = partial(_Variable, units="", dtype=str)  # a variable of texts, which have no unit
 
 
+_FLUTTER = {  # of a design
+    "flutter_speed": _Variable("lowest airspeed of the range at which a mode becomes unstable", "m/s"),
+    "flutter_frequency": _Variable("|Im s| of the mode that becomes unstable; 0: divergence", "rad/s"),
+    "flutter_mode": _text("what moves in that mode at that airspeed"),
+    "flutter_coordinate": _text("coordinate that takes most part in that mode"),
+    "flutter_warning": _text("what makes the flutter speed doubtful"),
+    "flutter_note": _text("why there is no flutter speed, or that it is not the first instability"),
+    "flutter_least_damping": _Variable("lowest -Re s/|s| of all modes at the airspeeds of the range"),
+}
+_MODES = {  # of every state
+    "mode_eigenvalue": _Variable("eigenvalues, followed along the airspeeds", "rad/s", dtype=complex),
+    "mode_quality": _Variable("trust in the step from the airspeed before, 0 to 1"),
+    "mode_name": _text("what moves in the mode at the point"),
+    "mode_share": _Variable("participation of the motion that the mode is named after, 0 to 1"),
+    "mode_support_share": _Variable("participation of the coordinates of the support, 0 to 1"),
+    "mode_coordinate": _text("coordinate that takes most part at the first airspeed", on=_DESIGN),
+}
 VARIABLES: dict[str, dict[str, _Variable]] = {
     "eigenvalue": {
         "eigenvalue": _Variable("all eigenvalues, by frequency |Im s|", "rad/s", ("state",), complex),
@@ -49,42 +65,11 @@ VARIABLES: dict[str, dict[str, _Variable]] = {
         "thrust": _Variable("thrust of the airloads on the rotor", "N"),
         "torque": _Variable("torque of the airloads, positive where it speeds the rotor up", "N*m"),
     },
-    "flutter": {
-        "flutter_speed": _Variable(
-            "lowest airspeed of the range at which a mode becomes unstable", "m/s", on=_DESIGN
-        ),
-        "flutter_frequency": _Variable(
-            "|Im s| of the mode that becomes unstable; 0: divergence", "rad/s", on=_DESIGN
-        ),
-        "flutter_mode": _text("what moves in that mode at that airspeed", on=_DESIGN),
-        "flutter_coordinate": _text("coordinate that takes most part in that mode", on=_DESIGN),
-        "flutter_warning": _text("what makes the flutter speed doubtful", on=_DESIGN),
-        "flutter_note": _text(
-            "why there is no flutter speed, or that it is not the first instability", on=_DESIGN
-        ),
-        "flutter_least_damping": _Variable(
-            "lowest -Re s/|s| of all modes at the airspeeds of the range", on=_DESIGN
-        ),
-    },
+    "flutter": {name: one._replace(on=_DESIGN) for name, one in _FLUTTER.items()},
     "vectors": {
         "vector": _Variable("motion of the coordinates; largest component 1", "", ("dof", "state"), complex),
     },
-    "modes": {
-        "mode_eigenvalue": _Variable(
-            "eigenvalues, followed along the airspeeds", "rad/s", ("state",), complex
-        ),
-        "mode_quality": _Variable("trust in the step from the airspeed before, 0 to 1", dims=("state",)),
-        "mode_name": _text("what moves in the mode at the point", "state"),
-        "mode_share": _Variable(
-            "participation of the motion that the mode is named after, 0 to 1", dims=("state",)
-        ),
-        "mode_support_share": _Variable(
-            "participation of the coordinates of the support, 0 to 1", dims=("state",)
-        ),
-        "mode_coordinate": _text(
-            "coordinate that takes most part at the first airspeed", "state", on=_DESIGN
-        ),
-    },
+    "modes": {name: one._replace(dims=("state",)) for name, one in _MODES.items()},
 }
 ALWAYS = {
     "reason": _text("why a point failed"),

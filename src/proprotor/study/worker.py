@@ -34,13 +34,15 @@ def receive(stream: IO[bytes]) -> Any:
     EOFError
         When the other side has ended.
     """
-    length = stream.read(_LENGTH.size)
-    if len(length) < _LENGTH.size:
+    (length,) = _LENGTH.unpack(_read(stream, _LENGTH.size))
+    return pickle.loads(_read(stream, length))
+
+
+def _read(stream: IO[bytes], length: int) -> bytes:
+    content = stream.read(length)
+    if len(content) < length:
         raise EOFError
-    content = stream.read(_LENGTH.unpack(length)[0])
-    if len(content) < _LENGTH.unpack(length)[0]:
-        raise EOFError
-    return pickle.loads(content)
+    return content
 
 
 def main() -> None:

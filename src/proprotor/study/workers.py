@@ -113,12 +113,6 @@ def idle_workers() -> int:
         return sum(worker.lives for worker in _idle)
 
 
-def process_ids() -> list[int]:
-    """Return the process ids of the workers that wait for a study."""
-    with _lock:
-        return [worker.process.pid for worker in _idle]
-
-
 def _take() -> Worker:
     with _lock:
         while _idle:
@@ -162,19 +156,11 @@ def check_loadable(analysis: Analysis) -> None:
     _give_back(worker)
 
 
-def in_processes(analysis: Analysis, batches: Numbered, workers: int) -> Found:
-    """Analyse batches in several processes; the batch of a process that dies goes to another process.
+class Processes:
+    """Several processes that analyse batches, with a thread for each process.
 
-    Raises
-    ------
-    RuntimeError
-        When one batch has killed three workers.
+    The thread hands over batches and waits for the answers. The batch of a process that dies goes to another process.
     """
-    return _Processes(analysis, batches, workers).results()
-
-
-class _Processes:
-    """A thread for each process: the thread hands over batches and waits for the answers."""
 
     def __init__(self, analysis: Analysis, batches: Numbered, workers: int) -> None:
         self.analysis, self.batches, self.workers = analysis, iter(batches), workers
@@ -183,6 +169,13 @@ class _Processes:
         self.at_work: list[Worker] = []
 
     def results(self) -> Found:
+        """Yield the results of all batches.
+
+        Raises
+        ------
+        RuntimeError
+            When one batch has killed three workers.
+        """
         threads = [Thread(target=self._serve, daemon=True) for _ in range(self.workers)]
         for thread in threads:
             thread.start()

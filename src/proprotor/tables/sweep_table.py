@@ -198,11 +198,10 @@ class SweepTable:
         }
         for i in range(len(self.airspeed)):
             for j in range(modes) if modes else [None]:
-                of_mode = {name: None if j is None else _plain(part[i, j]) for name, part in columns.items()}
                 yield {
                     f"airspeed ({self.unit})": self.airspeed[i].item(),
                     "airspeed (m/s)": self.sweep.airspeed.values[i].item(),
-                    **of_mode,
+                    **{name: None if j is None else _plain(part[i, j]) for name, part in columns.items()},
                     "warning": str(self.sweep.warning.values[i]),
                     "failure": str(self.sweep.reason.values[i]),
                 }
