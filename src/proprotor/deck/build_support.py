@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from proprotor.deck import support_sections
 
 _KINDS_OF_STRAIN = ("beam", "chord", "torsion")
+_BYTES = 16_000  # at most, of matrices of a beam wing for each pair of nodes
+_PART = 200e6  # bytes of beam wings that are built at once
 
 
 def build_support(
@@ -39,8 +41,7 @@ def build_support(
     ----------
     section : SupportSection
     numbers : mapping of str to Datum
-        The deck's numbers by path, perhaps arrays of many designs, or complex. Numbers of the structure of a beam
-        wing, and the units of a file, must be real.
+        The deck's numbers by path, perhaps arrays of many designs, or complex. The numbers of a file must be real.
     names : tuple of str
         The order of the coordinates of many designs of a beam wing, by default the order of the first design.
 
@@ -97,17 +98,19 @@ def _beam_wing(
 ) -> NormalModes:
     """Return the support of a beam wing, for many designs with the coordinates in the order of the names."""
     given = _values(numbers, "support")
-    _must_be_real(given)
-    made = _each_design(given, lambda one: _one_beam_wing(one, section.downstop))
-    support, strips = _stacked(made, names or made.flat[0][0].names)
+    designs, place = _different_designs(given)
+    parts = [_beam_wings(part, section.downstop, names if place.ndim else ()) for part in designs]
+    support, strips = _at_each_point(parts, place)
     if section.wing_aerodynamics is None:
         return support
     airloads = _values(numbers, "support.wing_aerodynamics")
     return in_airstream(support, strips, WingAerodynamics(**airloads, sweep=given.get("sweep", 0.0)))
 
 
-def _one_beam_wing(given: dict[str, Any], downstop: bool) -> tuple[NormalModes, Strips]:
-    """Return the support and the aerodynamic strips of one beam wing."""
+def _beam_wings(
+    given: Mapping[str, Any], downstop: bool, names: tuple[str, ...]
+) -> tuple[NormalModes, Strips]:
+    """Return the supports and the aerodynamic strips of beam wings, whose numbers are arrays (designs,)."""
     spring = given.get("downstop_stiffness_on" if downstop else "downstop_stiffness_off")
     wing, pylon = (
         {entry.name: given[entry.name] for entry in fields(kind) if entry.name in given}
@@ -116,9 +119,8 @@ def _one_beam_wing(given: dict[str, Any], downstop: bool) -> tuple[NormalModes, 
     structure = beam_structure(Wing(**wing), Pylon(**pylon, pitch_stiffness=spring))
     every = given["damping_ratio"] if "damping_ratio" in given else given["loss_factor"] / 2
     ratios = {kind: given.get(f"{kind}_damping_ratio", every) for kind in _KINDS_OF_STRAIN} | {"axial": every}
-    found = on_coordinates(structure, given.get("modes"), ratios, given["rotor_mass"])
-    shapes = None if given.get("modes") is None else found.shapes
-    return replace(found.support, shapes=shapes), beam_strips(structure, found.shapes)
+    found = on_coordinates(structure, given.get("modes"), ratios, given["rotor_mass"], names)
+    return found.support, beam_strips(structure, found.shapes)
 
 
 def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[str, Datum]) -> NormalModes:
@@ -139,67 +141,53 @@ _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
 }
 
 
-def _each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any]) -> Any:
-    """Return the result of `build` for each design of a batch, in an array of the batch's shape.
+def _different_designs(given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], Array]:
+    """Return the numbers of all different designs of a batch, and the place of each point's design among these.
 
-    Equal designs are built once, because a search evaluates one design at many airspeeds.
+    A search evaluates one design at many airspeeds, so equal designs are built once. The designs come in parts that fit
+    into memory, each part with arrays (designs,) of the numbers that vary.
     """
-    varied = {name: value for name, value in given.items() if isinstance(value, np.ndarray)}
-    spread = np.broadcast_arrays(*varied.values())
-    made = np.empty(np.broadcast_shapes(*(value.shape for value in spread)), dtype=object)
-    built: dict[tuple[float, ...], Any] = {}
-    for place in np.ndindex(made.shape):
-        design = tuple(float(value[place]) for value in spread)
-        if design not in built:
-            built[design] = build(dict(given) | dict(zip(varied, design, strict=True)))
-        made[place] = built[design]
-    return made
+    varied = {name: value for name, value in given.items() if np.ndim(value) and not isinstance(value, tuple)}
+    spread = np.broadcast_arrays(np.zeros(()), *varied.values())[1:]
+    shape = np.broadcast_shapes(*(value.shape for value in varied.values()))
+    columns = [part.ravel() for value in spread for part in (np.real(value), np.imag(value))]
+    table = np.stack(columns or [np.zeros(1)], axis=-1)
+    _, first, place = np.unique(table, axis=0, return_index=True, return_inverse=True)
+    different = {name: value.ravel()[first] for name, value in zip(varied, spread, strict=True)}
+    if not different:  # one design is a batch of one
+        different = {"span": np.atleast_1d(given["span"])}
+    size = _BYTES * (given.get("elements", Wing.elements) + 1) ** 2
+    step = max(1, int(_PART // size))
+    parts = [slice(start, start + step) for start in range(0, len(first), step)]
+    designs = [dict(given) | {name: value[part] for name, value in different.items()} for part in parts]
+    return designs, place.reshape(shape)
 
 
-def _stacked(made: Array, names: tuple[str, ...]) -> tuple[NormalModes, Strips]:
-    """Return the designs of a batch as one support and its strips, with the axes of the batch in front.
+def _at_each_point(parts: Sequence[tuple[NormalModes, Strips]], place: Array) -> tuple[NormalModes, Strips]:
+    """Return the supports and strips of all designs at each point of a batch, by the place of its design."""
+    supports, strips = zip(*parts, strict=True)
 
-    The coordinates of each design are put in the order of the names, so that the order is the same in every batch.
-    """
-    first, strips = made.flat[0]
-    if not made.shape:
-        return replace(first, shapes=None), strips
+    def spread(arrays: Iterable[Array], own: int) -> Array:
+        """Put arrays (designs, ...) of the parts one after another; `own` counts the axes of one design."""
+        whole = [
+            np.broadcast_to(array, (count, *array.shape[array.ndim - own :]))
+            for array, count in zip(arrays, counts, strict=True)
+        ]
+        return np.concatenate(whole)[place]
 
-    def stack(parts: list[Any]) -> Array:
-        return np.stack(parts).reshape(*made.shape, *parts[0].shape)
-
-    ordered = [_in_order(support, own, names) for support, own in made.flat]
+    counts = [support.mass.shape[0] for support in supports]
     matrices: dict[str, Any] = {
-        name: stack([getattr(support, name) for support, _ in ordered])
+        name: spread((getattr(support, name) for support in supports), 2)
         for name in ("mass", "damping", "stiffness", "hub")
     }
-    if first.shapes is not None:
-        matrices["shapes"] = stack([support.shapes for support, _ in ordered])
-        warnings = [_named_otherwise(support.names, names) for support, _ in made.flat]
-        matrices["warning"] = np.array(warnings, dtype=object).reshape(made.shape)
-    together = zip(*(own for _, own in ordered), strict=True)
-    return replace(first, names=names, **matrices), Strips(*(stack(list(parts)) for parts in together))
-
-
-def _in_order(support: NormalModes, strips: Strips, names: Sequence[str]) -> tuple[NormalModes, Strips]:
-    """Return a support and its strips with coordinates in the order of names; other names fill the free places."""
-    if support.names == names:
-        return support, strips
-    own = list(support.names)
-    others = iter([place for place, name in enumerate(own) if name not in names])
-    places = [own.index(name) if name in own else next(others) for name in names]
-    square = {name: getattr(support, name)[np.ix_(places, places)] for name in support.symmetric}
-    along = {name: getattr(support, name)[:, places] for name in ("hub", "shapes")}
-    turned = strips._replace(rise=strips.rise[..., places], pitch=strips.pitch[..., places])
-    return replace(support, names=names, **square, **along), turned
-
-
-def _named_otherwise(own: Sequence[str], names: Sequence[str]) -> str:
-    """Return a warning for a design whose modes have other names than the modes of the case's own design, or ""."""
-    others = [name for name in own if name not in names]
-    missing = [name for name in names if name not in own]
-    renamed = [f"{name} is named {place}" for name, place in zip(others, missing, strict=True)]
-    return f"the wing has other modes than in the case's own design: {', '.join(renamed)}" if renamed else ""
+    several: dict[str, Any] = {"shapes": None, "warning": None}
+    if place.ndim and supports[0].shapes is not None:
+        several = {
+            "shapes": spread((support.shapes for support in supports), 2),
+            "warning": spread((support.warning for support in supports), 0),
+        }
+    along = (spread(arrays, own) for arrays, own in zip(zip(*strips, strict=True), (1, 2, 2), strict=True))
+    return replace(supports[0], **matrices, **several), Strips(*along)
 
 
 def _must_be_real(given: Mapping[str, Any]) -> None:
