@@ -13,7 +13,7 @@ import numpy as np
 
 from proprotor.datum import Datum
 from proprotor.deck.alternatives import fields_instead_of
-from proprotor.deck.build_support import build_support
+from proprotor.deck.build_support import build_support, fitted_stiffness_factors
 from proprotor.deck.file import read_tables
 from proprotor.deck.numbers import numbers_of, own_numbers
 from proprotor.errors import InputError
@@ -81,7 +81,9 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         train = None if deck.drive_train is None else DriveTrain(**_values(numbers, "drive_train"))
     with _errors_as_written("support", numbers):
         at_rest = mass_at_rest(rotor)
-        support = settled(build_support(deck.support, numbers, names), at_rest)
+        fitted = fitted_stiffness_factors(deck.support, numbers, at_rest)
+        built = build_support(deck.support, dict(numbers) | fitted, names, mass_at_rest=at_rest)
+        support = settled(built, at_rest)
         doubts = spring_warnings(support, at_rest, rotor.gimbal_stiffness)
     return kind(
         name=deck.case.name,
@@ -92,7 +94,7 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         rotor=rotor,
         operation=operation,
         support=support,
-        sources=dict(numbers) | air | derived | _how_held(support, numbers),
+        sources=dict(numbers) | air | derived | fitted | _how_held(support, numbers),
         frequencies=frequencies,
         drive_train=train,
         deck=deck,

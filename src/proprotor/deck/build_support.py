@@ -11,10 +11,12 @@ import numpy as np
 from proprotor.datum import Datum
 from proprotor.deck.numbers import own_numbers
 from proprotor.errors import InputError
+from proprotor.model.rotor_share import rotor_share
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, on_coordinates
 from proprotor.support.matrix_files import read_matrix_market, read_npz
 from proprotor.support.nastran import nastran_modes
 from proprotor.support.normal_modes import HUB_AXES, NormalModes, rigid_support, two_axis_pivot
+from proprotor.support.stiffness_factors import KINDS, stiffened, stiffness_factors
 from proprotor.support.wing_aerodynamics import (
     Strips,
     WingAerodynamics,
@@ -27,13 +29,17 @@ from proprotor.typing import Array
 if TYPE_CHECKING:
     from proprotor.deck import support_sections
 
-_KINDS_OF_STRAIN = ("beam", "chord", "torsion")
+_AT_HUB = "mass at the hub {} {}"
 _BYTES = 16_000  # at most, of matrices of a beam wing for each pair of nodes
 _PART = 200e6  # bytes of beam wings that are built at once
 
 
 def build_support(
-    section: support_sections.SupportSection, numbers: Mapping[str, Datum], names: tuple[str, ...] = ()
+    section: support_sections.SupportSection,
+    numbers: Mapping[str, Datum],
+    names: tuple[str, ...] = (),
+    *,
+    mass_at_rest: Array,
 ) -> NormalModes:
     """Return the support of the section [support] of a deck.
 
@@ -44,6 +50,8 @@ def build_support(
         The deck's numbers by path, perhaps arrays of many designs, or complex. The numbers of a file must be real.
     names : tuple of str
         The order of the coordinates of many designs of a beam wing, by default the order of the first design.
+    mass_at_rest : array (..., 8, 8)
+        Mass of the rotor, see `proprotor.model.mass_at_rest`, for a beam wing whose modes include the rotor.
 
     Raises
     ------
@@ -51,7 +59,7 @@ def build_support(
         When a number is not physical, or a file cannot be used.
     """
     if section.kind == "beam-wing":
-        return _beam_wing(section, numbers, names)
+        return _beam_wing(section, numbers, names, mass_at_rest)
     return _BUILDERS[section.kind](section, numbers)
 
 
@@ -94,10 +102,13 @@ def _from_files(
 
 
 def _beam_wing(
-    section: support_sections.BeamWingSection, numbers: Mapping[str, Datum], names: tuple[str, ...]
+    section: support_sections.BeamWingSection,
+    numbers: Mapping[str, Datum],
+    names: tuple[str, ...],
+    mass_at_rest: Array,
 ) -> NormalModes:
     """Return the support of a beam wing, for many designs with the coordinates in the order of the names."""
-    given = _values(numbers, "support")
+    given = _wing_numbers(numbers, mass_at_rest)
     designs, place = _different_designs(given)
     parts = [_beam_wings(part, section.downstop, names if place.ndim else ()) for part in designs]
     support, strips = _at_each_point(parts, place)
@@ -107,19 +118,88 @@ def _beam_wing(
     return in_airstream(support, strips, WingAerodynamics(**airloads, sweep=given.get("sweep", 0.0)))
 
 
-def _beam_wings(
-    given: Mapping[str, Any], downstop: bool, names: tuple[str, ...]
-) -> tuple[NormalModes, Strips]:
-    """Return the supports and the aerodynamic strips of beam wings, whose numbers are arrays (designs,)."""
+def fitted_stiffness_factors(
+    section: support_sections.SupportSection, numbers: Mapping[str, Datum], mass_at_rest: Array
+) -> dict[str, Datum]:
+    """Return the stiffness factors, by path, that are fitted to the frequencies of a beam wing, if it has any.
+
+    Parameters
+    ----------
+    section : SupportSection
+    numbers : mapping of str to Datum
+    mass_at_rest : array (..., 8, 8)
+        As for `build_support`.
+
+    Raises
+    ------
+    InputError
+        When a frequency cannot be had.
+    """
+    wanted = [kind for kind in KINDS if f"support.{kind}_frequency" in numbers]
+    if section.kind != "beam-wing" or not wanted:
+        return {}
+    designs, place = _different_designs(_wing_numbers(numbers, mass_at_rest))
+    parts = [_fitted(part, section.downstop, wanted) for part in designs]
+    with_rotor = "the rotor's mass" if section.rotor_held is None else f"the rotor {section.rotor_held.si}"
+    return {
+        f"support.{kind}_stiffness_factor": Datum(
+            f"fitted to {kind}_frequency",
+            np.concatenate([np.atleast_1d(part[kind]) for part in parts])[place],
+            "",
+            "calibrated",
+            f"Newton's method, with {with_rotor} at the hub; {numbers[f'support.{kind}_frequency'].source}",
+        )
+        for kind in wanted
+    }
+
+
+def _fitted(given: Mapping[str, Any], downstop: bool, kinds: Sequence[str]) -> dict[str, Array]:
+    """Return the stiffness factors (designs,) of beam wings by kind."""
+    frequency = {kind: given[f"{kind}_frequency"] for kind in kinds}
+    found = stiffness_factors(*_wing_and_pylon(given, downstop), _at_hub(given), frequency)
+    for kind, reasons in found.reasons.items():
+        for value, reason in zip(np.broadcast_to(frequency[kind], reasons.shape), reasons, strict=True):
+            if reason:
+                raise InputError(f"{kind}_frequency", float(np.real(value)), reason)
+    return found.factors
+
+
+def _wing_numbers(numbers: Mapping[str, Datum], mass_at_rest: Array) -> dict[str, Any]:
+    """Return the numbers of a beam wing and, entry by entry, the mass of its rotor on the motions of the hub."""
+    given = _values(numbers, "support")
+    if "rotor_held" not in given:
+        share = np.asarray(given["rotor_mass"])[..., None, None] * np.diag([1.0] * 3 + [0.0] * 3)
+    else:
+        share = rotor_share(mass_at_rest, given["rotor_held"], given.get("shaft", "held"))
+    return given | {_AT_HUB.format(*place): share[..., *place] for place in np.ndindex(6, 6)}
+
+
+def _at_hub(given: Mapping[str, Any]) -> Array:
+    """Return the mass of the rotor on the motions of the hub (..., 6, 6)."""
+    entries = [given[_AT_HUB.format(*place)] for place in np.ndindex(6, 6)]
+    whole = np.stack(np.broadcast_arrays(*entries), axis=-1)
+    return whole.reshape(*whole.shape[:-1], 6, 6)
+
+
+def _wing_and_pylon(given: Mapping[str, Any], downstop: bool) -> tuple[Wing, Pylon]:
+    """Return wing and pylon, the stiffnesses of the wing with the factors that are given."""
     spring = given.get("downstop_stiffness_on" if downstop else "downstop_stiffness_off")
     wing, pylon = (
         {entry.name: given[entry.name] for entry in fields(kind) if entry.name in given}
         for kind in (Wing, Pylon)
     )
-    structure = beam_structure(Wing(**wing), Pylon(**pylon, pitch_stiffness=spring))
+    factors = {kind: given[name] for kind in KINDS if (name := f"{kind}_stiffness_factor") in given}
+    return stiffened(Wing(**wing), factors), Pylon(**pylon, pitch_stiffness=spring)
+
+
+def _beam_wings(
+    given: Mapping[str, Any], downstop: bool, names: tuple[str, ...]
+) -> tuple[NormalModes, Strips]:
+    """Return the supports and the aerodynamic strips of beam wings, whose numbers are arrays (designs,)."""
+    structure = beam_structure(*_wing_and_pylon(given, downstop))
     every = given["damping_ratio"] if "damping_ratio" in given else given["loss_factor"] / 2
-    ratios = {kind: given.get(f"{kind}_damping_ratio", every) for kind in _KINDS_OF_STRAIN} | {"axial": every}
-    found = on_coordinates(structure, given.get("modes"), ratios, given["rotor_mass"], names)
+    ratios = {kind: given.get(f"{kind}_damping_ratio", every) for kind in KINDS} | {"axial": every}
+    found = on_coordinates(structure, given.get("modes"), ratios, 0.0, names, _at_hub(given))
     return found.support, beam_strips(structure, found.shapes)
 
 

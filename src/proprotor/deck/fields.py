@@ -149,6 +149,7 @@ RotorSpeed = Annotated[Datum, Reading("number", "rad/s", POSITIVE)]
 Density = Annotated[Datum | None, Reading("number", "kg/m**3", NOT_NEGATIVE)]
 Speed = Annotated[Datum | None, Reading("number", "m/s", POSITIVE)]
 DampingRatio = Annotated[Datum | None, Reading("number", "", BELOW_CRITICAL)]
+PositiveFrequency = Annotated[Datum | None, Reading("frequency", "rad/s", POSITIVE)]
 Frequency = Annotated[Datum | None, Reading("frequency", "rad/s", NOT_NEGATIVE)]
 Count = Annotated[Datum | None, Reading("count", least=3)]
 Size = Annotated[Datum | None, Reading("count", least=1)]
@@ -166,6 +167,9 @@ Abscissa = Annotated[
 File = Annotated[Datum | None, Reading("file")]
 IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
 Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
+Held = Annotated[
+    Datum | None, Reading("choice", choices=tuple(held for held in INCLUDES_ROTOR if isinstance(held, str)))
+]
 Carries = Annotated[Datum | None, Reading("choice", choices=CARRIES)]
 
 _of_mode = partial(AfterChoice, "number", choice="coordinate", usual="length")

@@ -8,8 +8,10 @@
 ``kind = "beam-wing"``
     The arguments of `proprotor.support.beam_wing.Wing` and `Pylon`, a property along the wing one value or
     ``{ y_over_span = [...], value = [...], unit = "lbf*in**2" }``. The downstop: downstop, on (true) or off;
-    downstop_stiffness_on and downstop_stiffness_off, rigid if left out. rotor_mass, the mass of the rotor model at the
-    hub. modes, the number of modes, all coordinates if left out; damping_ratio or loss_factor of every mode, and
+    downstop_stiffness_on and downstop_stiffness_off, rigid if left out. The rotor in the wing's modes: rotor_mass, the
+    mass of the rotor model at the hub, or rotor_held and shaft, how this rotor is held. beam_stiffness_factor and so
+    on, or beam_frequency and so on, to which these factors are fitted: `proprotor.support.stiffness_factors`. modes,
+    the number of modes, all coordinates if left out; damping_ratio or loss_factor of every mode, and
     beam_damping_ratio, chord_damping_ratio, torsion_damping_ratio of the modes of these kinds.
 ``kind = "matrices"``
     file, an .npz file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names: see
@@ -37,7 +39,12 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from proprotor.deck import fields
-from proprotor.deck.alternatives import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
+from proprotor.deck.alternatives import (
+    DAMPING_ALTERNATIVES,
+    FILE_ALTERNATIVES,
+    ROTOR_ALTERNATIVES,
+    STIFFNESS_ALTERNATIVES,
+)
 from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.errors import InputError
 from proprotor.support.normal_modes import HUB_AXES
@@ -116,7 +123,14 @@ class NormalModesSection(Section):
 class BeamWingSection(Section):
     """A cantilever wing of beam elements with a rigid pylon."""
 
-    alternatives: ClassVar[tuple[Sides, ...]] = DAMPING_ALTERNATIVES
+    alternatives: ClassVar[tuple[Sides, ...]] = (
+        *DAMPING_ALTERNATIVES,
+        *ROTOR_ALTERNATIVES,
+        *STIFFNESS_ALTERNATIVES,
+    )
+    may_lack: ClassVar[tuple[str, ...]] = tuple(
+        name for choice in STIFFNESS_ALTERNATIVES for side in choice for name in side
+    )
 
     kind: Literal["beam-wing"] = needed("A wing of beam elements.")
     span: fields.PositiveLength = needed("Span, from the mount outboard to the pylon.")
@@ -144,7 +158,26 @@ class BeamWingSection(Section):
     mast_height: fields.Offset = optional("Offset of the hub above the elastic axis at the tip.")
     mast_outboard: fields.Offset = optional("Offset of the hub outboard of the tip.")
     hub_mass: fields.MassOrNone = optional("Mass of the rotor's hub, without the blades.")
-    rotor_mass: fields.MassOrNone = needed("Mass of the rotor model at the hub, which the modes include.")
+    rotor_mass: fields.MassOrNone = optional("Mass of the rotor model at the hub, which the modes include.")
+    rotor_held: fields.Held = optional(
+        "How the rotor, which the modes include, is held in them, in place of a mass: tilting on its gimbal, as one "
+        "body with the shaft, or a point mass at the hub."
+    )
+    shaft: fields.Shaft = optional(
+        "Whether a rotor that is held gimballed or rigid can turn about its shaft; held if left out."
+    )
+    beam_stiffness_factor: fields.Positive = optional("Factor on beam_stiffness; 1 if left out.")
+    chord_stiffness_factor: fields.Positive = optional("Factor on chord_stiffness; 1 if left out.")
+    torsion_stiffness_factor: fields.Positive = optional("Factor on torsion_stiffness; 1 if left out.")
+    beam_frequency: fields.PositiveFrequency = optional(
+        "Frequency of the beam mode with the rotor, to which beam_stiffness_factor is fitted."
+    )
+    chord_frequency: fields.PositiveFrequency = optional(
+        "Frequency of the chord mode with the rotor, to which chord_stiffness_factor is fitted."
+    )
+    torsion_frequency: fields.PositiveFrequency = optional(
+        "Frequency of the torsion mode with the rotor, to which torsion_stiffness_factor is fitted."
+    )
     downstop: bool = optional("Whether the pylon is on its downstop.", True)
     downstop_stiffness_on: fields.PositiveStiffness = optional(
         "Pitch stiffness from pylon to wing, on the downstop; rigid if left out."
@@ -163,6 +196,15 @@ class BeamWingSection(Section):
     @model_validator(mode="after")
     def _one_damping(self) -> BeamWingSection:
         _exactly_one(self, "damping_ratio", "loss_factor")
+        return self
+
+    @model_validator(mode="after")
+    def _one_rotor(self) -> BeamWingSection:
+        _exactly_one(self, "rotor_mass", "rotor_held")
+        for (factor,), (frequency,) in STIFFNESS_ALTERNATIVES:
+            if self.model_fields_set.issuperset((factor, frequency)):
+                rule = f"must not be given with {frequency}, to which the factor is fitted"
+                raise InputError(factor, None, rule)
         return self
 
 

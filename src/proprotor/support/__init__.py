@@ -7,12 +7,14 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     airframe           coordinates of an airframe that carries two rotors
     modal_reduction    lowest modes of a structure, and the structure on these modes
     beam_wing          a cantilever wing of beam elements with a pylon
+    stiffness_factors  factors on the stiffnesses of such a wing, fitted to frequencies
     wing_aerodynamics  airloads of the wing itself, by strips
     nastran            modes from a Nastran run
     matrix_files       matrices of any finite-element code
     matrix_market      files of such matrices in the Matrix Market format
 
-All public names of the modules `beam_wing`, `matrix_files`, `nastran` and `wing_aerodynamics` belong to the face.
+All public names of the modules `beam_wing`, `matrix_files`, `nastran`, `stiffness_factors` and `wing_aerodynamics`
+belong to the face.
 """
 
 from proprotor.support.airframe import SYMMETRIES, Airframe
@@ -41,6 +43,7 @@ __all__ = [
     "matrix_files",
     "nastran",
     "rigid_support",
+    "stiffness_factors",
     "two_axis_pivot",
     "wing_aerodynamics",
 ]
