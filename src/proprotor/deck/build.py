@@ -19,7 +19,7 @@ from proprotor.deck.numbers import numbers_of, own_numbers
 from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
 from proprotor.model.mass_at_rest import mass_at_rest
-from proprotor.model.rotor_share import settled, spring_warnings
+from proprotor.model.rotor_share import rotor_share, settled, spring_warnings
 from proprotor.rotor.airfoil import Airfoil, SectionModel
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
@@ -28,6 +28,7 @@ from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.support.normal_modes import NormalModes
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     from proprotor.deck.sections import Deck
@@ -84,7 +85,8 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         fitted = fitted_stiffness_factors(deck.support, numbers, at_rest)
         built = build_support(deck.support, dict(numbers) | fitted, names, mass_at_rest=at_rest)
         support = settled(built, at_rest)
-        doubts = spring_warnings(support, at_rest, rotor.gimbal_stiffness)
+        as_given = _with_rotor(support, numbers, at_rest) if fitted else support
+        doubts = spring_warnings(as_given, at_rest, rotor.gimbal_stiffness)
     return kind(
         name=deck.case.name,
         title=deck.case.title,
@@ -100,6 +102,17 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         deck=deck,
         given=numbers,
     )
+
+
+def _with_rotor(support: NormalModes, numbers: Mapping[str, Datum], mass_at_rest: Array) -> NormalModes:
+    """Return a wing whose stiffness was fitted to frequencies with the rotor, with the rotor in its mass."""
+    held = numbers.get("support.rotor_held")
+    if held is None:
+        return support
+    shaft = numbers["support.shaft"].si if "support.shaft" in numbers else "held"
+    share = rotor_share(mass_at_rest, held.si, shaft)
+    mass = support.mass + np.swapaxes(support.hub, -1, -2) @ share @ support.hub
+    return replace(support, mass=mass, includes_rotor=held.si)
 
 
 @contextmanager

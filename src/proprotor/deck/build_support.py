@@ -140,17 +140,21 @@ def fitted_stiffness_factors(
         return {}
     designs, place = _different_designs(_wing_numbers(numbers, mass_at_rest))
     parts = [_fitted(part, section.downstop, wanted) for part in designs]
-    with_rotor = "the rotor's mass" if section.rotor_held is None else f"the rotor {section.rotor_held.si}"
+    factors = {kind: np.concatenate([part[kind] for part in parts])[place] for kind in wanted}
     return {
-        f"support.{kind}_stiffness_factor": Datum(
-            f"fitted to {kind}_frequency",
-            np.concatenate([np.atleast_1d(part[kind]) for part in parts])[place],
-            "",
-            "calibrated",
-            f"Newton's method, with {with_rotor} at the hub; {numbers[f'support.{kind}_frequency'].source}",
-        )
-        for kind in wanted
+        f"support.{kind}_stiffness_factor": _fitted_factor(kind, factor, section, numbers)
+        for kind, factor in factors.items()
     }
+
+
+def _fitted_factor(
+    kind: str, factor: Array, section: support_sections.BeamWingSection, numbers: Mapping[str, Datum]
+) -> Datum:
+    """Return a fitted factor as a number of the deck."""
+    rotor = "the rotor's mass" if section.rotor_held is None else f"the rotor {section.rotor_held.si}"
+    given = numbers[f"support.{kind}_frequency"]
+    source = f"fitted to {kind}_frequency with {rotor} at the hub; {given.source}"
+    return Datum("a batch" if factor.ndim else f"{factor:.5g}", factor, "", "calibrated", source)
 
 
 def _fitted(given: Mapping[str, Any], downstop: bool, kinds: Sequence[str]) -> dict[str, Array]:

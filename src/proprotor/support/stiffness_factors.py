@@ -84,7 +84,8 @@ def stiffness_factors(
         moved = logs + np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
         logs = np.clip(moved, -np.log(_FURTHEST), np.log(_FURTHEST))
     reasons = real.reasons(logs)
-    factors = np.exp(logs + problem.step(logs)[1])
+    found = (reasons == "").all(axis=-1, keepdims=True)
+    factors = np.exp(logs + np.where(found, problem.step(logs)[1], 0.0))
     return FittedFactors(_by_kind(factors, problem.kinds), _by_kind(reasons, problem.kinds))
 
 
@@ -125,11 +126,19 @@ class _Problem(NamedTuple):
             beam_structure(stiffened(wing, dict.fromkeys(kinds, factor)), pylon) for factor in (1.0, 2.0)
         )
         mass = once.mass + once.hub.T @ at_hub @ once.hub
-        own = np.stack([twice.stiffness_parts[kind] - once.stiffness_parts[kind] for kind in kinds])
-        parts = np.stack([once.stiffness_parts[kind] for kind in KINDS])
+        own = [twice.stiffness_parts[kind] - once.stiffness_parts[kind] for kind in kinds]
+        parts = [once.stiffness_parts[kind] for kind in KINDS]
         wanted = 2 * np.log(np.stack(np.broadcast_arrays(*(frequency[kind] for kind in kinds)), axis=-1))
-        shape = np.broadcast_shapes(mass.shape[:-2], once.stiffness.shape[:-2], wanted.shape[:-1])
-        return cls(kinds, mass, parts, own, once.stiffness, np.broadcast_to(wanted, (*shape, len(kinds))))
+        batch = np.broadcast_shapes(mass.shape[:-2], once.stiffness.shape[:-2], wanted.shape[:-1])
+        whole = (*batch, *mass.shape[-2:])
+        return cls(
+            kinds,
+            np.broadcast_to(mass, whole),
+            np.stack([np.broadcast_to(part, whole) for part in parts]),
+            np.stack([np.broadcast_to(part, whole) for part in own]),
+            np.broadcast_to(once.stiffness, whole),
+            np.broadcast_to(wanted, (*batch, len(kinds))),
+        )
 
     @property
     def real(self) -> _Problem:
@@ -146,21 +155,24 @@ class _Problem(NamedTuple):
         return left, np.linalg.solve(energy / np.real(square)[..., None], left[..., None])[..., 0]
 
     def reasons(self, logs: Array) -> Array:
-        """Return for each kind why the factors at ln f (..., kinds) are none, "" if they are."""
+        """Return for each kind why there are no factors, "" for a kind that has one, at the end ln f (..., kinds).
+
+        Where frequencies are out of reach, the reason stands at the one that is furthest from the wing's own.
+        """
         modes, places, shares = self._at(logs)
-        frequency = np.take_along_axis(modes.frequency, places, axis=-1)
-        reasons = np.full(logs.shape, "", dtype=object)
-        missed = np.abs(self.wanted - 2 * np.log(frequency)) > _FOUND
-        own = np.array([KINDS.index(kind) for kind in self.kinds])
+        square = np.take_along_axis(modes.frequency**2, places, axis=-1)
+        missed = (np.abs(self.wanted - np.log(square)) > _FOUND).any(axis=-1, keepdims=True)
         most = np.take_along_axis(shares, places[..., None, :], axis=-1).argmax(axis=-2)
-        for at in np.argwhere(missed | (most != own)):
-            place = tuple(at)
-            kind, factor = self.kinds[place[-1]], float(np.exp(logs[place]))
-            reasons[place] = (
-                _out_of_reach(kind, factor, float(frequency[place]))
-                if missed[*place[:-1]].any()
-                else _swapped(kind, KINDS[most[place]])
-            )
+        swapped = ~missed & (most != np.array([KINDS.index(kind) for kind in self.kinds]))
+        first, places, _ = self._at(np.zeros(logs.shape))
+        own = np.take_along_axis(first.frequency, places, axis=-1)
+        away = np.abs(self.wanted - 2 * np.log(own))
+        missed = missed & (away == away.max(axis=-1, keepdims=True))
+        reasons = np.full(logs.shape, "", dtype=object)
+        for at in np.argwhere(missed):
+            reasons[tuple(at)] = _out_of_reach(self.kinds, own[*at[:-1]])
+        for at in np.argwhere(swapped):
+            reasons[tuple(at)] = _swapped(self.kinds[at[-1]], KINDS[most[tuple(at)]])
         return reasons
 
     def _at(self, logs: Array) -> tuple[StructuralModes, Array, Array]:
@@ -174,7 +186,7 @@ class _Problem(NamedTuple):
         shapes, parts = np.real(modes.shapes), list(np.real(self.parts))
         for place, kind in enumerate(self.kinds):
             parts[KINDS.index(kind)] = parts[KINDS.index(kind)] + more[place] * np.real(self.own[place])
-        shares = np.moveaxis(_energies(np.stack(np.broadcast_arrays(*parts)), shapes), 0, -2)
+        shares = np.moveaxis(_energies(np.stack(parts), shapes), 0, -2)
         orders = np.array(list(permutations(range(len(KINDS)))))
         scores = shares[..., np.arange(len(KINDS)), orders].prod(axis=-1)
         order = orders[scores.argmax(axis=-1)]
@@ -187,12 +199,12 @@ def _energies(parts: Array, shapes: Array) -> Array:
     return energies
 
 
-def _out_of_reach(kind: str, factor: float, frequency: float) -> str:
-    """Return that no factor gives the frequency."""
+def _out_of_reach(kinds: tuple[str, ...], own: Array) -> str:
+    """Return that no factors give the frequencies, and the wing's own frequencies (kinds,), rad/s."""
+    listed = ", ".join(f"{kind} {hertz:.4g} Hz" for kind, hertz in zip(kinds, own / (2 * np.pi), strict=True))
     return (
-        f"is out of reach, alone or together with the other frequencies given: with stiffness factors from "
-        f"{1 / _FURTHEST:g} to {_FURTHEST:g} the {kind} mode comes to {frequency / (2 * np.pi):.4g} Hz, its factor "
-        f"to {factor:.3g}"
+        "is out of reach together with the other frequencies given: no stiffness factors from "
+        f"{1 / _FURTHEST:g} to {_FURTHEST:g} were found; with factors of 1 the wing and the rotor have {listed}"
     )
 
 
