@@ -236,17 +236,17 @@ def _level_of(text: str) -> float:
     return level
 
 
-def one_speed(text: str, option: str = "--speed") -> float:
-    """Return a single airspeed, m/s.
+def one_speed(text: str) -> float:
+    """Return the single airspeed of `--speed`, m/s.
 
     Raises
     ------
     InputError
         For a text that is not exactly one airspeed.
     """
-    found = speeds(text, option)
+    found = speeds(text, "--speed")
     if len(found) != 1:
-        raise InputError(option, text, 'must be one speed, such as "300 kt"')
+        raise InputError("--speed", text, 'must be one speed, such as "300 kt"')
     return float(found[0])
 
 

@@ -65,8 +65,7 @@ def flutter(
         table=lambda: _print(case, found, records, at, arguments.unit_of(scan or speed or "kt")),
         csv=lambda: csv_of(rows, COLUMNS, found.stamp),
     )
-    if not math.isfinite(found.searched[0]):
-        raise click.exceptions.Exit(1)
+    output.exit_without(math.isfinite(found.searched[0]))
 
 
 def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | None) -> dict[str, Any]:

@@ -268,6 +268,12 @@ def _write_plot(path: str, draw: Callable[[], Axes | Figure]) -> None:
         write("--plot", path, lambda file: figure.savefig(file, format=form, dpi=160, bbox_inches=box))
 
 
+def exit_without(results: object) -> None:
+    """End the command with exit code 1 if there are no results, because no airspeed could be analysed."""
+    if not results:
+        raise click.exceptions.Exit(1)
+
+
 def with_origin(axes: Axes, case: Case) -> Axes:
     """Write the case of a plot and the reservations about its numbers beneath the plot; return the axes."""
     from proprotor.plots import rests_on

@@ -81,8 +81,7 @@ def report(request: arguments.Request, speed: str | None, out: str | None, pdf: 
         output.print_head(case, found.sweep.attrs)
         for sentence in document.verdict:
             output.console().print(sentence, style="bold")
-    if not found.mode:
-        raise click.exceptions.Exit(1)
+    output.exit_without(found.mode)
 
 
 def _places(out: str, pdf: bool) -> list[str]:

@@ -81,8 +81,7 @@ def stability_map(
         csv=lambda: csv_of(records := _records(found, axes), list(records[0]), found.attrs),
         plot=lambda: output.with_origin(plot_stability_map(found, units=units), case),
     )
-    if not np.isfinite(found.growth.values).any():
-        raise click.exceptions.Exit(1)
+    output.exit_without(np.isfinite(found.growth.values).any())
 
 
 def _axis(option: str, text: str, case: Case) -> _Axis:

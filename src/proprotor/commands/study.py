@@ -97,8 +97,7 @@ def study(
         output.print_json(output.about(case, request) | study_summary(results) | {"results": out})
     else:
         _print(results)
-    if bool((results.reason != "").all()):
-        raise click.exceptions.Exit(1)
+    output.exit_without((results.reason == "").any())
 
 
 def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> sampling.Plan:

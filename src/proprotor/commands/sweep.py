@@ -60,8 +60,7 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
             footer=" ".join(reservations(case)),
         ),
     )
-    if table.failed.all():
-        raise click.exceptions.Exit(1)
+    output.exit_without(not table.failed.all())
 
 
 def _document(table: SweepTable) -> dict[str, Any]:

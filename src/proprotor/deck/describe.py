@@ -115,9 +115,8 @@ def find_fields(path: str) -> tuple[DeckField, ...]:
 
 def _hint(wanted: str) -> str:
     """Return a hint at the nearest field, by its whole path or its last name."""
-    known = {plain_path(field.path): plain_path(field.path) for field in deck_fields()}
-    by_last_name = {path.rpartition(".")[2]: path for path in known}
-    names = known if "." in wanted else by_last_name
+    known = [plain_path(field.path) for field in deck_fields()]
+    names = {path if "." in wanted else path.rpartition(".")[2]: path for path in known}
     nearest = difflib.get_close_matches(wanted.lower(), names, n=1)
     return f"did you mean {names[nearest[0]]}?" if nearest else "`proprotor describe` lists them"
 
@@ -129,7 +128,6 @@ def plain_path(path: str) -> str:
 
 def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckField]:
     """Yield the fields of a section at a place of the deck."""
-    defaults = _defaults(section)
     for name, field in section.model_fields.items():
         number = next((part for part in field.metadata if isinstance(part, Reading)), None)
         takes = _takes_plain(field.annotation) if number is None else _takes(number)
@@ -145,7 +143,7 @@ def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckF
             unit=_unit(reading),
             range=f"{reading.least} or more" if reading.form == "count" else reading.bound.range,
             required=field.is_required() or (is_one_side and name not in section.may_lack),
-            default=_default(field, reading, defaults.get(name, MISSING)),
+            default=_default(field, reading, _defaults(section).get(name, MISSING)),
             instead_of=_instead_of(section, name),
             form=reading.form,
         )

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import functools
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from proprotor.case import Case
 from proprotor.datum import deck_unit
-from proprotor.deck.describe import deck_fields
+from proprotor.deck.describe import deck_fields, plain_path
 from proprotor.deck.vary import check_input, design_inputs
 from proprotor.plots.input_names import short_name
 from proprotor.plots.line_of_sweep import written
@@ -102,7 +101,7 @@ def slider_input(case: Case, path: str) -> SliderInput:
     unit, factor = deck_unit(number)
     value = float(f"{float(number.si) / factor:.10g}")  # free of the rounding of conversion
     low, high = (float(f"{end:.3g}") for end in _range(path, value, number.unit, factor))
-    meaning = _meanings().get(_plain(path), "")
+    meaning = _meanings().get(plain_path(path), "")
     return SliderInput(path, short_name(path), unit, meaning, factor, value, low, high)
 
 
@@ -121,12 +120,7 @@ def _range(path: str, value: float, si_unit: str, factor: float) -> tuple[float,
     return low, high
 
 
-def _plain(path: str) -> str:
-    """Return a path without the names of entries in brackets."""
-    return re.sub(r"\[[^\]]*\]", "", path)
-
-
 @functools.cache
 def _meanings() -> Mapping[str, str]:
     """Return the meaning of each field of a deck by its path."""
-    return {_plain(field.path): field.meaning for field in deck_fields()}
+    return {plain_path(field.path): field.meaning for field in deck_fields()}

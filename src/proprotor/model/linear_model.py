@@ -87,8 +87,7 @@ class LinearModel:
     @property
     def matrices(self) -> dict[str, Array]:
         """M, C, K and, for a model with inputs, B, by name; SI."""
-        given = {name: getattr(self, name) for name in ("M", "C", "K", "B")}
-        return {name: matrix for name, matrix in given.items() if matrix is not None}
+        return {name: matrix for name in "MCKB" if (matrix := getattr(self, name)) is not None}
 
     @property
     def shaft_holds_azimuth(self) -> Array:

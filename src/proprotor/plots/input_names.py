@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Sequence
 
 _MODE = re.compile(r"support\.modes\[(.+)\]\.(.+)")
-_SECTIONS = ("rotor.", "operation.")
 _OTHERS = {"rotor.chord": "blade chord"}  # the wing has a chord too, and one mode is called chord
 
 
@@ -17,9 +16,7 @@ def short_name(path: str) -> str:
         return f"{found[1]}: {found[2].replace('_', ' ')}"
     if path in _OTHERS:
         return _OTHERS[path]
-    for section in _SECTIONS:
-        path = path.removeprefix(section)
-    return path.replace(".", " ").replace("_", " ")
+    return path.removeprefix("rotor.").removeprefix("operation.").replace(".", " ").replace("_", " ")
 
 
 def short_names(paths: Sequence[str]) -> list[str]:

@@ -90,12 +90,13 @@ def report_document(
         Section("Inputs", tuple(_inputs(case))),
         Section("Reproduction", (_reproduction(case, deck_hash, date),)),
     )
+    failures = (f"Not analysed {airspeeds}: {reason}." for airspeeds, _, reason in _failed(table))
     return Document(
         title=case.title or case.name,
         subtitle=f"Case {case.name}, {heading(case).rpartition(', ')[2]}",
         date=date,
         verdict=tuple(_verdict(found, table, unit, factor)),
-        caution=(*reservations(case), *case.warnings, *table.doubts(), *_failures(table)),
+        caution=(*reservations(case), *case.warnings, *table.doubts(), *failures),
         sections=tuple(section for section in sections if section.blocks),
     )
 
@@ -115,12 +116,6 @@ def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> It
     for sentence in verdict(found.flutter, None, unit, factor):
         if not (found.flutters and sentence.startswith("Flutter speed")):
             yield sentence
-
-
-def _failures(table: SweepTable) -> Iterator[str]:
-    """Yield a sentence on each range of airspeeds that could not be analysed, with the reason."""
-    for airspeeds, _, reason in _failed(table):
-        yield f"Not analysed {airspeeds}: {reason}."
 
 
 def _failed(table: SweepTable) -> Iterator[tuple[str, str, str]]:

@@ -118,12 +118,10 @@ class Options:
             rule = 'must be BladeFrequencies, with structure="tabulated" only'
             raise InputError("frequencies", self.frequencies, rule)
         for name in ("pitch_flap_coupling", "pitch_lag_coupling"):
-            value = getattr(self, name)
-            if value is None:
-                continue
-            if self.pitch != "coupling":
-                raise InputError(name, value, 'goes with pitch="coupling"')
-            check_finite(name, value)
+            if (value := getattr(self, name)) is not None:
+                if self.pitch != "coupling":
+                    raise InputError(name, value, 'goes with pitch="coupling"')
+                check_finite(name, value)
         if self.drive_train is not None and not isinstance(self.drive_train, DriveTrain):
             raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
         if self.drive_train is not None and self.rotor_speed == "constant":

@@ -132,8 +132,7 @@ class Rotor:
 
     def _check_signs(self) -> None:
         """Refuse numbers of the wrong sign, and fractions and angles out of range."""
-        own = (entry.name for entry in fields(self))
-        passive = [name for name in own if name.endswith(("_stiffness", "_damping"))]
+        passive = [e.name for e in fields(self) if e.name.endswith(("_stiffness", "_damping"))]
         for names, sign in ((_POSITIVE, "above zero"), ((*_NOT_NEGATIVE, *passive), "not negative")):
             for name in names:
                 check_finite(name, getattr(self, name), sign)

@@ -13,7 +13,7 @@ the largest entries of the rows. Elsewhere `scipy.optimize.linear_sum_assignment
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -358,11 +358,7 @@ def way_to_zero(start: Array, end: Array) -> Array:
 
 def chain(successor: Array, start: Array) -> Array:
     """Return places (steps + 1, states) of states along consecutive steps (steps, states), from places (states,)."""
-    order = np.empty((len(successor) + 1, successor.shape[-1]), dtype=int)
-    order[0] = start
-    for step, places in enumerate(successor):
-        places.take(order[step], out=order[step + 1])
-    return order
+    return np.stack(list(accumulate(successor, lambda places, step: step.take(places), initial=start)))
 
 
 def keep_upper(values: Array) -> Array:

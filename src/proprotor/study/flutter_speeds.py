@@ -110,8 +110,7 @@ def _beyond(airspeed: Array, reason: Array) -> str:
 
 def _put_least_damping(found: dict[str, Array], search: Search) -> None:
     """Put the lowest damping ratio of each design at the airspeeds of the range in its place."""
-    scanned = search.scanned.points
-    assert scanned is not None  # because the search has points
+    scanned = search.first_points
     values, size = scanned.spectrum.values, np.abs(scanned.spectrum.values)
     with np.errstate(all="ignore"):
         ratio = np.where(size > scanned.error, -values.real / size, np.inf).min(axis=1)
