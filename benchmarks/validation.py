@@ -20,6 +20,7 @@ from benchmarks.paper_figures.input_ranges import V22, WRATS, InputRange
 from benchmarks.paper_figures.input_ranges import XV15 as XV15_RANGES
 from benchmarks.paper_figures.published import XV15_FLUTTER, XV15_MARK
 from benchmarks.paper_figures.sample_band import Band
+from benchmarks.paper_figures.wing_modes import OF_THE_ROTOR
 from proprotor.files.output import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,6 +73,7 @@ def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
         [_HEAD],
         _summary(claims),
         _boundary_section(rows),
+        _bell_section(analyses),
         _figures_section(),
         _claims_section(claims),
         _models_section(analyses),
@@ -136,6 +138,31 @@ def _boundary_section(rows: list[Row]) -> Iterator[str]:
     yield "![Boundaries of both blades with their bands](figures/xv15-boundary.png)"
     yield ""
     yield from _boundary_words(rows)
+    yield ""
+
+
+def _bell_section(analyses: Analyses) -> Iterator[str]:
+    """Yield the boundaries with the builder's blade frequencies beside those with the springs of Table 1."""
+    yield "### The same with Bell's blade frequencies"
+    yield ""
+    yield "Lag and coning as Bell calculated them (NASA TM X-62,407; deck `xv15-bell-frequencies`) in place of the"
+    yield "springs of Table 1, all else as above: the springs are published as well, and the two sources do not agree"
+    yield "([the lag frequency](lag-frequency.md)). Nominal, without a band; of the wing, and of the rotor's own modes."
+    yield ""
+    cells = []
+    for variant, pitch in _PITCH.items():
+        springs, bell = (analyses.wing(XV15, which + variant) for which in ("", "Bell's frequencies, "))
+        rotor = (wing.speed(OF_THE_ROTOR) for wing in (springs, bell))
+        speeds = (springs.first_speed, bell.first_speed, *rotor)
+        cells.append((pitch, *map(as_text, speeds)))
+    head = (
+        "pitch",
+        "wing: Table 1",
+        "wing: Bell's frequencies",
+        "rotor: Table 1",
+        "rotor: Bell's frequencies",
+    )
+    yield from _table(head, cells)
     yield ""
 
 

@@ -210,7 +210,7 @@ OTHERWISE = {
     "locked": ("gimbal", "lag"),
     "pitch_flap_coupling": 0.1,
     "pitch_lag_coupling": -0.2,
-    "frequencies": pp.BladeFrequencies(flap=1.9, lag=1.2),
+    "frequencies": pp.BladeFrequencies(at_rotor_speed=CASE.operation.rotor_speed, flap=1.9, lag=1.2),
     "drive_train": pp.DriveTrain(drive_inertia=3.0),
 }
 
@@ -316,17 +316,37 @@ def same(value):
     ("given", "repeat"),
     [
         ({}, False),
-        ({"structure": "tabulated", "frequencies": pp.BladeFrequencies(flap=1.9, lag=1.2)}, False),
         (
             {
                 "structure": "tabulated",
                 "frequencies": pp.BladeFrequencies(
-                    flap=[1.9, 1.8], lag=1.2, at=[0.0, 1.0], against="collective"
+                    at_rotor_speed=CASE.operation.rotor_speed, flap=1.9, lag=1.2
                 ),
             },
             False,
         ),
-        ({"structure": "tabulated", "frequencies": pp.BladeFrequencies(flap=same, lag=1.2)}, True),
+        (
+            {
+                "structure": "tabulated",
+                "frequencies": pp.BladeFrequencies(
+                    at_rotor_speed=CASE.operation.rotor_speed,
+                    flap=[1.9, 1.8],
+                    lag=1.2,
+                    at=[0.0, 1.0],
+                    against="collective",
+                ),
+            },
+            False,
+        ),
+        (
+            {
+                "structure": "tabulated",
+                "frequencies": pp.BladeFrequencies(
+                    at_rotor_speed=CASE.operation.rotor_speed, flap=same, lag=1.2
+                ),
+            },
+            True,
+        ),
         ({"drive_train": pp.DriveTrain(drive_inertia=100.0, shaft_stiffness=1e4)}, False),
         ({"pitch": "coupling", "pitch_lag_coupling": [-0.1, -0.2]}, False),
         ({"pitch": "coupling", "pitch_lag_coupling": np.linspace(-0.1, -0.2, 40)}, True),
@@ -359,7 +379,8 @@ def test_what_a_deck_brings_is_in_force_and_its_numbers_are_its_fingerprint(name
 def test_frequencies_of_a_deck_are_options_in_force(tmp_path):
     deck = tmp_path / "tabulated.toml"
     deck.write_text(
-        'base = "xv15-uncoupled"\n[case]\nname = "tabulated"\ntitle = "T"\n[rotor.frequencies]\nflap = 1.9\nlag = 1.3\n'
+        'base = "xv15-uncoupled"\n[case]\nname = "tabulated"\ntitle = "T"\n'
+        '[rotor.frequencies]\nat_rotor_speed = "458 rpm"\nflap = 1.9\nlag = 1.3\n'
         '[drive_train]\ndrive_inertia = "100 kg*m**2"\n'
     )
     case = pp.load_case(deck)
