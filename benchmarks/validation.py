@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks import published_systems
 from benchmarks.claims import VERDICTS, WING, Claim, all_claims, as_text, first_boundary, mode_boundaries
 from benchmarks.paper_figures import NUMBERS, Analyses, csv_of, make_figure
 from benchmarks.paper_figures.analyses import XV15
@@ -77,6 +78,7 @@ def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
         _figures_section(),
         _claims_section(claims),
         _models_section(analyses),
+        published_systems.section(),
         _ranges_section(),
     )
     return "\n".join(line for part in parts for line in part).rstrip() + "\n"
@@ -85,7 +87,7 @@ def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
 _HEAD = """# Validation against AIAA-2002-1604
 
 Written by `python -m benchmarks.validation`, numbers, verdicts and figures included; `make figures` makes the
-figures alone. Damping is in percent of critical, frequency per revolution, speed in knots.
+figures alone. Damping is in percent of critical, frequency per revolution, kt is KTAS.
 
 The inputs decide what may be concluded. The rotor of the XV-15 is published; its wing is recalled or assumed, and two
 inputs are calibrated to the paper ([xv15.md](xv15.md)). Of the two 1/5-scale models only the rotor of one is published,

@@ -33,33 +33,32 @@ element_position = s.quantity(
 )
 
 
-def _property(name: str, latex: str, unit: str, meaning: str) -> tuple[sp.Symbol, sp.Symbol]:
-    """Declare the values of a property at both ends of an element."""
+def _property(name: str, latex: str, part: str, unit: str, meaning: str) -> tuple[sp.Symbol, sp.Symbol]:
+    """Declare the values of a property at both ends of an element; `part` is a subscript of its symbol."""
     inner, outer = (
-        s.quantity(f"{end}_{name}", f"{latex}^{{{count}}}", unit, f"{meaning}, at the {end} end")
+        s.quantity(f"{end}_{name}", f"{latex}_{{{part}{count}}}", unit, f"{meaning}, at the {end} end")
         for count, end in enumerate(ENDS)
     )
     return inner, outer
 
 
-BEAM_STIFFNESS = _property("beam_stiffness", "EI_b", "N m^2", "bending stiffness up and down")
-CHORD_STIFFNESS = _property("chord_stiffness", "EI_c", "N m^2", "bending stiffness fore and aft")
-TORSION_STIFFNESS = _property("torsion_stiffness", "GJ", "N m^2", "torsion stiffness")
-AXIAL_STIFFNESS = _property("axial_stiffness", "EA", "N", "axial stiffness")
+BEAM_STIFFNESS = _property("beam_stiffness", "EI", "b", "N m^2", "bending stiffness up and down")
+CHORD_STIFFNESS = _property("chord_stiffness", "EI", "c", "N m^2", "bending stiffness fore and aft")
+TORSION_STIFFNESS = _property("torsion_stiffness", "GJ", "", "N m^2", "torsion stiffness")
+AXIAL_STIFFNESS = _property("axial_stiffness", "EA", "", "N", "axial stiffness")
 # Integrals over the section by the powers of the mass's distances above and ahead of the elastic axis.
+_FIRST, _SECOND = "first moment of mass per length,", "second moment of mass per length,"
 SECTION_MASS = {
-    (0, 0): _property("mass_per_length", r"\mu", "kg/m", "mass per length"),
-    (1, 0): _property("first_moment_up", r"\mu_x", "kg", "mass per length times its distance above the axis"),
-    (0, 1): _property(
-        "first_moment_forward", r"\mu_z", "kg", "mass per length times its distance ahead of the axis"
-    ),
-    (2, 0): _property("second_moment_up", r"\mu_{xx}", "kg m", "second moment of mass above the axis"),
-    (1, 1): _property("product_of_inertia", r"\mu_{xz}", "kg m", "product of inertia, up times forward"),
-    (0, 2): _property(
-        "second_moment_forward", r"\mu_{zz}", "kg m", "second moment of mass ahead of the axis"
-    ),
+    (0, 0): _property("mass_per_length", r"\mu", "", "kg/m", "mass per length"),
+    (1, 0): _property("first_moment_up", r"\mu", "x", "kg", f"{_FIRST} above the axis"),
+    (0, 1): _property("first_moment_forward", r"\mu", "z", "kg", f"{_FIRST} ahead of the axis"),
+    (2, 0): _property("second_moment_up", r"\mu", "xx", "kg m", f"{_SECOND} above the axis"),
+    (1, 1): _property("product_of_inertia", r"\mu", "xz", "kg m", f"{_SECOND} up times forward"),
+    (0, 2): _property("second_moment_forward", r"\mu", "zz", "kg m", f"{_SECOND} ahead of the axis"),
 }
-TWIST_INERTIA = _property("twist_inertia", r"\mu_\theta", "kg m", "polar inertia per length about the axis")
+TWIST_INERTIA = _property(
+    "twist_inertia", r"\mu", r"\theta", "kg m", "polar inertia per length about the axis"
+)
 
 _DISTANCE = sp.symbols("up forward")
 _ENDS_OF = {axis: [sp.Symbol(f"{end}_{axis}") for end in ENDS] for axis in AXES}

@@ -201,9 +201,7 @@ STEPS = {
         Step("multiblade", "From one blade to N blades in the fixed frame", MULTIBLADE),
         Step("drive_train", "Engine and shaft on the rotor's azimuth", DRIVE_TRAIN),
         Step("rotor", "A whole rotor in one call", ROTOR, "rotor.py.jinja"),
-        Step(
-            "beam", "A beam element: x up, y along the elastic axis, z forward, six motions at each end", BEAM
-        ),
+        Step("beam", "A beam element, x up, y along it, z forward", BEAM),
     )
 }
 """Every step by the name of its module."""

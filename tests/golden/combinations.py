@@ -17,7 +17,8 @@ ADVANCE = (0.25, 0.5, 0.7)  # airspeed by tip speed: the same for models of any 
 SWITCHES = ("equations", "pitch", "structure", "airloads", "compressibility", "rotor_speed")
 # Of every combination that does not say otherwise, so that a record's numbers are of one set of equations throughout.
 WITHOUT_DAMPING = {"section_damping": False}
-# With every other switch as the deck has it, frequencies of its own included: what would double the combinations, or multiply them by sixteen.
+# With every other switch as the deck has it, its own blade frequencies included:
+# what would double the combinations, or multiply them by sixteen.
 ALONE: dict[str, dict[str, Any]] = {
     "section damping": {"section_damping": True},
     **{f"{name} locked": {"locked": [name]} for name in LOCKABLE},

@@ -332,8 +332,3 @@ def test_trim_tells_what_a_table_does_not_know():
     short = table_of(lambda a, m: 6 * a, np.array([-0.5, 0.5]), np.array([0.0, 0.4]))
     assert not any("table" in text or "stall" in text for text in warned)
     assert all(BEYOND_MACH in text for text in matrices(short, compressibility=False).trim.warning)
-
-
-def test_a_speed_at_which_no_point_has_a_trim_is_a_failed_point():
-    found = pp.rotor_model(replace(XV15.rotor, airfoil=TABLE), XV15.operation, 10000.0)
-    assert np.isnan(found.M).all() and "was lost at" in str(found.trim.reason)

@@ -238,8 +238,8 @@ def _different_designs(given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], 
     table = np.stack(columns or [np.zeros(1)], axis=-1)
     _, first, place = np.unique(table, axis=0, return_index=True, return_inverse=True)
     different = {name: value.ravel()[first] for name, value in zip(varied, spread, strict=True)}
-    if not different:  # one design is a batch of one
-        different = {"span": np.atleast_1d(given["span"])}
+    if "span" not in different:  # one design is a batch of one
+        different["span"] = np.broadcast_to(given["span"], first.shape)
     size = _BYTES * (given.get("elements", Wing.elements) + 1) ** 2
     step = max(1, int(_PART // size))
     parts = [slice(start, start + step) for start in range(0, len(first), step)]

@@ -181,6 +181,7 @@ BendingStiffness = Annotated[Datum | None, Reading("along the wing", "N*m**2", P
 AxialStiffness = Annotated[Datum | None, Reading("along the wing", "N", POSITIVE)]
 MassPerLength = Annotated[Datum | None, Reading("along the wing", "kg/m", NOT_NEGATIVE)]
 InertiaPerLength = Annotated[Datum | None, Reading("along the wing", "kg*m**2/m", NOT_NEGATIVE)]
+OffsetOfMass = Annotated[Datum | None, Reading("along the wing", "m")]
 
 Text = Annotated[str, StringConstraints(min_length=1, max_length=2000)]
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]*$", max_length=60)]

@@ -79,8 +79,6 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
 
 def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
     """Return whether points (n,) with these slopes at the start and here are at the end of the path, by the bound."""
-    if not len(rows):
-        return np.zeros(0, dtype=bool)
     smooth = isinstance(balance.sections.airfoil, Airfoil)
     half_way = {name: (start[name] + state[name]) / 2 for name in UNKNOWNS}
     between = None if smooth else balance.near(half_way, rows, share=0.5).slopes

@@ -6,6 +6,7 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     normal_modes       coordinates of a support; two-axis pivot; rigid support
     airframe           coordinates of an airframe that carries two rotors
     modal_reduction    lowest modes of a structure, and the structure on these modes
+    beam               a chain of beam elements
     beam_wing          a cantilever wing of beam elements with a pylon
     stiffness_factors  factors on the stiffnesses of such a wing, fitted to frequencies
     wing_aerodynamics  airloads of the wing itself, by strips
@@ -13,8 +14,8 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     matrix_files       matrices of any finite-element code
     matrix_market      files of such matrices in the Matrix Market format
 
-All public names of the modules `beam_wing`, `matrix_files`, `nastran`, `stiffness_factors` and `wing_aerodynamics`
-belong to the face.
+All public names of the modules `beam`, `beam_wing`, `matrix_files`, `nastran`, `stiffness_factors` and
+`wing_aerodynamics` belong to the face.
 """
 
 from proprotor.support.airframe import SYMMETRIES, Airframe
@@ -38,6 +39,7 @@ __all__ = [
     "Airframe",
     "NormalModes",
     "StructuralModes",
+    "beam",
     "beam_wing",
     "lowest_modes",
     "matrix_files",

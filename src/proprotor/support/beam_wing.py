@@ -173,7 +173,7 @@ class Pylon:
 
     @property
     def mass(self) -> Array:
-        """Mass of nacelle and hub hardware (..., 6, 6) on the motion of the hub."""
+        """Mass of nacelle and hub hardware on the motion of the hub, kg, kg m and kg m² (..., 6, 6)."""
         turning = (self.nacelle_yaw_inertia, self.nacelle_pitch_inertia, self.nacelle_roll_inertia)
         nacelle = _diagonal(*[self.nacelle_mass] * 3, *turning)
         motion = rigid_motion(self.nacelle - self.hub)

@@ -108,7 +108,10 @@ def on_modes(
     if count is None and found.frequency.shape[-1] < len(names):
         raise InputError("modes", None, "must be given: there are coordinates without mass")
     given = damping_ratio(found.shapes) if callable(damping_ratio) else damping_ratio
-    ratio = np.broadcast_to(per_mode(given, found.frequency.shape[-1]), found.frequency.shape)
+    ratio, frequency = np.broadcast_arrays(per_mode(given, found.frequency.shape[-1]), found.frequency)
+    found = StructuralModes(
+        frequency, np.broadcast_to(found.shapes, (*ratio.shape[:-1], *found.shapes.shape[-2:]))
+    )
     warning = None
     if count is None:
         shapes = np.eye(len(names))
