@@ -204,7 +204,10 @@ def name_and_value(option: str, text: str, rule: str) -> tuple[str, str]:
 
 def scan_option(command: Command) -> Command:
     """Add `--scan`, the airspeeds between which a command searches for boundaries."""
-    scan_help = 'Airspeeds between which to search: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed.'
+    scan_help = (
+        'Airspeeds between which to search: "50:400:5ktas" (kt is the same) or "50:400:5keas"; by default 0.2 to 1.2 '
+        "of the tip speed."
+    )
     return click.option("--scan", metavar="RANGE", help=scan_help)(command)
 
 

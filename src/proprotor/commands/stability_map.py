@@ -44,7 +44,9 @@ def _axis_option(name: str, meaning: str) -> arguments.Option:
     "--x", f'Input on the axis across, by deck path, and its values: {_EXAMPLE} or "airspeed=100:400:10kt".'
 )
 @_axis_option("--y", "Input on the axis up, and its values, likewise.")
-@click.option("--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 kt".')
+@click.option(
+    "--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 ktas" or "300 keas".'
+)
 @arguments.level_option
 @arguments.points_option
 @output.output_options(
