@@ -24,6 +24,7 @@ _LARGEST_STEP = 1.0  # in ln f
 _FURTHEST = (
     1000.0  # a larger factor, or a smaller one than its inverse, is no correction of a known stiffness
 )
+_NONE = 1e-14  # of the strain energy, so that a stiffness without any moves as far as a step may
 _NEAR = 1e-12  # of ω², where the steps end; rounding leaves less
 _FOUND = 1e-10  # of ω², where the frequencies count as those wanted
 
@@ -152,7 +153,8 @@ class _Problem(NamedTuple):
         square = np.take_along_axis(modes.frequency**2, places, axis=-1)
         energy = np.exp(logs)[..., None, :] * np.moveaxis(_energies(np.real(self.own), shapes), 0, -1)
         left = self.wanted - np.log(square)
-        return left, np.linalg.solve(energy / np.real(square)[..., None], left[..., None])[..., 0]
+        slopes = energy / np.real(square)[..., None] + _NONE * np.eye(len(self.kinds))
+        return left, np.linalg.solve(slopes, left[..., None])[..., 0]
 
     def reasons(self, logs: Array) -> Array:
         """Return for each kind why there are no factors, "" for a kind that has one, at the end ln f (..., kinds).
@@ -179,16 +181,17 @@ class _Problem(NamedTuple):
         """Return the three lowest modes, the place (..., kinds) of each kind's mode, and shares of energy.
 
         The shares (..., 3 kinds, 3 modes) are of the strain energy. The modes belong to the kinds in the order with the
-        largest product of shares.
+        largest sum of shares.
         """
         more = np.moveaxis(np.exp(logs) - 1, -1, 0)[..., None, None]
         modes = lowest_modes(self.mass, self.stiffness + (more * self.own).sum(axis=0), len(KINDS))
         shapes, parts = np.real(modes.shapes), list(np.real(self.parts))
         for place, kind in enumerate(self.kinds):
             parts[KINDS.index(kind)] = parts[KINDS.index(kind)] + more[place] * np.real(self.own[place])
-        shares = np.moveaxis(_energies(np.stack(parts), shapes), 0, -2)
+        energies = np.moveaxis(_energies(np.stack(parts), shapes), 0, -2)
+        shares = energies / np.real(modes.frequency)[..., None, :] ** 2
         orders = np.array(list(permutations(range(len(KINDS)))))
-        scores = shares[..., np.arange(len(KINDS)), orders].prod(axis=-1)
+        scores = shares[..., np.arange(len(KINDS)), orders].sum(axis=-1)
         order = orders[scores.argmax(axis=-1)]
         return modes, order[..., [KINDS.index(kind) for kind in self.kinds]], shares
 
