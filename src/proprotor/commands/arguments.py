@@ -35,7 +35,6 @@ Exit codes:
   130  interrupted (Ctrl-C)"""
 
 # Quantities that a file of `--points` may have, in any unit.
-AIRSPEED = Quantity("airspeed", "m/s", 1.0, {"keas": 1.0})
 FREQUENCY = Quantity("frequency", "rad/s", 1.0, {"per rev": 1.0})
 DAMPING = Quantity("damping", "", 1.0)
 
@@ -215,6 +214,11 @@ def points_option(command: Command) -> Command:
     """Add `--points`, a file of points to draw; `points_of` reads it."""
     points_help = 'CSV file of points to draw beside the results: "airspeed [ktas], damping [%], label".'
     return click.option("--points", metavar="FILE", help=points_help)(command)
+
+
+def airspeed_points(density: float | None) -> Quantity:
+    """Return the airspeed as a column of points may have it; in keas only in air of a known density (kg/m³)."""
+    return Quantity("airspeed", "m/s", 1.0, {"keas": 1.0} if density else {})
 
 
 def points_of(path: str | None, plot: str | None, across: Quantity, up: Sequence[Quantity]) -> Points | None:

@@ -85,7 +85,7 @@ def stability_map(
         raise InputError("--y", y, "must not be the input of --x")
     if airspeed is None and _AIRSPEED not in (axis.path for axis in axes):
         raise InputError("--speed", None, "must be given, or be --x or --y: airspeed=100:400:10kt")
-    across, up = (_quantity(axis, case) for axis in axes)
+    across, up = (_quantity(axis, case, density) for axis in axes)
     measured = arguments.points_of(points, outputs.plot, across, [up])
     with waiting("Analysing"):
         values = {axis.path: axis.values for axis in axes}
@@ -119,13 +119,11 @@ def _axis(option: str, path: str, given: str, case: Case, density: float | None)
     return _Axis(path, values, unit, factor)
 
 
-def _quantity(axis: _Axis, case: Case) -> Quantity:
+def _quantity(axis: _Axis, case: Case, density: float | None) -> Quantity:
     """Return what a column of points for an axis may be."""
-    return (
-        arguments.AIRSPEED
-        if axis.path == _AIRSPEED
-        else Quantity(axis.path, design_inputs(case)[axis.path].unit)
-    )
+    if axis.path == _AIRSPEED:
+        return arguments.airspeed_points(density)
+    return Quantity(axis.path, design_inputs(case)[axis.path].unit)
 
 
 def _label(axis: _Axis) -> str:

@@ -21,6 +21,7 @@ from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
+from proprotor.needs import check_memory
 from proprotor.stability.boundaries import scan_shares, steps_of_scan
 from proprotor.stability.brackets import Brackets, Crossing, each_once
 from proprotor.stability.crossings import Search
@@ -31,6 +32,8 @@ from proprotor.typing import Array, Dataset
 from proprotor.units import KNOT, KTAS, SEA_LEVEL_DENSITY, in_metres_per_second, values_in_si
 
 _AT_ONCE = 2048  # points of one batch
+_FEWEST = 51  # airspeeds of a value, at least about: wide steps are divided
+_BYTES_PER_POINT, _BYTES_AT_ONCE = 100.0, 230_000.0  # of each point, and while a point is analysed
 
 
 class _Lines(NamedTuple):
@@ -120,6 +123,7 @@ def boundary_against(
     if not -1 < level < 1:
         raise InputError("level", level, "must be a damping ratio, between -1 and 1")
     path, values = _input_of(case, against)
+    _check_size(len(values), airspeeds)
     varied = vary_case(case, {path: values})  # raises an error that names what is wrong with the values
     lines = _lines(varied, path, values, airspeeds)
     found: list[_OfLine] = []
@@ -150,6 +154,14 @@ def _input_of(case: Configuration, against: Mapping[str, ArrayLike]) -> tuple[st
     if values.ndim != 1 or not np.all(np.diff(values) > 0):
         raise InputError(path, np.array2string(values, threshold=6), "must be a list of values that rise")
     return path, values
+
+
+def _check_size(values: int, airspeeds: Any) -> None:
+    """Refuse a search that does not fit into memory."""
+    asked = () if airspeeds is None else in_metres_per_second(airspeeds, 1.0).shape[-1:]
+    count = values * max(*asked, _FEWEST, 1)
+    size = _BYTES_PER_POINT * count + _BYTES_AT_ONCE * min(count, _AT_ONCE)
+    check_memory("against", f"{count:.4g} points", size, "the boundaries", "take larger steps")
 
 
 def _lines(varied: Configuration, path: str, values: Array, airspeeds: Any) -> _Lines:
