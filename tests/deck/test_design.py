@@ -145,7 +145,7 @@ def test_one_of_many_blades_is_that_blade_bit_for_bit(moved, options):
     values = {path: share * case.rotor.radius for path, share in BLADES_MOVED[moved].items()}
     airspeeds = np.linspace(40.0, 180.0, 12)
     varied = case.vary(values)
-    assert len(np.unique(varied.rotor.quadrature.counts, axis=0)) >= 3
+    assert len(np.unique(varied.rotor.quadrature.counts, axis=0)) >= 2
     batch = varied.linearize(airspeeds, **options)
     assert np.isfinite(batch.M).all()  # with hinges at the centre, too, where it has no inverse
     assert batch.trim.converged[values.get("rotor.flap_hinge_offset", airspeeds) > 0].all()

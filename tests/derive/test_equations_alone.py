@@ -42,8 +42,9 @@ def page(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def stations(page):
-    """Stations, weights and segments of the engine's quadrature."""
-    own = pp.load_case("xv15-uncoupled").rotor.quadrature
+    """Stations, weights and segments of the engine's quadrature; the page takes the engine's twist there."""
+    blade = pp.load_case("xv15-uncoupled").rotor
+    own, page["twist"] = blade.quadrature, lambda r: blade.sections.twist
     hinges = [page["known"][name] for name in ("flap_hinge_offset", "lag_hinge_offset")]
     return own.stations, own.weights[:, 0], np.searchsorted(hinges, own.stations)
 

@@ -174,8 +174,8 @@ def test_segments_lie_between_the_hinges(rotor):
 
 def moments_of_a_load(rotor, quadrature):
     """Of chord times twist squared, which takes no function that might round otherwise in arrays."""
-    twist = rotor.twist_at(quadrature.stations)
-    return quadrature.moments(rotor.chord_at(quadrature.stations) * twist * twist)
+    own = rotor.sections
+    return quadrature.moments(own.chord * own.twist * own.twist)
 
 
 @pytest.mark.parametrize("step", [0.0, 1e-30j])

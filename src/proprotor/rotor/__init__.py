@@ -22,6 +22,7 @@ How a rotor is used:
 
 Loads and trim:
     quadrature           stations along the blade and radial moments
+    effective_sections   chord and twist from tables as polynomials between the stations
     section_loads        section loads gathered into radial moments
     trim                 the trim, and the target that closes it
     trim_balance         the balance of one blade and its slopes

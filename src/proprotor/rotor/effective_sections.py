@@ -9,16 +9,18 @@ further error. What is left is the integral of (g - polynomial) times (c τ - Π
 So a section has the effective chord Π[c] and the effective twist Π[c τ]/Π[c], and factors for the second and third
 power of the chord. The Prandtl-Glauert factor and the air are parts of g; no load has the twist squared.
 
-The projection has a closed form. A table is a polynomial at the start of the panel and, at each knot y, jumps of its
-derivatives, that is multiples of (x - y)^m to the right of the knot. The integral of (x - y)^m / m! times a Legendre
-polynomial from y to 1 is the (m+1)-th antiderivative of the Legendre polynomial at y. The form is analytic in edges,
-knots and values, for derivatives by a complex step.
+The projection of a table has a closed form. The table is a line at the start of the panel and, at each knot y, a jump
+of its slope times x - y to the right of the knot. The integral of x - y times a Legendre polynomial from y to the end
+of the panel is the second antiderivative of the Legendre polynomial at y. Products of tables would take further
+antiderivatives, whose differences lose their digits where two knots are close; so products are integrated by Gauss
+points between the knots, exactly as well. Both ways are analytic in edges, knots and values, for derivatives by a
+complex step.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import factorial, prod
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -26,9 +28,10 @@ import numpy as np
 from proprotor.rotor.quadrature import Panels, gauss
 from proprotor.typing import Array
 
-_BLOCK = 50_000  # numbers in an array of Legendre polynomials: panels times knots times degrees
-# Functions of chord, its slope, twist, its slope: values and derivatives with r (functions, orders, ...).
-_Functions = Callable[[Array, Array, Array, Array], Array]
+_BLOCK = 100_000  # numbers in an array of Legendre polynomials: panels times places times degrees
+# Legendre coefficients (functions, n, number) of functions on n panels, from the number of coefficients, inner radii
+# and half widths (n,) and the blades of the panels.
+_Series = Callable[[int, Array, Array, Array], Array]
 
 
 class Line(NamedTuple):
@@ -66,9 +69,9 @@ class Line(NamedTuple):
         return Line(*(part[blades] for part in self))
 
     @property
-    def is_straight(self) -> bool:
-        """Whether no knot changes the slope."""
-        return bool(self.knots.shape[-1] == 1)
+    def is_constant(self) -> bool:
+        """Whether the quantity is one value along the whole blade."""
+        return self.knots.shape[-1] == 1 and not self.slopes.any()
 
     def near(self, r: Array, inboard: bool = False) -> tuple[Array, Array]:
         """Return value and slope (blades, n) at radii of the same shape; at a knot the slope outboard, or inboard."""
@@ -109,104 +112,83 @@ def effective_sections(chord: Line, twist: Line, panels: Panels) -> EffectiveSec
         m and rad; leading axes broadcast with the blades of the panels.
     panels : Panels
     """
-    if chord.is_straight and not chord.slopes.any():
-        nothing = Line.straight(np.zeros(()), np.zeros(()))
-        (effective,) = _projected(_twist_alone, nothing, twist, panels)
+    shapes = (panels.points.shape[:-1], *(part.shape[:-1] for part in (*chord, *twist)))
+    leading = np.broadcast_shapes(*shapes)
+    lines = [line.flattened(leading) for line in (chord, twist)]
+    kind = np.result_type(panels.widths, *(part for line in lines for part in line))
+    knots = sum(line.knots.shape[-1] for line in lines)
+
+    def along(series: _Series, functions: int, places: int) -> Array:
+        found = _at_stations(series, panels.spread(leading), (functions, prod(leading)), places, kind)
+        return found.reshape(functions, *leading, -1)
+
+    if chord.is_constant:
+        (effective,) = along(lambda *panel: _series_of_line(lines[1], *panel), 1, knots)
         return EffectiveSections(chord.values, effective)
-    c, c_twist, c_square, c_cube = _projected(_products, chord, twist, panels)
+    most = int(panels.points.max(initial=0))
+    products = along(lambda *panel: _series_of_products(lines, *panel), 4, knots * _between_knots(most))
+    c, c_twist, c_square, c_cube = products
     return EffectiveSections(c, c_twist / c, c_square / c**2, c_cube / c**3)
 
 
-def _twist_alone(c: Array, dc: Array, t: Array, dt: Array) -> Array:
-    """Return value and slope of the twist."""
-    return np.stack(np.broadcast_arrays(t, dt))[None]
+def _at_stations(
+    series: _Series, panels: Panels, shape: tuple[int, int], places: int, kind: np.dtype
+) -> Array:
+    """Return functions (functions, blades, stations) given by their series, a block of panels at a time.
 
-
-def _products(c: Array, dc: Array, t: Array, dt: Array) -> Array:
-    """Return values and derivatives with r of c, c τ, c² and c³."""
-    none = 0 * (c + dc + t + dt)
-    jets = (
-        (c, dc, none, none),
-        (c * t, dc * t + c * dt, 2 * dc * dt, none),
-        (c**2, 2 * c * dc, 2 * dc**2, none),
-        (c**3, 3 * c**2 * dc, 6 * c * dc**2, 6 * dc**3),
-    )
-    return np.array([[none + part for part in jet] for jet in jets])
-
-
-def _projected(functions: _Functions, chord: Line, twist: Line, panels: Panels) -> Array:
-    """Return the projections (functions, ..., stations) of functions of chord and twist at the stations of panels."""
-    shapes = (panels.points.shape[:-1], *(part.shape[:-1] for part in (*chord, *twist)))
-    leading = np.broadcast_shapes(*shapes)
-    panels, chord, twist = panels.spread(leading), chord.flattened(leading), twist.flattened(leading)
-    knots, jumps = _jumps(functions, chord, twist)
-    shape = len(jumps), prod(leading), panels.station_count
-    found = np.zeros(shape, dtype=np.result_type(jumps, knots, panels.widths))
+    `places` is the number of radii at which the Legendre polynomials of one panel are needed.
+    """
+    # One stands at the stations without weight that some blades have.
+    found = np.ones((*shape, panels.station_count), dtype=kind)
     for number, starts, half, (blades, stations) in panels.groups():
-        rows = max(1, _BLOCK // (number * max(1, knots.shape[-1])))
+        at_nodes = _legendre(gauss(number)[0], number)
+        rows = max(1, _BLOCK // (number * places))
         for first in range(0, len(starts), rows):
             some = slice(first, first + rows)
-            own = blades[some, 0]
-            before = functions(*(x for line in (chord, twist) for x in line.of(own).near(starts[some, None])))
-            there = knots[own], jumps[:, :, own]
-            found[:, blades[some], stations[some]] = _on_panels(
-                number, starts[some], half[some], before, *there
-            )
-    return found.reshape(shape[0], *leading, shape[2])
+            own = np.ascontiguousarray(series(number, starts[some], half[some], blades[some, 0]))
+            # Each panel has a product of its own, whose result does not depend on the number of panels.
+            found[:, blades[some], stations[some]] = (own[..., None, :] @ at_nodes)[..., 0, :]
+    return found
 
 
-def _jumps(functions: _Functions, chord: Line, twist: Line) -> tuple[Array, Array]:
-    """Return knots (blades, k) and the jumps (functions, orders, blades, k) of the derivatives there.
-
-    Where knots of chord and twist coincide, the chord's slope changes inboard of the twist's.
-    """
-    at_chord, at_twist = (
-        (chord.knots, twist.near(chord.knots)),
-        (twist.knots, chord.near(twist.knots, inboard=True)),
-    )
-    steps = []
-    for slopes in (np.s_[..., 1:], np.s_[..., :-1]):
-        by_chord = functions(chord.values, chord.slopes[slopes], *at_chord[1])
-        by_twist = functions(*at_twist[1], twist.values, twist.slopes[slopes])
-        steps.append(np.concatenate([by_chord, by_twist], axis=-1))
-    bent = [not line.is_straight for line in (chord, twist) for _ in range(line.knots.shape[-1])]
-    knots = np.concatenate([chord.knots, twist.knots], axis=-1)
-    return knots[:, bent], (steps[0] - steps[1])[..., bent]
+def _series_of_line(line: Line, number: int, starts: Array, half: Array, blades: Array) -> Array:
+    """Return the series (1, n, number) of a table on n panels, as `_Series`."""
+    line = line.of(blades)
+    start, slope = (part[:, 0] for part in line.near(starts[:, None]))
+    inside = np.real(line.knots) > np.real(starts)[:, None]
+    inside &= np.real(line.knots) < np.real(starts + 2 * half)[:, None]
+    knots = np.where(inside, (line.knots - starts[:, None]) / half[:, None] - 1, 1.0)
+    jumps = inside * np.diff(line.slopes) * half[:, None]
+    series = (_integrated(_integrated(_legendre(knots, number + 2))) * jumps).sum(axis=-1)
+    series *= (np.arange(number) + 0.5)[:, None]
+    series[0] += start + slope * half
+    series[1] += slope * half
+    return np.asarray(series.T[None])
 
 
-def _on_panels(number: int, starts: Array, half: Array, before: Array, knots: Array, jumps: Array) -> Array:
-    """Return the projections (functions, n, number) at the Gauss points of n panels.
+def _series_of_products(lines: list[Line], number: int, starts: Array, half: Array, blades: Array) -> Array:
+    """Return the series (4, n, number) of c, c τ, c² and c³ on n panels from chord and twist, as `_Series`."""
+    lines = [line.of(blades) for line in lines]
+    inner, outer = starts[:, None], (starts + 2 * half)[:, None]
+    knots = np.concatenate([line.knots for line in lines], axis=-1)
+    knots = np.where(np.real(knots) <= np.real(inner), inner, knots)
+    knots = np.sort(np.where(np.real(knots) >= np.real(outer), outer, knots), axis=-1)
+    edges = np.concatenate([inner, knots, outer], axis=-1)
+    nodes, weights = gauss(_between_knots(number))
+    share, width = (1 + nodes) / 2, np.diff(edges)[..., None]
+    radii = (edges[:, :-1, None] + width * share).reshape(len(starts), -1)
+    weight = (width * weights / 4).reshape(len(starts), -1) / half[:, None]
+    ends = ((line.near(edges[:, :-1])[0], line.near(edges[:, 1:], inboard=True)[0]) for line in lines)
+    c, t = ((a[..., None] + (b - a)[..., None] * share).reshape(len(starts), -1) for a, b in ends)
+    polynomials = np.moveaxis(_legendre((radii - inner) / half[:, None] - 1, number), 0, -1)
+    functions = np.stack([c, c * t, c**2, c**3], axis=1) * weight[:, None]
+    series = functions @ np.ascontiguousarray(polynomials) * (2 * np.arange(number) + 1)
+    return np.asarray(series.swapaxes(0, 1))
 
-    Parameters
-    ----------
-    number : int
-        Number of points, and of Legendre polynomials.
-    starts, half : array (n,)
-        Inner radii and half widths, m.
-    before : array (functions, orders, n, 1)
-        Values and derivatives at the inner edge.
-    knots, jumps : array (n, k), (functions, orders, n, k)
-        Knots of the blade and jumps of the derivatives there.
-    """
-    nodes, _ = gauss(number)
-    x = half[:, None] * (1 + nodes)
-    found = sum(before[:, order] * x**order / factorial(order) for order in range(before.shape[1]))
-    inside = np.real(knots) > np.real(starts)[:, None]
-    inside &= np.real(knots) < np.real(starts + 2 * half)[:, None]
-    if not inside.any():
-        return np.asarray(found)
-    place = np.where(inside, (knots - starts[:, None]) / half[:, None] - 1, 1.0)
-    antiderivatives = _legendre(place, number + jumps.shape[1])
-    series = np.zeros((number, *jumps.shape[::2][:1], len(starts)), dtype=np.result_type(place, jumps))
-    for order in range(jumps.shape[1]):
-        antiderivatives = _integrated(antiderivatives)  # from the knot to the outer edge, `order` + 1 times
-        if order:
-            of_unit = inside * jumps[:, order] * half[:, None] ** order
-            series += (antiderivatives[:number, None] * of_unit).sum(axis=-1)
-    series *= (np.arange(number) + 0.5)[:, None, None]
-    series = np.ascontiguousarray(np.moveaxis(series, 0, -1))
-    # Each panel has a product of its own, whose result does not depend on the number of panels.
-    return np.asarray(found + (series[..., None, :] @ _legendre(nodes, number))[..., 0, :])
+
+def _between_knots(number: int) -> int:
+    """Return the number of Gauss points that integrate a chord cubed times that many Legendre polynomials exactly."""
+    return (number + 3) // 2 + 1
 
 
 def _legendre(x: Array, count: int) -> Array:
