@@ -242,6 +242,30 @@ def test_a_point_fails_where_either_rotor_fails():
     np.testing.assert_array_equal(model.trim.collective, case.linearize([100.0, 150.0]).trim.collective)
 
 
+def test_a_point_is_doubtful_where_either_rotor_is():
+    case = airframes.aircraft()
+    near = replace(case.operation, speed_of_sound=270.0)
+    model = replace(case, left=other_side(case, operation=near)).linearize([60.0, 150.0])
+    alone = rotor_model(other_side(case).rotor, near, [60.0, 150.0]).trim.warning
+    assert alone[0] == "" and alone[1] != ""
+    assert model.trim.warning.tolist() == ["", f"left rotor: {alone[1]}"]
+    both = replace(case, operation=near, left=other_side(case, operation=near)).linearize(150.0)
+    own, left = str(both.rotor.trim.warning), str(both.left.trim.warning)
+    assert str(both.trim.warning) == (own if own == left else f"{own}; left rotor: {left}")
+
+
+def test_motions_that_make_no_load_at_the_hub_are_there_on_both_sides():
+    """Reactionless motions of four blades: the same roots in both halves, each with a name of its own."""
+    case = airframes.aircraft()
+    four = replace(case, rotor=replace(case.rotor, n_blades=4))
+    modes = four.linearize(100.0, reactionless=True).modes()
+    names = modes.name.values.tolist()
+    assert len(set(names)) == len(names)
+    for kind in ("flap", "lag", "pitch"):
+        one, other = (names.index(f"{half} differential {kind}") for half in HALVES)
+        assert modes.eigenvalue.values[one] == pytest.approx(modes.eigenvalue.values[other], rel=1e-12)
+
+
 def test_a_shaft_on_one_side_alone_needs_an_interconnect():
     case = airframes.aircraft(drive_train=pp.DriveTrain(shaft_stiffness=1e4))
     stiffness = np.array([0.0, 1e4])

@@ -78,9 +78,10 @@ class Configuration:
         """Return the rotor, its support and the doubtful numbers, in a few lines."""
         rotor, speed = self.rotor, np.asarray(self.operation.rotor_speed) / _RPM
         radius = range_text(np.asarray(rotor.radius))
+        rotors = "two rotors, each" if isinstance(self.support, Airframe) else "rotor"
         lines = [
             f"Case {self.name}" + (f": {self.title}" if self.title else ""),
-            f"  rotor: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
+            f"  {rotors}: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
             f"  support: {', '.join(self.support.names) or 'a rigid hub'}{_held(self.support)}",
         ]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
