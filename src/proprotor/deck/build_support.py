@@ -104,7 +104,7 @@ def _beam_wing(
 ) -> NormalModes:
     """Return the support of a beam wing, for many designs with the coordinates in the order of the names."""
     given = si_values(numbers, "support")
-    designs, place = different_designs(given)
+    designs, place = different_designs(given, nodes=given.get("elements", Wing.elements) + 1)
     parts = [_beam_wings(part, section.downstop, names if place.ndim else ()) for part in designs]
     support, strips = at_each_point(parts, place, own=(1, 2, 2))
     if section.wing_aerodynamics is None:
