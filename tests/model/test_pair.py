@@ -276,6 +276,21 @@ def test_a_shaft_on_one_side_alone_needs_an_interconnect():
     assert np.isnan(model.K[0]).all() and np.isfinite(model.K[1]).all()
 
 
+def test_one_rotor_does_not_go_on_both_halves():
+    frame = airframes.joined(airframes.half("symmetric", 3), airframes.half("antisymmetric", 8))
+    case = airframes.aircraft(frame)
+    with pytest.raises(InputError, match="support = an aircraft: has two rotors"):
+        mount(rotor_model(case.rotor, case.operation, 90.0), frame)
+
+
+@pytest.mark.parametrize("name", ["rotor_speed", "density"])
+def test_both_sides_turn_at_one_speed_in_one_air(name):
+    case = airframes.aircraft()
+    operation = replace(case.operation, **{name: 1.01 * getattr(case.operation, name)})
+    with pytest.raises(InputError, match=f"left.operation.{name} = .* must be that of the right side"):
+        replace(case, left=other_side(case, operation=operation)).linearize(90.0)
+
+
 # Inputs and outputs ---------------------------------------------------------------------------------------------------
 
 

@@ -140,6 +140,10 @@ class Configuration:
         own = self.model_options(options)
         if self.left is None:
             return mount_pair(right, airframe, None, _interconnect(own, own))
+        for name in ("rotor_speed", "density"):
+            value, same = (getattr(side.operation, name) for side in (self.left, self))
+            if not np.all(np.equal(value, same)):
+                raise InputError(f"left.operation.{name}", value, f"must be that of the right side, {same}")
         other = self._left_options(self.left, options)
         return mount_pair(right, airframe, _left_rotor(self.left, airspeed, other), _interconnect(own, other))
 
