@@ -188,7 +188,7 @@ def _series_of_products(lines: list[Line], number: int, starts: Array, half: Arr
 
 def _between_knots(number: int) -> int:
     """Return the number of Gauss points that integrate a chord cubed times that many Legendre polynomials exactly."""
-    return (number + 3) // 2 + 1
+    return (number + 4) // 2
 
 
 def _legendre(x: Array, count: int) -> Array:
