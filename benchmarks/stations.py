@@ -31,6 +31,7 @@ from proprotor.units import KNOT
 
 SHARES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.2)  # airspeed by tip speed
 POINTS = 24
+OURS = "as the package"
 TAPER = (np.array([0.05, 0.19, 0.33, 0.71, 0.97, 1.0]), np.array([0.3, 0.5, 0.42, 0.36, 0.3, 0.12]))
 SPEEDS = np.linspace(100, 400, 13) * KNOT
 
@@ -84,7 +85,7 @@ def errors(case: pp.Case, airspeed: NDArray) -> dict[str, tuple[int, NDArray, ND
     reference = moments(exact, case, airspeed, state, lambda quadrature: quadrature)
     sizes = moments(exact, case, airspeed, state, Unsigned.of)
     found = {}
-    for name, own in {"short panels": with_panels(rotor, None), "as the package": rotor}.items():
+    for name, own in {"short panels": with_panels(rotor, None), OURS: rotor}.items():
         ours = moments(own, case, airspeed, state, lambda quadrature: quadrature)
         parts = []
         for load, value in ours.items():
@@ -129,11 +130,11 @@ def print_models(console: Console) -> None:
     case = pp.load_case("xv15")
     rules = {"short panels": None, "reference": POINTS}
     own = {name: replace(case, rotor=with_panels(case.rotor, points)) for name, points in rules.items()}
-    own["as the package"] = case
+    own[OURS] = case
     reference = state_matrix(own["reference"].linearize(SPEEDS))
     scale = np.abs(reference).max(axis=(1, 2))
     exact = case_boundary(own["reference"])
-    for name in ("short panels", "as the package"):
+    for name in ("short panels", OURS):
         difference = np.abs(state_matrix(own[name].linearize(SPEEDS)) - reference).max(axis=(1, 2)) / scale
         console.print(
             f"{name}: state matrix within {difference.max():.1e} of its largest entry, "

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from benchmarks import stations
 from proprotor.rotor.effective_sections import Line, effective_sections
 from proprotor.rotor.quadrature import long_panels
 from proprotor.rotor.section_loads import BladeSections
@@ -325,3 +326,12 @@ def test_blades_that_begin_near_the_axis_have_more_panels(cutout):
     assert starts[0] == RADIUS * cutout and ends[-1] == RADIUS
     np.testing.assert_allclose(ends[:-1], starts[1:], rtol=1e-14)
     assert (ends[1:] / starts[1:]).max(initial=0) < 20
+
+
+@pytest.mark.parametrize("name", stations.cases())
+def test_moments_of_the_xv15_are_exact_to_nine_digits_of_themselves(name):
+    """From a twentieth of the tip speed, with 36 stations; the reference has panels between all kinks."""
+    case = stations.cases()[name]
+    tip_speed = case.operation.rotor_speed * case.rotor.radius
+    count, by_itself, by_size = stations.errors(case, tip_speed * np.array([0.05, 0.3, 1.0]))[stations.OURS]
+    assert count == 36 and by_itself.max() < 1e-9 and by_size.max() < 1e-11

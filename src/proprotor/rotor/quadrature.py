@@ -36,9 +36,7 @@ _NEARNESS = 2 / (1 + np.cosh(_DIGITS * np.log(10) / (2 * np.arange(1, _MOST_POIN
 # rho: a polynomial of degree n comes within rho^(-n) of such a factor. The error of a moment is this times the error of
 # a polynomial for the table, which is below 1e-2 even for jumps: eight digits of rho^n leave 1e-10 of the moment.
 _SLOWEST = 0.002  # of ΩR, airspeed
-_SONIC = (
-    1 / 0.9
-)  # of the radius: for slow air and a tip of Mach 0.9, where a straight lift line has long ended
+_SONIC = 1 / 0.9  # of the radius: for slow air and a tip of Mach 0.9, beyond the end of a straight lift line
 _LONG_DIGITS = 8
 _FEWEST = 4  # points: a chord cubed is a polynomial of degree 3
 _GRADES = np.array([0.004, 0.02, 0.1])  # edges of long panels near the axis, of the radius
