@@ -9,6 +9,7 @@ import dataclasses
 import difflib
 import hashlib
 import itertools
+import re
 import subprocess
 import sys
 import time
@@ -53,6 +54,11 @@ class ArrayPrinter(NumPyPrinter):  # type: ignore[misc]  # SymPy has no types
             return f"1/({self._print(base)}**2*{self._print(base)})"
         printed: str = super()._print_Pow(expr, rational=rational)
         return printed
+
+    def _print_Mul(self, expr: sp.Mul) -> str:
+        """A cube is printed as a product, so below a fraction bar it needs brackets."""
+        printed: str = super()._print_Mul(expr)
+        return re.sub(r"/(\w+)\*\*2\*\1\b", r"/(\1**2*\1)", printed)
 
     def _print_Indexed(self, expr: sp.Indexed) -> str:
         row, column = expr.indices

@@ -12,6 +12,7 @@ import functools
 
 from derive import (
     airloads,
+    beam,
     drive_train,
     flap_lag_springs,
     inertia,
@@ -40,6 +41,8 @@ from derive.kinds import (
     assembly,
     blade_matrix,
     column,
+    element_matrix,
+    element_motion,
     loads_matrix,
     motion_matrix,
     product,
@@ -76,6 +79,9 @@ BLADE_AXES = (
 SUM = f"{PAPER}, Eqs. 7-9 and 17: sum over N blades"
 ANY_SUM = f"{SUM}, any N of at least 3"
 CYCLIC = "separate cyclic and collective flap frequencies, as NASA TN D-7677"
+SHAPES = "Euler-Bernoulli bending as a cubic in two planes, linear twist and extension"
+STRAIN = f"strain energy of {SHAPES}"
+KINETIC = f"kinetic energy of {SHAPES}"
 ENGINE = "energies of engine and shaft on the azimuth of Eq. 17"
 WORK = f"{PAPER}, virtual work of Eqs. 12 and 32"
 OF_BLADE = f"{PAPER}, Eqs. 4-16 and 32-34"
@@ -172,6 +178,14 @@ ROTOR = (
     assembly("fixed_frame", rotor.FIXED_FRAME, f"{PAPER}, Eqs. 7-9 and 17", _called),
     assembly("matrices", rotor.MATRICES, OF_ROTOR, _called),
 )
+BEAM = (
+    element_motion("motion", beam.motion, SHAPES),
+    element_matrix("mass", beam.mass, KINETIC, 2),
+    element_matrix("beam_stiffness", beam.beam_stiffness, STRAIN, 0),
+    element_matrix("chord_stiffness", beam.chord_stiffness, STRAIN, 0),
+    element_matrix("torsion_stiffness", beam.torsion_stiffness, STRAIN, 0),
+    element_matrix("axial_stiffness", beam.axial_stiffness, STRAIN, 0),
+)
 
 STEPS = {
     step.module: step
@@ -187,6 +201,7 @@ STEPS = {
         Step("multiblade", "From one blade to N blades in the fixed frame", MULTIBLADE),
         Step("drive_train", "Engine and shaft on the rotor's azimuth", DRIVE_TRAIN),
         Step("rotor", "A whole rotor in one call", ROTOR, "rotor.py.jinja"),
+        Step("beam", "A beam element, x up, y along it, z forward", BEAM),
     )
 }
 """Every step by the name of its module."""

@@ -13,7 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive import airloads, function, multiblade
+from derive import airloads, beam, function, multiblade
 from derive import kinematics as kin
 from derive.coordinates import (
     LOAD,
@@ -25,6 +25,7 @@ from derive.coordinates import (
     names,
 )
 from derive.function import (
+    MOMENT,
     DimensionOf,
     Function,
     coordinate_dimension,
@@ -292,3 +293,22 @@ def transform_matrix(name: str, derivation: Derivation, origin: str) -> Line:
         lambda row, column: plus(coordinate_dimension(row), minus=coordinate_dimension(column)),
         row_prefix="BLADE_",
     )
+
+
+def element_matrix(name: str, derivation: Derivation, origin: str, order: int) -> Line:
+    """Make a matrix of a beam element; `order` counts the time derivatives of the column's motion."""
+
+    def dimension(row: str, column: str) -> Dimension:
+        motions = plus(beam.dimension_of_motion(row), beam.dimension_of_motion(column))
+        return plus(MOMENT, per_time(order), minus=motions)
+
+    return matrix(name, derivation, origin, beam.COORDINATES, beam.COORDINATES, dimension)
+
+
+def element_motion(name: str, derivation: Derivation, origin: str) -> Line:
+    """Make the motion of a section of a beam element from the motions of its ends."""
+
+    def dimension(axis: str, column: str) -> Dimension:
+        return plus(beam.dimension_of_motion(axis), minus=beam.dimension_of_motion(column))
+
+    return matrix(name, derivation, origin, beam.AXES, beam.COORDINATES, dimension)

@@ -11,7 +11,6 @@ import signal
 import sys
 import threading
 import traceback
-from collections import namedtuple
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -54,9 +53,8 @@ _CHANGES_FILES += (
     "os.removexattr",
     "shutil.",
 )
-# numpy reads the head of an array with ast.literal_eval, whose parser makes a tree and no code; pystran makes a
-# namedtuple for each structure, of names that are its own.
-_KNOWN = (ast.parse.__code__, namedtuple.__code__)
+# numpy reads the head of an array with ast.literal_eval, whose parser makes a tree and no code.
+_KNOWN = (ast.parse.__code__,)
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 

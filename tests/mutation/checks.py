@@ -8,14 +8,21 @@ from __future__ import annotations
 
 import functools
 
-from tests.mutation import airload_checks, assembly_checks, blade_checks, rotor_checks, section_checks
+from tests.mutation import (
+    airload_checks,
+    assembly_checks,
+    beam_checks,
+    blade_checks,
+    rotor_checks,
+    section_checks,
+)
 from tests.mutation.comparison import Check, Names
 
 
 @functools.cache
 def all_checks() -> tuple[Check, ...]:
     """Every check; to make their expectations takes seconds, to run them milliseconds."""
-    modules = (blade_checks, section_checks, airload_checks, rotor_checks, assembly_checks)
+    modules = (blade_checks, section_checks, airload_checks, rotor_checks, assembly_checks, beam_checks)
     found = tuple(check for module in modules for check in module.checks())
     for check in found:  # arrays that are kept are made while nothing is a mutant
         check.excess()

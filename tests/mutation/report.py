@@ -27,6 +27,7 @@ held to comes from elsewhere:
 | multiblade | sums over 3 to 8 blades, as numbers, of blade matrices at random: no zeros, no symmetry |
 | drive train | energies of engine and shaft |
 | coordinates | components along a blade's axes, and waves, as numbers |
+| beam | strain of Hermite cubics and masses beside the axis, as sums over Gauss points |
 | rotor | one blade of the nonlinear rotor in the air, and sums over 3 to 5 such blades, as numbers |
 | published | the same nonlinear rotor without what `derive/published.py` says the paper leaves out, stated once more |
 

@@ -1,5 +1,7 @@
 """Exact derivatives against closed forms and against differences extrapolated to no step."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from proprotor.stability.eigenvalue_derivatives import defect
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.modes import decomposition
 from proprotor.stability.sensitivity import _NEARLY_DEFECTIVE, _input_rates, damping_rate, sensitivity
+from proprotor.support.beam_wing import beam_structure
 from tests.known_systems import linear_model
 
 KNOT = 1852 / 3600
@@ -243,17 +246,84 @@ def test_what_cannot_be_had_is_told(case, arguments, message):
         sensitivity(case, **arguments)
 
 
-def test_inputs_of_finite_elements_are_derived_by_differences():
-    """The wing of beams takes no complex numbers: its inputs are told to be less than exact, and are right."""
-    case = pp.load_case("xv15-wing")
-    paths = ["rotor.precone", "support.beam_stiffness", "support.mast_length"]
-    found = sensitivity(case, "eigenvalue", paths, airspeed=AIRSPEED, mode="beam")
+def near_eigenvalue(case, near, path, value):
+    """The eigenvalue that is nearest to another one, with another value of an input."""
+    every = np.linalg.eigvals(state_matrix(case.vary({path: value}).linearize(AIRSPEED)))
+    return every[np.abs(every - near).argmin()]
+
+
+def test_inputs_of_a_beam_wing_are_exact():
+    """Through the modes of the wing, its damping and its airloads."""
+    wing = pp.load_case("xv15-wing", OFFSET_WING)
+    paths = [path for path in design_inputs(wing) if path.startswith("support.")]
+    found = sensitivity(wing, "eigenvalue", paths, airspeed=AIRSPEED, mode="beam")
+    assert found.exact.values.all()
+    near = found.eigenvalue.item()
+    for path in paths:
+        own = float(wing.given[path].si)
+        step = 1e-3 * (abs(own) or 1.0)
+        ends = [near_eigenvalue(wing, near, path, own + sign * step) for sign in (-2, -1, 1, 2)]
+        limit = np.dot([1, -8, 8, -1], ends) / (12 * step)
+        derivative = found.derivative.sel(input=path).item()
+        assert abs(derivative - limit) * step < 1e-8 * abs(near) * 1e-3, path
+
+
+OFFSET_WING = {
+    "support.mass_forward": "-4 in",
+    "support.mass_up": "2 in",
+    "support.downstop": "false",
+    "support.wing_aerodynamics.lift_slope": "5.7 /rad",
+    "support.wing_aerodynamics.chord": "5.25 ft",
+    "support.wing_aerodynamics.elastic_axis": "0.35",
+}
+
+
+@pytest.mark.parametrize("path", ["support.beam_stiffness", "support.mast_length", "support.mass_forward"])
+def test_the_flutter_speed_of_a_beam_wing(path):
+    wing = pp.load_case("xv15-wing", {"support.mass_forward": "-4 in"})
+    found = sensitivity(wing, wrt=[path], airspeed="310:350:20kt")
+    assert found.exact.item()
+    own = float(wing.given[path].si)
+    ends = [
+        flutter_point(wing.vary({path: own * (1 + share)}), "310:350:20kt").boundaries[0].position
+        for share in (-1e-3, 1e-3)
+    ]
+    assert found.derivative.item() == pytest.approx((ends[1] - ends[0]) / (2e-3 * own), rel=1e-4)
+
+
+def test_numbers_of_a_file_are_derived_by_differences(tmp_path):
+    """A file takes no complex numbers: its inputs are told to be less than exact, and are right."""
+    wing = pp.load_case("xv15-wing", {"support.elements": "2"})
+    given = {path.removeprefix("support."): number.si for path, number in wing.given.items()}
+    parts = [
+        kind(**{entry.name: given[entry.name] for entry in fields(kind) if entry.name in given})
+        for kind in (pp.Wing, pp.Pylon)
+    ]
+    structure = beam_structure(*parts)
+    np.savez(tmp_path / "wing.npz", mass=structure.mass, stiffness=structure.stiffness, dofs=structure.names)
+    (tmp_path / "filed.toml").write_text(FILED, encoding="utf-8")
+    case = pp.load_case(tmp_path / "filed.toml")
+    paths = ["rotor.precone", "support.rotor_mass", "support.damping_ratio"]
+    found = sensitivity(case, "eigenvalue", paths, airspeed=AIRSPEED, mode="mode_1")
     assert found.exact.values.tolist() == [True, False, False]
     near = found.eigenvalue.item()
     for path in paths:
-        own, moved = float(case.given[path].si), []
-        for factor in (1.001, 0.999):
-            every = np.linalg.eigvals(state_matrix(case.vary({path: own * factor}).linearize(AIRSPEED)))
-            moved.append(every[np.abs(every - near).argmin()])
-        limit = (moved[0] - moved[1]) / (0.002 * own)
+        own = float(case.given[path].si)
+        ends = [near_eigenvalue(case, near, path, own * factor) for factor in (0.999, 1.001)]
+        limit = (ends[1] - ends[0]) / (0.002 * own)
         assert found.derivative.sel(input=path).item() == pytest.approx(limit, rel=1e-4)
+
+
+FILED = """
+base = "xv15"
+[case]
+name = "filed"
+title = "filed"
+[support]
+kind = "matrices"
+file = "wing.npz"
+includes_rotor = false
+rotor_mass = "12.42 slug"
+modes = 6
+damping_ratio = "1 %"
+"""

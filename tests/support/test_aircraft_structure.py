@@ -509,7 +509,7 @@ def test_airloads_of_two_different_sides_are_the_mean_of_both():
         ),
         (
             dict(right=WingSide(replace(BOX, twist="free"), WING, PYLON)),
-            "twist = free: must be held or a stiffness",
+            "carry_through.twist = free: must be held or a stiffness",
         ),
         (dict(modes=99, symmetry="symmetric"), "modes = 99: must be from 1 to"),
         (dict(damping_ratio={"beam": 0.01}), r"damping_ratio\[chord\]: is missing"),

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from proprotor.deck import each_design
+from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.model.first_order import state_matrix
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, beam_wing, rigid_motion, wing_elements
@@ -143,10 +145,12 @@ def test_rigid_motion_has_the_whole_mass_and_inertia_and_no_strain(angles):
 
 
 def test_a_tapered_wing_keeps_its_mass():
-    profile = (np.array([0.0, 0.35, 1.0]), np.array([80.0, 60.0, 10.0]))
-    mass, _, positions = wing_elements(wing(mass_per_length=profile, elements=7))
-    lift = np.tile(np.eye(6)[0], len(positions))
-    assert lift @ mass @ lift == pytest.approx(L * (0.35 * 70 + 0.65 * 35), rel=EXACT)
+    """With a node at each kink; between two nodes a kink is cut off."""
+    profile = (np.array([0.0, 0.4, 1.0]), np.array([80.0, 60.0, 10.0]))
+    for elements, rel in ((5, EXACT), (7, 5e-3)):
+        mass, _, positions = wing_elements(wing(mass_per_length=profile, elements=elements))
+        lift = np.tile(np.eye(6)[0], len(positions))
+        assert lift @ mass @ lift == pytest.approx(L * (0.4 * 70 + 0.6 * 35), rel=rel)
 
 
 def test_hub_flexibility_is_that_of_the_tip_moved_along_the_mast():
@@ -311,22 +315,117 @@ def test_full_modes_and_finite_elements_are_one_support():
     assert furthest(six, roots, below=300.0) < 0.01
 
 
-def test_a_batch_of_designs_is_each_design():
+# Batches and derivatives
+
+
+def test_a_batch_of_designs_is_each_design_to_the_last_bit():
     case = pp.load_case("xv15-wing")
     stiffness, mass = np.array([2e6, 3e6]) * 4, np.array([[600.0], [700.0], [800.0]])
     batch = case.vary({"support.beam_stiffness": stiffness, "support.nacelle_mass": mass}).support
     assert batch.mass.shape == (3, 2, 6, 6)
-    one = case.vary({"support.beam_stiffness": stiffness[1], "support.nacelle_mass": mass[2, 0]}).support
-    np.testing.assert_allclose(batch.stiffness[2, 1], one.stiffness, rtol=1e-12, atol=1e-6)
-    with pytest.raises(InputError, match=r"^support.beam_stiffness = .*: must be real here"):
-        case.vary({"support.beam_stiffness": 8e6 + 1e-30j})
+    for place in np.ndindex(3, 2):
+        own = {"support.beam_stiffness": stiffness[place[1]], "support.nacelle_mass": mass[place[0], 0]}
+        one = case.vary(own).support
+        assert one.names == batch.names
+        for name in ("mass", "damping", "stiffness", "hub"):
+            np.testing.assert_array_equal(getattr(batch, name)[place], getattr(one, name))
+
+
+def test_every_number_of_a_wing_may_vary_at_once_and_in_parts(monkeypatch):
+    """Built two at a time, in one part or one by one: the same to the last bit, airloads included."""
+    case = pp.load_case("xv15-wing", AIRLOADS)
+    rng = np.random.default_rng(3)
+    paths = [path for path in design_inputs(case) if path.startswith("support.")]
+    values = {path: float(case.given[path].si) * rng.uniform(0.95, 1.05, 5) for path in paths}
+    whole = case.vary(values).support.at(150.0, 1.0)
+    monkeypatch.setattr(each_design, "_PART", 2 * each_design._BYTES * 81)
+    parts = case.vary(values).support.at(150.0, 1.0)
+    for place in range(5):
+        one = case.vary({path: value[place] for path, value in values.items()}).support.at(150.0, 1.0)
+        for name in ("mass", "damping", "stiffness", "hub"):
+            np.testing.assert_array_equal(getattr(whole, name)[place], getattr(one, name))
+            np.testing.assert_array_equal(getattr(parts, name)[place], getattr(one, name))
+
+
+def test_a_profile_of_many_designs():
+    stations, values = np.array([0.0, 0.5, 1.0]), np.array([[1.0, 0.8, 0.5], [1.0, 0.7, 0.3]])
+    many = beam_wing(wing(beam_stiffness=(stations, EI * values), elements=4), BODY, modes=4)
+    for place in range(2):
+        one = beam_wing(wing(beam_stiffness=(stations, EI * values[place]), elements=4), BODY, modes=4)
+        np.testing.assert_allclose(many.stiffness[place], one.stiffness, rtol=1e-12, atol=1e-6)
+
+
+STEP = 5e-4  # of central differences of fourth order
+AIRLOADS = {
+    "support.wing_aerodynamics.lift_slope": "5.7 /rad",
+    "support.wing_aerodynamics.chord": "5.25 ft",
+    "support.wing_aerodynamics.elastic_axis": "0.35",
+}
+OFFSETS = AIRLOADS | {"support.mass_forward": "-4 in", "support.mass_up": "2 in", "support.downstop": "false"}
+
+
+@pytest.mark.parametrize("modes", [{}, {"support.modes": "20", "support.elements": "4"}])
+def test_every_number_of_a_wing_takes_a_complex_step(modes):
+    """Imaginary parts are the limits of central differences: of all matrices, airloads and motion of the hub."""
+    case = pp.load_case("xv15-wing", OFFSETS | modes)
+    paths = [path for path in design_inputs(case) if path.startswith("support.")]
+    assert len(paths) > 24
+    own = {path: float(case.given[path].si) for path in paths}
+    size = {path: abs(value) or 1.0 for path, value in own.items()}
+    for path in paths:
+        points = own[path] + STEP * size[path] * np.array([-2, -1, 1, 2])
+        ends = case.vary({path: points}).support.at(150.0, 1.0)
+        exact = case.vary({path: own[path] + 1e-30j}).support.at(150.0, 1.0)
+        for name in ("mass", "damping", "stiffness", "hub"):
+            found = getattr(ends, name)
+            found = np.broadcast_to(found, (4, *found.shape[-2:]))  # airloads leave the mass alone
+            difference = np.tensordot([1, -8, 8, -1], found, axes=1) / (
+                12 * STEP
+            )  # per change by its own size
+            derivative = np.imag(getattr(exact, name)) * size[path] / 1e-30
+            close = 2e-8 * np.abs(found).max()
+            np.testing.assert_allclose(derivative, difference, rtol=0, atol=close, err_msg=f"{path} {name}")
+
+
+@pytest.mark.parametrize("count", [5, None])
+def test_modes_of_one_frequency_have_exact_derivatives_together(count):
+    """Damped roots of a wing that bends alike up and ahead, as one of the two stiffnesses grows."""
+    given = dict(modes=count, damping_ratio=0.02, rotor_mass=50.0)
+
+    def support(growth):
+        own = wing(beam_stiffness=EI * (1 + growth), chord_stiffness=EI, elements=4)
+        return beam_wing(own, replace(BARE, nacelle_mass=300.0), **given)
+
+    real, step = support(0.0), 1e-30
+    moved = support(1j * step)
+    frequency = lowest_modes(real.mass, real.stiffness).frequency
+    assert abs(frequency[1] / frequency[0] - 1) < 1e-9
+    for name in ("mass", "stiffness", "damping", "hub"):
+        own, size = getattr(moved, name), np.abs(getattr(real, name)).max()
+        np.testing.assert_allclose(np.real(own), getattr(real, name), rtol=0, atol=1e-13 * size)
+        assert np.abs(np.imag(own)).max() < 10 * size * step  # nothing has ω₁ - ω₂ below the fraction bar
+    for growth in (1e-4, 2e-4):
+        first_order = [
+            np.real(m) + growth / step * np.imag(m) for m in (moved.mass, moved.damping, moved.stiffness)
+        ]
+        exact = support(growth)
+        found = lowest_damped(exact.mass, exact.damping, exact.stiffness)
+        np.testing.assert_allclose(lowest_damped(*first_order), found, rtol=2 * growth**2)
+
+
+def lowest_damped(mass, damping, stiffness):
+    """The lowest five eigenvalues of M λ² + C λ + K with a positive imaginary part."""
+    n = len(mass)
+    lower = np.linalg.solve(mass, np.hstack([-stiffness, -damping]))
+    values = np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), lower]))
+    return sorted(values[values.imag > 0], key=abs)[:5]
 
 
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
         ({"span": 0.0}, "span = 0.0: must be above zero"),
-        ({"span": float("nan")}, "span = nan: must be a finite number"),
+        ({"span": float("nan")}, "span = nan: must be finite"),
         ({"sweep": 1.6}, "sweep = 1.6: must lie between -90 and 90 degrees"),
         ({"beam_stiffness": -1.0}, "beam_stiffness = -1.0: must be above zero"),
         ({"mass_per_length": -1.0}, "mass_per_length = -1.0: must not be negative"),
@@ -348,7 +447,7 @@ def test_a_wing_that_cannot_be(fields, message):
     ("fields", "message"),
     [
         ({"nacelle_mass": -1.0}, "nacelle_mass = -1.0: must not be negative"),
-        ({"mast_length": float("inf")}, "mast_length = inf: must be a finite number"),
+        ({"mast_length": float("inf")}, "mast_length = inf: must be finite"),
         ({"pitch_stiffness": 0.0}, "pitch_stiffness = 0.0: must be above zero"),
     ],
 )
@@ -368,6 +467,6 @@ def test_what_a_wing_cannot_be_asked_for():
         beam_wing(wing(), BODY, damping_ratio={"beam": 0.1, "chord": 0.1, "torsion": 0.1})
     with pytest.raises(InputError, match=r"^damping_ratio = flap: unknown kind of mode 'flap'"):
         beam_wing(wing(), BODY, damping_ratio=dict(beam=0, chord=0, torsion=0, axial=0, flap=0))
-    with pytest.raises(InputError, match=r"^rotor_mass = -1.0: must be finite and not negative"):
+    with pytest.raises(InputError, match=r"^rotor_mass = -1.0: must not be negative"):
         beam_wing(wing(), BODY, rotor_mass=-1.0)
     np.testing.assert_allclose(rigid_motion([1.0, 2.0, 3.0]), moved([1.0, 2.0, 3.0]))

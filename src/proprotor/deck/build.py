@@ -149,10 +149,11 @@ def _errors_as_written(section: str, numbers: Mapping[str, Datum]) -> Iterator[N
     try:
         yield
     except InputError as error:
-        name = error.field.rpartition(".")[2]
-        for written_as in (name, *fields_instead_of(name)):
-            if number := numbers.get(f"{section}.{written_as}"):
-                raise InputError(f"{section}.{written_as}", number.written, error.rule) from None
+        inner, _, name = error.field.removeprefix(f"{section}.").rpartition(".")
+        for place in dict.fromkeys((f"{section}.{inner}".rstrip("."), section)):
+            for written_as in (name, *fields_instead_of(name)):
+                if number := numbers.get(f"{place}.{written_as}"):
+                    raise InputError(f"{place}.{written_as}", number.written, error.rule) from None
         raise error.within(section) from None
 
 

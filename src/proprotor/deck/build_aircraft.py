@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -10,14 +11,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from proprotor.datum import Datum
-from proprotor.deck.each_design import Design, each_design, must_be_real, si_values, stacked
+from proprotor.deck.each_design import at_each_point, different_designs, si_values
 from proprotor.deck.numbers import LEFT
+from proprotor.errors import InputError
 from proprotor.support.aircraft_airloads import AircraftMotion, Tail, aircraft_motion, with_airloads
 from proprotor.support.aircraft_structure import CarryThrough, Fuselage, WingSide, half_aircraft
 from proprotor.support.airframe import Airframe
 from proprotor.support.beam_wing import Pylon, Wing
 from proprotor.support.free_airframe import KINDS, free_airframe
 from proprotor.support.wing_aerodynamics import Strips, WingAerodynamics
+from proprotor.typing import Array, Numbers
 
 if TYPE_CHECKING:
     from proprotor.deck.support_sections import AircraftSection
@@ -43,7 +46,7 @@ def build_aircraft(
     ----------
     section : AircraftSection
     numbers : mapping of str to Datum
-        The deck's numbers by path, perhaps arrays of many designs; numbers of the structure must be real.
+        The deck's numbers by path, perhaps arrays of many designs, or complex.
     names : tuple of str
         The order of the coordinates of many designs, by default the order of the first design.
     left : AircraftSection, optional
@@ -55,12 +58,10 @@ def build_aircraft(
         When a number is not physical.
     """
     given = _of_structure(numbers)
-    must_be_real(given)
-    made = each_design(given, lambda one: _one_aircraft(one, section, left))
-    airframe, (widths, fuselage, *strips) = stacked(made, names or made.flat[0].support.names)
-    motion = AircraftMotion(
-        fuselage, Strips(widths[..., 0, :], *strips[:2]), Strips(widths[..., 1, :], *strips[2:])
-    )
+    designs, place = different_designs(given)
+    parts = [_aircraft(part, section, left, names if place.ndim else ()) for part in designs]
+    airframe, (fuselage, *strips) = at_each_point(parts, place, own=(2, *(1, 2, 2) * 2))
+    motion = AircraftMotion(fuselage, Strips(*strips[:3]), Strips(*strips[3:]))
     return _loaded(airframe, motion, section, numbers, given)
 
 
@@ -97,8 +98,10 @@ def _of_structure(numbers: Mapping[str, Datum]) -> _Numbers:
     }
 
 
-def _one_aircraft(given: _Numbers, section: AircraftSection, left: AircraftSection | None) -> Design:
-    """Return the airframe of one design, and the motion of what the air loads."""
+def _aircraft(
+    given: _Numbers, section: AircraftSection, left: AircraftSection | None, names: tuple[str, ...]
+) -> tuple[Airframe, tuple[Array, ...]]:
+    """Return the airframes of designs (designs,), and the motion of what the air loads."""
     right = _side(given, section)
     other = None
     if left is not None:
@@ -112,11 +115,10 @@ def _one_aircraft(given: _Numbers, section: AircraftSection, left: AircraftSecti
         symmetry=section.symmetry,
         damping_ratio=_damping_ratios(given),
         rotor_mass=given["rotor_mass"],
+        names=names,
     )
     motion = aircraft_motion(free)
-    strips = (*motion.right[1:], *motion.left[1:])
-    widths = np.stack([motion.right.width, motion.left.width])
-    return Design(replace(free.airframe, shapes=free.right_shapes), (widths, motion.fuselage, *strips))
+    return free.airframe, (motion.fuselage, *motion.right, *motion.left)
 
 
 def _side(given: _Numbers, section: AircraftSection) -> WingSide:
@@ -133,7 +135,17 @@ def _side(given: _Numbers, section: AircraftSection) -> WingSide:
 def _record(kind: type[_R], given: _Numbers, section: str = "") -> _R:
     """Return a record of the numbers that a deck gives for its fields."""
     names = [entry.name for entry in fields(kind) if section + entry.name in given]  # type: ignore[arg-type]
-    return kind(**{name: given[section + name] for name in names})
+    with _errors_within(section.rstrip(".")):
+        return kind(**{name: given[section + name] for name in names})
+
+
+@contextmanager
+def _errors_within(section: str) -> Iterator[None]:
+    """Put the name of a section before the field of an error."""
+    try:
+        yield
+    except InputError as error:
+        raise error.within(section) from None
 
 
 def _fuselage(given: _Numbers, section: AircraftSection, side: WingSide) -> Fuselage:
@@ -141,12 +153,13 @@ def _fuselage(given: _Numbers, section: AircraftSection, side: WingSide) -> Fuse
     body = _record(Fuselage, given, "fuselage.")
     if not section.fuselage.whole_aircraft:
         return body
-    return body.without(half_aircraft(side).rigid_mass(given["rotor_mass"]))
+    with _errors_within("fuselage"):
+        return body.without(half_aircraft(side).rigid_mass(given["rotor_mass"]))
 
 
-def _damping_ratios(given: _Numbers) -> dict[str, float]:
+def _damping_ratios(given: _Numbers) -> dict[str, Numbers]:
     """Return the damping ratio of each kind of mode."""
-    every: float = given["damping_ratio"] if "damping_ratio" in given else given["loss_factor"] / 2
+    every: Numbers = given["damping_ratio"] if "damping_ratio" in given else given["loss_factor"] / 2
     fields_of = {kind: f"{kind.replace(' ', '_')}_damping_ratio" for kind in KINDS}
     return {kind: given.get(field, every) for kind, field in fields_of.items()}
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from proprotor.datum import Datum
 from proprotor.deck.build_aircraft import build_aircraft
-from proprotor.deck.each_design import Design, each_design, must_be_real, si_values, stacked
+from proprotor.deck.each_design import at_each_point, different_designs, must_be_real, si_values
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, on_coordinates
 from proprotor.support.matrix_files import read_matrix_market, read_npz
 from proprotor.support.nastran import nastran_modes
@@ -42,8 +42,7 @@ def build_support(
     ----------
     section : SupportSection
     numbers : mapping of str to Datum
-        The deck's numbers by path, perhaps arrays of many designs, or complex. Numbers of the structure of a beam
-        wing or an aircraft, and the units of a file, must be real.
+        The deck's numbers by path, perhaps arrays of many designs, or complex. The numbers of a file must be real.
     names : tuple of str
         The order of the coordinates of many designs of a beam wing or an aircraft, by default the order of the first
         design.
@@ -105,17 +104,19 @@ def _beam_wing(
 ) -> NormalModes:
     """Return the support of a beam wing, for many designs with the coordinates in the order of the names."""
     given = si_values(numbers, "support")
-    must_be_real(given)
-    made = each_design(given, lambda one: _one_beam_wing(one, section.downstop))
-    support, strips = stacked(made, names or made.flat[0][0].names)
+    designs, place = different_designs(given)
+    parts = [_beam_wings(part, section.downstop, names if place.ndim else ()) for part in designs]
+    support, strips = at_each_point(parts, place, own=(1, 2, 2))
     if section.wing_aerodynamics is None:
         return support
     airloads = si_values(numbers, "support.wing_aerodynamics")
     return in_airstream(support, Strips(*strips), WingAerodynamics(**airloads, sweep=given.get("sweep", 0.0)))
 
 
-def _one_beam_wing(given: dict[str, Any], downstop: bool) -> Design:
-    """Return the support and the aerodynamic strips of one beam wing."""
+def _beam_wings(
+    given: Mapping[str, Any], downstop: bool, names: tuple[str, ...]
+) -> tuple[NormalModes, Strips]:
+    """Return the supports and the aerodynamic strips of beam wings, whose numbers are arrays (designs,)."""
     spring = given.get("downstop_stiffness_on" if downstop else "downstop_stiffness_off")
     wing, pylon = (
         {entry.name: given[entry.name] for entry in fields(kind) if entry.name in given}
@@ -124,9 +125,8 @@ def _one_beam_wing(given: dict[str, Any], downstop: bool) -> Design:
     structure = beam_structure(Wing(**wing), Pylon(**pylon, pitch_stiffness=spring))
     every = given["damping_ratio"] if "damping_ratio" in given else given["loss_factor"] / 2
     ratios = {kind: given.get(f"{kind}_damping_ratio", every) for kind in _KINDS_OF_STRAIN} | {"axial": every}
-    found = on_coordinates(structure, given.get("modes"), ratios, given["rotor_mass"])
-    shapes = None if given.get("modes") is None else found.shapes
-    return Design(replace(found.support, shapes=shapes), beam_strips(structure, found.shapes))
+    found = on_coordinates(structure, given.get("modes"), ratios, given["rotor_mass"], names)
+    return found.support, beam_strips(structure, found.shapes)
 
 
 def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[str, Datum]) -> NormalModes:
@@ -135,7 +135,7 @@ def _with_assumed_airloads(support: NormalModes, section: Any, numbers: Mapping[
         return support
     given = si_values(numbers, "support.wing_aerodynamics")
     strips = cantilever_strips(support, given.pop("span"), given.pop("mast_length"))
-    return in_airstream(support, Strips(*strips), WingAerodynamics(**given))
+    return in_airstream(support, strips, WingAerodynamics(**given))
 
 
 _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {

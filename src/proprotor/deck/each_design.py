@@ -1,10 +1,10 @@
-"""Build the structure of each design of a batch, and put the designs into one support."""
+"""Build each different design of a batch once, and put the designs at the points of the batch."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -12,91 +12,74 @@ from proprotor.datum import Datum
 from proprotor.deck.numbers import own_numbers
 from proprotor.errors import InputError
 from proprotor.support.airframe import Airframe
+from proprotor.support.beam_wing import Wing
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
-_SQUARE = ("mass", "damping", "stiffness")
+_BYTES = 16_000  # at most, of matrices of a beam wing for each pair of nodes
+_PART = 200e6  # bytes of beam wings that are built at once
+_Support = TypeVar("_Support", bound=NormalModes)
 
 
-class Design(NamedTuple):
-    """One design, or many designs with the axes of the batch in front.
+def different_designs(given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], Array]:
+    """Return the numbers of all different designs of a batch, and the place of each point's design among these.
 
-    support : NormalModes
-    moved : tuple of arrays
-        Of what the air loads: first the widths of strips, then motions (..., n) per unit of each coordinate.
+    A search evaluates one design at many airspeeds, so equal designs are built once. The designs come in parts that fit
+    into memory, each part with arrays (designs,) of the numbers that vary.
     """
+    varied = {name: value for name, value in given.items() if np.ndim(value) and not isinstance(value, tuple)}
+    spread = np.broadcast_arrays(np.zeros(()), *varied.values())[1:]
+    shape = np.broadcast_shapes(*(value.shape for value in varied.values()))
+    columns = [part.ravel() for value in spread for part in (np.real(value), np.imag(value))]
+    table = np.stack(columns or [np.zeros(1)], axis=-1)
+    _, first, place = np.unique(table, axis=0, return_index=True, return_inverse=True)
+    different = {name: value.ravel()[first] for name, value in zip(varied, spread, strict=True)}
+    if "span" not in different:  # one design is a batch of one
+        different["span"] = np.broadcast_to(given["span"], first.shape)
+    size = _BYTES * (given.get("elements", Wing.elements) + 1) ** 2
+    step = max(1, int(_PART // size))
+    parts = [slice(start, start + step) for start in range(0, len(first), step)]
+    designs = [dict(given) | {name: value[part] for name, value in different.items()} for part in parts]
+    return designs, place.reshape(shape)
 
-    support: NormalModes
-    moved: tuple[Array, ...]
 
+def at_each_point(
+    parts: Sequence[tuple[_Support, Sequence[Array]]], place: Array, own: Sequence[int]
+) -> tuple[_Support, list[Array]]:
+    """Return the supports of all designs, and what moves with them, at each point of a batch.
 
-def each_design(given: Mapping[str, Any], build: Callable[[dict[str, Any]], Any]) -> Any:
-    """Return the result of `build` for each design of a batch, in an array of the batch's shape.
-
-    Equal designs are built once, because a search evaluates one design at many airspeeds.
+    Parameters
+    ----------
+    parts : sequence of (NormalModes, sequence of arrays)
+        Supports of many designs (designs,), and further arrays (designs, ...).
+    place : array (...) of int
+        Place of each point's design among all designs.
+    own : sequence of int
+        How many axes each of the further arrays has for one design.
     """
-    varied = {name: value for name, value in given.items() if isinstance(value, np.ndarray)}
-    spread = np.broadcast_arrays(*varied.values())
-    made = np.empty(np.broadcast_shapes(*(value.shape for value in spread)), dtype=object)
-    built: dict[tuple[float, ...], Any] = {}
-    for place in np.ndindex(made.shape):
-        design = tuple(float(value[place]) for value in spread)
-        if design not in built:
-            built[design] = build(dict(given) | dict(zip(varied, design, strict=True)))
-        made[place] = built[design]
-    return made
+    supports, moved = zip(*parts, strict=True)
+    counts = [support.mass.shape[0] for support in supports]
 
+    def spread(arrays: Iterable[Array], axes: int) -> Array:
+        """Put arrays (designs, ...) of the parts one after another; `axes` counts the axes of one design."""
+        whole = [
+            np.broadcast_to(array, (count, *array.shape[array.ndim - axes :]))
+            for array, count in zip(arrays, counts, strict=True)
+        ]
+        return np.concatenate(whole)[place]
 
-def stacked(made: Array, names: tuple[str, ...]) -> Design:
-    """Return the designs of a batch as one, with the axes of the batch in front.
-
-    The coordinates of each design are put in the order of the names, so that the order is the same in every batch.
-    """
-    first, moved = made.flat[0]
-    if not made.shape:
-        return Design(replace(first, shapes=None), moved)
-
-    def stack(parts: list[Any]) -> Array:
-        return np.stack(parts).reshape(*made.shape, *parts[0].shape)
-
-    ordered = [_in_order(design, names) for design in made.flat]
+    names = ["mass", "damping", "stiffness", "hub", *["left_hub"] * isinstance(supports[0], Airframe)]
     matrices: dict[str, Any] = {
-        name: stack([getattr(design.support, name) for design in ordered])
-        for name in (*_SQUARE, *_along(first))
+        name: spread((getattr(support, name) for support in supports), 2) for name in names
     }
-    if first.shapes is not None:
-        warnings = [_named_otherwise(design.support.names, names) for design in made.flat]
-        matrices["warning"] = np.array(warnings, dtype=object).reshape(made.shape)
-    together = zip(*(design.moved for design in ordered), strict=True)
-    return Design(replace(first, names=names, **matrices), tuple(stack(list(parts)) for parts in together))
-
-
-def _along(support: NormalModes) -> tuple[str, ...]:
-    """Return the names of the matrices that have one column for each coordinate."""
-    of_left = ("left_hub",) * isinstance(support, Airframe)
-    return ("hub", *of_left, *(("shapes",) * (support.shapes is not None)))
-
-
-def _in_order(design: Design, names: Sequence[str]) -> Design:
-    """Return a design with coordinates in the order of names; other names fill the free places."""
-    support, (widths, *motions) = design
-    if support.names == names:
-        return design
-    own = list(support.names)
-    others = iter([place for place, name in enumerate(own) if name not in names])
-    places = [own.index(name) if name in own else next(others) for name in names]
-    matrices: dict[str, Any] = {name: getattr(support, name)[np.ix_(places, places)] for name in _SQUARE}
-    matrices |= {name: getattr(support, name)[:, places] for name in _along(support)}
-    turned = (motion[..., places] for motion in motions)
-    return Design(replace(support, names=names, **matrices), (widths, *turned))
-
-
-def _named_otherwise(own: Sequence[str], names: Sequence[str]) -> str:
-    """Return a warning for a design whose modes have other names than the modes of the case's own design, or ""."""
-    others = [name for name in own if name not in names]
-    missing = [name for name in names if name not in own]
-    renamed = [f"{name} is named {place}" for name, place in zip(others, missing, strict=True)]
-    return f"the wing has other modes than in the case's own design: {', '.join(renamed)}" if renamed else ""
+    several: dict[str, Any] = {"shapes": None, "warning": None}
+    if place.ndim and supports[0].shapes is not None:
+        several = {
+            "shapes": spread((support.shapes for support in supports), 2),
+            "warning": spread((support.warning for support in supports), 0),
+        }
+    along = [spread(arrays, axes) for arrays, axes in zip(zip(*moved, strict=True), own, strict=True)]
+    return replace(supports[0], **matrices, **several), along
 
 
 def must_be_real(given: Mapping[str, Any]) -> None:

@@ -179,6 +179,7 @@ BendingStiffness = Annotated[Datum | None, Reading("along the wing", "N*m**2", P
 AxialStiffness = Annotated[Datum | None, Reading("along the wing", "N", POSITIVE)]
 MassPerLength = Annotated[Datum | None, Reading("along the wing", "kg/m", NOT_NEGATIVE)]
 InertiaPerLength = Annotated[Datum | None, Reading("along the wing", "kg*m**2/m", NOT_NEGATIVE)]
+OffsetOfMass = Annotated[Datum | None, Reading("along the wing", "m")]
 
 UniformStiffness = Annotated[Datum | None, Reading("number", "N*m**2", POSITIVE)]
 UniformAxialStiffness = Annotated[Datum | None, Reading("number", "N", POSITIVE)]

@@ -30,32 +30,32 @@ def nested(left: Any) -> Any:
     if not isinstance(left, dict):
         return left
     tables: dict[str, Any] = {}
-    for path, entry in left.items():
+    for path, entry in _leaves(left, ""):
         *outer, last = path.split(".")
         within = tables
         for name in outer:
             within = within.setdefault(name, {})
-            if not isinstance(within, dict):
+            if not is_section(within):
                 raise InputError(f"left.{path}", entry, "must not be given twice")
-        if last in within and not (is_section(entry) and is_section(within[last])):
+        if last in within:
             raise InputError(f"left.{path}", entry, "must not be given twice")
-        within[last] = within[last] | entry if last in within else entry
+        within[last] = entry
     return tables
 
 
 def left_paths(left: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the paths of the fields of the table [left]."""
-    return tuple(_paths(left, ""))
+    return tuple(path for path, entry in _leaves(left, "") if entry is not None)
 
 
-def _paths(table: Mapping[str, Any], outer: str) -> Iterator[str]:
-    """Yield the path of each field of nested tables."""
+def _leaves(table: Mapping[str, Any], outer: str) -> Iterator[tuple[str, Any]]:
+    """Yield the path and the value of each field of nested tables."""
     for name, entry in table.items():
         path = f"{outer}.{name}" if outer else name
         if is_section(entry) and "r_over_R" not in entry and "y_over_span" not in entry:
-            yield from _paths(entry, path)
-        elif entry is not None:
-            yield path
+            yield from _leaves(entry, path)
+        else:
+            yield path, entry
 
 
 def left_tables(own: dict[str, Any], left: dict[str, Any]) -> dict[str, Any]:

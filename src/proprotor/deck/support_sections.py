@@ -124,10 +124,12 @@ class _WingSection(Section):
     chord_stiffness: fields.BendingStiffness = needed("Stiffness EI of bending fore and aft.")
     torsion_stiffness: fields.BendingStiffness = needed("Torsion stiffness GJ.")
     axial_stiffness: fields.AxialStiffness = needed("Axial stiffness EA.")
-    mass_per_length: fields.MassPerLength = needed("Mass per length, its centre on the elastic axis.")
+    mass_per_length: fields.MassPerLength = needed("Mass per length.")
     torsional_inertia_per_length: fields.InertiaPerLength = needed(
-        "Inertia per length about the elastic axis."
+        "Inertia per length of twist, about the centre of mass of the section."
     )
+    mass_forward: fields.OffsetOfMass = optional("Centre of mass of the section ahead of the elastic axis.")
+    mass_up: fields.OffsetOfMass = optional("Centre of mass of the section above the elastic axis.")
     sweep: fields.Angle = optional("Sweep of the elastic axis, back positive.")
     dihedral: fields.Angle = optional("Dihedral of the elastic axis, up positive.")
     elements: fields.Size = optional("Number of elements of equal length.")

@@ -170,7 +170,7 @@ def load_moments(
     doubts : dict, optional
         Filled with the reasons to doubt the airfoil's coefficients outboard, masks (points,) by reason.
     """
-    points = max(np.shape(value)[0] if np.ndim(value) > 1 else 1 for value in segments.values())
+    (points,) = np.broadcast_shapes((1,), *(np.shape(value)[:-1] for value in segments.values()))
     shape = (points, len(sections.quadrature.beyond_lag_hinge), POWERS)
     numbers = (sections.quadrature.stations, sections.chord, sections.twist, *segments.values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))

@@ -32,8 +32,8 @@ def with_changes(
 ) -> tuple[LinearModel, tuple[Array, Array, Array]]:
     """Return models at positions (k,), and how M, C and K change with the position.
 
-    The changes come from a complex step; where complex positions are refused, as by finite elements, from extrapolated
-    differences.
+    The changes come from a complex step; where complex positions are refused, as by the numbers of a file, from
+    extrapolated differences.
     """
     try:
         model = linearize(positions + 1j * STEP)

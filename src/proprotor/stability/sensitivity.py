@@ -111,7 +111,7 @@ def sensitivity(
     xarray.Dataset
         derivative (input,) or (input, mode), SI units per SI unit of the input; relative, the derivative times the
         input: the change per change of the input by its own size; value, unit and status of every input; exact, whether
-        its matrices were derived by a complex step, or, as with finite elements, by extrapolated differences; defect
+        its matrices were derived by a complex step or, for numbers of a file, by extrapolated differences; defect
         and nearly_defective of the modes (`proprotor.stability.eigenvalue_derivatives.defect`): derivatives of a nearly
         defective mode hold in a small range only. For the flutter speed also frequency_derivative, of the frequency at
         the boundary as it moves. warning is what makes the numbers doubtful. Attributes: of, its value where there is

@@ -60,7 +60,7 @@ class Request:
         from importlib.metadata import version
 
         analysis = self.analysis
-        packages = ("proprotor", "numpy", "scipy", "pystran", "fluids")
+        packages = ("proprotor", "numpy", "scipy", "fluids")
         parts = {
             "case": analysis.case,
             "inputs": [self.designs.values, self.designs.axes],

@@ -1,11 +1,13 @@
 """Support: the structure that carries a rotor, as coordinates with mass, damping, stiffness and motion at the hub.
 
-In: a beam wing, a whole aircraft, or modes or matrices of any finite-element code. Out: `NormalModes`, on which `model` mounts rotors.
+In: a beam wing, a whole aircraft, or modes or matrices of any finite-element code. Out: `NormalModes`, on which `model`
+mounts rotors.
 This room imports `errors`, `typing`, `needs`, `files` and, for the names of coordinates, `rotor`.
 
     normal_modes       coordinates of a support; two-axis pivot; rigid support
     airframe           coordinates of an airframe that carries two rotors
     modal_reduction    lowest modes of a structure, and the structure on these modes
+    beam               a chain of beam elements
     beam_wing          a cantilever wing of beam elements with a pylon
     aircraft_structure half an aircraft: free fuselage, box, wing and pylon
     free_airframe      rigid motions and elastic modes of a free aircraft
@@ -15,8 +17,8 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     matrix_files       matrices of any finite-element code
     matrix_market      files of such matrices in the Matrix Market format
 
-All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam_wing`, `free_airframe`, `matrix_files`,
-`nastran` and `wing_aerodynamics` belong to the face.
+All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam`, `beam_wing`, `free_airframe`,
+`matrix_files`, `nastran` and `wing_aerodynamics` belong to the face.
 """
 
 from proprotor.support.airframe import SYMMETRIES, Airframe
@@ -40,6 +42,7 @@ __all__ = [
     "StructuralModes",
     "aircraft_airloads",
     "aircraft_structure",
+    "beam",
     "beam_wing",
     "free_airframe",
     "lowest_modes",

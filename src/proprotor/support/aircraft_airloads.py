@@ -18,7 +18,7 @@ import numpy as np
 from proprotor.errors import check_finite
 from proprotor.support.aircraft_structure import HalfAircraft
 from proprotor.support.airframe import Airframe
-from proprotor.support.beam_wing import rigid_motion
+from proprotor.support.beam import rigid_motion
 from proprotor.support.free_airframe import FreeAirframe
 from proprotor.support.normal_modes import HUB_AXES
 from proprotor.support.wing_aerodynamics import Strips, WingAerodynamics, beam_strips, strip_positions
@@ -104,7 +104,7 @@ def aircraft_motion(free: FreeAirframe) -> AircraftMotion:
         _strips(half, shapes)
         for half, shapes in ((free.right, free.right_shapes), (free.left, free.left_shapes))
     )
-    return AircraftMotion(free.right_shapes[:6], right, left)
+    return AircraftMotion(free.right_shapes[..., :6, :], right, left)
 
 
 def with_airloads(
@@ -142,6 +142,8 @@ def with_airloads(
 
 def _strips(half: HalfAircraft, shapes: Array) -> Strips:
     """Return the strips of one wing: deformation, and exactly the motion of the fuselage."""
-    bent = beam_strips(half.structure, shapes[6:])
-    carried = rigid_motion(strip_positions(half.structure.positions)) @ shapes[:6]
-    return bent._replace(rise=bent.rise + carried[:, _UP], pitch=bent.pitch + shapes[_PITCH])
+    bent = beam_strips(half.structure, shapes[..., 6:, :])
+    carried = rigid_motion(strip_positions(half.structure.positions)) @ shapes[..., None, :6, :]
+    return bent._replace(
+        rise=bent.rise + carried[..., _UP, :], pitch=bent.pitch + shapes[..., None, _PITCH, :]
+    )

@@ -1,43 +1,46 @@
 """A cantilever wing of beam finite elements, with a rigid pylon at the tip and the hub ahead of the pylon.
 
-pystran makes the elements (Euler-Bernoulli bending in two planes, free torsion, extension; consistent mass with
-torsional inertia). The elastic axis is straight, from the mount at the origin to the pylon, and all axes are the
-rotor's: I up, J outboard, K forward along the shaft. The pylon is rigid; it may turn about J against a spring at
-the wing tip, the downstop.
+The elements of `proprotor.support.beam` are derived like the equations of the rotor: Euler-Bernoulli bending in two
+planes, free torsion, extension, and the consistent mass, whose centre may lie beside the elastic axis. The elastic axis
+is straight, from the mount at the origin to the pylon, and all axes are the rotor's: I up, J outboard, K forward along
+the shaft. The pylon is rigid; it may turn about J against a spring at the wing tip, the downstop.
+
+Every number may be an array (...) of designs, or complex for derivatives by a complex step.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, check_finite, unknown_name
-from proprotor.support.modal_reduction import ModalSupport, on_modes, symmetric
-from proprotor.support.normal_modes import HUB_AXES, ROTATION, TRANSLATION, NormalModes
-from proprotor.typing import Array
+from proprotor.support.beam import PER_NODE, BeamProperties, beam_chain, rigid_motion, sign_of
+from proprotor.support.modal_reduction import Arrangement, ModalSupport, on_modes, symmetric
+from proprotor.support.normal_modes import HUB_AXES, ROTATION, NormalModes
+from proprotor.typing import Array, Numbers
 
 _UP, _OUTBOARD, _ = np.eye(3)
-_PYLON_PITCH, _PYLON_YAW = "pylon_pitch", "pylon_yaw"
-_SpanwiseProfile = float | tuple[ArrayLike, ArrayLike]
+_TURNS = {"pylon_pitch": ("pitch_stiffness", _OUTBOARD), "pylon_yaw": ("yaw_stiffness", _UP)}
+_SpanwiseProfile = Numbers | tuple[ArrayLike, ArrayLike]
 _MOST_ELEMENTS = 200
-_PER_NODE = len(HUB_AXES)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wing:
     """A straight cantilever along its elastic axis.
 
-    A property along the wing is one number or (stations, values), stations from 0 at the mount to 1 at the
-    pylon, linear between them.
+    A property along the wing is one number or (stations, values): stations from 0 at the mount to 1 at the pylon, and
+    values (..., stations), linear between them. The elements have the values at their nodes and are linear between the
+    nodes (`proprotor.support.beam.BeamProperties`), so that a kink between two nodes is cut off.
 
     Parameters
     ----------
-    span : float
+    span : float or array (...)
         Distance from the mount to the pylon along J, m.
     beam_stiffness, chord_stiffness : number or profile
         EI of bending up and down, and of bending fore and aft, N m².
@@ -46,10 +49,12 @@ class Wing:
     axial_stiffness : number or profile
         EA, N.
     mass_per_length : number or profile
-        kg/m along the elastic axis; the centre of mass lies on this axis.
+        kg/m along the elastic axis.
     torsional_inertia_per_length : number or profile
-        kg m²/m about the elastic axis.
-    sweep, dihedral : float
+        kg m²/m about the centre of mass of the section.
+    mass_up, mass_forward : number or profile
+        Distances of the centre of mass of the section above and ahead of the elastic axis, m.
+    sweep, dihedral : float or array (...)
         Angles of the elastic axis, rad, positive back and up.
     elements : int
         Number of elements, all of equal length.
@@ -60,41 +65,59 @@ class Wing:
         When a value is not finite or out of range, or a profile does not reach from 0 to 1.
     """
 
-    span: float
+    span: Numbers
     beam_stiffness: _SpanwiseProfile
     chord_stiffness: _SpanwiseProfile
     torsion_stiffness: _SpanwiseProfile
     axial_stiffness: _SpanwiseProfile
     mass_per_length: _SpanwiseProfile
     torsional_inertia_per_length: _SpanwiseProfile
-    sweep: float = 0.0
-    dihedral: float = 0.0
+    mass_up: _SpanwiseProfile = 0.0
+    mass_forward: _SpanwiseProfile = 0.0
+    sweep: Numbers = 0.0
+    dihedral: Numbers = 0.0
     elements: int = 8
 
     def __post_init__(self) -> None:
-        _check("span", self.span, "above zero")
+        check_finite("span", self.span, "above zero")
         for name in ("sweep", "dihedral"):
-            _check(name, getattr(self, name))
-            if abs(getattr(self, name)) >= np.pi / 2:
-                raise InputError(name, getattr(self, name), "must lie between -90 and 90 degrees")
+            angle = getattr(self, name)
+            check_finite(name, angle)
+            if (np.abs(np.real(angle)) >= np.pi / 2).any():
+                raise InputError(name, angle, "must lie between -90 and 90 degrees")
         for name in _PROFILES:
-            sign = "above zero" if name.endswith("stiffness") else "not negative"
-            _check_profile(name, getattr(self, name), sign)
+            _check_profile(name, getattr(self, name))
         if not isinstance(self.elements, int) or not 1 <= self.elements <= _MOST_ELEMENTS:
             raise InputError("elements", self.elements, f"must be a whole number from 1 to {_MOST_ELEMENTS}")
 
     @property
     def tip(self) -> Array:
-        """Point where the elastic axis meets the pylon, m (3,)."""
-        return self.span * np.array([np.tan(self.dihedral), 1.0, -np.tan(self.sweep)])
+        """Point where the elastic axis meets the pylon, m (..., 3)."""
+        span = np.asarray(self.span)
+        return along_axes(span * np.tan(self.dihedral), span, -span * np.tan(self.sweep))
+
+    @property
+    def nodes(self) -> Array:
+        """Nodes of the elements from the mount to the pylon, m (..., elements + 1, 3)."""
+        return self._stations[:, None] * self.tip[..., None, :]
+
+    @property
+    def properties(self) -> BeamProperties:
+        """Properties at the nodes."""
+        profiles = {name: _at(self._stations, getattr(self, name)) for name in _PROFILES}
+        return BeamProperties(**profiles)
+
+    @property
+    def _stations(self) -> Array:
+        return np.linspace(0, 1, self.elements + 1)
 
 
-_PROFILES = tuple(e.name for e in fields(Wing) if e.name.endswith(("_stiffness", "_per_length")))
+_PROFILES = tuple(entry.name for entry in fields(BeamProperties))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pylon:
-    """A rigid nacelle at the wing tip, and the mass of the hub that no rotor model contains.
+    """A rigid nacelle at the wing tip, and the mass of the hub that no rotor model contains; numbers or arrays (...).
 
     Parameters
     ----------
@@ -118,46 +141,51 @@ class Pylon:
         When a value is not finite, a mass or inertia negative, or a spring not above zero.
     """
 
-    nacelle_mass: float
-    nacelle_pitch_inertia: float
-    nacelle_yaw_inertia: float
-    nacelle_roll_inertia: float
-    mast_length: float
-    mast_height: float = 0.0
-    mast_outboard: float = 0.0
-    nacelle_forward: float = 0.0
-    nacelle_up: float = 0.0
-    nacelle_outboard: float = 0.0
-    hub_mass: float = 0.0
-    pitch_stiffness: float | None = None
-    yaw_stiffness: float | None = None
+    nacelle_mass: Numbers
+    nacelle_pitch_inertia: Numbers
+    nacelle_yaw_inertia: Numbers
+    nacelle_roll_inertia: Numbers
+    mast_length: Numbers
+    mast_height: Numbers = 0.0
+    mast_outboard: Numbers = 0.0
+    nacelle_forward: Numbers = 0.0
+    nacelle_up: Numbers = 0.0
+    nacelle_outboard: Numbers = 0.0
+    hub_mass: Numbers = 0.0
+    pitch_stiffness: Numbers | None = None
+    yaw_stiffness: Numbers | None = None
 
     def __post_init__(self) -> None:
         given = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        springs = {name: given.pop(name) for name in ("pitch_stiffness", "yaw_stiffness")}
+        springs = {name: given.pop(name) for name, _ in _TURNS.values()}
         for name, value in given.items():
-            _check(name, value, "not negative" if name.endswith(("mass", "inertia")) else "")
+            check_finite(name, value, "not negative" if name.endswith(("mass", "inertia")) else "")
         for name, value in springs.items():
             if value is not None:
-                _check(name, value, "above zero")
+                check_finite(name, value, "above zero")
 
     @property
     def hub(self) -> Array:
-        """Vector from the elastic axis at the tip to the hub, m (3,) along I, J, K."""
-        return np.array([self.mast_height, self.mast_outboard, self.mast_length])
+        """Vector from the elastic axis at the tip to the hub, m (..., 3) along I, J, K."""
+        return along_axes(self.mast_height, self.mast_outboard, self.mast_length)
 
     @property
     def nacelle(self) -> Array:
-        """Vector from the elastic axis at the tip to the nacelle's centre of mass, m (3,)."""
-        return np.array([self.nacelle_up, self.nacelle_outboard, self.nacelle_forward])
+        """Vector from the elastic axis at the tip to the nacelle's centre of mass, m (..., 3)."""
+        return along_axes(self.nacelle_up, self.nacelle_outboard, self.nacelle_forward)
 
     @property
-    def mass_at_hub(self) -> Array:
-        """Mass of nacelle and hub hardware (6, 6) on the motion of the hub, SI."""
-        inertia = (self.nacelle_yaw_inertia, self.nacelle_pitch_inertia, self.nacelle_roll_inertia)
-        nacelle = np.diag([self.nacelle_mass] * 3 + list(inertia))
+    def mass(self) -> Array:
+        """Mass of nacelle and hub hardware on the motion of the hub, kg, kg m and kg m² (..., 6, 6)."""
+        turning = (self.nacelle_yaw_inertia, self.nacelle_pitch_inertia, self.nacelle_roll_inertia)
+        nacelle = diagonal_matrix(*[self.nacelle_mass] * 3, *turning)
         motion = rigid_motion(self.nacelle - self.hub)
-        return motion.T @ nacelle @ motion + self.hub_mass * np.diag([1.0] * 3 + [0.0] * 3)
+        return np.swapaxes(motion, -1, -2) @ nacelle @ motion + diagonal_matrix(
+            *[self.hub_mass] * 3, *[0.0] * 3
+        )
+
+
+_Given = TypeVar("_Given")
 
 
 class BeamStructure(NamedTuple):
@@ -166,14 +194,14 @@ class BeamStructure(NamedTuple):
     names : tuple of str
         Names of the n coordinates: six for each node, six of the hub (m and rad), and with a spring the pitch of the
         pylon against the wing tip, nose up, and the yaw about I.
-    mass : array (n, n)
-    stiffness_parts : mapping of str to array (n, n)
+    mass : array (..., n, n)
+    stiffness_parts : mapping of str to array (..., n, n)
         Parts of the stiffness: beam, chord, torsion (with the downstop), axial, and with a spindle pylon yaw.
     hub : array (6, n)
         Motion of the hub for each coordinate.
-    nodes : array (elements + 1, 6, n)
+    nodes : array (..., elements + 1, 6, n)
         Motion of each node of the elastic axis for each coordinate, the mount first.
-    positions : array (elements + 1, 3)
+    positions : array (..., elements + 1, 3)
         Positions of the nodes, m.
     """
 
@@ -186,49 +214,87 @@ class BeamStructure(NamedTuple):
 
     @property
     def stiffness(self) -> Array:
-        """The whole stiffness (n, n)."""
+        """The whole stiffness (..., n, n)."""
         return sum(self.stiffness_parts.values(), start=np.zeros(()))
 
 
 def beam_structure(wing: Wing, pylon: Pylon) -> BeamStructure:
-    """Return the finite-element matrices of wing and pylon, without the rotor."""
-    mass, parts, positions = wing_elements(wing)
-    nodes, hub, names = pylon_coordinates(wing, pylon)
-    motion = nodes.reshape(-1, len(names))
-    return BeamStructure(
-        names=names,
-        mass=symmetric(motion.T @ mass @ motion + hub.T @ pylon.mass_at_hub @ hub),
-        stiffness_parts=stiffness_on(motion, parts, names, pylon),
-        hub=hub,
-        nodes=nodes,
-        positions=positions,
-    )
+    """Return the finite-element matrices of wing and pylon, without the rotor.
+
+    Complex numbers leave the real parts of mass and stiffness as they are without them, to the last digit, so that
+    modes of equal frequency have the same shapes.
+    """
+    structure = _structure(wing, pylon)
+    if np.isrealobj(structure.mass) and np.isrealobj(structure.stiffness):
+        return structure
+    return stepped(_structure(real_part(wing), real_part(pylon)), structure)
 
 
-def stiffness_on(
-    motion: Array, parts: Mapping[str, Array], names: Sequence[str], pylon: Pylon
-) -> dict[str, Array]:
-    """Return the parts of the stiffness on the named coordinates, with the springs of the pylon.
+def _structure(wing: Wing, pylon: Pylon) -> BeamStructure:
+    """Return the finite-element matrices of wing and pylon."""
+    elements = wing_elements(wing)
+    return on_motions(*pylon_coordinates(wing, pylon), elements, pylon)
+
+
+def on_motions(
+    nodes: Array,
+    hub: Array,
+    names: tuple[str, ...],
+    elements: tuple[Array, dict[str, Array], Array],
+    pylon: Pylon,
+) -> BeamStructure:
+    """Return the matrices of beam elements and a pylon on named coordinates.
 
     Parameters
     ----------
-    motion : array (m, n)
-        Motion of the nodes for each coordinate.
-    parts : mapping of str to array (m, m)
-        Parts of the stiffness on the motion of the nodes.
-    names : sequence of str
-        Names of the n coordinates, among these the pitch and the yaw of a pylon on springs.
+    nodes : array (..., k, 6, n)
+        Motion of each node for each coordinate.
+    hub : array (6, n)
+        Motion of the hub for each coordinate.
+    names : tuple of str
+        Names of the n coordinates, among these the turns of a pylon on springs.
+    elements : tuple of (array, dict of str to array, array)
+        Mass and parts of the stiffness on the motions of all nodes, and the positions of the nodes.
     pylon : Pylon
     """
-    found = {name: symmetric(motion.T @ part @ motion) for name, part in parts.items()}
-    if pylon.pitch_stiffness is not None:
-        place = names.index(_PYLON_PITCH)
-        found["torsion"][place, place] += pylon.pitch_stiffness
-    if pylon.yaw_stiffness is not None:
-        place = names.index(_PYLON_YAW)
-        found["pylon yaw"] = np.zeros_like(found["beam"])
-        found["pylon yaw"][place, place] = pylon.yaw_stiffness
-    return found
+    mass, parts, positions = elements
+    motion = nodes.reshape(*nodes.shape[:-3], -1, len(names))
+    turned = np.swapaxes(motion, -1, -2)
+    parts = {name: symmetric(turned @ part @ motion) for name, part in parts.items()}
+    for name, (spring, _) in _TURNS.items():
+        if name in names:
+            kind = "torsion" if name == "pylon_pitch" else "pylon yaw"
+            stiffness = np.asarray(getattr(pylon, spring))[..., None, None] * selected(names, name)
+            parts[kind] = parts.get(kind, 0.0) + stiffness
+    mass = symmetric(turned @ mass @ motion + hub.T @ pylon.mass @ hub)
+    return BeamStructure(names, mass, parts, hub, nodes, positions)
+
+
+def selected(names: Sequence[str], name: str) -> Array:
+    """Return the matrix (n, n) with a one on the diagonal at one of the names."""
+    return np.diag([float(one == name) for one in names])
+
+
+def real_part(given: _Given) -> _Given:
+    """Return a record of a wing, a pylon or a box with the real parts of its numbers."""
+    numbers = {entry.name: getattr(given, entry.name) for entry in fields(given)}  # type: ignore[arg-type]
+    steps: dict[str, Any] = {
+        name: (value[0], np.real(value[1])) if isinstance(value, tuple) else np.real(value)
+        for name, value in numbers.items()
+        if np.iscomplexobj(value[1] if isinstance(value, tuple) else value)
+    }
+    return replace(given, **steps)  # type: ignore[type-var]
+
+
+def stepped(real: BeamStructure, moved: BeamStructure) -> BeamStructure:
+    """Return a structure with complex numbers whose real parts are those of another one, to the last digit."""
+    parts = {name: _stepped(real.stiffness_parts[name], part) for name, part in moved.stiffness_parts.items()}
+    return moved._replace(mass=_stepped(real.mass, moved.mass), stiffness_parts=parts)
+
+
+def _stepped(real: Array, moved: Array) -> Array:
+    """Return an array with the imaginary part of another one."""
+    return real + 1j * np.imag(moved)
 
 
 def beam_wing(
@@ -236,10 +302,14 @@ def beam_wing(
     pylon: Pylon,
     *,
     modes: int | None = None,
-    damping_ratio: ArrayLike | Mapping[str, float] = 0.0,
-    rotor_mass: float = 0.0,
+    damping_ratio: ArrayLike | Mapping[str, Numbers] = 0.0,
+    rotor_mass: Numbers = 0.0,
 ) -> NormalModes:
-    """Return the wing as a support.
+    """Return the wing as a support, one design or many.
+
+    Many designs have the names of the first one. A design with other modes has a mode of another name in each free
+    place, and a warning. Complex numbers give the derivatives of all matrices as imaginary parts; see
+    `proprotor.support.modal_reduction.lowest_modes` for modes of equal frequency.
 
     Parameters
     ----------
@@ -248,11 +318,11 @@ def beam_wing(
         How many of the lowest modes to keep; by default all coordinates of the finite elements. A mode is called beam,
         chord, torsion or axial after the stiffness with most of the mode's strain energy, from the second mode of a
         kind on with a number.
-    damping_ratio : float, array (j,) or mapping
+    damping_ratio : float, array (..., j) or mapping
         Structural damping as a fraction of critical: of the lowest modes, the last value for all modes above, or of all
         beam, chord, torsion and axial modes by these names. A loss factor g (hysteretic damping) is equivalent to g/2
         at the frequency of each mode.
-    rotor_mass : float
+    rotor_mass : float or array (...)
         Mass at the hub while modes are computed and damped, kg. This mass does not stay in the matrices, because the
         rotor model brings it.
 
@@ -272,14 +342,18 @@ def beam_wing(
 def on_coordinates(
     structure: BeamStructure,
     count: int | None,
-    damping_ratio: ArrayLike | Mapping[str, float],
-    rotor_mass: float,
+    damping_ratio: ArrayLike | Mapping[str, Numbers],
+    rotor_mass: Numbers,
+    names: Sequence[str] = (),
 ) -> ModalSupport:
-    """Return the structure as a support on all coordinates or on its `count` lowest modes; see `beam_wing`."""
+    """Return the structure as a support on all coordinates or on its `count` lowest modes; see `beam_wing`.
+
+    `names` is the order of the modes of every design, by default the order of the first design.
+    """
     given: ArrayLike | Callable[[Array], ArrayLike]
     if isinstance(damping_ratio, Mapping):
         _check_kinds(damping_ratio, structure)
-        given = partial(_ratios_by_kind, structure, damping_ratio)
+        given = partial(ratios_by_kind, structure.stiffness_parts, damping_ratio)
     else:
         given = damping_ratio
     return on_modes(
@@ -290,11 +364,11 @@ def on_coordinates(
         count=count,
         damping_ratio=given,
         rotor_mass=rotor_mass,
-        name_modes=partial(_names_by_energy, structure),
+        arrange=partial(arranged, structure.stiffness_parts, tuple(names)),
     )
 
 
-def _check_kinds(damping_ratio: Mapping[str, float], structure: BeamStructure) -> None:
+def _check_kinds(damping_ratio: Mapping[str, Numbers], structure: BeamStructure) -> None:
     """Refuse damping ratios that are not given for each kind of mode."""
     for kind in structure.stiffness_parts:
         if kind not in damping_ratio:
@@ -305,124 +379,112 @@ def _check_kinds(damping_ratio: Mapping[str, float], structure: BeamStructure) -
             raise InputError("damping_ratio", kind, rule)
 
 
-def kinds_by_energy(stiffness_parts: Mapping[str, Array], shapes: Array) -> list[str]:
-    """Return for each mode the part of the stiffness that has most of the strain energy."""
-    energy = [np.einsum("ij,ij->j", shapes, part @ shapes) for part in stiffness_parts.values()]
-    kinds = list(stiffness_parts)
-    return [kinds[place] for place in np.argmax(energy, axis=0)]
+def _kinds(stiffness_parts: Mapping[str, Array], shapes: Array) -> Array:
+    """Return for each mode (..., k) the place of the part of the stiffness with most of the mode's strain energy."""
+    shapes = np.real(shapes)
+    parts = (np.real(part) for part in stiffness_parts.values())
+    places: Array = np.argmax([(shapes * (part @ shapes)).sum(axis=-2) for part in parts], axis=0)
+    return places
 
 
-def _ratios_by_kind(structure: BeamStructure, ratios: Mapping[str, float], shapes: Array) -> list[float]:
-    """Return the damping ratio of each mode from the ratio of its kind."""
-    return [ratios[kind] for kind in kinds_by_energy(structure.stiffness_parts, shapes)]
+def ratios_by_kind(
+    stiffness_parts: Mapping[str, Array], ratios: Mapping[str, Numbers], shapes: Array
+) -> Array:
+    """Return the damping ratio (..., k) of each mode from the ratio (...) of its kind."""
+    kinds = _kinds(stiffness_parts, shapes)
+    by_kind = np.stack(np.broadcast_arrays(*(ratios[kind] for kind in stiffness_parts)), axis=-1)
+    return np.take_along_axis(
+        np.broadcast_to(by_kind, (*kinds.shape[:-1], by_kind.shape[-1])), kinds, axis=-1
+    )
 
 
-def _names_by_energy(structure: BeamStructure, shapes: Array) -> list[str]:
-    """Return the names of modes by their kind, from the second mode of a kind on with a number."""
-    return numbered(kinds_by_energy(structure.stiffness_parts, shapes))
+def arranged(stiffness_parts: Mapping[str, Array], names: tuple[str, ...], shapes: Array) -> Arrangement:
+    """Return the order of modes in which each design has them under the same names as far as it has such modes.
+
+    A mode is named by its kind, from the second mode of a kind on with a number. Designs with the same kinds in the
+    same order are arranged at once.
+    """
+    kinds = _kinds(stiffness_parts, shapes)
+    sequences, which = np.unique(kinds.reshape(-1, kinds.shape[-1]), axis=0, return_inverse=True)
+    own = [_numbered([tuple(stiffness_parts)[kind] for kind in sequence]) for sequence in sequences]
+    which = which.reshape(kinds.shape[:-1])
+    wanted = names or own[which.flat[0]]
+    places = np.array([_places(one, wanted) for one in own])[which]
+    warnings = np.array([_named_otherwise(one, wanted) for one in own], dtype=object)
+    return Arrangement(places, wanted, warnings[which] if which.ndim else None)
 
 
-def numbered(kinds: Sequence[str]) -> list[str]:
-    """Return the kinds of modes, from the second mode of a kind on with a number."""
+def _numbered(kinds: Sequence[str]) -> tuple[str, ...]:
+    """Return names of modes by their kinds."""
     counts = [kinds[: place + 1].count(kind) for place, kind in enumerate(kinds)]
-    return [kind if count == 1 else f"{kind}_{count}" for kind, count in zip(kinds, counts, strict=True)]
+    return tuple(kind if count == 1 else f"{kind}_{count}" for kind, count in zip(kinds, counts, strict=True))
+
+
+def _places(own: Sequence[str], names: Sequence[str]) -> list[int]:
+    """Return the places of names among the own names of a design; other names fill the free places."""
+    others = iter([place for place, name in enumerate(own) if name not in names])
+    return [own.index(name) if name in own else next(others) for name in names]
+
+
+def _named_otherwise(own: Sequence[str], names: Sequence[str]) -> str:
+    """Return a warning for a design whose modes have other names than the modes of the case's own design, or ""."""
+    others = [name for name in own if name not in names]
+    missing = [name for name in names if name not in own]
+    renamed = [f"{name} is named {place}" for name, place in zip(others, missing, strict=True)]
+    return f"the wing has other modes than in the case's own design: {', '.join(renamed)}" if renamed else ""
 
 
 def wing_elements(wing: Wing) -> tuple[Array, dict[str, Array], Array]:
     """Return mass and stiffness parts on the motions of all nodes, with the mount, and the positions of the nodes."""
-    from pystran import beam, model, section  # here, because it brings matplotlib along
-
-    stations = np.linspace(0, 1, wing.elements + 1)
-    positions = stations[:, None] * wing.tip
-    frame = model.create(3)
-    for node, position in enumerate(positions):
-        model.add_joint(frame, node, position, dof=_PER_NODE * node + np.arange(_PER_NODE))
-    given = {name: _means(getattr(wing, name), stations) for name in _PROFILES}
-    size = _PER_NODE * len(stations)
-    mass = np.zeros((size, size))
-    parts = {name: np.zeros((size, size)) for name in ("beam", "chord", "torsion", "axial")}
-    for place in range(wing.elements):
-        ends = frame["joints"][place], frame["joints"][place + 1]
-        own = {name: values[place] for name, values in given.items()}
-        for name, properties in _stiffness_sections(own).items():
-            member = {"section": section.beam_3d_section(name, xz_vector=_UP, **properties)}
-            beam.assemble_stiffness(parts[name], member, *ends)
-        inertia = {"A": own["mass_per_length"], "Ix": own["torsional_inertia_per_length"]}
-        whole = section.beam_3d_section("mass", rho=1.0, xz_vector=_UP, **inertia)
-        beam.assemble_mass(mass, {"section": whole}, *ends)
-    return mass, parts, positions
-
-
-def _stiffness_sections(own: Mapping[str, float]) -> dict[str, dict[str, float]]:
-    """Return the properties of pystran's sections for each part of the stiffness: one stiffness each, unit modulus.
-
-    In pystran x is along the beam, z up and y forward.
-    """
-    return {
-        "beam": {"E": 1.0, "Iy": own["beam_stiffness"]},
-        "chord": {"E": 1.0, "Iz": own["chord_stiffness"]},
-        "torsion": {"G": 1.0, "J": own["torsion_stiffness"]},
-        "axial": {"E": 1.0, "A": own["axial_stiffness"]},
-    }
+    mass, parts = beam_chain(wing.nodes, wing.properties)
+    return mass, parts, wing.nodes
 
 
 def pylon_coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:
     """Return the motion of the nodes and of the hub for each coordinate, and the names of the coordinates."""
-    inner = _PER_NODE * (wing.elements - 1)
-    axes = {_PYLON_PITCH: (pylon.pitch_stiffness, _OUTBOARD), _PYLON_YAW: (pylon.yaw_stiffness, _UP)}
-    turns = {name: axis for name, (stiffness, axis) in axes.items() if stiffness is not None}
+    inner = PER_NODE * (wing.elements - 1)
+    turns = {name: axis for name, (spring, axis) in _TURNS.items() if getattr(pylon, spring) is not None}
     names = [f"wing_{node}_{axis}" for node in range(1, wing.elements) for axis in HUB_AXES]
     names += [*(f"hub_{axis}" for axis in HUB_AXES), *turns]
-    nodes = np.zeros((wing.elements + 1, _PER_NODE, len(names)))
-    nodes[1:-1, :, :inner] = np.eye(inner).reshape(wing.elements - 1, _PER_NODE, inner)
-    hub = np.zeros((_PER_NODE, len(names)))
-    hub[:, inner : inner + _PER_NODE] = np.eye(_PER_NODE)
-    nodes[-1] = rigid_motion(-pylon.hub) @ hub
+    hub = np.zeros((PER_NODE, len(names)))
+    hub[:, inner : inner + PER_NODE] = np.eye(PER_NODE)
+    tip = rigid_motion(-pylon.hub) @ hub
     for name, axis in turns.items():  # the wing tip turns by the rotation of the hub less these turns
-        nodes[-1, ROTATION, names.index(name)] = -axis
+        tip[..., ROTATION, names.index(name)] = -axis
+    nodes = np.zeros((*tip.shape[:-2], wing.elements + 1, *tip.shape[-2:]), dtype=tip.dtype)
+    nodes[..., 1:-1, :, :inner] = np.eye(inner).reshape(wing.elements - 1, PER_NODE, inner)
+    nodes[..., -1, :, :] = tip
     return nodes, hub, tuple(names)
 
 
-def rigid_motion(offset: ArrayLike) -> Array:
-    """Return the motion (..., 6, 6) of a point of a rigid body per motion of a reference point.
-
-    `offset` (..., 3) is the vector from the reference point to the point, m.
-    """
-    offset = np.asarray(offset)
-    motion = np.zeros((*offset.shape[:-1], _PER_NODE, _PER_NODE), dtype=np.result_type(offset, float))
-    motion[...] = np.eye(_PER_NODE)
-    motion[..., TRANSLATION, ROTATION] = np.swapaxes(np.cross(np.eye(3), offset[..., None, :]), -1, -2)
-    return motion
+def along_axes(*components: Numbers) -> Array:
+    """Return vectors (..., 3) from their components."""
+    return np.stack(np.broadcast_arrays(*components), axis=-1)
 
 
-def _means(profile: _SpanwiseProfile, stations: Array) -> Array:
-    """Return the mean of a profile over each element."""
+def diagonal_matrix(*values: Numbers) -> Array:
+    """Return diagonal matrices (..., n, n) of n values (...)."""
+    return along_axes(*values)[..., None] * np.eye(len(values))
+
+
+def _at(nodes: Array, profile: _SpanwiseProfile) -> Array:
+    """Return a property at nodes from 0 to 1: (..., nodes), or (..., 1) for one number."""
     if not isinstance(profile, tuple):
-        return np.full(len(stations) - 1, float(profile))
-    given, values = (np.asarray(part, dtype=float) for part in profile)
-    corners = np.union1d(given, stations)
-    heights = np.interp(corners, given, values)
-    areas = np.concatenate([[0.0], np.cumsum(np.diff(corners) * (heights[1:] + heights[:-1]) / 2)])
-    means: Array = np.diff(np.interp(stations, corners, areas)) / np.diff(stations)
-    return means
+        return np.asarray(profile)[..., None]
+    stations, values = profile
+    shares = [
+        np.interp(nodes, np.asarray(stations, dtype=float), own) for own in np.eye(len(np.asarray(stations)))
+    ]
+    return np.asarray(values) @ np.array(shares)
 
 
-def _check(name: str, value: Any, sign: str = "") -> None:
-    """Refuse a value that is no finite real number or has the wrong sign; signs as for `check_finite`."""
-    if not (np.isscalar(value) and np.isreal(value) and np.isfinite(value)):
-        raise InputError(name, value, "must be a finite number")
-    check_finite(name, value, sign)
-
-
-def _check_profile(name: str, profile: _SpanwiseProfile, sign: str) -> None:
+def _check_profile(name: str, profile: _SpanwiseProfile) -> None:
     """Refuse a profile that does not reach from 0 to 1, is not finite, or has values of the wrong sign."""
     if not isinstance(profile, tuple):
-        _check(name, profile)
-        values = np.array([profile])
-    else:
-        stations, values = (np.asarray(part, dtype=float) for part in profile)
-        if stations.ndim != 1 or stations.shape != values.shape or not np.isfinite([stations, values]).all():
-            raise InputError(name, "a profile", "must have one finite value for each station")
-        if stations[0] != 0 or stations[-1] != 1 or (np.diff(stations) <= 0).any():
-            raise InputError(name, stations.tolist(), "must have stations that rise from 0 to 1")
-    check_finite(name, values.min(), sign)
+        return check_finite(name, profile, sign_of(name))
+    stations, values = np.asarray(profile[0], dtype=float), np.asarray(profile[1])
+    if stations.ndim != 1 or stations.shape != values.shape[-1:] or not np.isfinite(stations).all():
+        raise InputError(name, "a profile", "must have one finite value for each station")
+    if stations[0] != 0 or stations[-1] != 1 or (np.diff(stations) <= 0).any():
+        raise InputError(name, stations.tolist(), "must have stations that rise from 0 to 1")
+    return check_finite(name, values, sign_of(name))

@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, check_finite
+from proprotor.support.beam import section_motions
 from proprotor.support.beam_wing import BeamStructure
-from proprotor.support.normal_modes import HUB_AXES, ROTATION, TRANSLATION, NormalModes
+from proprotor.support.normal_modes import HUB_AXES, NormalModes
 from proprotor.typing import Array
 
 _UP, _OUTBOARD, _PITCH = (HUB_AXES.index(axis) for axis in ("x", "y", "alpha_y"))
@@ -132,57 +133,25 @@ def beam_strips(structure: BeamStructure, shapes: ArrayLike) -> Strips:
     Parameters
     ----------
     structure : BeamStructure
-    shapes : array (n, k)
+    shapes : array (..., n, k)
         The support's coordinates in coordinates of the structure, from `proprotor.support.beam_wing.on_coordinates`.
     """
     points, weights = np.polynomial.legendre.leggauss(_PER_ELEMENT)
-    nodes = structure.nodes @ np.asarray(shapes)
-    widths, motions = [], []
-    for axis, left, right in zip(np.diff(structure.positions, axis=0), nodes[:-1], nodes[1:], strict=True):
-        widths += [weight / 2 * axis[_OUTBOARD] for weight in weights]
-        motions += [_motion_within(axis, left, right, point) for point in points]
-    rises, pitches = zip(*motions, strict=True)
-    return Strips(np.array(widths), np.array(rises), np.array(pitches))
+    nodes = structure.nodes @ np.asarray(shapes)[..., None, :, :]
+    ends = np.concatenate([nodes[..., :-1, :, :], nodes[..., 1:, :, :]], axis=-2)
+    motion = section_motions(structure.positions, (1 + points) / 2) @ ends[..., None, :, :]
+    motion = motion.reshape(*motion.shape[:-4], -1, *motion.shape[-2:])
+    width = np.diff(structure.positions[..., _OUTBOARD], axis=-1)[..., None] * weights / 2
+    width = width.reshape(*width.shape[:-2], -1)
+    return Strips(width, motion[..., _UP, :], motion[..., _PITCH, :])
 
 
 def strip_positions(positions: Array) -> Array:
-    """Return the positions (k, 3) of the strips of `beam_strips` on the elastic axis through nodes (m, 3), m."""
+    """Return the positions (..., k, 3) of the strips of `beam_strips` on the elastic axis through nodes (..., m, 3)."""
     points, _ = np.polynomial.legendre.leggauss(_PER_ELEMENT)
     share = ((1 + points) / 2)[:, None]
-    found: Array = positions[:-1, None] + share * np.diff(positions, axis=0)[:, None]
-    return found.reshape(-1, 3)
-
-
-def _motion_within(axis: Array, left: Array, right: Array, point: float) -> tuple[Array, Array]:
-    """Return rise and pitch (n,) of a beam element at a point from -1 to 1 along the element.
-
-    Parameters
-    ----------
-    axis : array (3,)
-        Vector from the left node to the right node, m.
-    left, right : array (6, n)
-        Motion of the two nodes for each coordinate.
-    point : float
-    """
-    from pystran.geometry import herm_basis, herm_basis_xi  # here, because it brings matplotlib along
-
-    length = np.linalg.norm(axis)
-    along = axis / length
-    lengthwise = np.outer(along, along)
-    across = np.eye(3) - lengthwise
-    # ∂u/∂s = φ × axis at the ends: rotation vectors give the slopes of the cubic.
-    slopes = [np.cross(node[ROTATION].T, along).T for node in (left, right)]
-    # The second and the fourth function of pystran belong to a rotation that lowers the beam: minus the slope.
-    ends = (left[TRANSLATION], -slopes[0] * length / 2, right[TRANSLATION], -slopes[1] * length / 2)
-    cubic, rate = herm_basis(point), herm_basis_xi(point) * 2 / length
-    bent = across @ sum(factor * part for factor, part in zip(cubic, ends, strict=True))
-    slope = across @ sum(factor * part for factor, part in zip(rate, ends, strict=True))
-    share = (1 + point) / 2
-    stretch, twist = (
-        lengthwise @ ((1 - share) * left[part] + share * right[part]) for part in (TRANSLATION, ROTATION)
-    )
-    turn = twist + np.cross(along, slope.T).T
-    return (bent + stretch)[_UP], turn[_OUTBOARD]
+    found: Array = positions[..., :-1, None, :] + share * np.diff(positions, axis=-2)[..., None, :]
+    return found.reshape(*found.shape[:-3], -1, 3)
 
 
 def cantilever_strips(support: NormalModes, span: float, mast_length: float) -> Strips:
