@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks import published_systems
 from benchmarks.claims import VERDICTS, WING, Claim, all_claims, as_text, first_boundary, mode_boundaries
 from benchmarks.paper_figures import NUMBERS, Analyses, csv_of, make_figure
 from benchmarks.paper_figures.analyses import XV15
@@ -20,6 +21,7 @@ from benchmarks.paper_figures.input_ranges import V22, WRATS, InputRange
 from benchmarks.paper_figures.input_ranges import XV15 as XV15_RANGES
 from benchmarks.paper_figures.published import XV15_FLUTTER, XV15_MARK
 from benchmarks.paper_figures.sample_band import Band
+from benchmarks.paper_figures.wing_modes import OF_THE_ROTOR
 from proprotor.files.output import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,9 +74,11 @@ def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
         [_HEAD],
         _summary(claims),
         _boundary_section(rows),
+        _bell_section(analyses),
         _figures_section(),
         _claims_section(claims),
         _models_section(analyses),
+        published_systems.section(),
         _ranges_section(),
     )
     return "\n".join(line for part in parts for line in part).rstrip() + "\n"
@@ -83,7 +87,7 @@ def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
 _HEAD = """# Validation against AIAA-2002-1604
 
 Written by `python -m benchmarks.validation`, numbers, verdicts and figures included; `make figures` makes the
-figures alone. Damping is in percent of critical, frequency per revolution, speed in knots.
+figures alone. Damping is in percent of critical, frequency per revolution, kt is KTAS.
 
 The inputs decide what may be concluded. The rotor of the XV-15 is published; its wing is recalled or assumed, and two
 inputs are calibrated to the paper ([xv15.md](xv15.md)). Of the two 1/5-scale models only the rotor of one is published,
@@ -136,6 +140,31 @@ def _boundary_section(rows: list[Row]) -> Iterator[str]:
     yield "![Boundaries of both blades with their bands](figures/xv15-boundary.png)"
     yield ""
     yield from _boundary_words(rows)
+    yield ""
+
+
+def _bell_section(analyses: Analyses) -> Iterator[str]:
+    """Yield the boundaries with the builder's blade frequencies beside those with the springs of Table 1."""
+    yield "### The same with Bell's blade frequencies"
+    yield ""
+    yield "Lag and coning as Bell calculated them (NASA TM X-62,407; deck `xv15-bell-frequencies`) in place of the"
+    yield "springs of Table 1, all else as above: the springs are published as well, and the two sources do not agree"
+    yield "([the lag frequency](lag-frequency.md)). Nominal, without a band; of the wing, and of the rotor's own modes."
+    yield ""
+    cells = []
+    for variant, pitch in _PITCH.items():
+        springs, bell = (analyses.wing(XV15, which + variant) for which in ("", "Bell's frequencies, "))
+        rotor = (wing.speed(OF_THE_ROTOR) for wing in (springs, bell))
+        speeds = (springs.first_speed, bell.first_speed, *rotor)
+        cells.append((pitch, *map(as_text, speeds)))
+    head = (
+        "pitch",
+        "wing: Table 1",
+        "wing: Bell's frequencies",
+        "rotor: Table 1",
+        "rotor: Bell's frequencies",
+    )
+    yield from _table(head, cells)
     yield ""
 
 

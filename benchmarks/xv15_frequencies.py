@@ -2,7 +2,8 @@
 
     python -m benchmarks.xv15_frequencies
 
-The rotor stands on a rigid hub; frequencies are in the fixed frame, per revolution at 458 rpm.
+The rotor stands on a rigid hub, with the springs of AIAA-2002-1604 and with the blade frequencies that Bell calculated;
+frequencies are in the fixed frame, per revolution at 458 rpm.
 """
 
 from __future__ import annotations
@@ -15,21 +16,22 @@ import proprotor as pp
 from benchmarks.paper_figures.blade_state import on_rigid_hub
 from proprotor.units import KNOT
 
+DECKS = ("xv15-uncoupled", "xv15-bell-frequencies")
 SPEEDS = np.arange(50, 451, 50) * KNOT
 MODES = ("coning", "low cyclic lag", "low gimbal", "high gimbal")
 STATEMENTS = (
     "AIAA-2002-1604: low cyclic lag from about 0.8 to 0.2 per rev (Fig. 14); coning 1.85; gimbal 1.0355.",
     "NASA TM X-62,407, test: coning 1.70 per rev at 458 rpm; lag 1.72 per rev, rotating, at low pitch.",
+    "NASA TM X-62,407, calculated: coning 1.69 to 2.04, lag 1.454 to 1.052, rotating, over the airplane's collective.",
 )
 
 
-def main() -> None:
-    console = Console(width=120)
-    case = pp.load_case("xv15-uncoupled")
+def print_case(console: Console, case: pp.Case) -> None:
     console.print(f"[bold]{case.title}[/bold]  calibrated: {case.calibration}")
     for airloads in ("none", "full"):
         for rotor_speed in ("windmilling", "constant"):
-            found = on_rigid_hub(case, SPEEDS, airloads=airloads, rotor_speed=rotor_speed)
+            options = case.model_options({"airloads": airloads, "rotor_speed": rotor_speed})
+            found = on_rigid_hub(case, SPEEDS, **options)
             columns = (found[name] for name in MODES)
             title = f"airloads {airloads}, rotor speed {'free' if rotor_speed == 'windmilling' else 'locked'}"
             table = Table("kt", *MODES, title=title)
@@ -37,6 +39,12 @@ def main() -> None:
                 cells = (f"{value:.3f}" if np.isfinite(value) else "-" for value in values)
                 table.add_row(f"{speed:.0f}", *cells)
             console.print(table)
+
+
+def main() -> None:
+    console = Console(width=120)
+    for name in DECKS:
+        print_case(console, pp.load_case(name))
     for statement in STATEMENTS:
         console.print(statement)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -11,13 +12,14 @@ import numpy as np
 import proprotor as pp
 from benchmarks.paper_figures.blade_state import AS_THE_PAPER, BladeState, blade_state, on_rigid_hub
 from benchmarks.paper_figures.input_ranges import RANGES
-from benchmarks.paper_figures.published import CONING_FREQUENCY, PAPER_FREQUENCIES
+from benchmarks.paper_figures.published import PAPER_FREQUENCIES
 from benchmarks.paper_figures.sample_band import Band, damping_band
 from benchmarks.paper_figures.wing_modes import WingModes
 from proprotor.typing import Array
 from proprotor.units import KNOT
 
 XV15 = "xv15-uncoupled"
+BELL = "xv15-bell-frequencies"
 # kt; slower, the neglected induced velocity is more than a twentieth of the airspeed, or the paper shows nothing
 _AIRSPEEDS = {XV15: (50, 500), "xv15-mass-distribution": (50, 500), "v22-fifth-scale": (50, 250)}
 _WRATS = (60, 180)
@@ -90,7 +92,7 @@ def own_frequencies(case: pp.Case, airspeeds: Array) -> pp.BladeFrequencies:
     """Return lag as this model has it in a vacuum, and coning at 1.85 per revolution, tabulated against airspeed."""
     vacuum = on_rigid_hub(case, airspeeds, airloads="none", pitch="coupling")
     lag = 1 + vacuum["low cyclic lag"]
-    return pp.BladeFrequencies(flap=CONING_FREQUENCY, lag=lag, against="airspeed", at=airspeeds)
+    return replace(PAPER_FREQUENCIES, lag=lag, at=airspeeds, at_rotor_speed=case.operation.rotor_speed)
 
 
 def _tabulated(frequencies: Callable[[pp.Case, Array], pp.BladeFrequencies]) -> Variant:
@@ -101,6 +103,13 @@ def _tabulated(frequencies: Callable[[pp.Case, Array], pp.BladeFrequencies]) -> 
             "frequencies": frequencies(case, airspeeds),
         }
         | _kept_couplings(case, airspeeds)
+    )
+
+
+def _with_bell(**options: Any) -> Variant:
+    """Return the variant with the blade frequencies that Bell calculated, in place of the springs of Table 1."""
+    return lambda case, airspeeds: (
+        {"structure": "tabulated", "frequencies": pp.load_case(BELL).frequencies} | options
     )
 
 
@@ -122,4 +131,7 @@ VARIANTS: dict[str, Variant] = {
     "no flap-lag stiffness, couplings follow": _fixed(structure="diagonal"),
     "given frequencies": _tabulated(lambda case, airspeeds: PAPER_FREQUENCIES),
     "own frequencies given": _tabulated(own_frequencies),
+    "Bell's frequencies, couplings": _with_bell(),
+    "Bell's frequencies, pitch equations": _with_bell(pitch="dynamic"),
+    "Bell's frequencies, pitch equations, section damping": _with_bell(pitch="dynamic", section_damping=True),
 }

@@ -27,6 +27,10 @@ LAG_FREQUENCIES = (1.8, 1.2)
 CONING_FREQUENCY = 1.85
 CYCLIC_FLAP_FREQUENCY = 1.0355
 PAPER_FREQUENCIES = pp.BladeFrequencies(
-    flap=CONING_FREQUENCY, lag=LAG_FREQUENCIES, against="airspeed", at=np.array(LAG_AIRSPEEDS) * KNOT
+    flap=CONING_FREQUENCY,
+    lag=LAG_FREQUENCIES,
+    against="airspeed",
+    at=np.array(LAG_AIRSPEEDS) * KNOT,
+    at_rotor_speed=458 * np.pi / 30,  # Table 1
 )
 PITCH_LAG_COUPLING = -0.3  # near the boundary, AIAA-2002-1604 on Fig. 21

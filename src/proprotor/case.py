@@ -11,6 +11,7 @@ from proprotor.deck.vary import vary
 from proprotor.model.configuration import Configuration
 from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries
+from proprotor.stability.boundary_against import boundary_against
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.map import stability_map
 from proprotor.stability.sensitivity import sensitivity
@@ -29,6 +30,7 @@ class Case(Configuration):
     vary = vary
     sweep = sweep_case
     boundaries = boundaries
+    boundary_against = boundary_against
     flutter_point = flutter_point
     sensitivity = sensitivity
     attribution = attribution

@@ -5,7 +5,8 @@ pint's usual registry does not do: a stiffness that has lost its "per degree", o
 for 3.2 rad/s, is then an error and not a factor of 57 or of 6.
 
 Single quantities come first, then lists and ranges of a quantity, then airspeeds, which every analysis takes as a
-number in m/s, a quantity or text such as ``"50:400:5kt"``.
+number in m/s, a quantity or text such as ``"50:400:5ktas"``. Numbers, m/s and knots (kt, ktas) are true airspeeds; an
+equivalent airspeed (keas) has a dimension of its own, since only the density of the air makes it a true one.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     import pint
 
 KNOT = 1852 / 3600  # m/s
+KTAS, KEAS = "KTAS", "KEAS"  # knots of true and of equivalent airspeed, as outputs name them
+SEA_LEVEL_DENSITY = 1.225  # kg/m³, ISO 2533: an equivalent airspeed has the dynamic pressure of this air
 
 _DEFINITIONS = """
 kilo- = 1e3 = k-
@@ -50,7 +53,8 @@ yard = 3 * foot = yd
 furlong = 220 * yard
 mile = 5280 * foot = mi
 nautical_mile = 1852 * meter = nmi
-knot = nautical_mile / hour = kt = kts
+knot = nautical_mile / hour = kt = kts = ktas = KTAS
+keas = [equivalent_airspeed] = _ = KEAS
 mph = mile / hour
 
 gram = [mass] = g
@@ -74,6 +78,8 @@ _MEANINGS = {
     "rad/m": ("an angle per length", '"-0.09 rad/ft"'),
     "m/rad": ("a length per angle", '"4.3 ft/rad"'),
     "m/s": ("a speed", '"300 kt"'),
+    "keas": ("an equivalent airspeed", '"250 keas"'),
+    "1/s": ("a rate of growth", '"-0.4 1/s"'),
     "rad/s": ("a rotational speed or frequency", '"458 rpm", "60 rad/s" or "9.5 Hz"'),
     "kg": ("a mass", '"4.1 slug"'),
     "kg*m": ("a first moment of mass", '"14 slug*ft"'),
@@ -96,6 +102,9 @@ LARGEST = 1e30  # of any quantity in SI: the product of several quantities must 
 _MOST_VALUES = 100_000_000
 _ANY_RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([0-9.eE+-]*[0-9.])\s*(.*?)\s*")
 _MOST_SPEEDS = 100_000
+_EQUIVALENT = re.compile(r"(?<![A-Za-z])(keas|KEAS)\b")
+_INDICATED = ("kcas", "kias")  # which a message must not take for a misspelt ktas
+_KNOTS = ("kt", "kts", "knot", "knots", "ktas", KTAS)
 
 # A unit is a product of names, each with at most a one-digit power: nothing else ever reaches a parser, so
 # no text can become a costly power such as 10**10**10.
@@ -243,39 +252,63 @@ def _rising(text: str, numbers: list[float], most: int, what: str, field: str = 
 # Airspeeds ----------------------------------------------------------------------------------------
 
 
-def in_metres_per_second(airspeed: Any) -> Array:
-    """Return an airspeed as an array in m/s.
+def in_metres_per_second(airspeed: Any, density: ArrayLike | None = None) -> Array:
+    """Return an airspeed as an array in m/s, true.
 
     Parameters
     ----------
     airspeed : float, array (...), text, pint quantity or xarray.DataArray
-        A bare number is in m/s and may be complex, for derivatives by a complex step; text such as "250 kt" (one
-        speed) or "50:400:5kt" (a list), quantities, lists of these, and data arrays with an attribute
-        ``units`` are converted.
+        A bare number is in m/s and may be complex, for derivatives by a complex step; text such as "250 ktas" (one
+        speed) or "50:400:5ktas" (a list), quantities, lists of these, and data arrays with an attribute
+        ``units`` are converted. The unit keas is an equivalent airspeed; every other unit of speed is a true airspeed.
+    density : float or array (...), optional
+        Density of the air, kg/m³, for equivalent airspeeds; an array broadcasts with the airspeeds.
 
     Returns
     -------
     array (...)
-        m/s; without axes for a single speed.
+        m/s; without axes for a single speed in air of one density.
 
     Raises
     ------
     InputError
-        When the value is not a speed.
+        When the value is not a speed, or an equivalent airspeed where the density is not known or zero.
     """
-    if isinstance(airspeed, str):
-        found = speeds(airspeed)
-        return found if ":" in airspeed else found.reshape(())
-    if has_own_unit(airspeed):
-        return values_in_si(airspeed, "m/s", "airspeed")
-    try:
-        return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)
-    except (TypeError, ValueError):
-        raise InputError("airspeed", airspeed, 'must be in m/s, or text such as "300 kt"') from None
+    if is_equivalent(airspeed):
+        equivalent = _metres_per_second(airspeed, "keas")
+        return np.asarray(equivalent * speed_factor(KEAS, density, airspeed))
+    return _metres_per_second(airspeed, "m/s")
 
 
-def speeds(text: str, field: str = "airspeed") -> NDArray[np.float64]:
-    """Return speeds in m/s from ``"300 kt"`` or from a range ``"50:400:5kt"``, start:stop:step, the stop included.
+def is_equivalent(airspeed: Any) -> bool:
+    """Return whether an airspeed is given in keas.
+
+    Raises
+    ------
+    InputError
+        For a list of which some airspeeds are equivalent and others true.
+    """
+    if isinstance(airspeed, list | tuple):
+        found = set(map(is_equivalent, airspeed))
+        if len(found) > 1:
+            raise InputError("airspeed", airspeed, "must be true airspeeds, or all of them keas")
+        return found == {True}
+    unit = getattr(airspeed, "attrs", {}).get("units") or getattr(airspeed, "units", "")
+    written = airspeed if isinstance(airspeed, str) else str(unit)
+    return bool(_EQUIVALENT.search(written))
+
+
+def speeds(text: str, field: str = "airspeed", density: ArrayLike | None = None) -> NDArray[np.float64]:
+    """Return true speeds in m/s from ``"300 ktas"`` or a range ``"50:400:5ktas"``, start:stop:step, the stop included.
+
+    Parameters
+    ----------
+    text : str
+        With the unit kt or ktas, keas, or any other unit of speed, which then is a true airspeed.
+    field : str
+        Name of the argument, for the message.
+    density : float, optional
+        Density of the air, kg/m³, for keas.
 
     Returns
     -------
@@ -287,11 +320,74 @@ def speeds(text: str, field: str = "airspeed") -> NDArray[np.float64]:
     InputError
         When the text is no speed or range of speeds, with the reason.
     """
+    if not is_equivalent(text):
+        return _written_speeds(text, field, "m/s")
+    found: NDArray[np.float64] = _written_speeds(text, field, "keas") * speed_factor(
+        KEAS, density, text, field
+    )
+    return found
+
+
+def speed_factor(
+    unit: str, density: ArrayLike | None = None, given: object = None, field: str = "airspeed"
+) -> Any:
+    """Return how many m/s of true airspeed a unit of airspeed is.
+
+    Parameters
+    ----------
+    unit : str
+        "kt", "ktas", "keas", "m/s", "mph", …
+    density : float or array (...), optional
+        Density of the air, kg/m³, for keas: V = EAS √(ρ0/ρ) with ρ0 = 1.225 kg/m³.
+    given, field : object, str
+        What the user wrote and where, for the message; by default the unit.
+
+    Returns
+    -------
+    float or array (...)
+        As the density.
+
+    Raises
+    ------
+    InputError
+        For another dimension than speed, and for keas where the density is not known or zero.
+    """
+    given = unit if given is None else given
+    if not is_equivalent(unit):
+        return factor_to_si(given, unit, "m/s")
+    if density is None or np.any(np.equal(density, 0)):
+        why = "has no meaning in a vacuum" if density is not None else "needs air of one density"
+        raise InputError(field, given, f'is an equivalent airspeed, which {why}: give a true one, "250 ktas"')
+    return KNOT * np.sqrt(SEA_LEVEL_DENSITY / np.asarray(density))[()]
+
+
+def airspeed_unit(unit: str) -> str:
+    """Return a unit of airspeed as outputs name it: KTAS or KEAS for knots, other units as they are."""
+    return KEAS if is_equivalent(unit) else KTAS if unit in _KNOTS else unit
+
+
+def _metres_per_second(airspeed: Any, unit: str) -> Array:
+    """Return an airspeed as an array in m/s or keas."""
+    if isinstance(airspeed, str):
+        found = _written_speeds(airspeed, "airspeed", unit)
+        return found if ":" in airspeed else found.reshape(())
+    if has_own_unit(airspeed):
+        return values_in_si(airspeed, unit, "airspeed")
+    try:
+        return np.asarray(airspeed, dtype=complex if np.iscomplexobj(airspeed) else float)
+    except (TypeError, ValueError):
+        raise InputError("airspeed", airspeed, 'must be in m/s, or text such as "300 ktas"') from None
+
+
+def _written_speeds(text: str, field: str, unit: str) -> NDArray[np.float64]:
+    """Return the speeds of a text in m/s or keas."""
     match = _RANGE_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None or ":" in match[4]:
         raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
+    if match[4].lower() in _INDICATED:
+        raise InputError(field, text, f"must be ktas or keas; {match[4]} is none of the units here")
     try:
-        factor = factor_to_si(text, match[4], "m/s")
+        factor = factor_to_si(text, match[4], unit)
         numbers = [_finite(text, float(number)) for number in match.group(1, 2, 3) if number]
         if numbers[0] < 0:
             raise InputError("", text, "must not be negative")
@@ -344,6 +440,8 @@ def _dimension_rule(written_unit: str, unit: str) -> str:
     """Return the rule that a quantity of another dimension breaks."""
     if not written_unit:
         return f"needs a unit; it is {meaning(unit)}"
+    if is_equivalent(written_unit) and unit == "m/s":
+        return 'is an equivalent airspeed; here must stand a true speed, such as "250 ktas"'
     # the most frequent mistake in US units
     hint = " (lb is a mass, lbf a force)" if "N" in unit and re.search(r"\blb\b", written_unit) else ""
     return f"must be {meaning(unit)}{hint}"

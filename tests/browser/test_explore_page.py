@@ -97,7 +97,7 @@ def focus(browser, name):
 
 
 def told_speed(browser):
-    return float(re.search(r"Flutter speed ([\d.]+) kt", readout(browser))[1])
+    return float(re.search(r"Flutter speed ([\d.]+) KTAS", readout(browser))[1])
 
 
 def test_a_slider_moved_with_the_keyboard_moves_curves_and_readout(page):

@@ -61,7 +61,7 @@ def test_instability_is_marked_and_its_airspeed_interpolated(table, expected):
     growth = expected.eigenvalue.sel(mode="chord").values.real
     i = np.flatnonzero((growth[:-1] < 0) & (growth[1:] > 0))[0]
     boundary = 300 + 20 * (i + growth[i] / (growth[i] - growth[i + 1]))
-    assert f"chord: unstable from about {boundary:.0f} kt (interpolated)" in table
+    assert f"chord: unstable from about {boundary:.0f} KTAS (interpolated)" in table
     assert "*" in next(line for line in table.splitlines() if line.strip().startswith("400"))
 
 
@@ -115,7 +115,7 @@ def test_csv_is_the_sweep(tmp_path):
     modes = case.sweep("0:200:100kt")
     assert len(rows) == modes.damping_ratio.size
     for row in rows:
-        point = modes.sel(mode=row["mode"]).isel(airspeed=int(float(row["airspeed (kt)"]) / 100))
+        point = modes.sel(mode=row["mode"]).isel(airspeed=int(float(row["airspeed (KTAS)"]) / 100))
         if point.reason.item():
             assert row["failure"] == point.reason.item()
             assert row["damping (% of critical)"] == row["Im s (rad/s)"] == row["frequency (per rev)"] == ""
@@ -163,7 +163,9 @@ def test_plot_is_not_blank(tmp_path):
 def test_airspeeds_are_shown_in_the_unit_they_were_given_in():
     for speed, unit, shown in (
         ("1e2:150:25 m/s", "m/s", ["100", "125", "150"]),
-        ("250.5kt", "kt", ["250.5"]),
+        ("250.5kt", "KTAS", ["250.5"]),
+        ("250.5 ktas", "KTAS", ["250.5"]),
+        ("250:260:5keas", "KEAS", ["250", "255", "260"]),
         ("360 km*h**-1", "km*h**-1", ["360"]),
     ):
         lines = run("sweep", "xv15-uncoupled", "--speed", speed).stdout.splitlines()

@@ -49,7 +49,7 @@ def boundaries():
 
 
 def test_the_mode_is_neutral_at_the_flutter_speed(boundaries):
-    speed = boundaries["flutter speed (kt)"]
+    speed = boundaries["flutter speed (KTAS)"]
     assert boundaries["flutter speed (m/s)"] == pytest.approx(speed * KT, rel=1e-12)
     assert boundaries["mode"] == "chord"
     assert abs(growth(speed)) < 1e-6
@@ -62,24 +62,24 @@ def test_boundaries_have_speed_frequency_mode_and_mechanism(boundaries):
     assert first["frequency (Hz)"] * 2 * np.pi == pytest.approx(
         first["frequency (per rev)"] * OMEGA, rel=1e-9
     )
-    modes = pp.load_case("xv15-uncoupled").sweep(f"{first['airspeed (kt)']!r} kt")
+    modes = pp.load_case("xv15-uncoupled").sweep(f"{first['airspeed (KTAS)']!r} kt")
     frequency = abs(modes.eigenvalue.sel(mode="chord").values.imag[0])
     assert first["frequency (Hz)"] * 2 * np.pi == pytest.approx(frequency, rel=1e-6)
     assert next(iter(first["mechanism"])) == "chord"
-    positions = [b["airspeed (kt)"] for b in boundaries["boundaries"]]
+    positions = [b["airspeed (KTAS)"] for b in boundaries["boundaries"]]
     assert positions == sorted(positions) and all(340 <= p <= 400 for p in positions)
 
 
 def test_the_margin_is_that_of_the_airspeed_given(boundaries):
     at = boundaries["at"]
     assert at["airspeed (m/s)"] == pytest.approx(350 * KT)
-    assert at["margin"] == pytest.approx(boundaries["flutter speed (kt)"] / 350 - 1)
+    assert at["margin"] == pytest.approx(boundaries["flutter speed (KTAS)"] / 350 - 1)
     assert at["modes beyond the level"] == 0
     for speed, count in (("390 kt", 1), ("300 kt", None)):
         again = document("flutter", "xv15-uncoupled", "--scan", SCAN, "--speed", speed)["at"]
         assert again["modes beyond the level"] == count, speed
         assert again["margin"] == pytest.approx(
-            boundaries["flutter speed (kt)"] * KT / again["airspeed (m/s)"] - 1
+            boundaries["flutter speed (KTAS)"] * KT / again["airspeed (m/s)"] - 1
         )
 
 
@@ -87,12 +87,14 @@ def test_the_table_of_boundaries(boundaries, tmp_path):
     file = tmp_path / "boundaries.csv"
     result = run("flutter", "xv15-uncoupled", "--scan", SCAN, "--speed", "350 kt", "--csv", file)
     assert result.exit_code == 0
-    speed = boundaries["flutter speed (kt)"]
-    assert f"Flutter speed {speed:.2f} kt (chord, flutter)." in result.stdout
-    assert f"Margin at 350 kt: {100 * (speed / 350 - 1):+.1f} % of that airspeed." in result.stdout
+    speed = boundaries["flutter speed (KTAS)"]
+    assert f"Flutter speed {speed:.2f} KTAS (chord, flutter)." in result.stdout
+    assert f"Margin at 350 KTAS: {100 * (speed / 350 - 1):+.1f} % of that airspeed." in result.stdout
     assert "not read in a source" in " ".join(result.stdout.split())
     rows = list(csv.DictReader(without_comments(file)))
-    assert [float(r["airspeed (kt)"]) for r in rows] == [b["airspeed (kt)"] for b in boundaries["boundaries"]]
+    assert [float(r["airspeed (KTAS)"]) for r in rows] == [
+        b["airspeed (KTAS)"] for b in boundaries["boundaries"]
+    ]
     assert rows[0]["mechanism"].startswith("chord ")
 
 
@@ -119,18 +121,18 @@ def test_flutter_in_another_unit_at_a_level_with_settings():
 def test_nothing_that_flutters_is_a_result_and_nothing_that_works_a_failure():
     stable = run("flutter", "xv15-uncoupled", "--scan", "200:260:20kt")
     assert stable.exit_code == 0
-    assert "No mode becomes unstable between 200 and 260 kt." in stable.stdout
+    assert "No mode becomes unstable between 200 and 260 KTAS." in stable.stdout
     found = document("flutter", "xv15-uncoupled", "--scan", "200:260:20kt")
-    assert found["flutter speed (kt)"] is None
+    assert found["flutter speed (KTAS)"] is None
     least, mode, at = (
         found[name]
         for name in (
             "least damping (% of critical)",
             "mode of the least damping",
-            "airspeed of the least damping (kt)",
+            "airspeed of the least damping (KTAS)",
         )
     )
-    told = f"The least damping there is {least:.2g} % of critical: {mode} at {at:.4g} kt."
+    told = f"The least damping there is {least:.2g} % of critical: {mode} at {at:.4g} KTAS."
     assert told in " ".join(stable.stdout.split())
     damping = pp.load_case("xv15-uncoupled").sweep("200:260:20kt").damping_ratio
     assert least == pytest.approx(100 * float(damping.min()), rel=1e-9)
@@ -147,20 +149,20 @@ def test_the_flutter_speed_moves_as_told():
         "sensitivity", "xv15-uncoupled", "--scan", SCAN, "--wrt", "rotor.precone", "--wrt", CHORD
     )
     by_input = {record["input"]: record for record in found["sensitivities"]}
-    speed = found["value (kt)"]
+    speed = found["value (KTAS)"]
     precone, chord = by_input["rotor.precone"], by_input[CHORD]
     assert (precone["unit"], chord["unit"]) == ("deg", "/rev")
     for text, record, step in (("rotor.precone={} deg", precone, 0.01), (f"{CHORD}={{}}/rev", chord, 0.001)):
         at = float(record["value"].removesuffix("deg").removesuffix("/rev"))
         ends = [
             document("flutter", "xv15-uncoupled", "--scan", SCAN, "--set", text.format(at + side * step))[
-                "flutter speed (kt)"
+                "flutter speed (KTAS)"
             ]
             for side in (-1, 1)
         ]
-        slope = record["derivative (kt per unit)"]
+        slope = record["derivative (KTAS per unit)"]
         assert (ends[1] - ends[0]) / (2 * step) == pytest.approx(slope, rel=1e-4)
-        assert record["for +1 % (kt)"] == pytest.approx(0.01 * at * slope, rel=1e-9)
+        assert record["for +1 % (KTAS)"] == pytest.approx(0.01 * at * slope, rel=1e-9)
     assert speed == pytest.approx(pp.load_case("xv15-uncoupled").flutter_point().speed / KT, rel=1e-9)
 
 
@@ -170,7 +172,7 @@ def test_the_damping_of_a_mode_moves_as_told(tmp_path):
     found = document(*arguments)
     result = run(*arguments, "--csv", file, "--top", 3)
     assert result.exit_code == 0
-    assert f"Damping {found['value (% of critical)']:.4g} % of critical at 300 kt (chord)" in result.stdout
+    assert f"Damping {found['value (% of critical)']:.4g} % of critical at 300 KTAS (chord)" in result.stdout
     assert "more inputs (--top 0)" in result.stdout
     changes = [abs(r["for +1 % (% of critical)"] or 0) for r in found["sensitivities"]]
     assert changes == sorted(changes, reverse=True) and len(changes) > 40
@@ -218,7 +220,7 @@ def test_attribution_sums_to_nothing_and_is_sorted(tmp_path):
     assert found["damping (% of critical)"] < 0 < found["Re s (rad/s)"]
     result = run(*arguments, "--csv", file)
     assert result.exit_code == 0
-    assert "chord at 390 kt" in result.stdout and "drives" in result.stdout and "damps" in result.stdout
+    assert "chord at 390 KTAS" in result.stdout and "drives" in result.stdout and "damps" in result.stdout
     rows = list(csv.DictReader(without_comments(file)))
     assert [r["origin"] for r in rows] == [origin["origin"] for origin in found["origins"]]
 
@@ -245,12 +247,12 @@ MAP = ("map", "xv15-uncoupled", "--x", "airspeed=360:390:10kt", "--y", "rotor.pr
 def test_a_map_says_where_it_is_stable(tmp_path):
     file = tmp_path / "map.csv"
     found = document(*MAP)
-    assert (found["x"], found["y"]) == ("airspeed (kt)", "rotor.precone (deg)")
-    assert [p["airspeed (kt)"] for p in found["points"][:4]] == [360, 370, 380, 390]
+    assert (found["x"], found["y"]) == ("airspeed (KTAS)", "rotor.precone (deg)")
+    assert [p["airspeed (KTAS)"] for p in found["points"][:4]] == [360, 370, 380, 390]
     for point in found["points"]:
         modes = pp.load_case(
             "xv15-uncoupled", {"rotor.precone": f"{point['rotor.precone (deg)']} deg"}
-        ).sweep(f"{point['airspeed (kt)']} kt")
+        ).sweep(f"{point['airspeed (KTAS)']} kt")
         largest = np.nanmax(modes.eigenvalue.values.real)
         assert point["largest growth (1/s)"] == pytest.approx(largest, rel=1e-6, abs=1e-8)
     for line in found["boundary"]:

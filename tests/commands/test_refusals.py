@@ -117,7 +117,13 @@ def test_motions_without_a_sum_need_one_number_of_blades():
 
 
 def test_a_frequency_that_a_function_gives_is_above_zero():
-    table = BladeFrequencies(against="airspeed", at=[0, 200], flap=lambda speed: 1.5 - speed / 100, lag=1.5)
+    table = BladeFrequencies(
+        at_rotor_speed=CASE.operation.rotor_speed,
+        against="airspeed",
+        at=[0, 200],
+        flap=lambda speed: 1.5 - speed / 100,
+        lag=1.5,
+    )
     rule = "must be above zero wherever a function gives them"
     told(
         lambda: CASE.linearize([100.0, 180.0], structure="tabulated", frequencies=table),

@@ -1,7 +1,7 @@
 """Blade frequencies and drive train of a deck: the same model as by the options of Python, to the last bit."""
 
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from proprotor.rotor.airfoil import Airfoil
 
 FREQUENCIES = """
 [rotor.frequencies]
+at_rotor_speed = "458 rpm"
 at = { value = [0, 20, 40, 60], unit = "deg" }
 flap = { value = [1.95, 1.9, 1.6, 1.4], status = "assumed", source = "a table" }
 lag = { value = [1.4, 1.5, 1.7, 1.9] }
@@ -22,6 +23,7 @@ cyclic_flap = 1.02
 """
 BY_SPEED = """
 [rotor.frequencies]
+at_rotor_speed = "458 rpm"
 against = "airspeed"
 at = { value = [0, 200, 400], unit = "kt" }
 flap = 1.9
@@ -34,14 +36,16 @@ drive_damping = "30 N*m*s/rad"
 shaft_stiffness = "4e4 N*m/rad"
 """
 KT = 1852 / 3600
+RPM_458 = 458 * (np.pi / 30)
 TABLE = pp.BladeFrequencies(
+    at_rotor_speed=RPM_458,
     at=[float(angle) * (np.pi / 180) for angle in (0, 20, 40, 60)],
     flap=[1.95, 1.9, 1.6, 1.4],
     lag=[1.4, 1.5, 1.7, 1.9],
     cyclic_flap=1.02,
 )
 TABLE_BY_SPEED = pp.BladeFrequencies(
-    against="airspeed", at=[0, 200 * KT, 400 * KT], flap=1.9, lag=[1.4, 1.5, 1.7]
+    at_rotor_speed=RPM_458, against="airspeed", at=[0, 200 * KT, 400 * KT], flap=1.9, lag=[1.4, 1.5, 1.7]
 )
 TRAIN = pp.DriveTrain(drive_inertia=20.0, drive_damping=30.0, shaft_stiffness=4e4)
 TABULATED = {"structure": "tabulated", "frequencies": TABLE}
@@ -91,12 +95,12 @@ def test_a_deck_gives_what_the_options_give(deck, sections, options):
 @pytest.mark.parametrize("flap", [[1.95, 1.9, 1.6, 1.4], 1.9, lambda pitch: 2 - pitch**2])
 def test_slopes_of_the_table_reach_a_complex_step(flap):
     """Boundaries are found by derivatives with the airspeed, which go through the trim's collective."""
-    table = pp.BladeFrequencies(at=TABLE.at, flap=flap, lag=TABLE.lag)
+    table = pp.BladeFrequencies(at_rotor_speed=RPM_458, at=TABLE.at, flap=flap, lag=TABLE.lag)
     angles = np.array([-0.1, 0.2, 0.5, 0.9, 1.2])  # at the ends the table is held
     step = 1e-6
 
     def at(collective):
-        return table.rotating(collective, np.zeros(5), 1.0)
+        return table.rotating(collective, np.zeros(5))
 
     analytic, high, low = at(angles + 1e-30j), at(angles + step), at(angles - step)
     for name, found in analytic.items():
@@ -184,6 +188,33 @@ def test_frequencies_are_no_inputs_that_vary(deck):
     assert pp.load_case(deck(FREQUENCIES)).sources["rotor.frequencies.flap"].source == "a table"
 
 
+@pytest.mark.parametrize("how", ["a setting", "a variant", "vary"])
+def test_their_springs_hold_at_another_rotor_speed(deck, tmp_path, how):
+    """Of the deck with that rotor speed from the start: the table keeps the rotor speed at which it was written."""
+    path, slower = deck(FREQUENCIES), 300 * (np.pi / 30)
+    if how == "a setting":
+        case = pp.load_case(path, {"operation.rotor_speed": "300 rpm"})
+    elif how == "a variant":
+        text = f'base = "{path.name}"\n[case]\nname = "slow"\n[operation]\nrotor_speed = "300 rpm"\n'
+        (tmp_path / "slow.toml").write_text(text)
+        case = pp.load_case(tmp_path / "slow.toml")
+    else:
+        case = pp.load_case(path).vary({"operation.rotor_speed": slower})
+    plain = pp.load_case("xv15-uncoupled").vary({"operation.rotor_speed": slower})
+    same(case.linearize([60.0, 120.0]), plain.linearize([60.0, 120.0], **TABULATED))
+    per_rev = pp.load_case(path, {"rotor.frequencies.at_rotor_speed": "300 rpm"})
+    other = per_rev.vary({"operation.rotor_speed": slower}).linearize(120.0)
+    assert not np.allclose(other.K, case.linearize(120.0).K, rtol=1e-3)
+
+
+def test_they_keep_the_pitch_coupling_of_the_springs_if_asked(deck):
+    keeping = 'pitch_coupling = "springs"\n'
+    case, plain = pp.load_case(deck(FREQUENCIES, keeping)), pp.load_case("xv15-uncoupled")
+    options = TABULATED | {"frequencies": replace(TABLE, pitch_coupling="springs")}
+    same(case.linearize(150.0), plain.linearize(150.0, **options))
+    assert not np.allclose(case.linearize(150.0).K, plain.linearize(150.0, **TABULATED).K, rtol=1e-3)
+
+
 def test_a_field_of_them_is_set(deck):
     case = pp.load_case(
         deck(BY_SPEED, DRIVE_TRAIN),
@@ -196,6 +227,23 @@ def test_a_field_of_them_is_set(deck):
 @pytest.mark.parametrize(
     ("sections", "told"),
     [
+        (
+            FREQUENCIES.replace("at_rotor_speed", "# at_rotor_speed"),
+            "rotor.frequencies.at_rotor_speed: is missing; frequencies per revolution hold at one rotor speed: "
+            'write at_rotor_speed = "458 rpm"',
+        ),
+        (
+            FREQUENCIES.replace('"458 rpm"', '"0 rpm"'),
+            "rotor.frequencies.at_rotor_speed = 0 rpm: must be positive",
+        ),
+        (
+            FREQUENCIES.replace('"458 rpm"', "458"),
+            "rotor.frequencies.at_rotor_speed = 458: needs a unit; it is a rotational speed",
+        ),
+        (
+            FREQUENCIES + 'pitch_coupling = "some"\n',
+            "rotor.frequencies.pitch_coupling = some: must be 'none' or 'springs'",
+        ),
         (
             FREQUENCIES.replace("flap = {", "flpa = {", 1),
             "rotor.frequencies.flpa = { … }: unknown field 'flpa'; did you mean flap?",

@@ -197,7 +197,7 @@ def test_moving_a_slider_moves_what_is_drawn_and_told(page, case):
     page.sliders["rotor.precone"].value = 4.0
     page.update()
     wanted = live_modes(case, page.airspeeds, {"rotor.precone": 4 * DEG})
-    assert f"{wanted.flutter.start / KT:.1f} kt ({wanted.flutter.mode})" in page.readout.text
+    assert f"{wanted.flutter.start / KT:.1f} KTAS ({wanted.flutter.mode})" in page.readout.text
     assert "precone 4 deg (deck 2.5)" in page.readout.text
     assert not np.array_equal(before, page.lines.data["damping"][1])
     page._reset()

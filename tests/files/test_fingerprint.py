@@ -299,7 +299,13 @@ def test_what_a_function_holds_counts(way):
 def test_the_published_case():
     """Frequencies by a bound method once gave the results of another table's."""
     one, other = (
-        replace(CASE, frequencies=pp.BladeFrequencies(flap=Table(v).curve, lag=1.5)) for v in (1.9, 1.1)
+        replace(
+            CASE,
+            frequencies=pp.BladeFrequencies(
+                at_rotor_speed=CASE.operation.rotor_speed, flap=Table(v).curve, lag=1.5
+            ),
+        )
+        for v in (1.9, 1.1)
     )
     assert fingerprint(one) != fingerprint(other)
 
@@ -450,7 +456,10 @@ def test_nothing_is_computed_of_a_study_whose_inputs_cannot_be_told(tmp_path, mo
     monkeypatch.setattr(Analysis, "__call__", lambda self, batch: pytest.fail("a point was computed"))
     held = closure(threading.Lock())
     case = replace(
-        CASE, frequencies=pp.BladeFrequencies(flap=lambda x: 1.2 + 0 * x + 0 * bool(held), lag=1.5)
+        CASE,
+        frequencies=pp.BladeFrequencies(
+            at_rotor_speed=CASE.operation.rotor_speed, flap=lambda x: 1.2 + 0 * x + 0 * bool(held), lag=1.5
+        ),
     )
     with pytest.raises(
         InputError, match=r"^checkpoint = _thread.lock: .* \(case → frequencies → flap → held → value\)"

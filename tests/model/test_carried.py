@@ -59,6 +59,9 @@ RESULTS = {
     "Case.sensitivity": lambda case, **o: case.sensitivity("damping", ["rotor.precone"], airspeed=AT, **o),
     "Case.attribution": lambda case, **o: case.attribution(AT, **o),
     "Case.stability_map": lambda case, **o: case.stability_map(MAP, **o),
+    "Case.boundary_against": lambda case, **o: case.boundary_against(
+        {"rotor.precone": [0.02, 0.03]}, SPEEDS, **o
+    ),
     "boundaries.boundaries": lambda case, **o: boundaries(case, SPEEDS, **o),
     "flutter.flutter_point": lambda case, **o: flutter.flutter_point(case, SPEEDS, **o),
     "sweep_case": lambda case, **o: sweep_case(case, [180.0], {"rotor.precone": [0.02, 0.03]}, **o),
@@ -210,7 +213,7 @@ OTHERWISE = {
     "locked": ("gimbal", "lag"),
     "pitch_flap_coupling": 0.1,
     "pitch_lag_coupling": -0.2,
-    "frequencies": pp.BladeFrequencies(flap=1.9, lag=1.2),
+    "frequencies": pp.BladeFrequencies(at_rotor_speed=CASE.operation.rotor_speed, flap=1.9, lag=1.2),
     "drive_train": pp.DriveTrain(drive_inertia=3.0),
 }
 
@@ -316,17 +319,37 @@ def same(value):
     ("given", "repeat"),
     [
         ({}, False),
-        ({"structure": "tabulated", "frequencies": pp.BladeFrequencies(flap=1.9, lag=1.2)}, False),
         (
             {
                 "structure": "tabulated",
                 "frequencies": pp.BladeFrequencies(
-                    flap=[1.9, 1.8], lag=1.2, at=[0.0, 1.0], against="collective"
+                    at_rotor_speed=CASE.operation.rotor_speed, flap=1.9, lag=1.2
                 ),
             },
             False,
         ),
-        ({"structure": "tabulated", "frequencies": pp.BladeFrequencies(flap=same, lag=1.2)}, True),
+        (
+            {
+                "structure": "tabulated",
+                "frequencies": pp.BladeFrequencies(
+                    at_rotor_speed=CASE.operation.rotor_speed,
+                    flap=[1.9, 1.8],
+                    lag=1.2,
+                    at=[0.0, 1.0],
+                    against="collective",
+                ),
+            },
+            False,
+        ),
+        (
+            {
+                "structure": "tabulated",
+                "frequencies": pp.BladeFrequencies(
+                    at_rotor_speed=CASE.operation.rotor_speed, flap=same, lag=1.2
+                ),
+            },
+            True,
+        ),
         ({"drive_train": pp.DriveTrain(drive_inertia=100.0, shaft_stiffness=1e4)}, False),
         ({"pitch": "coupling", "pitch_lag_coupling": [-0.1, -0.2]}, False),
         ({"pitch": "coupling", "pitch_lag_coupling": np.linspace(-0.1, -0.2, 40)}, True),
@@ -359,7 +382,8 @@ def test_what_a_deck_brings_is_in_force_and_its_numbers_are_its_fingerprint(name
 def test_frequencies_of_a_deck_are_options_in_force(tmp_path):
     deck = tmp_path / "tabulated.toml"
     deck.write_text(
-        'base = "xv15-uncoupled"\n[case]\nname = "tabulated"\ntitle = "T"\n[rotor.frequencies]\nflap = 1.9\nlag = 1.3\n'
+        'base = "xv15-uncoupled"\n[case]\nname = "tabulated"\ntitle = "T"\n'
+        '[rotor.frequencies]\nat_rotor_speed = "458 rpm"\nflap = 1.9\nlag = 1.3\n'
         '[drive_train]\ndrive_inertia = "100 kg*m**2"\n'
     )
     case = pp.load_case(deck)
@@ -438,18 +462,18 @@ def test_boundaries_are_as_doubtful_as_the_airspeeds_they_lie_at():
 
 SHOWN = {
     "sweep": (("--speed", SPEEDS), r"\n +360\? "),
-    "flutter": ((), r"\n{speed}\? .*Flutter speed {speed}\? kt"),
+    "flutter": ((), r"\n{speed}\? .*Flutter speed {speed}\? KTAS"),
     "map": (
         ("--x", "airspeed=300:400:50kt", "--y", "rotor.precone=1:2:1deg"),
         r"\n1 \. +[.#]\?.*boundary 1: .*\)\?",
     ),
-    "sensitivity": (("--wrt", "rotor.precone"), r"Flutter speed \d+(\.\d)?\? kt.*\d\? "),
+    "sensitivity": (("--wrt", "rotor.precone"), r"Flutter speed \d+(\.\d)?\? KTAS.*\d\? "),
     "attribution": (("--speed", AT, "--mode", "beam"), r"damping -?\d.*\? % of critical.*\d\? "),
     "study": (
         ("--vary", "rotor.precone=1:2:1 deg", "--speed", SPEEDS, "--flutter", "--workers", "1"),
         r"50 +\d+\.\d+\? +",
     ),
-    "report": (("--speed", "340:400:30kt"), r"Flutter speed {speed}\? kt"),
+    "report": (("--speed", "340:400:30kt"), r"Flutter speed {speed}\? KTAS"),
 }
 SET = ("--set", "operation.speed_of_sound=300 m/s", "--no-section-damping")
 
@@ -520,7 +544,7 @@ def test_pictures_say_case_options_and_doubts():
     text = " ".join(text.get_text().replace("\n", " ") for text in figure.texts)
     assert "Case xv15-uncoupled" in text and MACH in text
     motion = mode_motion.mode_motion(DOUBTFUL, at, "beam")
-    assert "at 380? kt" in title_of(motion)
+    assert "at 380? KTAS" in title_of(motion)
 
 
 def test_report_and_explorer_say_it(tmp_path):
@@ -543,7 +567,7 @@ def test_report_and_explorer_say_it(tmp_path):
     assert "lag" in row and "chosen" in row
     speeds = np.linspace(100, 440, 35) * KNOT
     live = live_modes(DOUBTFUL, speeds, **UNDAMPED)
-    assert re.search(r"Flutter speed 35\d\.\d\? kt", readout(live, {}, {}))
+    assert re.search(r"Flutter speed 35\d\.\d\? KTAS", readout(live, {}, {}))
     assert "? Doubtful from" in messages(live)
     assert "?" not in readout(live_modes(CASE, speeds, **UNDAMPED), {}, {})
 
@@ -577,10 +601,10 @@ def test_doubts_are_grouped_by_their_reason():
         "Mach": [3],
     }
     positions = np.array([10.0, 20.0, 30.0, 40.0])
-    told = list(footnotes(doubts_along(positions, warnings), "kt", 2.0))
+    told = list(footnotes(doubts_along(positions, warnings), "KTAS", 2.0))
     assert told == [
-        "Doubtful from 5 kt to 20 kt: induced velocity, neglected, would be up to 30% of the airspeed.",
-        "Doubtful at 20 kt: Mach.",
+        "Doubtful from 5 KTAS to 20 KTAS: induced velocity, neglected, would be up to 30% of the airspeed.",
+        "Doubtful at 20 KTAS: Mach.",
     ]
     assert [doubtful_near(positions, warnings, at) for at in (15.0, 25.0, 30.0, 35.0)] == [
         True,
@@ -662,7 +686,7 @@ def test_the_page_of_the_explorer_tells_the_options_as_they_are_switched():
 def test_that_nothing_flutters_is_as_doubtful_as_the_airspeeds_that_say_so():
     speeds = ("--scan", "300:350:10kt", "--speed", "345 kt", *SET, "--locked", "lag")
     result = CliRunner().invoke(main, ["flutter", "xv15-uncoupled", *speeds], env={"COLUMNS": "200"})
-    assert "No mode becomes unstable between 300 and 350? kt." in result.stdout, result.stdout
+    assert "No mode becomes unstable between 300 and 350? KTAS." in result.stdout, result.stdout
     assert re.search(r"The least damping there is [\d.]+\?? % of critical", result.stdout)
     assert "? Doubtful" in result.stdout and MACH in result.stdout
     document = json.loads(CliRunner().invoke(main, ["flutter", "xv15-uncoupled", *speeds, "--json"]).stdout)

@@ -175,7 +175,9 @@ def test_designs_with_and_without_a_shaft_flutter_in_company_as_they_do_alone():
         def flap(speed):
             return np.where((speed > gap[0]) & (speed < gap[1]), -1.0, 1.85)
 
-        return pp.BladeFrequencies(against="airspeed", at=[0, 300], flap=flap, lag=1.2)
+        return pp.BladeFrequencies(
+            at_rotor_speed=CASE.operation.rotor_speed, against="airspeed", at=[0, 300], flap=flap, lag=1.2
+        )
 
     alone = [
         CASE.vary({SHAFT: value}).flutter_point(speeds, frequencies=tabulated((0.0, 0.0)), **options)

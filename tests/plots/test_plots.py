@@ -65,7 +65,7 @@ def test_lines_are_the_numbers_of_the_sweep(case, sweep):
         np.testing.assert_allclose(points_of(above, mode), [airspeed, per_rev])
         np.testing.assert_allclose(points_of(below, mode), [airspeed, percent])
     assert below.get_ylim() == (-5, 20)
-    assert "kt" in below.get_xlabel()
+    assert "KTAS" in below.get_xlabel()
     assert "per rev" in above.get_ylabel()
     assert "critical" in below.get_ylabel()
 

@@ -84,7 +84,7 @@ def test_a_plot_goes_into_the_axes_given_and_returns_them(request, which):
     }[which]()
     assert drawn is right
     assert not left.patches
-    assert any(unit in right.get_xlabel() for unit in ("kt", "%"))
+    assert any(unit in right.get_xlabel() for unit in ("KTAS", "%"))
     assert plt.get_fignums() == [figure.number]
     if right.get_legend():
         texts = [text.get_text() for text in right.get_legend().get_texts()]
@@ -100,7 +100,7 @@ def test_sensitivity_bars_are_the_change_in_knots_for_a_percent_longest_on_top(s
     (bars,) = ax.containers
     assert names_of(ax)[::-1] == short_names(list(order))
     np.testing.assert_allclose(widths(bars)[::-1], expected[order])
-    assert f"flutter speed, {slopes.attrs['value'] / KNOT:.0f} kt" in ax.get_xlabel()
+    assert f"flutter speed, {slopes.attrs['value'] / KNOT:.0f} KTAS" in ax.get_xlabel()
     assert "+2 %" in ax.get_xlabel()
 
 
@@ -187,8 +187,8 @@ def test_a_distribution_shows_shares_and_percentiles_and_counts_the_rest(sampled
     np.testing.assert_allclose(verticals, expected)  # 99.9 % lies among designs above the range
     told = ax.get_title(loc="left")
     assert "199 designs" in told and "1 stable throughout" in told and "1 failed" in told
-    assert ax.get_xlabel() == "Flutter speed (kt)" and "%" in ax.get_ylabel()
-    assert plots.plot_distribution(sampled, unit="m/s").get_xlabel() == "Flutter speed (m/s)"
+    assert ax.get_xlabel() == "Flutter speed, KTAS" and "%" in ax.get_ylabel()
+    assert plots.plot_distribution(sampled, unit="m/s").get_xlabel() == "Flutter speed (m/s, true)"
 
 
 def test_sobol_bars_have_shares_and_intervals_the_largest_on_top(indices):

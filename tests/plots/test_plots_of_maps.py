@@ -58,7 +58,7 @@ def test_a_map_goes_into_the_axes_given_with_units_on_both(found):
     _, (left, right) = plt.subplots(1, 2)
     assert plots.plot_stability_map(found, right, units={STIFFNESS: "ft*lbf/rad"}) is right
     assert not left.lines
-    assert right.get_xlabel() == "Airspeed (kt)"
+    assert right.get_xlabel() == "Airspeed, KTAS"
     assert right.get_ylabel() == "Control stiffness (ft·lbf/rad)"
     np.testing.assert_allclose(right.get_xlim(), (100, 440))
     with pytest.raises(pp.InputError):

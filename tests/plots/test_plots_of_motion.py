@@ -129,7 +129,7 @@ def test_the_title_has_the_numbers_of_the_sweep(case, sweep):
     motion = mode_motion(case, SPEED, "chord")
     chosen = sweep.sel(mode="chord")
     hertz = float(chosen.frequency) / (2 * np.pi)
-    assert f"chord at 350 kt: {hertz:.2f} Hz" in title_of(motion)
+    assert f"chord at 350 KTAS: {hertz:.2f} Hz" in title_of(motion)
     assert f"damping {100 * float(chosen.damping_ratio):.2f} %" in title_of(motion)
 
 

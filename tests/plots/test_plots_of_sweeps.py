@@ -87,7 +87,7 @@ def test_markers_of_a_root_locus_stand_at_round_speeds_and_grow(sweep):
             marks.get_offsets(), np.column_stack([roots.real, np.abs(roots.imag)]), atol=1e-6
         )
         assert all(small < large for small, large in pairwise(marks.get_sizes()))
-    assert "every 100, growing from 100 to 400 kt" in ax.get_title(loc="left")
+    assert "every 100, growing from 100 to 400 KTAS" in ax.get_title(loc="left")
 
 
 def test_rays_of_a_root_locus_have_the_damping_ratio_they_tell(sweep):
@@ -174,7 +174,7 @@ def test_failed_points_are_gaps_everywhere(case):
         np.isnan(np.ma.filled(locus.collections[0].get_offsets(), np.nan)).any(axis=1).sum() == failed.sum()
     )
     at = plots.plot_participation(failing, "beam")
-    assert [text.get_text() for text in at.get_legend().get_texts()] == ["100 kt", "500 kt"]
+    assert [text.get_text() for text in at.get_legend().get_texts()] == ["100 KTAS", "500 KTAS"]
     still = case.sweep("0 kt", vary={"operation.rotor_speed": np.array([40.0, 50.0])})
     ax = plots.plot_campbell(still)
     assert "could not be analysed" in ax.get_xlabel()
@@ -190,7 +190,7 @@ def test_participation_bars_are_the_shares_of_the_sweep(sweep):
         assert drawn["chord"] == pytest.approx(100 * float(share.sel(dof="chord")))
         assert drawn["lag 1s"] == pytest.approx(100 * float(share.sel(dof="lag_1s")))
         assert sum(drawn.values()) == pytest.approx(100)
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["200 kt", "400 kt"]
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["200 KTAS", "400 KTAS"]
     assert "%" in ax.get_xlabel()
 
 

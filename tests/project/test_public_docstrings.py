@@ -286,6 +286,9 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "Case.sensitivity": lambda case, **more: case.sensitivity(airspeed=SPEEDS, **more),
     "Case.attribution": lambda case, **more: case.attribution(150.0, **more),
     "Case.stability_map": lambda case, **more: case.stability_map(AXES, **more),
+    "Case.boundary_against": lambda case, **more: case.boundary_against(
+        {"rotor.precone": [0.01, 0.04]}, SPEEDS, **more
+    ),
     "rotor_model": lambda case, **more: pp.rotor_model(case.rotor, case.operation, 150.0, **more),
     "study": lambda case, **more: pp.study(case, {"rotor.precone": [0.01]}, 150.0, **more),
     "attribution.attribution": lambda case, **more: attribution(case, 150.0, **more),

@@ -39,30 +39,32 @@ def test_the_margin_at_an_airspeed_is_told_in_words():
     speed = found.speed * 3600 / 1852
 
     def at(knots):
-        return list(verdict(found, knots / 3600 * 1852, "kt", 1852 / 3600))
+        return list(verdict(found, knots / 3600 * 1852, "KTAS", 1852 / 3600))
 
     assert at(250) == [
-        f"Flutter speed {speed:.2f} kt ({found.mode}, flutter).",
-        f"Margin at 250 kt: {100 * (speed / 250 - 1):+.1f} % of that airspeed.",
+        f"Flutter speed {speed:.2f} KTAS ({found.mode}, flutter).",
+        f"Margin at 250 KTAS: {100 * (speed / 250 - 1):+.1f} % of that airspeed.",
     ]
     modes = CASE.sweep(np.array([430.0]) * 1852 / 3600)
     count = int((modes.damping_ratio < 0).sum())
-    told = f"At 430 kt {count} mode{'s are' if count > 1 else ' is'} unstable."
+    told = f"At 430 KTAS {count} mode{'s are' if count > 1 else ' is'} unstable."
     assert count and told in at(430)
-    assert "500 kt lies outside the range searched, 240 to 440 kt." in at(500)
+    assert "500 KTAS lies outside the range searched, 240 to 440 KTAS." in at(500)
 
 
 def test_a_flutter_point_says_the_speed_in_knots_and_all_boundaries():
     found = CASE.flutter_point("100:440:20kt")
     told = repr(found)
     knots = found.speed * 3600 / 1852
-    assert f"{knots:.2f} kt" in told and "flutter of chord" in told
+    assert f"{knots:.2f} KTAS" in told and "flutter of chord" in told
     assert f"{found.frequency / (2 * math.pi):.4g} Hz" in told
     assert len(told.splitlines()) >= len(found.boundaries)
     undamped = repr(CASE.flutter_point("100:440:20kt", section_damping=False))
     assert "from the start beyond the level: progressive pitch" in undamped
     nothing = repr(CASE.flutter_point("200:240:20kt"))
-    assert nothing.startswith("FlutterPoint: nothing becomes unstable between 200 and 240 kt; least damping ")
+    assert nothing.startswith(
+        "FlutterPoint: nothing becomes unstable between 200 and 240 KTAS; least damping "
+    )
     least = CASE.sweep("200:240:20kt").damping_ratio
     assert f"least damping {100 * float(least.min()):.2g} % of critical: " in nothing
     assert "3 % counts" in repr(CASE.flutter_point("300:440:20kt", level=0.03))

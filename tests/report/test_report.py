@@ -101,14 +101,14 @@ def test_the_boundaries_are_those_of_flutter_point(page, written, case):
         [boundary.position / KT for boundary in point.boundaries], abs=0.006
     )
     hertz = point.frequency / (2 * np.pi)
-    assert f"Flutter speed {point.speed / KT:.2f} kt: chord, flutter, at {hertz:.3f} Hz" in page.text
+    assert f"Flutter speed {point.speed / KT:.2f} KTAS: chord, flutter, at {hertz:.3f} Hz" in page.text
     assert written[1]["flutter speed (m/s)"] == pytest.approx(point.speed, rel=1e-9)
 
 
 def test_the_tables_of_modes_are_those_of_sweep(page, case):
     modes = case.sweep(SPEEDS)
     damping, frequency = table(page, "Damping"), table(page, "Frequency")
-    assert damping[0] == ["mode", "340 kt", "360 kt", "380 kt", "400 kt"]
+    assert damping[0] == ["mode", "340 KTAS", "360 KTAS", "380 KTAS", "400 KTAS"]
     names = [row[0] for row in damping[1:]]
     assert names == [row[0] for row in frequency[1:]] == modes.mode.values.tolist()
     chord = dict(zip(names, damping[1:], strict=True))["chord"]
@@ -207,7 +207,7 @@ def test_a_case_that_does_not_flutter_is_reported(tmp_path):
     place = tmp_path / "calm.html"
     result = run("xv15-uncoupled", "--speed", "250:300:25kt", "--out", place)
     assert result.exit_code == 0
-    assert "No mode becomes unstable between 250 and 300 kt." in result.stdout
+    assert "No mode becomes unstable between 250 and 300 KTAS." in result.stdout
     page = Page(place.read_text(encoding="utf-8"))
     assert "Nothing becomes unstable" in page.text
     assert any(name.startswith("Exact derivatives of the damping") for name in page.tables)

@@ -189,7 +189,7 @@ def test_a_harmonic_shifts_the_frequency_of_a_blade(n_blades):
     operation = pp.Operation(rotor_speed=speed, density=0.0, speed_of_sound=340.0, trim={"collective": 0.3})
     given = {
         "structure": "tabulated",
-        "frequencies": pp.BladeFrequencies(flap=flap, lag=lag, cyclic_flap=1.9),
+        "frequencies": pp.BladeFrequencies(at_rotor_speed=speed, flap=flap, lag=lag, cyclic_flap=1.9),
     }
     model = pp.rotor_model(flat, operation, 0.0, airloads="none", pitch="rigid", reactionless=True, **given)
     beyond = [dof for dof in model.dofs if dof not in DOFS]

@@ -279,6 +279,9 @@ def _in_units(datum, units):
         values, unit = units(np.array(datum.si), datum.unit)
         stations = "y_over_span" if datum.unit in ("N*m**2", "N", "kg*m**2/m") else "r_over_R"
         return {stations: list(datum.r_over_R), "value": np.asarray(values).tolist(), "unit": unit}
+    if isinstance(datum.si, tuple):  # a table of blade frequencies, or its abscissae
+        values, unit = units(np.array(datum.si), datum.unit)
+        return {"value": values.tolist()} | ({"unit": unit} if datum.unit else {})
     if not datum.unit or isinstance(datum.si, str):
         return datum.si
     value, unit = units(datum.si, datum.unit)

@@ -18,5 +18,5 @@ def test_no_points_have_no_loads(scales, plain):
     sections = BladeSections.of(rotor, np.shape(scales)).take(np.zeros(0, dtype=int))
     segments = {name: np.zeros((0, 1)) for name in section_loads._needed(airloads)}
     segments |= dict.fromkeys(list(segments)[:plain], np.float64(1.0))
-    found = section_loads.load_moments(sections, segments)
-    assert {np.shape(moment)[0] for moment in found.values() if np.ndim(moment)} == {0}
+    found = section_loads.load_moments(sections, segments, compressibility=True)
+    assert {np.shape(moment)[:1] for moment in found.values()} <= {(), (0,)}

@@ -18,12 +18,15 @@ from tests.rotors import Flight, random_support
 from tests.stability.test_root_error import exact_roots
 
 KNOT = 1852 / 3600
+RPM_458 = 458 * (np.pi / 30)
 STIFFNESS, PRECONE = "rotor.control_stiffness", "rotor.precone"
 PLAIN = {"section_damping": False}
 TABULATED = {
     "section_damping": False,
     "structure": "tabulated",
-    "frequencies": pp.BladeFrequencies(against="airspeed", at=[0, 300], flap=1.85, lag=[1.3, 1.4]),
+    "frequencies": pp.BladeFrequencies(
+        at_rotor_speed=RPM_458, against="airspeed", at=[0, 300], flap=1.85, lag=[1.3, 1.4]
+    ),
 }
 
 

@@ -226,7 +226,7 @@ def test_whirl_in_the_fixed_frame_and_in_the_rotating_one(ratio):
         rotor_speed="constant",
         locked=("lag", "gimbal"),
         structure="tabulated",
-        frequencies=pp.BladeFrequencies(flap=ratio, lag=2.0),
+        frequencies=pp.BladeFrequencies(at_rotor_speed=OMEGA, flap=ratio, lag=2.0),
     ).submodel(("flap_0", "flap_1c", "flap_1s"))
     modes = sweep(model).isel(airspeed=0)
     assert modes.mode.values.tolist() == ["coning", "regressive flap", "progressive flap"]

@@ -312,7 +312,13 @@ def test_a_design_whose_search_meets_a_bad_input_spoils_no_other():
         return lambda speed: np.where((speed > gap[0]) & (speed < gap[1]), -1.0, 1.85)
 
     def analysed(gap):
-        table = pp.BladeFrequencies(against="airspeed", at=[0, 300], flap=flap(gap), lag=1.2)
+        table = pp.BladeFrequencies(
+            at_rotor_speed=CASE.operation.rotor_speed,
+            against="airspeed",
+            at=[0, 300],
+            flap=flap(gap),
+            lag=1.2,
+        )
         return study(CASE, inputs, "160:460:20kt", "flutter", frequencies=table, workers=1, **options)
 
     whole = analysed((0.0, 0.0))

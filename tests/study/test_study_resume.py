@@ -371,7 +371,9 @@ def test_a_study_of_other_functions_is_another(tmp_path):
     """Frequencies by methods of two objects: the second call once returned the results of the first."""
 
     def of(value):
-        table = pp.BladeFrequencies(flap=Lead(value).curve, lag=1.5)
+        table = pp.BladeFrequencies(
+            at_rotor_speed=CASE.operation.rotor_speed, flap=Lead(value).curve, lag=1.5
+        )
         return replace(CASE, frequencies=table)
 
     inputs = {"inputs": {PRECONE: [0.03]}, "airspeed": 100.0, "structure": "tabulated"}

@@ -41,7 +41,7 @@ ROOTS = [[-3 + 4j, 1e-7 + 20j], [1 + 10j, NAN]]
 def test_a_record_for_each_airspeed_and_mode():
     first, neutral, growing, missing = SweepTable(swept(ROOTS, ["", ""]), 40.0).records()
     assert json.loads(json.dumps(first)) == {
-        "airspeed (kt)": 50,
+        "airspeed (KTAS)": 50,
         "airspeed (m/s)": pytest.approx(50 * 1852 / 3600),
         "mode": "beam",
         "share of its motion": 0.75,
@@ -63,7 +63,7 @@ def test_a_record_for_each_airspeed_and_mode():
 def test_airspeeds_that_all_failed_have_one_record_each_without_a_mode():
     nothing = swept(np.empty((2, 0), dtype=complex), ["no trim", "no trim"])
     records = list(SweepTable(nothing, 40.0).records())
-    assert [one["airspeed (kt)"] for one in records] == [50, 100]
+    assert [one["airspeed (KTAS)"] for one in records] == [50, 100]
     assert all(one["mode"] is None and one["Im s (rad/s)"] is None for one in records)
     assert all(one["failure"] == "no trim" for one in records)
 
@@ -71,7 +71,7 @@ def test_airspeeds_that_all_failed_have_one_record_each_without_a_mode():
 def test_csv_has_a_row_for_each_record():
     table = SweepTable(swept(ROOTS, ["", ""]), 40.0)
     rows = list(csv.DictReader(table.csv().decode().splitlines()))
-    assert [(row["airspeed (kt)"], row["mode"]) for row in rows] == [
+    assert [(row["airspeed (KTAS)"], row["mode"]) for row in rows] == [
         ("50.0", "beam"),
         ("50.0", "lag"),
         ("100.0", "beam"),
@@ -83,7 +83,7 @@ def test_csv_has_a_row_for_each_record():
 def test_the_verdict_says_where_a_mode_is_unstable():
     """Re s of the beam goes from -3 to 1: it is zero at three quarters of the way, beside a doubtful airspeed."""
     verdict = SweepTable(swept(ROOTS, ["", ""]), 40.0).verdict()
-    assert verdict == ["beam: unstable from about 87.5 kt? (interpolated)"]
+    assert verdict == ["beam: unstable from about 87.5 KTAS? (interpolated)"]
 
 
 def test_the_heading_of_a_table_is_title_and_rotor_speed():

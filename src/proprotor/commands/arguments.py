@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from typing import Any, NamedTuple
 
@@ -21,7 +21,8 @@ from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
-from proprotor.units import speeds, to_si
+from proprotor.tables.points import Points, Quantity, read_points
+from proprotor.units import airspeed_unit, speeds, to_si
 
 Command = Callable[..., Any]
 Option = Callable[[Command], Command]  # a decorator
@@ -32,6 +33,11 @@ Exit codes:
   1  no speed could be analysed, or an output could not be written
   2  an input cannot be used: the message says which and why
   130  interrupted (Ctrl-C)"""
+
+# Quantities that a file of `--points` may have, in any unit.
+AIRSPEED = Quantity("airspeed", "m/s", 1.0, {"keas": 1.0})
+FREQUENCY = Quantity("frequency", "rad/s", 1.0, {"per rev": 1.0})
+DAMPING = Quantity("damping", "", 1.0)
 
 _NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
 _MODEL = (*CHOICES, *_NUMBERS, "locked")  # the options of the model, in the order in which results list them
@@ -202,6 +208,29 @@ def scan_option(command: Command) -> Command:
     return click.option("--scan", metavar="RANGE", help=scan_help)(command)
 
 
+def points_option(command: Command) -> Command:
+    """Add `--points`, a file of points to draw; `points_of` reads it."""
+    points_help = 'CSV file of points to draw beside the results: "airspeed [ktas], damping [%], label".'
+    return click.option("--points", metavar="FILE", help=points_help)(command)
+
+
+def points_of(path: str | None, plot: str | None, across: Quantity, up: Sequence[Quantity]) -> Points | None:
+    """Return the points of the file of `--points` for a plot with some axes; None without a file.
+
+    Raises
+    ------
+    InputError
+        Without `--plot`, and as `read_points` and `Points.check` of `proprotor.tables.points`.
+    """
+    if path is None:
+        return None
+    if plot is None:
+        raise InputError("--points", path, "goes with --plot")
+    points = read_points(path, "--points")
+    points.check(across, up, "--points")
+    return points
+
+
 def range_option(meaning: str, *, required: bool = False) -> Option:
     """Return `--speed` for a command that takes a range of airspeeds; `meaning` is the help."""
     return click.option("--speed", required=required, metavar="RANGE", help=meaning)
@@ -236,15 +265,15 @@ def _level_of(text: str) -> float:
     return level
 
 
-def one_speed(text: str) -> float:
-    """Return the single airspeed of `--speed`, m/s.
+def one_speed(text: str, case: Case) -> float:
+    """Return the single airspeed of `--speed` in the air of a case, m/s, true.
 
     Raises
     ------
     InputError
         For a text that is not exactly one airspeed.
     """
-    found = speeds(text, "--speed")
+    found = speeds(text, "--speed", case.operation.density)
     if len(found) != 1:
         raise InputError("--speed", text, 'must be one speed, such as "300 kt"')
     return float(found[0])
@@ -253,6 +282,12 @@ def one_speed(text: str) -> float:
 def unit_of(text: str) -> str:
     """Return the unit of a value or range, as written; "" without a unit."""
     return _RANGE.sub("", text, count=1).strip()
+
+
+def written_speed(text: str) -> str:
+    """Return an airspeed of the command line with its unit as outputs name it: "350 KTAS" for "350kt"."""
+    unit = unit_of(text)
+    return f"{text.strip().removesuffix(unit).strip()} {airspeed_unit(unit)}"
 
 
 def model_options(command: Command) -> Command:

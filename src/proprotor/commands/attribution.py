@@ -37,7 +37,8 @@ def attribution(request: arguments.Request, outputs: output.Outputs, speed: str,
     """
     from proprotor.plots import plot_attribution  # here, so that --help answers without it
 
-    airspeed, case = arguments.one_speed(speed), request.load()
+    case = request.load()
+    airspeed = arguments.one_speed(speed, case)
     with waiting("Analysing"):
         found = _least_damped(case.attribution(airspeed, mode, **request.options))
     records = _records(found)
@@ -85,7 +86,8 @@ def _print(case: Case, found: Dataset, records: list[dict[str, Any]], speed: str
     doubt = found.warning.item()
     damping = f"damping {marked(f'{-100 * value.real / abs(value):.3g}', doubt)} % of critical"
     frequency = f"{marked(f'{abs(value.imag) / float(case.operation.rotor_speed):.3f}', doubt)} per rev"
-    out.print(f"{found.mode.values[0]} at {speed.strip()}: {frequency}, {damping}", style="bold")
+    mode = f"{found.mode.values[0]} at {arguments.written_speed(speed)}"
+    out.print(f"{mode}: {frequency}, {damping}", style="bold")
     rows = (
         (origin, *(marked(f"{n:+.4f}", doubt) for n in numbers), "drives" if numbers[0] > 0 else "damps")
         for origin, *numbers, _ in map(dict.values, records)

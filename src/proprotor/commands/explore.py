@@ -53,10 +53,10 @@ def explore(
     """
     need("bokeh", "explore", "the page", "explore")
     need("tornado", "explore", "the page", "explore")
-    airspeeds = None if speed is None else np.unique(speeds(speed, "--speed"))
+    case = request.load()
+    airspeeds = None if speed is None else np.unique(speeds(speed, "--speed", case.operation.density))
     if airspeeds is not None and len(airspeeds) < 2:
         raise InputError("--speed", speed, "must be a range of airspeeds")
-    case = request.load()
     with waiting("Making the page"):
         # Here, because bokeh takes long to import and may not be installed.
         from proprotor.explore.analysis import live_modes

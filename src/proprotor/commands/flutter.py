@@ -17,13 +17,14 @@ from proprotor.stability.flutter_messages import (
     COLUMNS,
     boundary_record,
     boundary_row,
+    equivalent,
     failed_records,
     mechanism_message,
     modes_beyond,
     verdict,
 )
 from proprotor.tables.csv_text import csv_of
-from proprotor.units import KNOT, factor_to_si, speeds
+from proprotor.units import KNOT, airspeed_unit, speed_factor, speeds
 
 
 @arguments.command(short_help="Find flutter and divergence boundaries, and the margin.")
@@ -51,11 +52,11 @@ def flutter(
       proprotor flutter xv15 --speed "160 kt" --level "3 %"
       proprotor flutter my.toml --set rotor.precone="1.5 deg" --json
     """
-    airspeeds = None if scan is None else speeds(scan, "--scan")
-    at = None if speed is None else arguments.one_speed(speed)
+    case = request.load()
+    airspeeds = None if scan is None else speeds(scan, "--scan", case.operation.density)
+    at = None if speed is None else arguments.one_speed(speed, case)
     if at == 0:
         raise InputError("--speed", speed, "must be above zero")
-    case = request.load()
     with waiting("Looking for boundaries"):
         found = case.flutter_point(airspeeds, level=level, **request.options)
     records = [boundary_record(boundary, case) for boundary in found.boundaries]
@@ -73,7 +74,8 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
         "level (damping ratio)": found.level,
         "searched (m/s)": list(found.searched),
         "not analysed": failed_records(found),
-        "flutter speed (kt)": found.speed / KNOT,
+        "flutter speed (KTAS)": found.speed / KNOT,
+        "flutter speed (KEAS)": equivalent(found.speed, found.stamp),
         "flutter speed (m/s)": found.speed,
         "mode": found.mode or None,
         "kind": found.kind or None,
@@ -81,7 +83,7 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
         "beyond the level at the lowest airspeed": list(found.unstable_at_start),
         "least damping (% of critical)": 100 * found.least_damping,
         "mode of the least damping": found.least_damping_mode or None,
-        "airspeed of the least damping (kt)": found.least_damping_speed / KNOT,
+        "airspeed of the least damping (KTAS)": found.least_damping_speed / KNOT,
         "airspeed of the least damping (m/s)": found.least_damping_speed,
         "warning of the least damping": doubt_at(found.doubts, found.least_damping_speed),
         "boundaries": records,
@@ -101,7 +103,7 @@ def _print(
     case: Case, found: FlutterPoint, records: list[dict[str, Any]], at: float | None, unit: str
 ) -> None:
     output.print_head(case, found.stamp)
-    factor = factor_to_si(unit, unit, "m/s")
+    unit, factor = airspeed_unit(unit), float(speed_factor(unit, case.operation.density))
     if not math.isfinite(found.searched[0]):
         output.console().print("No airspeed could be analysed.", style="bold")
         for stretch in found.failed:

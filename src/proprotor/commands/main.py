@@ -14,6 +14,7 @@ import click
 
 from proprotor.commands.arguments import EXIT_CODES
 from proprotor.commands.attribution import attribution
+from proprotor.commands.boundary import boundary
 from proprotor.commands.cases import cases
 from proprotor.commands.describe import describe
 from proprotor.commands.explore import explore
@@ -112,6 +113,6 @@ def main() -> None:
     """
 
 
-_ANALYSES = (sweep, flutter, stability_map, sensitivity, attribution, report, explore, study)
+_ANALYSES = (sweep, flutter, boundary, stability_map, sensitivity, attribution, report, explore, study)
 for _command in (cases, new, describe, *_ANALYSES):
     main.add_command(_command)

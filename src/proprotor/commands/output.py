@@ -24,7 +24,7 @@ from proprotor.model.provenance import reservations
 from proprotor.rotor.options import CHOICES, parse_options
 from proprotor.tables.sweep_table import heading
 from proprotor.typing import Axes, Figure
-from proprotor.units import KNOT
+from proprotor.units import KNOT, KTAS
 
 if TYPE_CHECKING:
     from proprotor.commands.terminal import PlainConsole
@@ -172,7 +172,7 @@ def print_footnotes(sentences: Iterable[str]) -> None:
         console().print(f"{MARK} {sentence}", style="yellow")
 
 
-def print_doubts(doubts: Iterable[Doubt], unit: str = "kt", factor: float = KNOT) -> None:
+def print_doubts(doubts: Iterable[Doubt], unit: str = KTAS, factor: float = KNOT) -> None:
     """Print the footnotes of doubts along airspeeds in a unit of speed; `factor` is that unit in m/s."""
     print_footnotes(footnotes(doubts, unit, factor))
 

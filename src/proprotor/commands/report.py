@@ -54,8 +54,8 @@ def report(request: arguments.Request, speed: str | None, out: str | None, pdf: 
     # Here, because the packages behind a report take long to import.
     from proprotor.report import analyse, html_of, pdf_of, report_document
 
-    date, airspeeds = _date(), None if speed is None else speeds(speed, "--speed")
-    case = request.load()
+    date, case = _date(), request.load()
+    airspeeds = None if speed is None else speeds(speed, "--speed", case.operation.density)
     places = _places(out or f"{case.name}-report.html", pdf)
     for place in places:
         output.check_writable("--out", place)

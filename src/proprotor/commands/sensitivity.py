@@ -20,7 +20,7 @@ from proprotor.tables.sensitivity_summary import (
     sensitivity_row,
 )
 from proprotor.typing import Dataset
-from proprotor.units import KNOT, speeds
+from proprotor.units import KNOT, KTAS, speeds
 
 
 @arguments.command(short_help="Show how each input moves the flutter speed or a damping.")
@@ -74,7 +74,8 @@ def sensitivity(
     """
     from proprotor.plots import plot_sensitivity  # here, so that --help answers without it
 
-    where, case = _where(of, speed, scan, level), request.load()
+    case = request.load()
+    where = _where(case, of, speed, scan, level)
     with waiting("Deriving"):
         found = _one_mode(case.sensitivity(of, wrt or None, mode=mode, **where, **request.options))
     records = sensitivity_records(case, found, of)
@@ -86,7 +87,7 @@ def sensitivity(
     )
 
 
-def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[str, Any]:
+def _where(case: Case, of: str, speed: str | None, scan: str | None, level: float) -> dict[str, Any]:
     """Return the arguments of `Case.sensitivity` that give the airspeed, or the range of the search for flutter."""
     if of == "damping":
         for option, given in (("--scan", scan), ("--level", level or None)):
@@ -94,10 +95,11 @@ def _where(of: str, speed: str | None, scan: str | None, level: float) -> dict[s
                 raise InputError(option, given, "goes with --of flutter_speed")
         if speed is None:
             raise InputError("--speed", None, 'must be given for the damping, such as "300 kt"')
-        return {"airspeed": arguments.one_speed(speed)}
+        return {"airspeed": arguments.one_speed(speed, case)}
     if speed is not None:
         raise InputError("--speed", speed, "goes with --of damping; --scan is the range of the search")
-    return {"airspeed": None if scan is None else speeds(scan, "--scan"), "level": level}
+    searched = None if scan is None else speeds(scan, "--scan", case.operation.density)
+    return {"airspeed": searched, "level": level}
 
 
 def _one_mode(found: Dataset) -> Dataset:
@@ -134,7 +136,7 @@ def _print(case: Case, found: Dataset, records: list[dict[str, Any]], of: str, t
     read_in, factor = READ_IN[of]
     mode, airspeed, value = _point(found, of)
     number = marked(f"{value / factor:.4g}", found.warning.item())
-    at = f" at {airspeed / KNOT:.4g} kt" if of == "damping" else ""
+    at = f" at {airspeed / KNOT:.4g} {KTAS}" if of == "damping" else ""
     out.print(f"{of.replace('_', ' ').capitalize()} {number} {read_in}{at} ({mode})", style="bold")
     shown = records[: top or None]
     columns = ("input", "value", f"{read_in} per unit", "unit", f"{read_in} for +1 %")

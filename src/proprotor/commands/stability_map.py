@@ -12,11 +12,13 @@ from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
+from proprotor.model import stamp
 from proprotor.model.doubts import MARK, map_doubts, marked
 from proprotor.study.sampling import grid
 from proprotor.tables.csv_text import csv_of
+from proprotor.tables.points import Quantity
 from proprotor.typing import Array, Dataset
-from proprotor.units import factor_to_si
+from proprotor.units import airspeed_unit, factor_to_si, speed_factor, speeds
 
 _AIRSPEED = "airspeed"
 _EXAMPLE = '"rotor.precone=0:5:0.25 deg"'
@@ -44,12 +46,19 @@ def _axis_option(name: str, meaning: str) -> arguments.Option:
 @_axis_option("--y", "Input on the axis up, and its values, likewise.")
 @click.option("--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 kt".')
 @arguments.level_option
+@arguments.points_option
 @output.output_options(
     csv="Write a row for each point of the grid.", plot="Draw the boundary, the stable side shaded"
 )
 @arguments.model_options
 def stability_map(
-    request: arguments.Request, outputs: output.Outputs, x: str, y: str, speed: str | None, level: float
+    request: arguments.Request,
+    outputs: output.Outputs,
+    x: str,
+    y: str,
+    speed: str | None,
+    level: float,
+    points: str | None,
 ) -> None:
     """Show where in the plane of two inputs a case is stable, and the boundary.
 
@@ -65,12 +74,17 @@ def stability_map(
     """
     from proprotor.plots import plot_stability_map  # here, so that --help answers without it
 
-    airspeed, case = None if speed is None else arguments.one_speed(speed), request.load()
-    axes = _axis("--x", x, case), _axis("--y", y, case)
+    case = request.load()
+    airspeed = None if speed is None else arguments.one_speed(speed, case)
+    given = [_named(option, text) for option, text in (("--x", x), ("--y", y))]
+    density = stamp.one_density(case, [path for path, _ in given])
+    axes = (_axis("--x", *given[0], case, density), _axis("--y", *given[1], case, density))
     if axes[0].path == axes[1].path:
         raise InputError("--y", y, "must not be the input of --x")
     if airspeed is None and _AIRSPEED not in (axis.path for axis in axes):
         raise InputError("--speed", None, "must be given, or be --x or --y: airspeed=100:400:10kt")
+    across, up = (_quantity(axis, case) for axis in axes)
+    measured = arguments.points_of(points, outputs.plot, across, [up])
     with waiting("Analysing"):
         values = {axis.path: axis.values for axis in axes}
         found = case.stability_map(values, airspeed=airspeed, level=level, **request.options)
@@ -79,22 +93,37 @@ def stability_map(
         document=lambda: output.about(case, request) | _document(found, axes, airspeed),
         table=lambda: _print(case, found, axes),
         csv=lambda: csv_of(records := _records(found, axes), list(records[0]), found.attrs),
-        plot=lambda: output.with_origin(plot_stability_map(found, units=units), case),
+        plot=lambda: output.with_origin(plot_stability_map(found, units=units, points=measured), case),
     )
     output.exit_without(np.isfinite(found.growth.values).any())
 
 
-def _axis(option: str, text: str, case: Case) -> _Axis:
-    """Return the axis of ``INPUT=RANGE``."""
-    path, given = arguments.name_and_value(
-        option, text, f"must be an input and its values, such as {_EXAMPLE}"
-    )
-    designs = grid({path: given}).resolve(design_inputs(case))
-    values = designs.values[path]
-    if len(values) < 2:
-        raise InputError(option, text, f"must be a range, start:stop:step, such as {_EXAMPLE}")
+def _named(option: str, text: str) -> tuple[str, str]:
+    """Return the input and the values of ``INPUT=RANGE``."""
+    return arguments.name_and_value(option, text, f"must be an input and its values, such as {_EXAMPLE}")
+
+
+def _axis(option: str, path: str, given: str, case: Case, density: float | None) -> _Axis:
+    """Return the axis of an input and its values; `density` is that of all points, None where the points differ."""
     unit = arguments.unit_of(given)
-    return _Axis(path, values, unit, factor_to_si(given, unit, designs.units[path]))
+    if path == _AIRSPEED:
+        values, factor = speeds(given, option, density), float(speed_factor(unit, density))
+        unit = airspeed_unit(unit)
+    else:
+        designs = grid({path: given}).resolve(design_inputs(case))
+        values, factor = designs.values[path], factor_to_si(given, unit, designs.units[path])
+    if len(values) < 2:
+        raise InputError(option, f"{path}={given}", f"must be a range, start:stop:step, such as {_EXAMPLE}")
+    return _Axis(path, values, unit, factor)
+
+
+def _quantity(axis: _Axis, case: Case) -> Quantity:
+    """Return what a column of points for an axis may be."""
+    return (
+        arguments.AIRSPEED
+        if axis.path == _AIRSPEED
+        else Quantity(axis.path, design_inputs(case)[axis.path].unit)
+    )
 
 
 def _label(axis: _Axis) -> str:

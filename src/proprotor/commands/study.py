@@ -19,7 +19,7 @@ from proprotor.study.uncertainty import distribution
 from proprotor.study.variables import DEFAULT_QUANTITIES
 from proprotor.tables.study_summary import study_summary
 from proprotor.typing import Dataset
-from proprotor.units import KNOT, speeds
+from proprotor.units import KNOT, KTAS, speeds
 
 _SAMPLES = ("latin-hypercube", "sobol", "saltelli")
 _OF_DECK = " of deck"
@@ -77,8 +77,8 @@ def study(
     output.check_writable("--out", out)
     if out:
         check_path(out, "--out")
-    airspeeds, case = speeds(speed, "--speed"), request.load()
-    plan = _plan(varied, sample, size, seed)
+    case, plan = request.load(), _plan(varied, sample, size, seed)
+    airspeeds = speeds(speed, "--speed", stamp.one_density(case, plan.inputs))
     with output.one_message("--checkpoint", checkpoint):
         results = study_of(
             case,
@@ -163,7 +163,7 @@ def _print_flutter(results: Dataset) -> None:
             (f"{share:g}", marked(f"{speed:.2f}", doubts), marked(f"{speed / KNOT:.1f}", doubts))
             for share, speed in shares
         )
-        output.print_table(("% of designs", "flutter speed at most, m/s", "kt"), rows)
+        output.print_table(("% of designs", "flutter speed at most, m/s", KTAS), rows)
         if doubts:
             counted = f"{int(found.doubtful)} of {int(found.known)} flutter speeds"
             output.print_footnotes([f"Doubtful are {counted}: {doubts}."])

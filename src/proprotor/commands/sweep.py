@@ -20,13 +20,17 @@ from proprotor.units import speeds
 @arguments.command()
 @arguments.case_argument
 @arguments.range_option(
-    'Airspeeds with their unit: "50:400:5kt" is 50 to 400 kt by 5 kt; also "300 kt", "25:200:2.5 m/s".',
+    'Airspeeds with their unit: "50:400:5ktas" is 50 to 400 KTAS by 5 (kt is the same); also "300 keas", '
+    '"25:200:2.5 m/s".',
     required=True,
 )
 @click.option("--all-modes", is_flag=True, help="Show all modes, not only as many as fit into one table.")
+@arguments.points_option
 @output.output_options(csv="Write a row for each airspeed and mode.", plot="Draw frequency and damping")
 @arguments.model_options
-def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_modes: bool) -> None:
+def sweep(
+    request: arguments.Request, outputs: output.Outputs, speed: str, all_modes: bool, points: str | None
+) -> None:
     """Show frequency and damping of each mode along a range of airspeeds.
 
     CASE is a bundled case (see `proprotor cases`) or a TOML file.
@@ -39,13 +43,16 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
     Examples:
       proprotor sweep xv15 --speed 50:400:5kt --plot damping.png
       proprotor sweep xv15 --speed 50:400:5kt --set rotor.precone="1.5 deg"
+      proprotor sweep xv15 --speed 50:400:5kt --plot damping.png --points measured.csv
       proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
     """
     from proprotor.plots import plot_sweep  # here, so that --help answers without it
 
-    airspeeds = speeds(speed, "--speed")
+    up = [arguments.FREQUENCY, arguments.DAMPING]
+    measured = arguments.points_of(points, outputs.plot, arguments.AIRSPEED, up)
     with waiting("Analysing"):
         case = request.load()
+        airspeeds = speeds(speed, "--speed", case.operation.density)
         found = case.sweep(airspeeds, **request.options)
     table = SweepTable(found, case.operation.rotor_speed, arguments.unit_of(speed))
     outputs.write(
@@ -58,6 +65,7 @@ def sweep(request: arguments.Request, outputs: output.Outputs, speed: str, all_m
             unit=table.unit,
             title=heading(case),
             footer=" ".join(reservations(case)),
+            points=measured,
         ),
     )
     output.exit_without(not table.failed.all())

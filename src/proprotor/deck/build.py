@@ -228,7 +228,9 @@ def _chord(rotor: Rotor, lock_number: float, density: float) -> Datum:
 
 def _frequencies(deck: Deck, given: dict[str, Any]) -> BladeFrequencies | None:
     section = deck.rotor.frequencies
-    return None if section is None else BladeFrequencies(against=section.against, **given)
+    if section is None:
+        return None
+    return BladeFrequencies(against=section.against, pitch_coupling=section.pitch_coupling, **given)
 
 
 def _how_held(support: NormalModes, numbers: Mapping[str, Datum]) -> dict[str, Datum]:

@@ -28,9 +28,11 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
 ``[rotor.airfoil]``
     The arguments of `proprotor.Airfoil`, or instead: table, a C81 file, whose name starts from the deck's folder.
 ``[rotor.frequencies]``
-    Optional; the arguments of `proprotor.BladeFrequencies`: against, "collective" or "airspeed"; at, a table
-    ``{ value = [0, 20, 40], unit = "deg" }``; flap, lag and perhaps cyclic_flap, rotating, per revolution, one
-    number or a table ``{ value = [1.9, 1.8, 1.7] }`` with a value for each of at. The model has structure="tabulated".
+    Optional; the arguments of `proprotor.BladeFrequencies`: at_rotor_speed, at which the blade has the frequencies;
+    against, "collective" or "airspeed"; at, a table ``{ value = [0, 20, 40], unit = "deg" }``; flap, lag and perhaps
+    cyclic_flap, rotating, per revolution of at_rotor_speed, one number or a table ``{ value = [1.9, 1.8, 1.7] }`` with
+    a value for each of at; pitch_coupling. The model has structure="tabulated", with springs that follow from the
+    frequencies and hold at any rotor speed.
 ``[operation]``
     rotor_speed, trim = "windmill" or { collective = "30 deg" }, { thrust_coefficient = 0.008 },
     { power_coefficient = 0.01 }; density and speed_of_sound, or instead: altitude, a pressure altitude in the
@@ -110,11 +112,27 @@ class AirfoilSection(Section):
 class FrequenciesSection(Section):
     """Rotating blade frequencies from a table, in place of springs; `--structure coupled` ignores the table."""
 
+    at_rotor_speed: fields.RotorSpeed = needed(
+        "Rotor speed at which the blade has these frequencies; the springs that follow hold at any rotor speed."
+    )
     against: Literal["collective", "airspeed"] = optional("Abscissa of the frequencies.", "collective")
     at: fields.Abscissa = optional("Rising collectives or airspeeds at which the lists have their values.")
     flap: fields.CurvePerRev = needed("Flap frequency per revolution, without lag and at zero cone.")
     lag: fields.CurvePerRev = needed("Lag frequency per revolution, without flap and at zero cone.")
     cyclic_flap: fields.CurvePerRev = optional("Cyclic flap frequency, if it differs from flap.")
+    pitch_coupling: Literal["none", "springs"] = optional(
+        'Whether a bent blade turns in pitch: not at all, or "springs", as with the rotor\'s own springs.',
+        "none",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_rotor_speed(cls, raw: Any) -> Any:
+        """Refuse a table that does not say at which rotor speed it holds."""
+        if isinstance(raw, dict) and "at_rotor_speed" not in raw:
+            rule = 'is missing; frequencies per revolution hold at one rotor speed: write at_rotor_speed = "458 rpm"'
+            raise InputError("at_rotor_speed", None, rule)
+        return raw
 
     @model_validator(mode="after")
     def _one_value_for_each_place(self) -> FrequenciesSection:

@@ -37,6 +37,7 @@ from numpy.typing import NDArray
 from proprotor.case import Case, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError, check_known
+from proprotor.model.stamp import one_density
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.flutter import boundary_of, flutter_point
@@ -143,7 +144,8 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
     def _setup_damping(self) -> None:
         if self.options["airspeed"] is None:
             raise InputError("airspeed", None, "must be given for the damping")
-        speeds = in_metres_per_second(self.options["airspeed"]).reshape(-1)
+        density = one_density(self._case, self._paths.values())
+        speeds = in_metres_per_second(self.options["airspeed"], density).reshape(-1)
         points = np.arange(len(speeds))
         self.add_input("airspeed", speeds, units="m/s")
         for output in self._damping:

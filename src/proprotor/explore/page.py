@@ -27,7 +27,7 @@ from proprotor.model.stamp import of_case, unusual_options
 from proprotor.plots.style import UNSTABLE
 from proprotor.rotor.options import CHOICES
 from proprotor.typing import Array
-from proprotor.units import KNOT, to_si
+from proprotor.units import KNOT, KTAS, to_si
 
 if TYPE_CHECKING:
     from bokeh.document import Document
@@ -237,9 +237,9 @@ class ExplorePage:
     def _damping(self) -> Any:
         ends = tuple(float(speed) / KNOT for speed in self.airspeeds[[0, -1]])
         plot = _figure(
-            "Damping", 490, ("Airspeed (kt)", ends), ("Damping −Re s/|s| (% of critical)", _DAMPING)
+            "Damping", 490, ("Airspeed, KTAS", ends), ("Damping −Re s/|s| (% of critical)", _DAMPING)
         )
-        self._draw(plot, "airspeed", "damping", [("airspeed", "$x{0.0} kt"), ("damping", "$y{0.00} %")])
+        self._draw(plot, "airspeed", "damping", [("airspeed", "$x{0.0} KTAS"), ("damping", "$y{0.00} %")])
         plot.add_layout(Span(location=0, dimension="width", line_color="black"))
         plot.add_layout(BoxAnnotation(top=0, fill_color=UNSTABLE, fill_alpha=1, level="image"))
         return plot
@@ -308,12 +308,12 @@ def readout(found: LiveModes, values: Mapping[str, float], inputs: Mapping[str, 
     if not np.any(found.reason == ""):
         verdict = "No airspeed could be analysed."
     elif onset is None:
-        verdict = f"No mode becomes unstable between {low} and {high} kt."
+        verdict = f"No mode becomes unstable between {low} and {high} KTAS."
     else:
         speed = marked(f"{onset.start / KNOT:.1f}", doubtful_near(found.airspeed, found.warning, onset.start))
-        verdict = f"Flutter speed {speed} kt ({escape(onset.mode)}), interpolated."
+        verdict = f"Flutter speed {speed} KTAS ({escape(onset.mode)}), interpolated."
     if already := [one.mode for one in found.unstable if one.open_start]:
-        verdict += f" Already unstable at {low} kt: {escape(', '.join(already))}."
+        verdict += f" Already unstable at {low} KTAS: {escape(', '.join(already))}."
     changed = [
         f"{given.name} {value / given.factor:.4g} {given.unit} (deck {given.value:.4g})"
         for given, value in ((inputs[path], value) for path, value in values.items())
@@ -327,6 +327,6 @@ def messages(found: LiveModes) -> str:
     lines = []
     for text in dict.fromkeys(found.reason[found.reason != ""].tolist()):
         at = found.airspeed[found.reason == text] / KNOT
-        lines.append(f"Not analysed at {len(at)} airspeeds, {at[0]:.4g} to {at[-1]:.4g} kt: {text}.")
-    lines += [f"{MARK} {line}" for line in footnotes(doubts_along(found.airspeed, found.warning), "kt", KNOT)]
+        lines.append(f"Not analysed at {len(at)} airspeeds, {at[0]:.4g} to {at[-1]:.4g} KTAS: {text}.")
+    lines += [f"{MARK} {line}" for line in footnotes(doubts_along(found.airspeed, found.warning), KTAS, KNOT)]
     return "".join(f"<p>{escape(line)}</p>" for line in lines)

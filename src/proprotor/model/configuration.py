@@ -90,7 +90,7 @@ class Configuration:
 
         Parameters
         ----------
-        airspeed : float, array (...) in m/s, text such as "250 kt", pint quantity or xarray.DataArray
+        airspeed : float, array (...) in m/s, text such as "250 ktas" or "200 keas", pint quantity or xarray.DataArray
             One airspeed, or a batch of any shape.
         **options
             See `proprotor.rotor.options.Options`.

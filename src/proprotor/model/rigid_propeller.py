@@ -101,7 +101,7 @@ def rigid_propeller(
         For a value that is not finite, or a negative value that is no derivative.
     """
     given = {
-        "airspeed": in_metres_per_second(airspeed),
+        "airspeed": in_metres_per_second(airspeed, density),
         "radius": radius,
         "rotor_speed": rotor_speed,
         "density": density,

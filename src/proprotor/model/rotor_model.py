@@ -49,7 +49,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     ----------
     rotor : Rotor
     operation : Operation
-    airspeed : float, array (...) in m/s, text such as "250 kt", pint quantity or xarray.DataArray
+    airspeed : float, array (...) in m/s, text such as "250 ktas" or "200 keas", pint quantity or xarray.DataArray
     **options
         See `proprotor.rotor.options.Options`.
 
@@ -65,7 +65,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     """
     choice = parse_options(options)
     _check_pitch(rotor, choice)
-    speed = in_metres_per_second(airspeed)
+    speed = in_metres_per_second(airspeed, operation.density)
     shape = batch_shape(rotor, operation, speed, choice.drive_train)
     points = int(np.prod(shape, dtype=int))
     _check_memory(rotor, choice, points)

@@ -9,9 +9,11 @@ attributes of a result, and `line` puts it into words. The options in a stamp ar
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.options_in_force import chosen, in_force, options_in_result, options_text
@@ -23,7 +25,8 @@ if TYPE_CHECKING:
     from proprotor.model.linear_model import LinearModel
 
 Stamp = Mapping[str, str]
-NAMES = ("case", "title", "deck", "options", "reservations", "case_warnings", "made_by")
+_AIR = ("operation.density", "operation.altitude", "operation.temperature_offset")
+NAMES = ("case", "title", "deck", "air_density", "options", "reservations", "case_warnings", "made_by")
 
 
 class Origin(NamedTuple):
@@ -33,15 +36,23 @@ class Origin(NamedTuple):
     case: Configuration | None = None
 
 
-def of_case(case: Configuration, options: Mapping[str, Any]) -> dict[str, str]:
+def of_case(case: Configuration, options: Mapping[str, Any], varied: Collection[str] = ()) -> dict[str, str]:
     """Return the stamp of a result computed from a case with the options as given.
+
+    Parameters
+    ----------
+    case : Case
+    options : mapping
+        As the user gave them.
+    varied : collection of str
+        Inputs by which the points of the result differ: the stamp has a density of the air only if all have the same.
 
     Raises
     ------
     InputError
         For an unknown option, or a value that the option cannot have.
     """
-    return _stamp(Origin(parse_options(case.model_options(options)), case))
+    return _stamp(Origin(parse_options(case.model_options(options)), case), varied)
 
 
 def of_model(model: LinearModel) -> dict[str, str]:
@@ -71,12 +82,14 @@ def unusual_options(found: Mapping[Any, Any]) -> list[str]:
     return [f"Options: {options_text(own)}."] if own else []
 
 
-def _stamp(origin: Origin) -> dict[str, str]:
-    """Return the stamp of an origin."""
+def _stamp(origin: Origin, varied: Collection[str] = ()) -> dict[str, str]:
+    """Return the stamp of an origin, for points that differ by varied inputs."""
     case = origin.case
     own = {"options": json.dumps(in_force(origin.options)), "made_by": f"proprotor {_version()}"}
     if case is None:
         return own
+    density = one_density(case, varied)
+    own |= {} if density is None else {"air_density": repr(density)}
     return own | {
         "case": case.name,
         "title": case.title or case.name,
@@ -84,6 +97,19 @@ def _stamp(origin: Origin) -> dict[str, str]:
         "reservations": " ".join(reservations(case)),
         "case_warnings": " ".join(case.warnings),
     }
+
+
+def one_density(case: Configuration, varied: Collection[str] = ()) -> float | None:
+    """Return the density of the air of a case, kg/m³; None where points of the case, or varied inputs, differ in it."""
+    density = case.operation.density
+    if np.ndim(density) or np.iscomplexobj(density) or set(varied) & set(_AIR):
+        return None
+    return float(density)
+
+
+def density_of(attributes: Mapping[Any, Any]) -> float | None:
+    """Return the density of the air of a result, kg/m³, for equivalent airspeeds; None where it is not known."""
+    return float(attributes["air_density"]) if "air_density" in attributes else None
 
 
 @cache

@@ -4,7 +4,8 @@ In come results of analyses; out come Matplotlib axes. This room computes nothin
 round numbers, and the motion of points in a mode.
 
     frequency_and_damping campbell root_locus participation mode_shape    a sweep, or one of its modes
-    attribution tornado stability_map study_results                       what moves a mode or a boundary
+    attribution tornado stability_map boundary_against study_results      what moves a mode or a boundary
+    points              points of a CSV file, with error bars, on plots
     mode_motion         how wing, mast and blades move in a mode, as points in space
     animation           a mode in motion, as a GIF
 
@@ -22,6 +23,7 @@ round numbers, and the motion of points in a mode.
 """
 
 from proprotor.plots.attribution import plot_attribution
+from proprotor.plots.boundary_against import plot_boundary_against
 from proprotor.plots.campbell import plot_campbell
 from proprotor.plots.canvas import rests_on
 from proprotor.plots.frequency_and_damping import plot_damping, plot_frequency, plot_sweep
@@ -39,6 +41,7 @@ __all__ = [
     "line_of_sweep",
     "mode_motion",
     "plot_attribution",
+    "plot_boundary_against",
     "plot_campbell",
     "plot_damping",
     "plot_distribution",

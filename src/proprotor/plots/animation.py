@@ -17,7 +17,7 @@ from proprotor.needs import check_memory
 from proprotor.plots.mode_motion import ModeMotion
 from proprotor.plots.mode_shape import draw_moving, draw_still
 from proprotor.typing import Axes
-from proprotor.units import KNOT
+from proprotor.units import KNOT, KTAS
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -93,7 +93,7 @@ def title_of(motion: ModeMotion) -> str:
     damping = -100 * value.real / abs(value)
     hertz = value.imag / (2 * np.pi)
     return (
-        f"{motion.mode} at {marked(f'{motion.airspeed / KNOT:.0f}', motion.warning)} kt: {hertz:.2f} Hz{per_rev}, "
+        f"{motion.mode} at {marked(f'{motion.airspeed / KNOT:.0f}', motion.warning)} {KTAS}: {hertz:.2f} Hz{per_rev}, "
         f"damping {damping:.2f} % of critical"
     )
 

@@ -13,7 +13,7 @@ from proprotor.plots.canvas import axes_or_new, note, say_origin
 from proprotor.plots.style import DAMPS, DRIVES
 from proprotor.stability.sensitivity import damping_rate
 from proprotor.typing import Axes, Dataset
-from proprotor.units import KNOT
+from proprotor.units import KNOT, KTAS
 
 
 def plot_attribution(
@@ -68,7 +68,7 @@ def plot_attribution(
     doubt = found.warning.item()
     damping = marked(f"{ratio:.2f}", doubt)
     note(ax, f"{mode}: damping {damping} % of critical; the bars sum to zero, to first order")
-    at = f"at {found.attrs['airspeed'] / KNOT:.4g} kt"
+    at = f"at {found.attrs['airspeed'] / KNOT:.4g} {KTAS}"
     say_origin(ax, found.attrs, [f"Doubtful {at}: {doubt}."] if doubt else ())
     return ax
 

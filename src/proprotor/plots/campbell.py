@@ -12,7 +12,9 @@ from proprotor.plots.canvas import along, axes_or_new, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import positions
 from proprotor.plots.mode_lines import draw_modes
+from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
 from proprotor.plots.style import LABEL_SIZE, white_box
+from proprotor.tables.points import Points
 from proprotor.tables.sweep_summary import damped_frequency
 from proprotor.typing import Axes, Dataset
 
@@ -29,6 +31,7 @@ def plot_campbell(
     rotor_speed: float | None = None,
     unit: str = "rpm",
     limits: tuple[float, float] | None = None,
+    points: Points | None = None,
 ) -> Axes:
     """Draw the frequency |Im s| of each mode in the fixed frame over the rotor speed, and rays of n per revolution.
 
@@ -50,6 +53,8 @@ def plot_campbell(
     limits : (float, float), optional
         Ends of the frequency axis, Hz; up to the highest ray by default. A note above the axes names the modes that
         leave the axis.
+    points : Points, optional
+        Of `proprotor.tables.points.read_points`: columns rotor_speed and frequency.
 
     Returns
     -------
@@ -59,7 +64,7 @@ def plot_campbell(
     Raises
     ------
     InputError
-        If the sweep is not over the rotor speed, or the unit does not fit it.
+        If the sweep is not over the rotor speed, or the unit does not fit it; for points without the columns.
     """
     if sweep.eigenvalue.dims[0] != _ROTOR_SPEED:
         raise InputError("sweep", str(sweep.eigenvalue.dims[0]), f"must be over {_ROTOR_SPEED}")
@@ -70,6 +75,7 @@ def plot_campbell(
     lines = draw_modes(ax, sweep, damped_frequency(sweep) / (2 * np.pi), line)
     ax.set_xlim(0, float(line.values.max()))
     ax.set_ylim(*(limits or (0, max(rays) * float(omega.max()) / (2 * np.pi))))
+    draw_points(ax, points, quantity_of(line, "rad/s"), frequency_quantity(line, None))
     _draw_rays(ax, rays, line.factor / (2 * np.pi), n_blades)
     if rotor_speed is not None:
         at = rotor_speed / line.factor

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from proprotor.model.stamp import density_of
 from proprotor.plots.canvas import RIGHT, Limits, add_footer, along, axes_or_new, origin_of, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions
 from proprotor.plots.mode_lines import draw_modes
+from proprotor.plots.points import DAMPING, draw_points, frequency_quantity, quantity_of
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE
+from proprotor.tables.points import Points, Quantity
 from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
 from proprotor.typing import Array, Axes, Dataset, Figure
 
@@ -23,6 +26,7 @@ def plot_frequency(
     rotor_speed: ArrayLike | None = None,
     unit: str | None = None,
     limits: tuple[float, float] | None = None,
+    points: Points | None = None,
 ) -> Axes:
     """Draw the frequency |Im s| of each mode along a sweep.
 
@@ -35,10 +39,12 @@ def plot_frequency(
     rotor_speed : float or array (points,), optional
         rad/s. With a rotor speed frequencies are per revolution, without it in Hz.
     unit : str, optional
-        Unit of the axis of airspeed, "kt" by default, or of the input.
+        Unit of the axis of airspeed, "ktas" by default, or of the input.
     limits : (float, float), optional
         Ends of the frequency axis, in its unit; 0 to 5 per revolution by default. A note above the axes names the modes
         that leave the axis.
+    points : Points, optional
+        Of `proprotor.tables.points.read_points`, drawn beside the lines: columns airspeed, or the input, and frequency.
 
     Returns
     -------
@@ -48,20 +54,34 @@ def plot_frequency(
     Raises
     ------
     InputError
-        If the unit does not fit the airspeed or the input.
+        If the unit does not fit the airspeed or the input, and for points without the columns.
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, labels_beside=True)
-    _draw_frequency(ax, sweep, line, rotor_speed, limits)
+    _draw_frequency(ax, sweep, line, rotor_speed, limits, points)
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
 
 def _draw_frequency(
-    ax: Axes, sweep: Dataset, line: Positions, rotor_speed: ArrayLike | None, limits: Limits | None = None
+    ax: Axes,
+    sweep: Dataset,
+    line: Positions,
+    rotor_speed: ArrayLike | None,
+    limits: Limits | None = None,
+    points: Points | None = None,
+    needed: bool = True,
 ) -> None:
+    measured = _Measured(points, frequency_quantity(line, rotor_speed), needed)
     per = 2 * np.pi if rotor_speed is None else np.asarray(rotor_speed)[..., None]
-    _draw(ax, sweep, damped_frequency(sweep) / per, line, limits or (0, None if rotor_speed is None else 5))
+    _draw(
+        ax,
+        sweep,
+        damped_frequency(sweep) / per,
+        line,
+        limits or (0, None if rotor_speed is None else 5),
+        measured,
+    )
     ax.set_ylabel(f"Frequency |Im s| ({'Hz' if rotor_speed is None else 'per rev'})")
 
 
@@ -71,6 +91,7 @@ def plot_damping(
     *,
     unit: str | None = None,
     limits: tuple[float, float] = (-5, 20),
+    points: Points | None = None,
 ) -> Axes:
     """Draw the damping ratio -Re s/|s| of each mode along a sweep, in percent of critical.
 
@@ -83,9 +104,11 @@ def plot_damping(
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default. Labels stand to its right.
     unit : str, optional
-        Unit of the axis of airspeed, "kt" by default, or of the input.
+        Unit of the axis of airspeed, "ktas" by default, or of the input.
     limits : (float, float)
         Ends of the damping axis, in percent. A note above the axes names the modes that leave the axis.
+    points : Points, optional
+        Of `proprotor.tables.points.read_points`, drawn beside the lines: columns airspeed, or the input, and damping.
 
     Returns
     -------
@@ -95,17 +118,25 @@ def plot_damping(
     Raises
     ------
     InputError
-        If the unit does not fit the airspeed or the input.
+        If the unit does not fit the airspeed or the input, and for points without the columns.
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, labels_beside=True)
-    _draw_damping(ax, sweep, line, limits)
+    _draw_damping(ax, sweep, line, limits, points)
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
 
-def _draw_damping(ax: Axes, sweep: Dataset, line: Positions, limits: Limits) -> None:
-    _draw(ax, sweep, damping_percent(sweep), line, limits)
+def _draw_damping(
+    ax: Axes,
+    sweep: Dataset,
+    line: Positions,
+    limits: Limits,
+    points: Points | None = None,
+    needed: bool = True,
+) -> None:
+    measured = _Measured(points, Quantity(DAMPING, "", 0.01), needed)
+    _draw(ax, sweep, damping_percent(sweep), line, limits, measured)
     _mark_instability(ax, sweep, line)
     ax.set_ylabel("Damping −Re s/|s| (% of critical)")
 
@@ -118,6 +149,7 @@ def plot_sweep(
     damping_limits: tuple[float, float] = (-5, 20),
     title: str = "",
     footer: str = "",
+    points: Points | None = None,
 ) -> Figure:
     """Draw the frequency and, below, the damping of each mode along a sweep, in a new figure.
 
@@ -133,6 +165,8 @@ def plot_sweep(
         Ends of the damping axis, percent of critical.
     title, footer : str
         Texts above and below the plots. The footer is the place for reservations about the numbers.
+    points : Points, optional
+        Of `proprotor.tables.points.read_points`: columns airspeed, or the input, and frequency, damping or both.
 
     Returns
     -------
@@ -147,20 +181,43 @@ def plot_sweep(
     broken = "Where a line is broken its motion passes to another root." if leaps(sweep).any() else ""
     origin = origin_of(sweep.attrs, along(sweep, line))
     add_footer(figure, " ".join(filter(None, (broad, broken, footer, origin))))
-    _draw_frequency(above, sweep, line, rotor_speed)
-    _draw_damping(below, sweep, line, damping_limits)
+    if points is not None:
+        points.check(
+            _across(sweep, line), [frequency_quantity(line, rotor_speed), Quantity(DAMPING, "", 0.01)]
+        )
+    _draw_frequency(above, sweep, line, rotor_speed, None, points, needed=False)
+    _draw_damping(below, sweep, line, damping_limits, points, needed=False)
     above.set_xlabel("")
     figure.suptitle(title, x=0.09, ha="left", fontsize=11, parse_math=False)
     return figure
 
 
+class _Measured(NamedTuple):
+    """Points of a file, the quantity of the axis up, and whether points without a column of it are refused."""
+
+    points: Points | None
+    up: Quantity
+    needed: bool
+
+
+def _across(sweep: Dataset, line: Positions) -> Quantity:
+    """Return the quantity of the axis across."""
+    return quantity_of(line, str(sweep[line.name].attrs.get("units", "")), density_of(sweep.attrs))
+
+
 def _draw(
-    ax: Axes, sweep: Dataset, values: Array, line: Positions, limits: tuple[float, float | None]
+    ax: Axes,
+    sweep: Dataset,
+    values: Array,
+    line: Positions,
+    limits: tuple[float, float | None],
+    measured: _Measured,
 ) -> None:
-    """Draw values (points, modes) of all modes within limits, and name the lines."""
+    """Draw values (points, modes) of all modes within limits, points of a file, and the names of the lines."""
     lines = draw_modes(ax, sweep, values, line)
     ax.margins(x=0)
     ax.set_ylim(*limits)
+    draw_points(ax, measured.points, _across(sweep, line), measured.up, needed=measured.needed)
     label_lines(ax, lines, f"at some {'airspeeds' if line.name == 'airspeed' else 'points'} or all")
 
 

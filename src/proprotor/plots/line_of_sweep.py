@@ -7,13 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from proprotor.model.stamp import density_of
 from proprotor.plots.input_names import short_name
 from proprotor.typing import Array, Dataset
-from proprotor.units import factor_to_si
+from proprotor.units import KEAS, KTAS, airspeed_unit, factor_to_si, speed_factor
 
 # Usual units of a quantity in rad/s, by the end of its name.
 _RATES = {"rotor_speed": "rpm", "frequency": "Hz"}
 _USUAL = {"rad": "deg", "m/s": "kt", "rad/s": "Hz"}
+_AIRSPEEDS = ("airspeed", "flutter_speed")
 _SYMBOLS = {"**2": "²", "**3": "³", "*": "·"}
 
 
@@ -40,7 +42,8 @@ def positions(sweep: Dataset, unit: str | None = None) -> Positions:
         If the unit is unknown, or does not fit the airspeed or the input.
     """
     name = str(sweep.eigenvalue.dims[0])
-    return axis_of(name, sweep[name].values, sweep[name].attrs.get("units", ""), unit)
+    density = density_of(sweep.attrs)
+    return axis_of(name, sweep[name].values, sweep[name].attrs.get("units", ""), unit, density)
 
 
 def with_gaps(leaps: Array, positions: Array, *values: Array) -> list[Array]:
@@ -59,13 +62,22 @@ def with_gaps(leaps: Array, positions: Array, *values: Array) -> list[Array]:
     return [np.insert(positions, at + 1, middle), *(np.insert(of, at + 1, np.nan) for of in values)]
 
 
-def axis_of(name: str, values: Array, si_unit: str, unit: str | None = None) -> Positions:
-    """Return values (points,) of an input or of the airspeed, in SI units, as positions of an axis; see `positions`."""
+def axis_of(
+    name: str, values: Array, si_unit: str, unit: str | None = None, density: float | None = None
+) -> Positions:
+    """Return values (points,) of an input or of an airspeed, in SI units, as positions of an axis; see `positions`.
+
+    With a density of the air, kg/m³, the unit of an airspeed may be keas.
+    """
     unit = _usual_unit(name, si_unit) if unit is None else unit
+    short = short_name(name)
+    short = short[:1].upper() + short[1:]
+    if name in _AIRSPEEDS:
+        unit, factor = airspeed_unit(unit), float(speed_factor(unit, density, field="unit"))
+        label = f"{short}, {unit}" if unit in (KTAS, KEAS) else f"{short} ({unit}, true)"
+        return Positions(name, values / factor, unit, factor, label)
     factor = 1.0 if unit == si_unit else factor_to_si(unit, unit, si_unit)
-    short = "Airspeed" if name == "airspeed" else short_name(name)
-    label = short[:1].upper() + short[1:] + (f" ({written(unit)})" if unit else "")
-    return Positions(name, values / factor, unit, factor, label)
+    return Positions(name, values / factor, unit, factor, short + (f" ({written(unit)})" if unit else ""))
 
 
 def _usual_unit(name: str, si_unit: str) -> str:

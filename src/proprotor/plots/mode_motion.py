@@ -149,7 +149,7 @@ def mode_motion(
         For an airspeed that cannot be analysed, a mode that is unknown or does not oscillate, or coordinates of blades
         that belong to no azimuth.
     """
-    speed = in_metres_per_second(airspeed).reshape(-1)
+    speed = in_metres_per_second(airspeed, case.operation.density).reshape(-1)
     if len(speed) != 1:
         raise InputError("airspeed", airspeed, "must be one speed")
     found = case.sweep(speed, **options).isel(airspeed=0)

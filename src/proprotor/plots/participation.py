@@ -40,7 +40,7 @@ def plot_participation(
         At most five airspeeds, or values of the input, in `unit`. The plot shows and names the nearest points of the
         sweep that could be analysed; by default the first and the last such point.
     unit : str, optional
-        Unit of `at`; "kt" by default for airspeeds.
+        Unit of `at`; "ktas" by default for airspeeds.
 
     Returns
     -------

@@ -9,7 +9,9 @@ import numpy as np
 from proprotor.plots.canvas import Limits, along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
+from proprotor.plots.points import FREQUENCY, GROWTH, draw_points
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles, white_box
+from proprotor.tables.points import Points, Quantity
 from proprotor.tables.sweep_summary import growth_rate, leaps
 from proprotor.typing import Array, Axes, Dataset, Line2D
 
@@ -28,6 +30,7 @@ def plot_root_locus(
     marks: float | None = None,
     growth_limits: tuple[float, float] | None = None,
     frequency_limits: tuple[float, float] | None = None,
+    points: Points | None = None,
 ) -> Axes:
     """Draw how the roots s move in the upper half of their plane: Re s across, |Im s| up.
 
@@ -43,12 +46,14 @@ def plot_root_locus(
     rotor_speed : float, optional
         rad/s. With a rotor speed both axes are per revolution, without it in rad/s.
     unit : str, optional
-        Unit of the airspeed, "kt" by default, or of the input.
+        Unit of the airspeed, "ktas" by default, or of the input.
     marks : float, optional
         Distance of the markers, in this unit.
     growth_limits, frequency_limits : (float, float), optional
         Ends of both axes, in their units; by default the axes hold the modes of the support and the modes that become
         unstable.
+    points : Points, optional
+        Of `proprotor.tables.points.read_points`: columns growth and frequency.
 
     Returns
     -------
@@ -58,7 +63,7 @@ def plot_root_locus(
     Raises
     ------
     InputError
-        If the unit does not fit the airspeed or the input.
+        If the unit does not fit the airspeed or the input, and for points without the columns.
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, size=(8, 7), labels_beside=True)
@@ -68,6 +73,9 @@ def plot_root_locus(
     _set_limits(ax, sweep, real, imaginary, growth_limits, frequency_limits)
     at = _round_values(line, marks)
     lines = _draw(ax, sweep, real, imaginary, line, at)
+    up = Quantity(FREQUENCY, "rad/s", per, {} if rotor_speed is None else {"per rev": per})
+    growth = Quantity(GROWTH, "1/s", per, up.special)
+    draw_points(ax, points, growth, up)
     _draw_rays(ax)
     ax.axvspan(0, max(ax.get_xlim()[1], 0), color=UNSTABLE, linewidth=0, zorder=0.5)
     ax.axvline(0, color="black", linewidth=0.8)

@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 
 from proprotor.model.doubts import map_doubts
+from proprotor.model.stamp import density_of
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.line_of_sweep import Positions, axis_of
+from proprotor.plots.points import draw_points, quantity_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE, white_box
 from proprotor.stability.boundary_lines import BoundaryLine
+from proprotor.tables.points import Points, Quantity
 from proprotor.typing import Array, Axes, Dataset
 
 _DASHES = ("-", "--", "-.", ":")
@@ -26,6 +29,7 @@ def plot_stability_map(
     *,
     lines: Sequence[BoundaryLine] = (),
     units: Mapping[str, str] | None = None,
+    points: Points | None = None,
 ) -> Axes:
     """Draw the stability boundary in the plane of two inputs, with the stable side shaded.
 
@@ -40,6 +44,8 @@ def plot_stability_map(
         that is neutral. Without lines the boundary is one black line.
     units : mapping of str to str, optional
         Units of the axes by input; the usual ones by default.
+    points : Points, optional
+        Of `proprotor.tables.points.read_points`, with a column for each of the two inputs.
 
     Returns
     -------
@@ -49,7 +55,7 @@ def plot_stability_map(
     Raises
     ------
     InputError
-        If a unit does not fit its input.
+        If a unit does not fit its input, and for points without the columns.
     """
     names = [str(name) for name in found.axis.values]
     x, y = (_axis(found, name, (units or {}).get(name)) for name in names)
@@ -63,6 +69,8 @@ def plot_stability_map(
     ax.plot(x.values[failed[:, 1]], y.values[failed[:, 0]], "x", color="0.4", markersize=4)
     ax.set(xlim=x.values[[0, -1]], xlabel=x.label)
     ax.set(ylim=y.values[[0, -1]], ylabel=y.label)
+    if points is not None:
+        draw_points(ax, points, _quantity(found, x), _quantity(found, y))
     _draw_named(ax, lines, x, y)
     _name_regions(ax, x.values, y.values, growth)
     level = float(found.attrs.get("level", 0.0))
@@ -75,9 +83,15 @@ def plot_stability_map(
     return ax
 
 
+def _quantity(found: Dataset, axis: Positions) -> Quantity:
+    """Return the quantity of an axis, to which points are converted."""
+    si = "m/s" if axis.name == "airspeed" else str(found[axis.name].attrs.get("units", ""))
+    return quantity_of(axis, si, density_of(found.attrs))
+
+
 def _axis(found: Dataset, name: str, unit: str | None) -> Positions:
     si = "m/s" if name == "airspeed" else str(found[name].attrs.get("units", ""))
-    return axis_of(name, found[name].values, si, unit)
+    return axis_of(name, found[name].values, si, unit, density_of(found.attrs))
 
 
 def _shade(ax: Axes, x: Array, y: Array, growth: Array, vertices: Array) -> None:

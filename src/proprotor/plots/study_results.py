@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.model.stamp import density_of
 from proprotor.plots.bars import name_bars
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.input_names import short_names
@@ -43,7 +44,7 @@ def plot_distribution(
         0 to 100, dimensionless. A percentile that lies among designs beyond the range of the study has no line; the
         note above the axes counts these designs.
     unit : str, optional
-        Unit of the result; "kt" by default for speeds.
+        Unit of the result; "ktas" by default for speeds.
     bins : int or str
         As `numpy.histogram` takes them.
 
@@ -58,7 +59,8 @@ def plot_distribution(
         As `proprotor.distribution`, and for a unit that does not fit the result.
     """
     found = distribution(results, of, percentiles)
-    axis = axis_of(of, results[of].values.astype(float), results[of].attrs.get("units", ""), unit)
+    values, si = results[of].values.astype(float), results[of].attrs.get("units", "")
+    axis = axis_of(of, values, si, unit, density_of(results.attrs))
     known = axis.values[np.isfinite(axis.values)]
     ax = axes_or_new(ax, size=(7, 4.5))
     heights, edges = np.histogram(known, bins)

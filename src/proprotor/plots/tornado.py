@@ -9,12 +9,13 @@ import numpy as np
 
 from proprotor.errors import InputError, check_known
 from proprotor.model.doubts import marked
+from proprotor.model.stamp import density_of
 from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
 from proprotor.plots.canvas import axes_or_new, note, say_origin
 from proprotor.plots.input_names import short_names
 from proprotor.plots.style import DAMPS, DRIVES, STATUS_HATCHES
 from proprotor.typing import Axes, Dataset
-from proprotor.units import factor_to_si
+from proprotor.units import airspeed_unit, speed_factor
 
 _QUANTITIES = ("flutter_speed", "damping")
 
@@ -90,7 +91,7 @@ def _scale(found: Dataset, unit: str) -> tuple[float, str]:
         raise InputError("found", f"{found.sizes['mode']} modes", "must be of one mode: choose it with mode=")
     if of == "damping":
         return 100.0, f"damping of {found.mode.values.reshape(-1)[0]} (% of critical)"
-    factor = factor_to_si(unit, unit, "m/s")
+    unit, factor = airspeed_unit(unit), float(speed_factor(unit, density_of(found.attrs), field="unit"))
     value = marked(f"{found.attrs['value'] / factor:.0f}", found.warning.item())
     return 1 / factor, f"flutter speed, {value} {unit} ({found.attrs['mode']}), in {unit}"
 

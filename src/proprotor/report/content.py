@@ -30,7 +30,7 @@ from proprotor.tables.sensitivity_summary import (
 )
 from proprotor.tables.sweep_table import SweepTable, heading
 from proprotor.typing import Array
-from proprotor.units import factor_to_si
+from proprotor.units import airspeed_unit, speed_factor
 
 _SPEEDS = 9  # airspeeds in the tables of modes and of trim
 _ANGLES = ("collective", "coning", "lag", "elastic_pitch")  # of the trim
@@ -74,9 +74,9 @@ def report_document(
     Raises
     ------
     InputError
-        If the unit is no unit of speed.
+        If the unit is no unit of airspeed.
     """
-    factor = factor_to_si(unit, unit, "m/s")
+    unit, factor = airspeed_unit(unit), float(speed_factor(unit, case.operation.density, field="unit"))
     table = SweepTable(found.sweep, float(case.operation.rotor_speed), unit)
     sections = (
         Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),

@@ -1,4 +1,9 @@
-"""Flap and lag frequencies of a blade against collective or airspeed, which some analyses use in place of springs."""
+"""Flap and lag frequencies of a blade against collective or airspeed, from which its springs follow.
+
+A frequency per revolution holds at one rotor speed: centrifugal force makes a part of its square and a spring makes
+the rest, K = I (ω² - ν_c² Ω²), with ν_c² = 1 + e S/I in flap and e S/I in lag. So a table states its rotor speed. The
+spring that follows is the blade's and holds at each other rotor speed, where the blade has another frequency.
+"""
 
 from __future__ import annotations
 
@@ -9,22 +14,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError
+from proprotor.errors import InputError, check_finite, check_number
 from proprotor.typing import Array
 
 _Curve = float | ArrayLike | Callable[[Array], Array]
 _ABSCISSAE = ("collective", "airspeed")
+_PITCH_COUPLING = ("none", "springs")
+_SPEED_RULE = (
+    "is missing; frequencies per revolution hold at one rotor speed, in rad/s, and give the springs there"
+)
 _STEP = 1e-6  # of the abscissa, for the slope of a function
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BladeFrequencies:
-    """Rotating frequencies of a blade per revolution, uncoupled and at zero cone.
+    """Rotating frequencies of a blade per revolution of a stated rotor speed, uncoupled and at zero cone.
+
+    The model takes the springs that make these frequencies at the stated rotor speed, and keeps the springs at any
+    other rotor speed.
 
     Parameters
     ----------
+    at_rotor_speed : float
+        Rotor speed at which the blade has these frequencies, rad/s; must be given.
     against : "collective" or "airspeed"
-        Abscissa of the frequencies: trim collective in rad, or airspeed in m/s.
+        Abscissa of the frequencies: trim collective in rad, or airspeed in m/s. Springs turn with the pitch, and at
+        another rotor speed an airspeed has another pitch: a table that serves several rotor speeds is one against
+        collective.
     at : array (k,), optional
         Abscissae of the tables' entries, rad or m/s, increasing; not needed for numbers and functions.
     flap, lag : float, array (k,) or function of an array
@@ -33,11 +49,16 @@ class BladeFrequencies:
     cyclic_flap : the same, optional
         Frequency of cyclic flapping if it differs from collective flapping, as when the gimbal is locked and the
         gimbal's mode stands in the blade's place.
+    pitch_coupling : "none" or "springs"
+        Whether a bent blade turns in pitch. With "none" the springs do not turn with the pitch, and no deflection makes
+        a pitching moment. With "springs" elastic pitch and the yoke's roll change the stiffness as they change that of
+        the rotor's own springs, so that pitch equations and K_Pβ, K_Pζ keep their couplings; flap and lag are uncoupled
+        at zero elastic pitch.
 
     Raises
     ------
     InputError
-        When a table does not fit its abscissa or a frequency is not positive.
+        When no rotor speed is stated, a table does not fit its abscissa, or a number is not positive.
     """
 
     flap: _Curve
@@ -45,16 +66,29 @@ class BladeFrequencies:
     cyclic_flap: _Curve | None = None
     against: str = "collective"
     at: ArrayLike | None = None
+    at_rotor_speed: float = np.nan  # refused: one must be given
+    pitch_coupling: str = "none"
 
     def __post_init__(self) -> None:
-        if self.against not in _ABSCISSAE:
-            raise InputError("against", self.against, f"must be one of {', '.join(_ABSCISSAE)}")
+        for name, choices in (("against", _ABSCISSAE), ("pitch_coupling", _PITCH_COUPLING)):
+            if getattr(self, name) not in choices:
+                raise InputError(name, getattr(self, name), f"must be one of {', '.join(choices)}")
+        self._check_rotor_speed()
         if self.at is not None:
             at = np.asarray(self.at, dtype=float)
             if at.ndim != 1 or at.size < 2 or not np.all(np.isfinite(at)) or np.any(np.diff(at) <= 0):
                 raise InputError("at", self.at, "must increase, as a list of at least two numbers")
         for name in ("flap", "lag", "cyclic_flap"):
             self._check(name, getattr(self, name))
+
+    def _check_rotor_speed(self) -> None:
+        """Refuse frequencies without a rotor speed, and a rotor speed that is not one positive number."""
+        check_number("at_rotor_speed", self.at_rotor_speed)
+        if np.ndim(self.at_rotor_speed):
+            raise InputError("at_rotor_speed", self.at_rotor_speed, "must be one number")
+        if np.isnan(self.at_rotor_speed):
+            raise InputError("at_rotor_speed", None, _SPEED_RULE)
+        check_finite("at_rotor_speed", self.at_rotor_speed, "above zero")
 
     def _check(self, name: str, curve: _Curve | None) -> None:
         """Refuse a table that does not fit the abscissae, or a frequency that is not positive."""
@@ -107,8 +141,8 @@ class BladeFrequencies:
         interpolant, held = self._interpolation(curve, abscissa)
         return np.asarray(interpolant(held))
 
-    def rotating(self, collective: Array, airspeed: Array, rotor_speed: Array) -> dict[str, Array]:
-        """Return rotating frequencies by the names of the derivation; the arguments broadcast.
+    def rotating(self, collective: Array, airspeed: Array) -> dict[str, Any]:
+        """Return rotating frequencies and their rotor speed by the names of the derivation; the arguments broadcast.
 
         Parameters
         ----------
@@ -116,12 +150,10 @@ class BladeFrequencies:
             Trim collective, rad.
         airspeed : array (...)
             m/s.
-        rotor_speed : float or array (...)
-            rad/s.
 
         Returns
         -------
-        dict of str to array (...)
+        dict of str to float or array (...)
             rad/s.
 
         Raises
@@ -135,4 +167,6 @@ class BladeFrequencies:
             "rotating_lag_frequency": self.lag,
             "cyclic_flap_frequency": self.flap if self.cyclic_flap is None else self.cyclic_flap,
         }
-        return {name: self._evaluate(curve, abscissa) * rotor_speed for name, curve in curves.items()}
+        per_rev = {name: self._evaluate(curve, abscissa) for name, curve in curves.items()}
+        frequencies = {name: ratio * self.at_rotor_speed for name, ratio in per_rev.items()}
+        return {"rotor_speed": self.at_rotor_speed} | frequencies

@@ -56,7 +56,7 @@ class Options:
         Pitch equations kept; replaced by the couplings of Eqs. 36 and 37 in the airloads' pitch; or left out.
     structure : "coupled", "diagonal" or "tabulated"
         Springs that turn with the pitch (Eqs. 20-22); these springs without the flap-lag stiffness; or, in place of
-        the rotor's springs, the stiffness that gives the frequencies of `frequencies`.
+        the rotor's springs, the stiffness that gives the frequencies of `frequencies` at their own rotor speed.
     frequencies : BladeFrequencies
         For structure="tabulated".
     pitch_flap_coupling, pitch_lag_coupling : float or array that broadcasts with the airspeeds, optional

@@ -75,7 +75,7 @@ class RadialQuadrature:
         if self.counts.ndim == 1:
             return self
         some = {name: getattr(self, name)[rows] for name in _OWN_AXES}
-        longest = some["counts"].sum(axis=-1).max()
+        longest = some["counts"].sum(axis=-1).max(initial=0)
         some |= {name: some[name][:, :longest] for name in ("stations", "weights")}
         return replace(self, **some)
 

@@ -88,7 +88,7 @@ class BladeSections:
 
     def blocks(self, points: int) -> Iterator[tuple[Array | slice, BladeSections]]:
         """Return groups of points with their sections: points whose stations are alike, few enough for the cache."""
-        most = max(1, _BLOCK // self.quadrature.stations.shape[-1])
+        most = max(1, _BLOCK // max(1, self.quadrature.stations.shape[-1]))
         rows: Iterable[Array | slice]
         if self.quadrature.counts.ndim == 1:
             rows = (slice(start, start + most) for start in range(0, points, most))

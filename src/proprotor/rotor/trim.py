@@ -10,6 +10,7 @@ import numpy as np
 from proprotor_equations import flap_lag_springs, inertia
 from proprotor_equations import trim as equations
 
+from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options
@@ -132,10 +133,31 @@ def with_trim(quantities: Mapping[str, Any], options: Options, state: Mapping[st
 
 def _springs(options: Options, quantities: dict[str, Any]) -> dict[str, Any]:
     """Return effective flap and lag stiffness and its change with pitch, as the option `structure` has it."""
-    if options.frequencies is None:
-        springs: dict[str, Any] = evaluate(flap_lag_springs.effective_stiffness, quantities)._asdict()
-        return springs | dict.fromkeys(_FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
-    given = (quantities[name] for name in ("collective", "airspeed", "rotor_speed"))
-    tabulated = quantities | options.frequencies.rotating(*given)
-    springs = evaluate(flap_lag_springs.stiffness_of_frequencies, tabulated)._asdict()
-    return dict.fromkeys(flap_lag_springs.EffectiveStiffness._fields, 0.0) | springs
+    if options.frequencies is not None:
+        return _springs_of_frequencies(options.frequencies, quantities)
+    springs = _turning_springs(quantities)
+    return springs | dict.fromkeys(_FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
+
+
+def _turning_springs(quantities: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the stiffness of the rotor's own springs, which turn with the pitch, and its derivatives."""
+    springs: dict[str, Any] = evaluate(flap_lag_springs.effective_stiffness, quantities)._asdict()
+    return springs
+
+
+def _springs_of_frequencies(frequencies: BladeFrequencies, quantities: dict[str, Any]) -> dict[str, Any]:
+    """Return the stiffness that makes the frequencies at their own rotor speed, whatever the rotor speed is now."""
+    stated = quantities | frequencies.rotating(quantities["collective"], quantities["airspeed"])
+    springs: dict[str, Any] = evaluate(flap_lag_springs.stiffness_of_frequencies, stated)._asdict()
+    if frequencies.pitch_coupling == "none":
+        return dict.fromkeys(flap_lag_springs.EffectiveStiffness._fields, 0.0) | springs
+    turned = _turned_by_elastic_pitch(quantities)
+    return turned | {name: stiffness + turned.get(name, 0.0) for name, stiffness in springs.items()}
+
+
+def _turned_by_elastic_pitch(quantities: dict[str, Any]) -> dict[str, Any]:
+    """Return what elastic pitch adds to the stiffness of the rotor's own springs, and the derivatives with pitch."""
+    turned = _turning_springs(quantities)
+    rigid = quantities["structural_pitch"] - quantities["elastic_pitch"]
+    before = _turning_springs(quantities | {"structural_pitch": rigid})
+    return turned | {name: turned[name] - before[name] for name in turned if name.endswith("_stiffness")}

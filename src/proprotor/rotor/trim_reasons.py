@@ -17,6 +17,7 @@ LOST = "the trim at the end of the path from the undeflected blade was lost: New
 _INDUCED_SHARE = 0.05
 _LARGEST_ANGLE = np.radians(20)  # of a blade that rigid hinges stand for
 _QUADRATURE = 1e-10  # relative error of the loads and their slopes
+_GIVEN_SPRINGS = ("flap_flap_stiffness", "lag_lag_stiffness", "cyclic_flap_stiffness_excess")
 _ANGLES = ("coning", "lag", "elastic_pitch")
 
 
@@ -77,8 +78,8 @@ def beyond_reach(balance: Balance, state: State, reason: Array) -> Array:
 def warnings(balance: Balance, here: Linear, thrust: Array, doubts: Mapping[str, Array]) -> Array:
     """Return what makes each point (n,) doubtful, empty where nothing does.
 
-    A point is doubtful by neglected induced velocity, by blades that diverge or are deflected far, and by sections
-    outside the range of the airfoil.
+    A point is doubtful by neglected induced velocity, by blades that diverge or are deflected far, by frequencies that
+    take a negative spring, and by sections outside the range of the airfoil.
     """
     points = len(thrust)
     airspeed, density, radius = (np.real(here.quantities[name]) for name in ("airspeed", "density", "radius"))
@@ -89,6 +90,7 @@ def warnings(balance: Balance, here: Linear, thrust: Array, doubts: Mapping[str,
     masks = {
         "without airspeed the neglected induced velocity is all the inflow": still,
         **_doubtful_blades(balance, here),
+        **_negative_springs(balance, here),
         **doubts,
     }
     induced = share > _INDUCED_SHARE
@@ -113,6 +115,20 @@ def _doubtful_blades(balance: Balance, here: Linear) -> dict[str, Array]:
         text = f"{name.replace('_', ' ')} beyond {limit}, where rigid hinges are no model"
         found[text] = angle > _LARGEST_ANGLE
     return found
+
+
+def _negative_springs(balance: Balance, here: Linear) -> dict[str, Array]:
+    """Return where given frequencies are below those of centrifugal force alone, masks (n,) by warning."""
+    options, n = balance.options, len(here.residual)
+    if options.frequencies is None:
+        return {}
+    flap, lag, excess = (np.real(here.quantities[name]) for name in _GIVEN_SPRINGS)
+    springs = {"flap": {"flap": flap, "cyclic flap": flap + excess}, "lag": {"lag": lag}}
+    kept = {
+        name: k for hinge, own in springs.items() if hinge not in options.locked for name, k in own.items()
+    }
+    text = "the given {} frequency is below that of centrifugal force alone, so its spring is negative"
+    return {text.format(name): np.broadcast_to(spring < 0, (n,)) for name, spring in kept.items()}
 
 
 def _diverges(stiffness: Array) -> Array:

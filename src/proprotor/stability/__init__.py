@@ -29,6 +29,7 @@ Boundaries: where damping passes a level
     flutter                 the flutter point: the lowest onset
     flutter_messages        records and sentences for people
     map, boundary_lines     the plane of two inputs; its boundary by mode
+    boundary_against        boundaries against one input, such as altitude or rotor speed
 
 What a mode comes from and depends on
     eigenvalue_derivatives  change of eigenvalues with the matrices
@@ -40,6 +41,7 @@ from proprotor.stability import flutter_messages
 from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries, find_crossings, scan_speeds
 from proprotor.stability.boundary import Boundary, Crossings, Failed
+from proprotor.stability.boundary_against import boundary_against
 from proprotor.stability.boundary_lines import BoundaryLine, boundary_lines
 from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.branches import BranchLabels, NamedStates, branch_labels, by_branch, named_at
@@ -88,6 +90,7 @@ __all__ = [
     "at_columns",
     "attribution",
     "boundaries",
+    "boundary_against",
     "boundary_lines",
     "boundary_of",
     "branch_labels",

@@ -51,7 +51,23 @@ def scan_speeds(case: Configuration, points: int = _RANGE[2]) -> Array:
     array (points,)
         m/s.
     """
-    return np.linspace(*_RANGE[:2], points) * tip_speed(case)
+    return scan_shares(points) * tip_speed(case)
+
+
+def scan_shares(points: int = _RANGE[2]) -> Array:
+    """Return the airspeeds of the default scan as shares of the tip speed.
+
+    Parameters
+    ----------
+    points : int
+        Number of airspeeds.
+
+    Returns
+    -------
+    array (points,)
+        Dimensionless, rising.
+    """
+    return np.linspace(*_RANGE[:2], points)
 
 
 def boundaries(
@@ -97,18 +113,30 @@ def boundaries(
         raise InputError("case", case.name, "must be one design: give one input to vary")
     line = _rising(line)
     if vary is None:
-        line = replace(line, positions=_in_small_steps(line.positions, tip_speed(case)))
+        line = replace(line, positions=steps_of_scan(line.positions, tip_speed(case)))
     search = _search(line, level)
     found = _crossings(line, search, approach_to(case, line, search.scanned.works, options))
-    own = stamp.of_case(case, options)
+    own = stamp.of_case(case, options, vary or ())
     carried = tuple(replace(boundary, stamp=own) for boundary in found.boundaries)
     return found._replace(boundaries=carried, stamp=own)
 
 
-def _in_small_steps(positions: Array, tip: float) -> Array:
-    """Return rising positions (k,) with equally spaced points in each step that is wider than the default scan's.
+def steps_of_scan(positions: Array, tip: float) -> Array:
+    """Return airspeeds with equally spaced points in each step that is wider than the default scan's.
 
-    Wider steps hide crossings. `tip` is the tip speed, m/s.
+    Wider steps hide crossings.
+
+    Parameters
+    ----------
+    positions : array (k,)
+        Rising airspeeds, m/s.
+    tip : float
+        Tip speed, m/s.
+
+    Returns
+    -------
+    array (points,)
+        m/s, rising, the given airspeeds among them.
     """
     low, high, points = _RANGE
     widest = (high - low) / (points - 1) * tip

@@ -73,7 +73,7 @@ def boundary_lines(
         For an unknown option, and another option, airspeed or case than the map's.
     """
     options = options_of(found.attrs, case, options)
-    speed = _airspeed_of(found, airspeed)
+    speed = _airspeed_of(case, found, airspeed)
     own = {} if speed is None else {AIRSPEED: speed}
     names = [str(name) for name in found.axis.values]
     roots, warning = found.boundary_eigenvalue.values, found.boundary_warning.values
@@ -93,10 +93,11 @@ def boundary_lines(
     return lines
 
 
-def _airspeed_of(found: Dataset, given: Any) -> float | None:
+def _airspeed_of(case: Configuration, found: Dataset, given: Any) -> float | None:
     """Return the airspeed of a map in m/s; None where the airspeed is one of its axes."""
     own = found.attrs.get(AIRSPEED)
-    if given is not None and (own is None or not np.isclose(in_metres_per_second(given), own, rtol=1e-12)):
+    asked = None if given is None else in_metres_per_second(given, case.operation.density)
+    if asked is not None and (own is None or not np.isclose(asked, own, rtol=1e-12)):
         rule = f"must be {own:.6g} m/s, that of the map, or be left out" if own is not None else ""
         raise InputError(AIRSPEED, given, rule or "is one of the axes of the map")
     return None if own is None else float(own)

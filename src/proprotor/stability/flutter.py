@@ -17,7 +17,7 @@ from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary import Boundary, Failed, start_and_gaps
 from proprotor.stability.flutter_messages import least_damping_message
 from proprotor.stability.kinds import leading_onset
-from proprotor.units import KNOT, in_metres_per_second
+from proprotor.units import KNOT, KTAS, in_metres_per_second
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,21 +87,21 @@ class FlutterPoint:
                 if any(one.onset for one in self.boundaries)
                 else "nothing becomes unstable"
             )
-            first = f"FlutterPoint: {what} between {low} and {high} kt"
-            least = least_damping_message(self, "kt", KNOT)
+            first = f"FlutterPoint: {what} between {low} and {high} {KTAS}"
+            least = least_damping_message(self, KTAS, KNOT)
             first += f"; least damping {least}" if least else ""
         else:
-            where = f"{marked(f'{self.speed / KNOT:.2f}', self.warning)} kt ({self.speed:.6g} m/s)"
+            where = f"{marked(f'{self.speed / KNOT:.2f}', self.warning)} {KTAS} ({self.speed:.6g} m/s)"
             first = f"FlutterPoint: {where}, {self.kind} of {self.mode}, {self.frequency / math.tau:.4g} Hz"
         if self.level:
             first += f"; damping of {100 * self.level:g} % counts as the boundary"
         lines = [
-            f"{marked(f'{other.position / KNOT:.2f}', other.warning)} kt: {other.event}"
+            f"{marked(f'{other.position / KNOT:.2f}', other.warning)} {KTAS}: {other.event}"
             for other in self.boundaries
             if other is not self.boundary
         ]
-        lines += start_and_gaps(self.unstable_at_start, self.failed, "kt", KNOT)
-        lines += [f"{MARK} {line}" for line in footnotes(self.doubts, "kt", KNOT)]
+        lines += start_and_gaps(self.unstable_at_start, self.failed, KTAS, KNOT)
+        lines += [f"{MARK} {line}" for line in footnotes(self.doubts, KTAS, KNOT)]
         return "\n  ".join([first, *lines, *stamp.unusual_options(self.stamp)])
 
     @property
@@ -127,7 +127,7 @@ class FlutterPoint:
         float
             Dimensionless; NaN where nothing becomes unstable.
         """
-        return self.speed / float(in_metres_per_second(airspeed)) - 1
+        return self.speed / float(in_metres_per_second(airspeed, stamp.density_of(self.stamp))) - 1
 
 
 def boundary_of(found: FlutterPoint, mode: str | None) -> Boundary:

@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 from proprotor.model.configuration import Configuration
 from proprotor.model.doubts import doubt_at, marked
-from proprotor.units import KNOT
+from proprotor.model.stamp import density_of
+from proprotor.units import KEAS, KNOT, KTAS, SEA_LEVEL_DENSITY, speed_factor
 
 if TYPE_CHECKING:
     from proprotor.stability.boundary import Boundary
     from proprotor.stability.flutter import FlutterPoint
 
+_SAME_AIR = 0.005  # of the density at sea level: KEAS and KTAS differ by a quarter of a percent
+
 _CELLS: dict[str, Callable[[Boundary, float], Any]] = {  # of a boundary, and of a rotor speed in rad/s
-    "airspeed (kt)": lambda boundary, _: boundary.position / KNOT,
+    "airspeed (KTAS)": lambda boundary, _: boundary.position / KNOT,
+    "airspeed (KEAS)": lambda boundary, _: equivalent(boundary.position, boundary.stamp),
     "airspeed (m/s)": lambda boundary, _: boundary.position,
     "frequency (Hz)": lambda boundary, _: boundary.frequency / (2 * math.pi),
     "frequency (per rev)": lambda boundary, rotor_speed: boundary.frequency / rotor_speed,
@@ -28,6 +32,20 @@ _CELLS: dict[str, Callable[[Boundary, float], Any]] = {  # of a boundary, and of
     "warning": lambda boundary, _: boundary.warning,
 }
 COLUMNS = tuple(_CELLS)
+
+
+def equivalent(airspeed: float, found: Mapping[Any, Any]) -> float:
+    """Return a true airspeed (m/s) in KEAS, in the air of a stamp; NaN in a vacuum or in air that is not known."""
+    density = density_of(found)
+    return airspeed / float(speed_factor(KEAS, density)) if density else math.nan
+
+
+def _and_equivalent(airspeed: float, found: Mapping[Any, Any], unit: str) -> str:
+    """Return an airspeed in KEAS to stand beside KTAS, where the air is not that at sea level; "" otherwise."""
+    density = density_of(found)
+    if unit != KTAS or not density or abs(density / SEA_LEVEL_DENSITY - 1) < _SAME_AIR:
+        return ""
+    return f", {equivalent(airspeed, found):.2f} {KEAS}"
 
 
 def boundary_record(boundary: Boundary, case: Configuration) -> dict[str, Any]:
@@ -102,7 +120,8 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
             yield f"The least damping there is {least}."
     else:
         speed = marked(f"{found.speed / factor:.2f}", found.warning)
-        yield f"Flutter speed {speed} {unit} ({found.mode}, {found.kind})."
+        other = _and_equivalent(found.speed, found.stamp, unit)
+        yield f"Flutter speed {speed} {unit}{other} ({found.mode}, {found.kind})."
     yield from _other_onsets(found, unit, factor)
     yield from (stretch.message(unit, factor) for stretch in found.failed)
     if at is None:

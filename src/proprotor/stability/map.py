@@ -117,9 +117,9 @@ def stability_map(
     found["warning"] = names[::-1], warning.astype(str), {"long_name": "what makes a point doubtful"}
     doubtful = _warnings_at(plane, found.boundary.values)
     found["boundary_warning"] = "vertex", doubtful, {"long_name": "what makes the boundary doubtful"}
-    found.attrs = stamp.of_case(case, options) | {"level": level}
+    found.attrs = stamp.of_case(case, options, names) | {"level": level}
     if airspeed is not None:
-        found.attrs[AIRSPEED] = float(in_metres_per_second(airspeed))
+        found.attrs[AIRSPEED] = float(in_metres_per_second(airspeed, case.operation.density))
     found.attrs["eigen_solves"] = int(np.isfinite(largest).sum()) + solves
     for name in names:
         found[name].attrs["units"] = "m/s" if name == AIRSPEED else design_inputs(case)[name].unit
@@ -135,7 +135,9 @@ def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str
         if name != AIRSPEED:
             check_input(name, known)
         values = (
-            in_metres_per_second(given) if name == AIRSPEED else values_in_si(given, known[name].unit, name)
+            in_metres_per_second(given, stamp.one_density(case, axes))
+            if name == AIRSPEED
+            else values_in_si(given, known[name].unit, name)
         )
         if values.ndim != 1 or len(values) < 2 or not np.all(np.diff(values) > 0):
             raise InputError(name, values.tolist(), "must be a list of values that rise")
@@ -150,7 +152,11 @@ def _plane(case: Configuration, names: tuple[str, str], airspeed: Any, options: 
         raise InputError("airspeed", None, "must be given, or be one of the axes")
     if AIRSPEED in names and airspeed is not None:
         raise InputError("airspeed", airspeed, "is one of the axes already")
-    own = {} if AIRSPEED in names else {AIRSPEED: airspeed}
+    own = (
+        {}
+        if AIRSPEED in names
+        else {AIRSPEED: in_metres_per_second(airspeed, stamp.one_density(case, names))}
+    )
     return lambda x, y: models_at(case, own | dict(zip(names, (x, y), strict=True)), options)
 
 

@@ -39,7 +39,7 @@ def named_modes(
     InputError
         For a value that is no single airspeed, an airspeed that cannot be analysed, many designs, and an unknown mode.
     """
-    speed = in_metres_per_second(airspeed).reshape(-1)
+    speed = in_metres_per_second(airspeed, case.operation.density).reshape(-1)
     if len(speed) != 1:
         raise InputError("airspeed", airspeed, "must be one speed")
     model = case.linearize(speed[0], **options)

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from proprotor.deck.vary import check_input, design_inputs
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError
+from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
 from proprotor.model.first_order import some_points
 from proprotor.model.linear_model import LinearModel
@@ -96,7 +97,8 @@ def line_of_case(
         For airspeeds that do not form a line, more than one input, an unknown input, or points that do not fit into
         memory.
     """
-    speeds = np.atleast_1d(in_metres_per_second(airspeeds))  # one speed is the shortest list
+    given = in_metres_per_second(airspeeds, stamp.one_density(case, vary or ()))
+    speeds = np.atleast_1d(given)  # one speed is the shortest list
     _check_points(AIRSPEED, speeds.size)
     if vary is not None:
         return _line_of_input(case, speeds.reshape(-1), vary, options)

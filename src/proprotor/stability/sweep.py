@@ -147,4 +147,6 @@ def sweep_case(
     else:
         model, approach = with_approach(case, line, options)
         found = sweep(model, line, approach=approach)
-    return found.assign_attrs(stamp.of_case(case, options))  # of the case itself, not of one that is varied
+    return found.assign_attrs(
+        stamp.of_case(case, options, vary or ())
+    )  # of the case itself, not of one that is varied

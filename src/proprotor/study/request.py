@@ -18,7 +18,7 @@ from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import HUB
 from proprotor.rotor.options import parse_options
 from proprotor.study.batch import Analysis, Batch
-from proprotor.study.designs import AIRSPEED, Designs, Plan
+from proprotor.study.designs import AIRSPEED, Designs, Plan, paths_of
 from proprotor.study.sampling import as_plan
 from proprotor.study.variables import ALONG_AIRSPEEDS, POINT, QUANTITIES, bytes_of, shape_of, variables
 from proprotor.support.airframe import Airframe
@@ -115,7 +115,7 @@ class Request:
             coordinates[AIRSPEED] = ((AIRSPEED,) * over_speeds, speeds, {"units": "m/s"})
         if "vectors" in analysis.quantities:
             coordinates["dof"] = list(analysis.dofs)
-        own = stamp.of_case(analysis.case, analysis.options) | self.designs.attributes
+        own = stamp.of_case(analysis.case, analysis.options, self.designs.values) | self.designs.attributes
         return xarray.Dataset(data, coordinates, own)
 
 
@@ -144,7 +144,7 @@ def requested(
     own = AIRSPEED in plan.inputs
     if own == (airspeed is not None):
         raise InputError(AIRSPEED, airspeed, "must be given, either for all designs or among the inputs")
-    speeds = None if own else in_metres_per_second(airspeed)
+    speeds = None if own else in_metres_per_second(airspeed, stamp.one_density(case, paths_of(plan.inputs)))
     if speeds is not None and (speeds.ndim > 1 or not speeds.size):
         raise InputError(AIRSPEED, f"array of shape {speeds.shape}", "must be a speed or a list of speeds")
     for name in ALONG_AIRSPEEDS:

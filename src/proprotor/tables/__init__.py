@@ -9,9 +9,19 @@ sweep_table           a sweep as lines for a terminal, as records and as sentenc
 sensitivity_summary   sensitivities as records
 study_summary         a study in a few numbers
 csv_text              records of any kind as CSV
+boundary_table        boundaries against an input: records and lines
+points                points of a CSV file, to stand on plots beside results
 ====================  =========================================================================
 
 May import the engine, `stability` and `case`.
 """
 
-__all__ = ["csv_text", "sensitivity_summary", "study_summary", "sweep_summary", "sweep_table"]
+__all__ = [
+    "boundary_table",
+    "csv_text",
+    "points",
+    "sensitivity_summary",
+    "study_summary",
+    "sweep_summary",
+    "sweep_table",
+]

@@ -8,10 +8,10 @@ from proprotor.case import Case
 from proprotor.datum import deck_unit
 from proprotor.model.doubts import marked
 from proprotor.typing import Dataset
-from proprotor.units import KNOT
+from proprotor.units import KNOT, KTAS
 
 # For each quantity: the unit that people read, and how many SI units one such unit is.
-READ_IN = {"flutter_speed": ("kt", KNOT), "damping": ("% of critical", 0.01)}
+READ_IN = {"flutter_speed": (KTAS, KNOT), "damping": ("% of critical", 0.01)}
 NEARLY_DEFECTIVE = "The mode nearly coincides with another: derivatives hold in a small range only."
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from proprotor import units
 from proprotor.case import Case
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked
+from proprotor.model.stamp import density_of
 from proprotor.stability.mode_names import DOUBTFUL
 from proprotor.tables.csv_text import csv_of
 from proprotor.tables.sweep_summary import (
@@ -54,23 +55,30 @@ class SweepTable:
     rotor_speed : float
         rad/s, for frequencies per revolution.
     unit : str
-        Unit of airspeeds, such as "kt".
+        Unit of airspeeds, such as "ktas" or "keas"; outputs name knots KTAS or KEAS.
 
     Raises
     ------
     InputError
-        When the unit is not one of speed.
+        When the unit is not one of airspeed.
     """
 
     sweep: Dataset
     rotor_speed: float
-    unit: str = "kt"
+    unit: str = units.KTAS
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "unit", units.airspeed_unit(self.unit))
+
+    @cached_property
+    def factor(self) -> float:
+        """The unit of airspeeds in m/s, true."""
+        return float(units.speed_factor(self.unit, density_of(self.sweep.attrs), field="unit"))
 
     @cached_property
     def airspeed(self) -> Array:
         """Airspeed (airspeed,) in the unit, free of the rounding of conversion."""
-        factor = units.factor_to_si(self.unit, self.unit, "m/s")
-        return np.array([float(f"{v:.10g}") for v in self.sweep.airspeed.values / factor])
+        return np.array([float(f"{v:.10g}") for v in self.sweep.airspeed.values / self.factor])
 
     @cached_property
     def frequency(self) -> Array:
@@ -177,7 +185,7 @@ class SweepTable:
 
     def _rounded(self, speed: float) -> str:
         """Return a speed with its unit, to three digits and at least to whole units."""
-        value = speed / units.factor_to_si(self.unit, self.unit, "m/s")
+        value = speed / self.factor
         digits = 0 if value == 0 else max(0, 2 - math.floor(math.log10(value)))
         return f"{value:.{digits}f} {self.unit}"
 

@@ -1,0 +1,552 @@
+"""The lag frequency of the XV-15's rotor: what is published, what Table 1 gives, and what would give each value.
+
+    python -m benchmarks.lag_frequency
+
+Frequencies are per revolution at 458 rpm unless a line says otherwise. AIAA-2002-1604 ("the paper"): 1.8 at low speed
+to 1.2 at high speed. Bell, calculated (NASA TM X-62,407): 1.454 to 1.052, and 1.736 measured at one pitch. The springs
+of the paper's Table 1 turn with the structural pitch, the pitch of the blade plus δs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from scipy.optimize import brentq, least_squares, minimize_scalar
+
+import proprotor as pp
+from benchmarks.paper_figures.blade_state import blade_state, couplings, effective_springs, on_rigid_hub
+from benchmarks.paper_figures.published import PAPER_FREQUENCIES
+from proprotor.files.output import write_whole
+from proprotor.typing import Array
+from proprotor.units import KNOT
+
+DECKS = ("xv15-uncoupled", "xv15-wing")
+CASE = pp.load_case(DECKS[0])
+BELL = pp.load_case("xv15-bell-frequencies").frequencies
+ROTOR, OMEGA = CASE.rotor, CASE.operation.rotor_speed
+RPM = np.pi / 30
+SLUG_FT2, FT_LBF = 1.3558179483314004, 1.3558179483314004  # kg m², N m
+SPEEDS = np.array([50.0, 400.0])  # kt, the ends of the paper's Fig. 14 that the text calls low and high
+SCAN = "50:480:10kt"
+MEASURED = 1.736
+FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "lag-frequency.png"
+
+
+class Target(NamedTuple):
+    """Published lag frequencies at two pitches of the blade (rad)."""
+
+    name: str
+    frequency: tuple[float, float]
+    pitch: Array
+
+
+@cache
+def pitch_at(knots: float) -> float:
+    """Return the pitch of the windmilling blade in rad."""
+    return float(blade_state(CASE, knots * KNOT).structural_pitch[0]) - ROTOR.structural_pitch_offset
+
+
+def targets() -> tuple[Target, Target]:
+    """Return the paper's frequencies at its speeds, and Bell's at the collectives assumed in the deck."""
+    paper = Target("paper", (1.8, 1.2), np.array([pitch_at(speed) for speed in SPEEDS]))
+    lag = tuple(float(value) for value in np.asarray(BELL.lag))
+    return paper, Target("Bell", (lag[0], lag[1]), np.asarray(BELL.at))
+
+
+# Closed forms -------------------------------------------------------------------------------------
+
+
+def uncoupled(rotor: pp.Rotor, pitch: Any, rotor_speed: float = OMEGA) -> tuple[Array, Array]:
+    """Return ν_β and ν_ζ at pitches (rad): ν² = ν_c² + K/(I Ω²), ν_c² = 1 + e S/I in flap and e S/I in lag."""
+    springs = effective_springs(rotor, pitch + rotor.structural_pitch_offset)
+    flap_part = 1 + rotor.flap_hinge_offset * rotor.flap_first_moment / rotor.flap_inertia
+    lag_part = rotor.lag_hinge_offset * rotor.lag_first_moment / rotor.lag_inertia
+    flap = flap_part + springs.flap_flap_stiffness / (rotor.flap_inertia * rotor_speed**2)
+    lag = lag_part + springs.lag_lag_stiffness / (rotor.lag_inertia * rotor_speed**2)
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(flap), np.sqrt(lag)
+
+
+def lag_frequency(rotor: pp.Rotor, pitch: Any, rotor_speed: float = OMEGA) -> Array:
+    """Return ν_ζ at pitches of the blade (rad)."""
+    return uncoupled(rotor, pitch, rotor_speed)[1]
+
+
+def coupled_on_rigid_hub(rotor: pp.Rotor, pitch: Array) -> tuple[Array, Array]:
+    """Return coning and cyclic lag of the whole rotor in a vacuum, in rotating axes, at pitches of the blade (rad)."""
+    operation = replace(CASE.operation, density=0.0, trim={"collective": pitch})
+    case = replace(CASE, rotor=rotor, operation=operation)
+    found = on_rigid_hub(case, np.full(len(pitch), 100.0), airloads="none", pitch="rigid")
+    return found["coning"], 1 + found["low cyclic lag"]
+
+
+def blade_alone(rotor: pp.Rotor, structural_pitch: Array) -> Array:
+    """Return the lower frequency of a blade that flaps and lags, its gimbal held and its hub still, at no cone."""
+    springs = effective_springs(rotor, structural_pitch)
+    stiffness = np.empty((*np.shape(structural_pitch), 2, 2))
+    stiffness[..., 0, 0] = springs.flap_flap_stiffness
+    stiffness[..., 0, 0] += OMEGA**2 * (
+        rotor.flap_inertia + rotor.flap_hinge_offset * rotor.flap_first_moment
+    )
+    stiffness[..., 1, 1] = springs.lag_lag_stiffness
+    stiffness[..., 1, 1] += OMEGA**2 * rotor.lag_hinge_offset * rotor.lag_first_moment
+    stiffness[..., 0, 1] = stiffness[..., 1, 0] = springs.flap_lag_stiffness
+    # flap and lag of one blade: two directions, so no mass couples them without a cone
+    inertia = np.array([rotor.flap_inertia, rotor.lag_inertia])
+    squared = np.linalg.eigvals(stiffness / inertia[:, None]).real.min(axis=-1)
+    lower: Array = np.sqrt(squared) / OMEGA
+    return lower
+
+
+# Rotors that differ in one or two inputs ----------------------------------------------------------
+
+
+def with_springs(rotor: pp.Rotor, flap: float | None = None, lag: float | None = None) -> pp.Rotor:
+    """Return a rotor with springs K = I ω² of non-rotating frequencies in rad/s."""
+    given = {"flap_stiffness": (rotor.flap_inertia, flap), "lag_stiffness": (rotor.lag_inertia, lag)}
+    return replace(
+        rotor, **{name: inertia * omega**2 for name, (inertia, omega) in given.items() if omega is not None}
+    )
+
+
+def scaled_springs(rotor: pp.Rotor, flap: float, lag: float) -> pp.Rotor:
+    """Return a rotor with both springs multiplied."""
+    return replace(rotor, flap_stiffness=flap * rotor.flap_stiffness, lag_stiffness=lag * rotor.lag_stiffness)
+
+
+class Input(NamedTuple):
+    """One input: how a rotor gets a value, the range in which it is sought, and how it is shown."""
+
+    name: str
+    rotor: Callable[[float], pp.Rotor]
+    range: tuple[float, float]
+    now: float
+    unit: str
+    scale: float = 1.0
+
+
+def inputs() -> tuple[Input, ...]:
+    """Return the inputs of Table 1 on which the lag frequency depends, and those that it leaves out."""
+    flap, lag = (
+        np.sqrt(getattr(ROTOR, f"{n}_stiffness") / getattr(ROTOR, f"{n}_inertia")) for n in ("flap", "lag")
+    )
+    deg = np.pi / 180
+    return (
+        Input("ω_ζ0", lambda x: with_springs(ROTOR, lag=x), (1.0, 400.0), lag, "rad/s"),
+        Input("ω_β0", lambda x: with_springs(ROTOR, flap=x), (1.0, 400.0), flap, "rad/s"),
+        Input(
+            "δs", lambda x: replace(ROTOR, structural_pitch_offset=x), (0.0, np.pi / 2), 15 * deg, "deg", deg
+        ),
+        Input("R_ζ", lambda x: replace(ROTOR, lag_outboard_fraction=x), (0.0, 1.0), 1.0, ""),
+        Input("R_β", lambda x: replace(ROTOR, flap_outboard_fraction=x), (0.0, 1.0), 1.0, ""),
+        Input(
+            "e_ζ",
+            lambda x: replace(ROTOR, lag_hinge_offset=x),
+            (ROTOR.flap_hinge_offset, 3.0),
+            ROTOR.lag_hinge_offset,
+            "ft",
+            0.3048,
+        ),
+        Input("both springs ×", lambda x: scaled_springs(ROTOR, x, x), (0.01, 2.0), 1.0, ""),
+    )
+
+
+def value_for(one: Input, frequency: float, pitch: float) -> tuple[float, float]:
+    """Return the value that gives a lag frequency at a pitch, NaN without one, and the nearest frequency there is."""
+
+    def missed(x: float) -> float:
+        try:
+            return float(lag_frequency(one.rotor(x), pitch)) - frequency
+        except pp.InputError:  # no blade has such integrals
+            return np.nan
+
+    at = np.linspace(*one.range, 161)
+    error = np.array([missed(x) for x in at])
+    crossing = np.flatnonzero(error[:-1] * error[1:] <= 0)
+    nearest = frequency + error[np.nanargmin(np.abs(error))]
+    if not len(crossing):
+        return np.nan, nearest
+    nearest_to_now = min(crossing, key=lambda place: abs(at[place] - one.now))
+    return brentq(missed, at[nearest_to_now], at[nearest_to_now + 1]), frequency
+
+
+def both_springs(target: Target) -> pp.Rotor:
+    """Return the rotor whose two springs give both lag frequencies, δs as in the deck: K_ζζ is linear in both."""
+    turn = target.pitch + ROTOR.structural_pitch_offset
+    centrifugal = ROTOR.lag_hinge_offset * ROTOR.lag_first_moment
+    wanted = OMEGA**2 * (np.square(target.frequency) * ROTOR.lag_inertia - centrifugal)
+    lag, flap = np.linalg.solve(np.column_stack([np.cos(turn) ** 2, np.sin(turn) ** 2]), wanted)
+    return replace(ROTOR, flap_stiffness=flap, lag_stiffness=lag)
+
+
+class Fit(NamedTuple):
+    """Turning springs that come near to Bell's four coupled frequencies, and the root mean square of the misses."""
+
+    rotor: pp.Rotor
+    pitch: Array
+    root_mean_square: float
+
+
+@cache
+def fitted_to_bell(degrees: tuple[int, int] = (20, 50), fractions: bool = False) -> Fit:
+    """Return the springs and δs nearest to Bell's frequencies at two pitches; R_β and R_ζ too where `fractions`."""
+    pitch, published = np.radians(degrees), np.concatenate([np.asarray(BELL.flap), np.asarray(BELL.lag)])
+
+    def rotor(x: Array) -> pp.Rotor:
+        outboard = dict(zip(("flap_outboard_fraction", "lag_outboard_fraction"), x[3:], strict=False))
+        return replace(with_springs(ROTOR, x[0], x[1]), structural_pitch_offset=x[2], **outboard)
+
+    def missed(x: Array) -> Array:
+        return np.nan_to_num(np.concatenate(coupled_on_rigid_hub(rotor(x), pitch)) - published, nan=1.0)
+
+    free = 5 if fractions else 3
+    found = least_squares(
+        missed,
+        [50.0, 100.0, 0.4, 0.9, 0.9][:free],
+        x_scale=[50.0, 80.0, 0.3, 1.0, 1.0][:free],
+        bounds=([10.0, 10.0, -0.3, 0.0, 0.0][:free], [200.0, 300.0, 1.5, 1.0, 1.0][:free]),
+    )
+    return Fit(rotor(found.x), pitch, float(np.sqrt(np.mean(found.fun**2))))
+
+
+# Flutter ------------------------------------------------------------------------------------------
+
+Changed = tuple[str, pp.Rotor | None, pp.BladeFrequencies | None]
+
+
+def candidates() -> Iterator[Changed]:
+    """Yield each explanation with the springs or the table that stand for it."""
+    paper, bell = targets()
+    by_hub_inertia = ROTOR.lag_inertia / ROTOR.blade_inertia
+    yield "springs of Table 1, δs 15°", None, None
+    yield "δs 0°", replace(ROTOR, structural_pitch_offset=0.0), None
+    yield (
+        "δs 33.6°: the least ν_ζ at 400 kt",
+        replace(ROTOR, structural_pitch_offset=np.pi / 2 - pitch_at(400.0)),
+        None,
+    )
+    yield "ω_ζ0 for 1.8 at 50 kt", inputs()[0].rotor(value_for(inputs()[0], 1.8, paper.pitch[0])[0]), None
+    yield "both springs × .67 = I_ζ/I_b", scaled_springs(ROTOR, by_hub_inertia, by_hub_inertia), None
+    yield "Table 1 per rev of 565 rpm", scaled_springs(ROTOR, *2 * [(458 / 565) ** 2]), None
+    yield "both springs for the paper's lag", both_springs(paper), None
+    yield "both springs for Bell's lag", both_springs(bell), None
+    yield "springs and δs nearest to Bell's four", fitted_to_bell().rotor, None
+    yield "paper's lag in a table, no coupling", None, PAPER_FREQUENCIES
+    yield "Bell's table, no coupling", None, replace(BELL, pitch_coupling="none")
+    yield "Bell's table, coupling of the springs", None, BELL
+
+
+def onsets(case: pp.Case, **options: Any) -> tuple[str, str]:
+    """Return the first onset of instability, and the first of a wing mode, each with its mode and airspeed in kt."""
+    found = [boundary for boundary in case.flutter_point(SCAN, **options).boundaries if boundary.onset]
+    of_wing = [boundary for boundary in found if boundary.mode in ("beam", "chord", "torsion")]
+    first, wing = (next(iter(listed), None) for listed in (found, of_wing))
+    return tuple(
+        "none to 480" if one is None else f"{one.mode} {one.position / KNOT:.0f}" for one in (first, wing)
+    )
+
+
+def flutter(deck: str, changed: Changed, rotor_speed: float | None = None) -> tuple[str, str]:
+    """Return the onsets of a deck with other springs, or a table of frequencies, at a rotor speed in rad/s."""
+    case, (_, rotor, table) = pp.load_case(deck), changed
+    case = case if rotor is None else replace(case, rotor=rotor)
+    if rotor_speed is not None:
+        case = replace(case, operation=replace(case.operation, rotor_speed=rotor_speed))
+    return onsets(case, **({} if table is None else {"structure": "tabulated", "frequencies": table}))
+
+
+# Tables -------------------------------------------------------------------------------------------
+
+
+def _row(values: Array) -> list[str]:
+    return ["-" if np.isnan(value) else f"{value:.3f}" for value in values]
+
+
+def print_published(console: Console) -> None:
+    table = Table("source", "pitch, deg", "lag per rev", "status", title="Published")
+    paper, bell = targets()
+    for target, status in (
+        (paper, "text; the pitches are this rotor's at 50 and 400 kt"),
+        (bell, "calculated"),
+    ):
+        pitches = " to ".join(f"{value:.1f}" for value in np.degrees(target.pitch))
+        table.add_row(target.name, pitches, " to ".join(map(str, target.frequency)), status)
+    table.add_row("whirl stand", "not at hand", str(MEASURED), "measured, rotor speed not at hand")
+    console.print(table)
+
+
+def print_over_pitch(console: Console) -> None:
+    knots = np.array([50.0, 100.0, 150.0, 200.0, 250.0, 300.0, 350.0, 400.0])
+    state = blade_state(CASE, knots * KNOT)
+    pitch = state.structural_pitch - ROTOR.structural_pitch_offset
+    _, lag = uncoupled(ROTOR, pitch)
+    coning, cyclic = coupled_on_rigid_hub(ROTOR, pitch)
+    air = on_rigid_hub(CASE, knots * KNOT, pitch="coupling")["low cyclic lag"]
+    table = Table(
+        *("kt", "pitch", "Θ + δs, deg", "ν_ζ uncoupled", "blade, gimbal held", "cyclic lag, vacuum"),
+        *("1 + Fig. 14, airloads", "coning, vacuum"),
+        title="Springs of Table 1, δs 15°",
+    )
+    alone = blade_alone(ROTOR, state.structural_pitch)
+    columns = np.column_stack([lag, alone, cyclic, 1 + air, coning])
+    for speed, angle, row in zip(knots, np.degrees(pitch), columns, strict=True):
+        table.add_row(f"{speed:.0f}", f"{angle:.1f}", f"{angle + 15:.1f}", *_row(row))
+    console.print(table)
+    turn = np.radians(np.linspace(0, 90, 181))
+    least = lag_frequency(ROTOR, turn - ROTOR.structural_pitch_offset)
+    lower = minimize_scalar(
+        lambda x: float(blade_alone(ROTOR, np.array(x))), bounds=(0, np.pi / 2), method="bounded"
+    )
+    console.print(
+        f"At any structural pitch: uncoupled {least.max():.3f} (0°) to {least.min():.3f} (90°); lower frequency of the "
+        f"blade alone at least {lower.fun:.3f}, at {np.degrees(lower.x):.0f}°."
+    )
+    tabulated = {"structure": "tabulated", "frequencies": PAPER_FREQUENCIES}
+    given = on_rigid_hub(CASE, np.array([100.0, 400.0]) * KNOT, pitch="coupling", **tabulated)[
+        "low cyclic lag"
+    ]
+    console.print(
+        f"1.8 to 1.2 given as uncoupled frequencies: Fig. 14 falls to {given[1]:.2f} from {given[0]:.2f} at 100 kt."
+    )
+
+
+def print_definitions(console: Console) -> None:
+    """At the pitches of 50 and 400 kt, and at the structural pitches between which all others lie."""
+    paper, _ = targets()
+    pitch = np.concatenate([paper.pitch, np.array([0.0, np.pi / 2]) - ROTOR.structural_pitch_offset])
+    flap, lag = uncoupled(ROTOR, pitch)
+    of_flap, of_lag = (part**2 for part in uncoupled(scaled_springs(ROTOR, 1e-12, 1e-12), 0.0))
+    rows = {
+        "rotating, uncoupled: √(K_ζζ/(I_ζΩ²) + eS/I_ζ)": lag,
+        "non-rotating over Ω: √(K_ζζ/(I_ζΩ²))": np.sqrt(lag**2 - of_lag),
+        "with I_b: √(K_ζζ/(I_bΩ²) + eS/I_ζ)": np.sqrt(
+            of_lag + (lag**2 - of_lag) * ROTOR.lag_inertia / ROTOR.blade_inertia
+        ),
+        "rotating, uncoupled, per rev of 565 rpm": lag_frequency(ROTOR, pitch, 565 * RPM),
+        "coning, uncoupled": flap,
+        "coning with I_b": np.sqrt(of_flap + (flap**2 - of_flap) * ROTOR.flap_inertia / ROTOR.blade_inertia),
+        "coning, uncoupled, per rev of 565 rpm": uncoupled(ROTOR, pitch, 565 * RPM)[0],
+    }
+    table = Table(
+        "definition", "50 kt", "400 kt", "Θ + δs = 0°", "90°", title="Definitions, numbers of Table 1"
+    )
+    for name, values in rows.items():
+        table.add_row(name, *_row(values))
+    console.print(table)
+
+
+def print_single_inputs(console: Console) -> None:
+    for target in targets():
+        low, high = (
+            f"for {value} at {np.degrees(at):.0f}°"
+            for value, at in zip(target.frequency, target.pitch, strict=True)
+        )
+        table = Table("input", "now", low, high, title=f"One input alone, uncoupled frequency: {target.name}")
+        for one in inputs():
+            cells = [f"{one.now / one.scale:.4g} {one.unit}"]
+            for frequency, pitch in zip(target.frequency, target.pitch, strict=True):
+                value, nearest = value_for(one, frequency, float(pitch))
+                cells.append(
+                    f"no value: at best {nearest:.3f}"
+                    if np.isnan(value)
+                    else f"{value / one.scale:.4g} {one.unit}"
+                )
+            table.add_row(one.name, *cells)
+        console.print(table)
+    low_pitch = float(np.asarray(BELL.at)[0])
+    value, _ = value_for(inputs()[0], MEASURED, low_pitch)
+    console.print(
+        f"{MEASURED} at 20° of pitch takes ω_ζ0 = {value:.1f} rad/s; Table 1 gives that frequency at a "
+        f"structural pitch of {_pitch_of(MEASURED, OMEGA):.1f}°, and per revolution of 565 rpm at "
+        f"{_pitch_of(MEASURED, 565 * RPM):.1f}°."
+    )
+
+
+def _pitch_of(frequency: float, rotor_speed: float) -> float:
+    """Return the structural pitch in deg at which the springs of Table 1 give a lag frequency."""
+    offset = ROTOR.structural_pitch_offset
+    return float(
+        np.degrees(
+            brentq(lambda x: float(lag_frequency(ROTOR, x - offset, rotor_speed)) - frequency, 0, np.pi / 2)
+        )
+    )
+
+
+def print_fits(console: Console) -> None:
+    columns = ("ω_β0", "ω_ζ0", "δs", "R_β", "R_ζ", "coning at both ends", "lag at both ends", "rms miss")
+    table = Table(
+        "springs", *columns, title="Two inputs and more; frequencies of the last three coupled, in a vacuum"
+    )
+    paper, bell = targets()
+    for name, target in (("both for the paper's lag", paper), ("both for Bell's lag", bell)):
+        rotor = both_springs(target)
+        table.add_row(name, *_springs_of(rotor), *_ends(uncoupled(rotor, target.pitch)), "0")
+    for name, fit in (
+        ("nearest to Bell's four, 20 to 50°", fitted_to_bell()),
+        ("nearest to Bell's four, R free", fitted_to_bell(fractions=True)),
+        ("nearest to Bell's four, 10 to 60°", fitted_to_bell((10, 60))),
+    ):
+        found = coupled_on_rigid_hub(fit.rotor, fit.pitch)
+        table.add_row(name, *_springs_of(fit.rotor), *_ends(found), f"{fit.root_mean_square:.3f}")
+    console.print(table)
+
+
+def print_sum(console: Console) -> None:
+    """The sum that turning alone keeps: with R = 1 the springs of flap and lag make K_ββ + K_ζζ = K_β + K_ζ."""
+    lag, flap = np.asarray(BELL.lag), np.asarray(BELL.flap)
+    total = ROTOR.flap_inertia * flap**2 + ROTOR.lag_inertia * lag**2
+    text = "I_β ν_β² + I_ζ ν_ζ² is the same at each pitch for uncoupled springs that only turn; Bell's at 50° is "
+    console.print(f"{text}{total[1] / total[0]:.3f} of Bell's at 20°.")
+
+
+def _springs_of(rotor: pp.Rotor) -> Iterator[str]:
+    """Yield non-rotating frequencies in rad/s, δs in deg, and the outboard fractions of a rotor."""
+    for name in ("flap", "lag"):
+        yield f"{np.sqrt(getattr(rotor, f'{name}_stiffness') / getattr(rotor, f'{name}_inertia')):.1f}"
+    yield f"{np.degrees(rotor.structural_pitch_offset):.1f}"
+    yield f"{rotor.flap_outboard_fraction:.2f}"
+    yield f"{rotor.lag_outboard_fraction:.2f}"
+
+
+def _ends(found: tuple[Array, Array]) -> Iterator[str]:
+    return (" to ".join(_row(values)) for values in found)
+
+
+def print_flutter(console: Console) -> None:
+    columns = [f"{deck}, {which}" for deck in DECKS for which in ("first", "wing")]
+    table = Table("springs", *columns, title="First onset in kt (pitch equations, damping of sections)")
+    for changed in candidates():
+        table.add_row(changed[0], *(cell for deck in DECKS for cell in flutter(deck, changed)))
+    console.print(table)
+
+
+def print_bell_band(console: Console) -> None:
+    """Bell's table with its inputs at the ends of what is known, on the first deck."""
+    table = Table("change", "first", "wing", title=f"Bell's table, coupling of the springs, {DECKS[0]}")
+    read = 15 / 458  # per rev
+    lag, flap = np.asarray(BELL.lag), np.asarray(BELL.flap)
+    tables = {
+        "as in the deck": BELL,
+        "lag - 15 cpm": replace(BELL, lag=lag - read),
+        "lag + 15 cpm": replace(BELL, lag=lag + read),
+        "coning - 15 cpm": replace(BELL, flap=flap - read),
+        "coning + 15 cpm": replace(BELL, flap=flap + read),
+        "pitch from 10 to 50°": replace(BELL, at=np.radians([10, 50])),
+        "pitch from 20 to 60°": replace(BELL, at=np.radians([20, 60])),
+        "pitch from 10 to 60°": replace(BELL, at=np.radians([10, 60])),
+    }
+    for name, given in tables.items():
+        table.add_row(name, *flutter(DECKS[0], (name, None, given)))
+    for stiffness in (11000, 14000, 22400):
+        rotor = replace(ROTOR, control_stiffness=stiffness * FT_LBF)
+        table.add_row(f"K_θ {stiffness} ft lbf/rad", *flutter(DECKS[0], ("", rotor, BELL)))
+        table.add_row(
+            f"K_θ {stiffness} ft lbf/rad, springs of Table 1", *flutter(DECKS[0], ("", rotor, None))
+        )
+    console.print(table)
+
+
+def print_couplings(console: Console) -> None:
+    """K_Pβ and K_Pζ of both decks, by their own trims and the slopes of the springs of Table 1."""
+    knots = np.array([100.0, 200.0, 250.0, 300.0, 350.0])
+    table = Table("deck", "", *(f"{speed:.0f} kt" for speed in knots), title="Couplings at trim")
+    for name in (DECKS[0], "xv15-bell-frequencies"):
+        case = pp.load_case(name)
+        trim = case.linearize(knots * KNOT, pitch="coupling").trim
+        found = couplings(
+            case.rotor,
+            effective_springs(case.rotor, trim.pitch + case.rotor.structural_pitch_offset),
+            trim.coning,
+            trim.lag,
+        )
+        angles = {"coning, deg": np.degrees(trim.coning), "lag, deg": np.degrees(trim.lag)}
+        rows = angles | {"K_Pβ": found.pitch_flap_coupling, "K_Pζ": found.pitch_lag_coupling}
+        for label, values in rows.items():
+            table.add_row(name, label, *(f"{value:.2f}" for value in values))
+    console.print(table)
+
+
+def print_rotor_speeds(console: Console) -> None:
+    """What a table per revolution of the rotor speed of the day gave, and what its springs give."""
+    columns = [f"{deck}, {which}" for deck in DECKS for which in ("first", "wing")]
+    table = Table("table", "rpm", *columns, title="Tables at another rotor speed: first onset in kt")
+    for name, given in (
+        ("Bell's, no coupling", replace(BELL, pitch_coupling="none")),
+        ("Bell's, coupling of the springs", BELL),
+        ("paper's lag", PAPER_FREQUENCIES),
+        ("paper's lag, coupling of the springs", replace(PAPER_FREQUENCIES, pitch_coupling="springs")),
+    ):
+        for rpm in (300, 380, 458, 517):
+            before = replace(given, at_rotor_speed=rpm * RPM)
+            for label, one in (("per rev", before), ("springs", given)):
+                row = (flutter(deck, ("", None, one), rpm * RPM) for deck in DECKS)
+                table.add_row(f"{name}: {label}", str(rpm), *(cell for pair in row for cell in pair))
+    console.print(table)
+
+
+def draw(axes: Any) -> None:
+    """Draw lag frequencies against the pitch of the blade: published, and by the springs of Table 1."""
+    pitch = np.linspace(0, 60, 61)
+    turn = np.radians(pitch)
+    knots = np.arange(50.0, 401.0, 10.0)
+    in_air = 1 + on_rigid_hub(CASE, knots * KNOT, pitch="coupling")["low cyclic lag"]
+    at = np.degrees(blade_state(CASE, knots * KNOT).structural_pitch - ROTOR.structural_pitch_offset)
+    paper, bell = targets()
+    axes.plot(pitch, lag_frequency(ROTOR, turn), "C0", label="Table 1, δs 15°: uncoupled, 458 rpm")
+    axes.plot(pitch, lag_frequency(ROTOR, turn, 565 * RPM), "C0--", label="the same per rev of 565 rpm")
+    axes.plot(pitch, coupled_on_rigid_hub(ROTOR, turn)[1], "C1", label="Table 1: cyclic lag in a vacuum")
+    axes.plot(at, in_air, "C1--", label="Table 1: cyclic lag with airloads, 50 to 400 kt")
+    axes.plot(
+        np.degrees(paper.pitch), paper.frequency, "C2o:", label="the paper's text (pitches of 50 and 400 kt)"
+    )
+    axes.errorbar(
+        np.degrees(bell.pitch),
+        bell.frequency,
+        yerr=15 / 458,
+        fmt="C3s:",
+        label="Bell, calculated (pitches assumed)",
+    )
+    axes.axhline(MEASURED, color="0.5", linestyle=":", label=f"measured, {MEASURED}, pitch not at hand")
+    axes.set(
+        xlabel="Pitch of the blade at 0.75 R (deg)",
+        ylabel="Lag frequency, rotating axes (per rev)",
+        ylim=(1, 2.2),
+    )
+    axes.figure.legend(loc="outside lower center", ncols=2, fontsize="small")
+
+
+def write_figure() -> None:
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(7.5, 5.5), layout="constrained")
+    draw(axes)
+    write_whole(FIGURE, lambda file: figure.savefig(file, dpi=110, format="png"))
+    plt.close(figure)
+
+
+def main() -> None:
+    console = Console(width=150, highlight=False)
+    for show in (
+        *(
+            print_published,
+            print_over_pitch,
+            print_definitions,
+            print_single_inputs,
+            print_fits,
+            print_couplings,
+        ),
+        *(print_flutter, print_bell_band, print_rotor_speeds),
+    ):
+        show(console)
+    write_figure()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,166 @@
+"""The command `proprotor boundary`: the airspeed of each boundary against altitude, rotor speed or another input."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import click
+
+from proprotor.case import Case
+from proprotor.commands import arguments, output
+from proprotor.commands.waiting import waiting
+from proprotor.deck.vary import check_input, design_inputs
+from proprotor.errors import InputError
+from proprotor.model.doubts import doubts_along
+from proprotor.tables.boundary_table import (
+    boundary_cells,
+    boundary_records,
+    input_of,
+    of_mode,
+    only_first,
+)
+from proprotor.tables.csv_text import csv_of
+from proprotor.tables.points import Quantity
+from proprotor.typing import Dataset
+from proprotor.units import KEAS, KTAS, factor_to_si, is_equivalent, speeds
+
+_EXAMPLE = '"operation.rotor_speed=300:610:20 rpm"'
+_OPERATION = "operation."
+
+
+@arguments.command(short_help="Follow the boundaries over altitude, rotor speed or another input.")
+@arguments.case_argument
+@click.option(
+    "--against",
+    required=True,
+    type=arguments.InputValues(),
+    metavar="INPUT=RANGE",
+    help=f'Input by deck path, and its values: {_EXAMPLE}, "altitude=0:20000:2000 ft".',
+)
+@arguments.scan_option
+@click.option("--mode", help="Show the boundaries of this mode alone.")
+@click.option("--first", is_flag=True, help="Show the first instability alone, whatever mode it is.")
+@click.option(
+    "--speed-unit",
+    type=click.Choice(("ktas", "keas")),
+    help="Airspeed of the plot; by default that of --scan, KTAS without it.",
+)
+@arguments.level_option
+@arguments.points_option
+@output.output_options(
+    csv="Write a row for each boundary.", plot="Draw the airspeed of each boundary over the input"
+)
+@arguments.model_options
+def boundary(
+    request: arguments.Request,
+    outputs: output.Outputs,
+    against: str,
+    scan: str | None,
+    mode: str | None,
+    first: bool,
+    speed_unit: str | None,
+    level: float,
+    points: str | None,
+) -> None:
+    """Find the airspeeds at which modes become unstable, or stable again, at each value of an input.
+
+    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. Each boundary is exact to rounding.
+    Boundaries at neighbouring values are one branch if the same root becomes unstable. A deck that gives the air by
+    density and speed of sound is taken to an altitude in the standard atmosphere by --against altitude=...
+
+    \b
+    Examples:
+      proprotor boundary xv15 --against "operation.rotor_speed=300:610:20 rpm" --plot boundary.png
+      proprotor boundary xv15 --against "altitude=0:20000:2000 ft" --scan 200:450:10keas --mode chord
+      proprotor boundary my.toml --against "rotor_speed=400:600:20 rpm" --points measured.csv --plot boundary.png
+    """
+    if mode and first:
+        raise InputError("--first", None, "goes without --mode")
+    case, path, given = _case_and_input(request, against)
+    unit = arguments.unit_of(given)
+    across = Quantity(path, design_inputs(case)[path].unit)
+    measured = arguments.points_of(points, outputs.plot, across, [arguments.AIRSPEED])
+    with waiting("Looking for boundaries"):
+        found = case.boundary_against({path: given}, _scan_of(case, scan), level=level, **request.options)
+    shown = only_first(found) if first else of_mode(found, mode) if mode else found
+    records = boundary_records(shown, unit)
+    shown_in = speed_unit or ("keas" if scan and is_equivalent(scan) else "ktas")
+
+    def draw() -> Any:
+        from proprotor.plots import plot_boundary_against, rests_on  # here, so that --help answers without it
+
+        ax = plot_boundary_against(shown, unit=unit, speed_unit=shown_in, points=measured)
+        return rests_on(ax, case, f"{case.title or case.name}.")
+
+    outputs.write(
+        document=lambda: output.about(case, request) | _document(found, records, level),
+        table=lambda: _print(case, shown, records, unit),
+        csv=lambda: csv_of(records, list(records[0]), found.attrs),
+        plot=draw,
+    )
+    if not (found.searched.values > 0).any():
+        raise click.exceptions.Exit(1)
+
+
+def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str, str]:
+    """Return the case, and the path and the values of the input.
+
+    Where the deck gives the air by its density, an altitude takes its place. A field of [operation] may stand without
+    the name of the table.
+    """
+    path, given = arguments.name_and_value(
+        "--against", against, f"must be an input and its values, such as {_EXAMPLE}"
+    )
+    case = request.load()
+    known = design_inputs(case)
+    whole = path if "." in path else f"{_OPERATION}{path}"
+    if whole == "operation.altitude" and whole not in known:
+        at = f"0 {arguments.unit_of(given)}"
+        factor_to_si(given, arguments.unit_of(given), "m")
+        request = request._replace(settings={**request.settings, whole: at})
+        case = request.load()
+        known = design_inputs(case)
+    found = whole if whole in known else path
+    check_input(found, known)
+    return case, found, given
+
+
+def _scan_of(case: Case, scan: str | None) -> str | None:
+    """Return the airspeeds of the search as text, which the analysis converts in the air of each value."""
+    if scan is not None:
+        speeds(scan, "--scan", case.operation.density)  # raises an error that names the option
+    return scan
+
+
+def _document(found: Dataset, records: Sequence[dict[str, Any]], level: float) -> dict[str, Any]:
+    path = input_of(found)
+    low, high = (found.searched.sel(end=end).values.tolist() for end in ("low", "high"))
+    return {
+        "level (damping ratio)": level,
+        "against": path,
+        "against (SI)": {"unit": found[path].attrs["units"], "values": found[path].values.tolist()},
+        "density (kg/m³)": found.density.values.tolist(),
+        "searched from (m/s)": low,
+        "searched to (m/s)": high,
+        "boundaries": list(records),
+        "eigen-solves": int(found.attrs["eigen_solves"]),
+    }
+
+
+def _print(case: Case, shown: Dataset, records: Sequence[dict[str, Any]], unit: str) -> None:
+    output.print_head(case, shown.attrs)
+    path = input_of(shown)
+    out = output.console()
+    out.print(f"Boundaries against {path}" + (f" ({unit})" if unit else "") + ":")
+    columns = (unit or "value", KTAS, KEAS, "Hz", "/rev", "mode", "kind", "")
+    output.print_table(columns, map(boundary_cells, records), text=columns[5:])
+    failures = dict.fromkeys(reason for reason in shown.reason.values.tolist() if reason)
+    for reason in failures:
+        values = [r for r in records if r["failure"] == reason]
+        out.print(f"Not analysed at {next(iter(values[0].values())):g} {unit}: {reason}.", soft_wrap=True)
+    warnings = shown.warning.values
+    rows, places = (warnings != "").nonzero()
+    if len(rows):
+        factor = factor_to_si(unit, unit, str(shown[path].attrs["units"]))
+        output.print_doubts(doubts_along(shown[path].values[rows], warnings[rows, places]), unit, factor)

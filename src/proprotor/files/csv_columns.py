@@ -1,0 +1,118 @@
+"""Tables that users give as CSV: one line names the columns, each with its unit, and lines of cells follow.
+
+::
+
+    r [ft], twist [deg], chord [inch]
+
+Commas, semicolons or tabs separate the columns; numbers have a decimal point. Empty lines and lines that begin with
+``#`` are ignored. Cells contain numbers or words only: no formula is evaluated.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from proprotor.errors import InputError, printable, unknown_name
+from proprotor.units import factor_to_si
+
+Line = tuple[int, list[str]]  # the number of a line in the file, and its cells
+
+_HEAD = re.compile(r"\s*([^\[\]]*?)\s*(?:\[([^\[\]]*)\])?\s*")
+_NUMBER = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*")
+_DELIMITERS = ",;\t"
+
+
+class Head(NamedTuple):
+    """The head of a column: its place from 0, its text, name and unit."""
+
+    place: int
+    text: str
+    name: str
+    unit: str
+
+
+class Fault(Exception):
+    """A rule that the file breaks."""
+
+
+def table_of(text: str) -> tuple[list[Head], Iterator[Line]]:
+    """Return the heads of the columns, and the lines of cells below with their line numbers."""
+    lines = [
+        (number, line)
+        for number, line in enumerate(re.split("\r\n|\r|\n", text), start=1)
+        if line.strip(f" {_DELIMITERS}") and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise Fault("is empty; its first line must name the columns")
+    number, first = lines[0]
+    delimiter = max(_DELIMITERS, key=first.count)
+    heads = [_as_head(number, place, text) for place, text in enumerate(_cells(number, first, delimiter))]
+    names = [head.name for head in heads]
+    for head in heads:
+        if names.index(head.name) != head.place:
+            raise Fault(f'line {number}, column {head.place + 1}: "{head.name}" is named twice')
+    return heads, _rows(lines[1:], delimiter, len(heads))
+
+
+def _rows(lines: list[tuple[int, str]], delimiter: str, columns: int) -> Iterator[Line]:
+    """Yield the cells of each line with its line number."""
+    for number, line in lines:
+        cells = _cells(number, line, delimiter)
+        if len(cells) > columns:  # a decimal comma makes two cells of a number
+            raise Fault(f"line {number}: has {len(cells)} cells for {columns} columns")
+        yield number, cells
+
+
+def _cells(number: int, line: str, delimiter: str) -> list[str]:
+    """Return the cells of a line, without the empty cells that spreadsheets leave at its end."""
+    try:
+        (cells,) = csv.reader([line], delimiter=delimiter, strict=True, skipinitialspace=True)
+    except (csv.Error, ValueError):
+        raise Fault(f"line {number}: has a quotation mark that is not closed") from None
+    while cells and not cells[-1].strip():
+        del cells[-1]
+    return cells
+
+
+def _as_head(number: int, place: int, text: str) -> Head:
+    """Return the head of a column from its text, name and unit."""
+    match = _HEAD.fullmatch(text)
+    if match is None or not match[1]:
+        raise Fault(f'line {number}, column {place + 1}: must be a name and a unit, such as "twist [deg]"')
+    return Head(place, text.strip(), match[1], (match[2] or "").strip())
+
+
+def head_of(heads: list[Head], column: str) -> Head:
+    """Return the head of a column by name."""
+    for head in heads:
+        if head.name == column:
+            return head
+    raise Fault(unknown_name(column, [head.name for head in heads], "column"))
+
+
+def factor_of(head: Head, unit: str) -> float:
+    """Return the size of a column's unit in the SI unit."""
+    try:
+        return factor_to_si(head.text, head.unit, unit)
+    except InputError as error:
+        raise Fault(f"column {head.place + 1} ({head.text}): {error.rule}") from None
+
+
+def number_in(number: int, cells: list[str], head: Head) -> float:
+    """Return the number in a column of a line."""
+    if len(cells) <= head.place:
+        raise fault_at(number, head, "has no such cell")
+    text = cells[head.place]
+    if not text.strip():
+        raise fault_at(number, head, "is empty")
+    if not _NUMBER.fullmatch(text):
+        raise fault_at(number, head, f'"{printable(text.strip())[:30]}" is no number')
+    return float(text)
+
+
+def fault_at(number: int, head: Head, rule: str) -> Fault:
+    """Return the fault at a line and column of the file."""
+    return Fault(f"line {number}, column {head.place + 1} ({head.text}): {rule}")
