@@ -3,9 +3,10 @@
     python -m benchmarks.bell_boundaries
     python -m benchmarks.bell_boundaries --points FILE    # a CSV file of other points with the same columns
 
-The 40 points are read off Figs. 7.2.1, 7.2.3 and 7.2.5 of NASA TM X-62,407 (to 3 kt), calculations of 1975. The model is
-the decks `xv15-aircraft` and `xv15-aircraft-off` as they are, with the published control stiffness of 22,400 ft lbf/rad; no
-input was matched to any point. `benchmarks.bell_points` says which boundary of the model belongs to a point.
+The 40 points are read off Figs. 7.2.1, 7.2.3 and 7.2.5 of NASA TM X-62,407 (to 3 kt), calculations of 1975. The
+model is the decks `xv15-aircraft` and `xv15-aircraft-off` as they are, with the published control stiffness of
+22,400 ft lbf/rad; no input was matched to any point. `benchmarks.bell_points` says which boundary of the model
+belongs to a point.
 """
 
 from __future__ import annotations
@@ -34,25 +35,27 @@ from benchmarks.bell_points import (
 )
 from proprotor.units import KNOT
 
-ACREE = (
-    335  # kt, antisymmetric beam at 458 rpm: Acree, Peyran and Johnson 1999, another analysis of the aircraft
-)
+ACREE = 335  # kt, antisymmetric beam at 458 rpm: Acree, Peyran and Johnson 1999, another analysis
 _AT = 458.0  # rpm
 _ON, _SOFT, _OFF = CONFIGURATIONS
 _Found = Mapping[Point, Crossing]
 
 BANDS = """\
-Bands of frequency, from the published frequencies of the airframe at rest alone. Symmetric chord: between the geometric
-means with beam below and torsion above. Antisymmetric: beam, chord and torsion are too near each other to be told apart, so
-one band from half an octave below the first to half an octave above the last.
+Bands of frequency, from the published frequencies of the airframe at rest alone. Symmetric chord: between the
+geometric means with beam below and torsion above. Antisymmetric: beam, chord and torsion are too near each other to
+be told apart, so one band from half an octave below the first to half an octave above the last.
 """
 WHAT_SETS = """
-Slopes. If all springs and the speed of sound followed the rotor speed, so would the boundary. What does not follow takes
-its share: in this order the speed of sound (the Prandtl-Glauert factor of the tips), wing and pylon, the flap spring of the
-blade, the control system. Of single inputs K_θ and structural damping change the slopes most; none gives Bell's.
+Slopes. If all springs and the speed of sound followed the rotor speed, so would the boundary. What does not follow
+takes its share: in this order the speed of sound (the Prandtl-Glauert factor of the tips), wing and pylon, the flap
+spring of the blade, the control system. Of single inputs K_θ and structural damping change the slopes most; none
+gives Bell's.
+
 20 % less stiffness. Wing torsion has most of the loss in both symmetries, chord bending and the downstop the rest.
-Downstop. Its pitch spring and the yaw spring of the spindle take equal shares of the symmetric boundary; the pitch spring
-takes nearly all of the antisymmetric one.
+
+Downstop. Its pitch spring and the yaw spring of the spindle take equal shares of the symmetric boundary; the pitch
+spring takes nearly all of the antisymmetric one.
+
 Bell's points are calculations of 1975, whose damping and rotor model are not told: a difference is one from another
 analysis, not from a test. The antisymmetric boundaries of Bell and of Acree, Peyran and Johnson are 130 kt apart.
 """
@@ -143,7 +146,7 @@ def _summary(own: _Found, *, slopes: bool) -> Iterable[str]:
     low = [point for point in own if below(point)]
     rpm = [point.rpm for point in low]
     for airspeeds in ([point.airspeed for point in low], [own[point].airspeed for point in low]):
-        yield written(slope_of(rpm, airspeeds), "+.2f") if slopes else ""
+        yield written(slope_of(rpm, airspeeds), "+.2f") if slopes and len(set(rpm)) > 1 else ""
 
 
 def print_changes(console: Console, found: _Found) -> None:

@@ -1,7 +1,8 @@
 """What each input of the whole XV-15 does to its stability boundaries, one input at a time.
 
-A row has the first boundary of each symmetry at 458 rpm, how both fall with the rotor speed, and what 20 % less stiffness
-of wing and pylon and the loss of the downstop do. The ranges are judgements of what an input could be, not measured scatter.
+A row has the first boundary of each symmetry at 458 rpm, how both fall with the rotor speed, and what 20 % less
+stiffness of wing and pylon and the loss of the downstop do. The ranges are judgements of what an input could be,
+not measured scatter.
 """
 
 from __future__ import annotations
