@@ -47,9 +47,9 @@ be told apart, so one band from half an octave below the first to half an octave
 """
 WHAT_SETS = """
 Slopes. If all springs and the speed of sound followed the rotor speed, so would the boundary. What does not follow
-takes its share: in this order the speed of sound (the Prandtl-Glauert factor of the tips), wing and pylon, the flap
-spring of the blade, the control system. Of single inputs K_θ and structural damping change the slopes most; none
-gives Bell's.
+takes its share: wing and pylon, the speed of sound (through the Prandtl-Glauert factor of the tips) and the flap spring
+of the blade about alike, the control system less. Of single inputs structural damping, K_θ and the Prandtl-Glauert
+factor change the slopes most; none gives Bell's.
 
 20 % less stiffness. Wing torsion has most of the loss in both symmetries, chord bending and the downstop the rest.
 
@@ -161,7 +161,8 @@ def print_changes(console: Console, found: _Found) -> None:
             table.add_row(
                 name, f"{point.rpm:g}", f"{point.airspeed - on.airspeed:+g}", written(model, "+.1f")
             )
-    console.print(table)
+    if table.row_count:
+        console.print(table)
 
 
 # What sets slopes, -20 % and downstop ---------------------------------------------------------------------------------
