@@ -288,6 +288,17 @@ def test_a_cube_is_printed_without_a_general_power(power):
     assert eval(text, {"coning": 1.7}) == pytest.approx(1.7**power, rel=1e-15)
 
 
+@pytest.mark.parametrize("factor", [1, -6, s.lag, s.lag / s.pitch, s.lag / s.pitch**3])
+def test_a_cube_below_a_fraction_bar_is_divided_by_as_a_whole(factor):
+    """The product that stands for a cube has brackets there: 6/(x**2*x), not 6/x**2*x."""
+    values = {s.coning: 1.7, s.lag: 0.3, s.pitch: 0.9}
+    expression = factor / s.coning**3
+    text = emit.print_code(expression)
+    assert "**2*" in text
+    found = eval(text, {symbol.name: value for symbol, value in values.items()})
+    assert found == pytest.approx(float(expression.subs(values)), rel=1e-14)
+
+
 def test_one_name_is_one_index_in_a_module():
     functions = [
         dataclasses.replace(a_function(s.flap_stiffness), rows=rows, columns=("flap",))

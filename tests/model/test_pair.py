@@ -115,6 +115,29 @@ def test_a_half_is_the_problem_of_one_rotor(half):
     np.testing.assert_array_equal(whole.submodel(model.dofs).K, model.K)
 
 
+@pytest.mark.parametrize("half", HALVES)
+def test_a_very_heavy_body_gives_the_rotor_on_its_elastic_coordinates(half):
+    frame = airframes.half(half, 3)
+    heavy = frame.mass.copy()
+    heavy[:3, :3] *= 1e12
+    found = eigenvalues(airframes.aircraft(replace(frame, mass=heavy)).linearize(100.0))
+    kept = slice(3, 6)
+    matrices = {name: getattr(frame, name)[kept, kept] for name in airframes.MATRICES}
+    fixed = replace(
+        frame,
+        **matrices,
+        hub=frame.hub[:, kept],
+        left_hub=frame.left_hub[:, kept],
+        names=frame.names[kept],
+        symmetry=frame.symmetry[kept],
+        rigid_body=(),
+        rates=(),
+    )
+    expected = eigenvalues(airframes.aircraft(fixed).linearize(100.0))
+    assert_among([expected], [found], 1e-6)
+    assert np.count_nonzero(np.abs(found) < 1e-3) == len(found) - len(expected) == 4
+
+
 def test_a_batch_is_its_points():
     case = airframes.aircraft(drive_train=TRAIN)
     case = replace(case, left=other_side(case))

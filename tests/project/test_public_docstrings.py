@@ -244,7 +244,8 @@ GENERATED = generated_functions()
 
 UNIT_OR_SHAPE = re.compile(r"^\[[^\]]+\] |\(\.\.\., [\w, ]+\)")
 SOURCE = re.compile(
-    r"Source: .*(Eqs?\. \d|nomenclature|strip theory|Prandtl-Glauert|Euler-Bernoulli|NASA|steady loads)", re.DOTALL
+    r"Source: .*(Eqs?\. \d|nomenclature|strip theory|Prandtl-Glauert|Euler-Bernoulli|NASA|steady loads)",
+    re.DOTALL,
 )
 
 

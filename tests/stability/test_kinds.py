@@ -70,7 +70,7 @@ def test_the_flutter_of_an_aircraft_leads_and_the_others_are_listed(case):
         "At 90.00 m/s rigid-body instability of symmetric pitch begins.",
         "At 105.00 m/s divergence of symmetric beam begins.",
     ]
-    assert repr(found).startswith("FlutterPoint: 252.70 kt (130 m/s), flutter of antisymmetric chord")
+    assert repr(found).startswith("FlutterPoint: 252.70 KTAS (130 m/s), flutter of antisymmetric chord")
     assert "rigid-body instability of symmetric pitch begins" in repr(found)
     assert [boundary_record(one, case)["kind"] for one in found.boundaries] == [
         "rigid body",

@@ -79,7 +79,7 @@ def fuselage_of(section: AircraftSection, numbers: Mapping[str, Datum]) -> dict[
     return {
         f"support.fuselage.{entry.name} (fuselage alone)": Datum(
             "less wings, nacelles, rotors",
-            float(getattr(found, entry.name)),
+            np.asarray(getattr(found, entry.name))[()],
             units.get(entry.name, "kg*m**2"),
             "derived",
             source,

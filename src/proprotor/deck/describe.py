@@ -41,7 +41,12 @@ _FORMS = {
 }
 _PLAIN = {bool: "true or false", str: "text"}
 # Forms of fields that are no numbers, by their possible values.
-_PLAIN_FORMS = {"true or false": "bool", "a list of texts": "list", "a table of texts": "table"}
+_PLAIN_FORMS = {
+    "true or false": "bool",
+    "a list of texts": "list",
+    "a table of texts": "table",
+    "a table of fields": "fields",
+}
 
 
 @dataclass(frozen=True)
@@ -175,7 +180,9 @@ def _takes_plain(annotation: Any) -> str:
         return list_choices(get_args(annotation))
     if sections_of(annotation):
         return '"windmill", or a table with one of the fields below' if str in get_args(annotation) else ""
-    return "a list of texts" if get_origin(annotation) is list else "a table of texts"
+    if get_origin(annotation) is list:
+        return "a list of texts"
+    return "a table of fields" if dict[str, Any] in get_args(annotation) else "a table of texts"
 
 
 def _unit(reading: Reading) -> str:

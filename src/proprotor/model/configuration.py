@@ -110,7 +110,7 @@ class Configuration:
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **own)
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
         if isinstance(support, Airframe):
-            model = mount_pair(rotor_alone, support, self._left(airspeed, options), self._interconnect(own))
+            model = self._pair(rotor_alone, support, airspeed, options)
         else:
             self._check_one_rotor(own)
             model = mount(rotor_alone, support)
@@ -132,28 +132,26 @@ class Configuration:
         """
         return _completed(options, self.frequencies, self.drive_train)
 
-    def _left(self, airspeed: Any, options: Mapping[str, Any]) -> LinearModel | None:
-        """Return the left rotor alone where the left side differs, with its own blade frequencies and drive train."""
-        if (left := self.left) is None:
-            return None
+    def _pair(
+        self, right: LinearModel, airframe: Airframe, airspeed: Any, options: Mapping[str, Any]
+    ) -> LinearModel:
+        """Return the model of an aircraft: its right rotor, and the mirror image of that rotor or another left one."""
+        own = self.model_options(options)
+        if self.left is None:
+            return mount_pair(right, airframe, None, _interconnect(own, own))
+        other = self._left_options(self.left, options)
+        return mount_pair(right, airframe, _left_rotor(self.left, airspeed, other), _interconnect(own, other))
+
+    def _left_options(self, left: Side, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the options of the left side, with blade frequencies and a drive train of its own.
+
+        An option that repeats what the right side of the case brings is none for the left side.
+        """
         own = {"frequencies": self.frequencies, "drive_train": self.drive_train}
         given = {
             name: value for name, value in options.items() if value is None or value is not own.get(name)
         }
-        completed = _completed(given, left.frequencies, left.drive_train)
-        try:
-            return rotor_model(left.rotor, left.operation, airspeed, **completed)
-        except InputError as error:
-            raise error.within("left") from None
-
-    def _interconnect(self, options: Mapping[str, Any]) -> Any:
-        """Return the stiffness of the interconnect shaft, N m/rad, which must be the same on both sides."""
-        trains = [options.get("drive_train"), None if self.left is None else self.left.drive_train]
-        right, left = (0.0 if train is None else train.interconnect_stiffness for train in trains)
-        if trains[1] is not None and not np.array_equal(right, left):
-            rule = f"must be that of the right side, {right}: one shaft connects both"
-            raise InputError("left.drive_train.interconnect_stiffness", left, rule)
-        return right
+        return _completed(given, left.frequencies, left.drive_train)
 
     def _check_one_rotor(self, options: Mapping[str, Any]) -> None:
         """Refuse what only an aircraft with two rotors has."""
@@ -163,6 +161,24 @@ class Configuration:
         if train is not None and np.any(np.real(train.interconnect_stiffness) > 0):
             rule = "must be zero without a second rotor"
             raise InputError("drive_train.interconnect_stiffness", train.interconnect_stiffness, rule)
+
+
+def _left_rotor(left: Side, airspeed: Any, options: Mapping[str, Any]) -> LinearModel:
+    """Return the left rotor alone, in its mirrored axes."""
+    try:
+        return rotor_model(left.rotor, left.operation, airspeed, **options)
+    except InputError as error:
+        raise error.within("left") from None
+
+
+def _interconnect(right: Mapping[str, Any], left: Mapping[str, Any]) -> Any:
+    """Return the stiffness of the interconnect shaft, N m/rad, by the options of both sides."""
+    trains = [options.get("drive_train") for options in (right, left)]
+    stiffness, other = (0.0 if train is None else train.interconnect_stiffness for train in trains)
+    if not np.array_equal(stiffness, other):
+        rule = f"must be that of the right side, {stiffness}: one shaft connects both"
+        raise InputError("left.drive_train.interconnect_stiffness", other, rule)
+    return stiffness
 
 
 def _completed(

@@ -64,8 +64,11 @@ class LinearModel:
     halves_couple : bool
         Whether symmetric coordinates couple with antisymmetric ones; if not, the terms between them are exactly zero,
         and each half is a problem of its own.
-    left, left_hub : LinearModel and array (..., 6, n), optional
-        Of two rotors: the left rotor alone, and the motion of the left hub in the mirrored axes of the left rotor.
+    left : LinearModel, optional
+        Of two rotors that differ: the left rotor alone, in its mirrored axes.
+    left_hub : array (..., 6, n), optional
+        Of two rotors: motion of the left hub per unit of each coordinate, m and rad, in the mirrored axes of the left
+        rotor.
     inputs : tuple of str
         Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on.
     """
@@ -140,7 +143,7 @@ class LinearModel:
 
     @property
     def shaft_holds_azimuth(self) -> Array:
-        """Points (...) at which shafts hold every azimuth: see `azimuths_held`."""
+        """Points (...) at which shafts make every azimuth a displacement, in rad: see `azimuths_held`."""
         return np.asarray(self.azimuths_held.all(axis=-1) & bool(self.azimuths))
 
     def modes(self) -> Dataset:

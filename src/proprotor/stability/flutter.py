@@ -82,11 +82,8 @@ class FlutterPoint:
         """Return the flutter speed, and the other boundaries of the range."""
         low, high = (marked(f"{at / KNOT:.4g}", doubt_at(self.doubts, at)) for at in self.searched)
         if math.isnan(self.speed):
-            what = (
-                "no flutter begins"
-                if any(one.onset for one in self.boundaries)
-                else "nothing becomes unstable"
-            )
+            begun = any(one.onset for one in self.boundaries)
+            what = "no flutter begins" if begun else "nothing becomes unstable"
             first = f"FlutterPoint: {what} between {low} and {high} {KTAS}"
             least = least_damping_message(self, KTAS, KNOT)
             first += f"; least damping {least}" if least else ""
@@ -132,6 +129,16 @@ class FlutterPoint:
 
 def boundary_of(found: FlutterPoint, mode: str | None) -> Boundary:
     """Return the boundary at the flutter speed, or the first one of the mode with a name.
+
+    Parameters
+    ----------
+    found : FlutterPoint
+    mode : str or None
+        Name of the mode; None for the boundary at the flutter speed.
+
+    Returns
+    -------
+    Boundary
 
     Raises
     ------

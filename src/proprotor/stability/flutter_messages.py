@@ -40,12 +40,12 @@ def equivalent(airspeed: float, found: Mapping[Any, Any]) -> float:
     return airspeed / float(speed_factor(KEAS, density)) if density else math.nan
 
 
-def _and_equivalent(airspeed: float, found: Mapping[Any, Any], unit: str) -> str:
+def _and_equivalent(airspeed: float, found: Mapping[Any, Any], unit: str, warning: str) -> str:
     """Return an airspeed in KEAS to stand beside KTAS, where the air is not that at sea level; "" otherwise."""
     density = density_of(found)
     if unit != KTAS or not density or abs(density / SEA_LEVEL_DENSITY - 1) < _SAME_AIR:
         return ""
-    return f", {equivalent(airspeed, found):.2f} {KEAS}"
+    return f", {marked(f'{equivalent(airspeed, found):.2f}', warning)} {KEAS}"
 
 
 def boundary_record(boundary: Boundary, case: Configuration) -> dict[str, Any]:
@@ -120,7 +120,7 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
             yield f"The least damping there is {least}."
     else:
         speed = marked(f"{found.speed / factor:.2f}", found.warning)
-        other = _and_equivalent(found.speed, found.stamp, unit)
+        other = _and_equivalent(found.speed, found.stamp, unit, found.warning)
         yield f"Flutter speed {speed} {unit}{other} ({found.mode}, {found.kind})."
     yield from _other_onsets(found, unit, factor)
     yield from (stretch.message(unit, factor) for stretch in found.failed)

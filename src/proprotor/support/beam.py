@@ -106,7 +106,7 @@ def beam_chain(
     properties : BeamProperties
     elastic_axis : array (..., k + 1, 3)
         Vectors from each node to the elastic axis there, m; the elastic axis is held to its nodes by rigid arms.
-    up : array (..., 3) or (..., k, 3)
+    up : array (3,) or (..., k, 3)
         Direction that is up in the sections; only its part across the element counts.
 
     Returns

@@ -74,7 +74,7 @@ def on_modes(
     names : sequence of str
         Names of the n coordinates.
     mass, stiffness, damping : array (..., n, n) or sparse array (n, n)
-    hub : array (6, n)
+    hub : array (..., 6, n)
     count : int, optional
         How many of the lowest modes to keep; every coordinate by default.
     damping_ratio : float, array (..., j) or callable
@@ -102,21 +102,17 @@ def on_modes(
     found = lowest_modes(loaded, stiffness, count)
     if count is None and found.frequency.shape[-1] < len(names):
         raise InputError("modes", None, "must be given: there are coordinates without mass")
-    given = damping_ratio(found.shapes) if callable(damping_ratio) else damping_ratio
-    ratio, frequency = np.broadcast_arrays(per_mode(given, found.frequency.shape[-1]), found.frequency)
-    found = StructuralModes(
-        frequency, np.broadcast_to(found.shapes, (*ratio.shape[:-1], *found.shapes.shape[-2:]))
+    found, ratio = _with_ratios(
+        found, damping_ratio(found.shapes) if callable(damping_ratio) else damping_ratio
     )
-    warning = None
     if count is None:
-        shapes = np.eye(len(names))
+        shapes, warning = np.eye(len(names)), None
         forces = _dense(loaded) @ found.shapes
         structural = forces @ _modal_damping(found, ratio, stiffness) @ np.swapaxes(forces, -1, -2)
     else:
         places, names, warning = arrange(found.shapes) if arrange else _by_frequency(found)
         found = StructuralModes(*(_taken(part, places) for part in found))
-        shapes = found.shapes
-        structural = _modal_damping(found, _taken(ratio, places), stiffness)
+        shapes, structural = found.shapes, _modal_damping(found, _taken(ratio, places), stiffness)
     parts = {"mass": mass, "stiffness": stiffness, "damping": damping}
     reduced = {
         name: symmetric(np.swapaxes(shapes, -1, -2) @ (part @ shapes))
@@ -134,6 +130,15 @@ def on_modes(
         warning=warning,
     )
     return ModalSupport(support, shapes, found)
+
+
+def _with_ratios(modes: StructuralModes, damping_ratio: ArrayLike) -> tuple[StructuralModes, Array]:
+    """Return modes and a damping ratio for each, both with the leading axes of both."""
+    ratio, frequency = np.broadcast_arrays(
+        per_mode(damping_ratio, modes.frequency.shape[-1]), modes.frequency
+    )
+    shapes = np.broadcast_to(modes.shapes, (*ratio.shape[:-1], *modes.shapes.shape[-2:]))
+    return StructuralModes(frequency, shapes), ratio
 
 
 def _by_frequency(modes: StructuralModes) -> Arrangement:
@@ -339,9 +344,9 @@ def _with_mass_at_hub(mass: Any, hub: Array, rotor_mass: Numbers) -> Any:
     """Return the mass with a point mass at the hub."""
     if not np.any(rotor_mass):
         return mass
-    moving: Any = hub[TRANSLATION]
+    moving: Any = hub[..., TRANSLATION, :]
     if not hasattr(mass, "toarray"):
-        return mass + np.asarray(rotor_mass)[..., None, None] * (moving.T @ moving)
+        return mass + np.asarray(rotor_mass)[..., None, None] * (np.swapaxes(moving, -1, -2) @ moving)
     from scipy.sparse import csc_array
 
     moving = csc_array(moving)
