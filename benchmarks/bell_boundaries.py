@@ -69,7 +69,7 @@ def print_points(console: Console, found: _Found) -> None:
     for name, mode in dict.fromkeys((point.configuration, point.mode) for point in found):
         symmetry, configuration = SYMMETRIES[mode], CONFIGURATIONS[name]
         low, high = configuration.band(symmetry)
-        title = f"{name}: {mode}; first onset among {symmetry} roots of {low:.2f} to {high:.2f} Hz, KTAS"
+        title = f"{name}: {mode}; first flutter among {symmetry} roots of {low:.2f} to {high:.2f} Hz, KTAS"
         table = Table(
             "rpm",
             "altitude, ft",

@@ -1,8 +1,8 @@
 """Points of the XV-15's stability boundaries, and the boundary of the model that belongs to each point.
 
-A boundary of the model is the lowest airspeed at which a root of one symmetry becomes unstable with a frequency inside
-a band. The bands follow from the published frequencies of the airframe at rest (NASA TM X-62,407, Fig. 7.1.4), and not
-from the points:
+A boundary of the model is the lowest airspeed at which flutter of one symmetry begins with a frequency inside a band.
+The bands follow from the published frequencies of the airframe at rest (NASA TM X-62,407, Fig. 7.1.4), and not from the
+points:
 
 - symmetric chord: from the geometric mean with the frequency below, of beam, to that with the one above, of torsion;
 - antisymmetric beam: beam, chord and torsion lie so near each other (5.6, 6.15 and 7.3 Hz) that at 400 kt no frequency
@@ -175,20 +175,19 @@ NONE = Crossing(np.nan, np.nan, "")
 
 
 def first_crossings(found: Any, symmetry: str, band: tuple[float, float]) -> list[Crossing]:
-    """Return the first onset of a symmetry within a band of frequencies at each value of a result's input."""
+    """Return the first flutter of a symmetry within a band of frequencies at each value of a result's input."""
     return [_first(row, symmetry, band) for row in _onsets(found)]
 
 
 def _onsets(found: Any) -> Iterator[list[Crossing]]:
-    """Yield all onsets at each value of the input, by airspeed."""
-    onset = found.onset.values
-    speed, frequency, mode = (found[name].values[:, onset] for name in ("airspeed", "frequency", "mode"))
-    for speeds, frequencies, modes in zip(speed / KNOT, frequency / (2 * np.pi), mode, strict=True):
-        yield sorted(
-            Crossing(*one)
-            for one in zip(speeds.tolist(), frequencies.tolist(), modes.tolist(), strict=True)
-            if np.isfinite(one[0])
-        )
+    """Yield where flutter begins at each value of the input, by airspeed."""
+    begins = np.where(
+        found.onset.values & (found.kind.values == "flutter"), found.airspeed.values / KNOT, np.nan
+    )
+    frequency, mode = found.frequency.values / (2 * np.pi), found["mode"].values
+    for speeds, frequencies, modes in zip(begins, frequency, mode, strict=True):
+        order = np.argsort(speeds)[: np.isfinite(speeds).sum()]
+        yield [Crossing(*(of[place].item() for of in (speeds, frequencies, modes))) for place in order]
 
 
 def _first(onsets: Iterable[Crossing], symmetry: str, band: tuple[float, float]) -> Crossing:
