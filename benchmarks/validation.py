@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks import published_systems
+from benchmarks import bell_section, published_systems
 from benchmarks.claims import VERDICTS, WING, Claim, all_claims, as_text, first_boundary, mode_boundaries
 from benchmarks.paper_figures import NUMBERS, Analyses, csv_of, make_figure
 from benchmarks.paper_figures.analyses import XV15
@@ -78,6 +78,7 @@ def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
         _figures_section(),
         _claims_section(claims),
         _models_section(analyses),
+        bell_section.section(),
         published_systems.section(),
         _ranges_section(),
     )
@@ -289,6 +290,8 @@ def main() -> None:
             intervals, XV15_MARK, "Boundary of the XV-15 semispan wing (kt)", file, DPI
         ),
     )
+    for name, picture in bell_section.FIGURES.items():
+        write_whole(FOLDER / picture, lambda file, it=name: bell_section.draw(it, file, DPI))
     text = page(analyses, rows, all_claims(analyses))
     write_whole(PAGE, lambda file: file.write(text.encode()))
     print(f"Wrote {PAGE.relative_to(ROOT)} and {FOLDER.relative_to(ROOT)}")
