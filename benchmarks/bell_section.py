@@ -55,14 +55,15 @@ def section() -> Iterator[str]:
     yield "## The whole XV-15 beside Bell's boundaries"
     yield ""
     yield "The 40 points that NASA TM X-62,407 prints (Figs. 7.2.1, 7.2.3 and 7.2.5, read to 3 kt) beside the decks"
-    yield "`xv15-aircraft` and `xv15-aircraft-off`, with the published control stiffness, at sea level, in KTAS. No input"
-    yield "was matched to a point. Bell's points are calculations of 1975: a difference is one from another analysis, not"
-    yield "from a test. `python -m benchmarks.bell_boundaries` prints these tables, the frequency bands that say which root"
-    yield "is meant, what each input does, and what sets slopes; [the page on the aircraft](xv15-aircraft.md) discusses them."
+    yield "`xv15-aircraft` and `xv15-aircraft-off`, with the published control stiffness, at sea level, in KTAS. No"
+    yield "input was matched to a point. Bell's points are calculations of 1975: a difference is one from another"
+    yield "analysis, not from a test. `python -m benchmarks.bell_boundaries` prints these tables, the frequency bands"
+    yield "that say which root is meant, what each input does, and what sets slopes; [the page on the"
+    yield "aircraft](xv15-aircraft.md) discusses them."
     yield ""
     for name, mode in dict.fromkeys((point.configuration, point.mode) for point in judged.found):
         yield from _points_table(name, mode, judged.of(name, mode))
-    yield f"\\* tip Mach number of {HIGH_MACH:g} or more at Bell's point, where Prandtl and Glauert's factor is no model."
+    yield f"\\* tip Mach number of {HIGH_MACH:g} or more at Bell's point: Prandtl and Glauert's factor is no model."
     yield ""
     yield from _summary(judged)
     yield f"The antisymmetric boundary at 458 rpm is 465 kt by Bell and {ACREE} kt by Acree, Peyran and Johnson (1999):"
@@ -74,8 +75,8 @@ def section() -> Iterator[str]:
     for name, picture in FIGURES.items():
         yield f"![Boundaries over the rotor speed with Bell's points: {name}](figures/{picture})"
         yield ""
-    yield "Modes of the wing alone are drawn. Those of the rotor become unstable near the dotted line, where the tip Mach"
-    yield "number reaches 1: from 440 kt on at 610 rpm, on the downstop."
+    yield "Modes of the wing alone are drawn. Those of the rotor become unstable near the dotted line, where the tip"
+    yield "Mach number reaches 1: from 440 kt on at 610 rpm, on the downstop."
     yield ""
 
 
