@@ -20,13 +20,20 @@ AIR_ALTERNATIVES = ((("density", "speed_of_sound"), ("altitude", "temperature_of
 # Fields of [operation.trim] and of [support]: one side only.
 TRIM_ALTERNATIVES = ((("collective",), ("thrust_coefficient",), ("power_coefficient",)),)
 DAMPING_ALTERNATIVES = ((("damping_ratio",), ("loss_factor",)),)
-FILE_ALTERNATIVES = ((("file",), ("mass", "stiffness", "damping", "dofs")),)
+ROTOR_ALTERNATIVES = ((("rotor_mass",), ("rotor_held",)),)
+STIFFNESS_ALTERNATIVES = tuple(
+    ((f"{kind}_stiffness_factor",), (f"{kind}_frequency",)) for kind in ("beam", "chord", "torsion")
+)
+FILE_ALTERNATIVES = ((("file",), ("mass", "stiffness", "damping", "dofs", "hub_motion")),)
 _BY_SECTION = (
     (("rotor",), ALTERNATIVES),
     (("rotor", "airfoil"), AIRFOIL_ALTERNATIVES),
     (("operation",), AIR_ALTERNATIVES),
     (("operation", "trim"), TRIM_ALTERNATIVES),
-    (("support",), (*DAMPING_ALTERNATIVES, *FILE_ALTERNATIVES)),
+    (
+        ("support",),
+        (*DAMPING_ALTERNATIVES, *ROTOR_ALTERNATIVES, *STIFFNESS_ALTERNATIVES, *FILE_ALTERNATIVES),
+    ),
 )
 
 _Place = tuple[str, ...]

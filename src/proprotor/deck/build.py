@@ -14,13 +14,13 @@ import numpy as np
 from proprotor.datum import Datum
 from proprotor.deck.alternatives import fields_instead_of
 from proprotor.deck.build_aircraft import fuselage_of
-from proprotor.deck.build_support import build_support
+from proprotor.deck.build_support import build_support, fitted_stiffness_factors
 from proprotor.deck.file import read_tables
 from proprotor.deck.numbers import left_numbers, numbers_of, own_numbers
 from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
 from proprotor.model.mass_at_rest import mass_at_rest
-from proprotor.model.rotor_share import settled, spring_warnings
+from proprotor.model.rotor_share import rotor_share, settled, spring_warnings
 from proprotor.model.side import Side
 from proprotor.rotor.airfoil import Airfoil, SectionModel
 from proprotor.rotor.airfoil_table import AirfoilTable
@@ -30,6 +30,7 @@ from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.support.normal_modes import NormalModes
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     from proprotor.deck.sections import Deck
@@ -73,8 +74,13 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
     rotor, operation, frequencies, train, derived = _machinery(deck, numbers)
     with _errors_as_written("support", numbers):
         at_rest = mass_at_rest(rotor)
-        support = settled(build_support(deck.support, numbers, names, _left_structure(deck)), at_rest)
-        doubts = spring_warnings(support, at_rest, rotor.gimbal_stiffness)
+        fitted = fitted_stiffness_factors(deck.support, numbers, at_rest)
+        built = build_support(
+            deck.support, dict(numbers) | fitted, names, mass_at_rest=at_rest, left=_left_structure(deck)
+        )
+        support = settled(built, at_rest)
+        as_given = _with_rotor(support, numbers, at_rest) if fitted else support
+        doubts = spring_warnings(as_given, at_rest, rotor.gimbal_stiffness)
         if deck.support.kind == "aircraft":
             derived |= fuselage_of(deck.support, numbers)
     return kind(
@@ -86,7 +92,7 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         rotor=rotor,
         operation=operation,
         support=support,
-        sources=dict(numbers) | derived | _how_held(support, numbers),
+        sources=dict(numbers) | derived | fitted | _how_held(support, numbers),
         frequencies=frequencies,
         drive_train=train,
         left=_left(deck, numbers),
@@ -141,6 +147,17 @@ def _left_structure(deck: Deck) -> Any:
     if deck.left is None or deck.left.support is None or deck.left_side is None:
         return None
     return deck.left_side.support
+
+
+def _with_rotor(support: NormalModes, numbers: Mapping[str, Datum], mass_at_rest: Array) -> NormalModes:
+    """Return a wing whose stiffness was fitted to frequencies with the rotor, with the rotor in its mass."""
+    held = numbers.get("support.rotor_held")
+    if held is None:
+        return support
+    shaft = numbers["support.shaft"].si if "support.shaft" in numbers else "held"
+    share = rotor_share(mass_at_rest, held.si, shaft)
+    mass = support.mass + np.swapaxes(support.hub, -1, -2) @ share @ support.hub
+    return replace(support, mass=mass, includes_rotor=held.si)
 
 
 @contextmanager

@@ -25,11 +25,7 @@ from proprotor.typing import Array, Numbers
 if TYPE_CHECKING:
     from proprotor.deck.support_sections import AircraftSection
 
-_STRUCTURE = (
-    "",
-    "fuselage.",
-    "carry_through.",
-)  # the sections of [support] with the numbers of the structure
+_STRUCTURE = ("", "fuselage.", "carry_through.")  # sections of [support] with numbers of the structure
 _R = TypeVar("_R")
 _Numbers = dict[str, Any]
 
@@ -58,7 +54,12 @@ def build_aircraft(
         When a number is not physical.
     """
     given = _of_structure(numbers)
-    designs, place = different_designs(given)
+    elements = (
+        given.get("elements", Wing.elements),
+        given.get("carry_through.elements", CarryThrough.elements),
+    )
+    nodes = (sum(elements) + 1) * (1 if left is None else 2)
+    designs, place = different_designs(given, nodes)
     parts = [_aircraft(part, section, left, names if place.ndim else ()) for part in designs]
     airframe, (fuselage, *strips) = at_each_point(parts, place, own=(2, *(1, 2, 2) * 2))
     motion = AircraftMotion(fuselage, Strips(*strips[:3]), Strips(*strips[3:]))
@@ -149,7 +150,10 @@ def _errors_within(section: str) -> Iterator[None]:
 
 
 def _fuselage(given: _Numbers, section: AircraftSection, side: WingSide) -> Fuselage:
-    """Return the fuselage, as the deck has it or as what wings, nacelles and rotors leave of the aircraft."""
+    """Return the fuselage, as the deck has it or as what wings, nacelles and rotors leave of the aircraft.
+
+    The numbers of the whole aircraft are those of an aircraft whose left side is as the right side.
+    """
     body = _record(Fuselage, given, "fuselage.")
     if not section.fuselage.whole_aircraft:
         return body

@@ -12,7 +12,6 @@ from proprotor.datum import Datum
 from proprotor.deck.numbers import own_numbers
 from proprotor.errors import InputError
 from proprotor.support.airframe import Airframe
-from proprotor.support.beam_wing import Wing
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
@@ -21,11 +20,18 @@ _PART = 200e6  # bytes of beam wings that are built at once
 _Support = TypeVar("_Support", bound=NormalModes)
 
 
-def different_designs(given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], Array]:
+def different_designs(given: Mapping[str, Any], nodes: int) -> tuple[list[dict[str, Any]], Array]:
     """Return the numbers of all different designs of a batch, and the place of each point's design among these.
 
     A search evaluates one design at many airspeeds, so equal designs are built once. The designs come in parts that fit
     into memory, each part with arrays (designs,) of the numbers that vary.
+
+    Parameters
+    ----------
+    given : mapping of str to number, array (...), profile or word
+        The numbers of the structure by name, with a span.
+    nodes : int
+        Number of nodes of the finite elements of one design.
     """
     varied = {name: value for name, value in given.items() if np.ndim(value) and not isinstance(value, tuple)}
     spread = np.broadcast_arrays(np.zeros(()), *varied.values())[1:]
@@ -36,8 +42,7 @@ def different_designs(given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], A
     different = {name: value.ravel()[first] for name, value in zip(varied, spread, strict=True)}
     if "span" not in different:  # one design is a batch of one
         different["span"] = np.broadcast_to(given["span"], first.shape)
-    size = _BYTES * (given.get("elements", Wing.elements) + 1) ** 2
-    step = max(1, int(_PART // size))
+    step = max(1, int(_PART // (_BYTES * nodes**2)))
     parts = [slice(start, start + step) for start in range(0, len(first), step)]
     designs = [dict(given) | {name: value[part] for name, value in different.items()} for part in parts]
     return designs, place.reshape(shape)

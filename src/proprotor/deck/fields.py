@@ -19,7 +19,7 @@ from proprotor.deck import reading, reading_lists
 from proprotor.deck.reading import ANY, BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.rotor.rotor import HELD, NOTHING
 from proprotor.support.aircraft_structure import JOINT
-from proprotor.support.normal_modes import INCLUDES_ROTOR, SHAFT
+from proprotor.support.normal_modes import CARRIES, INCLUDES_ROTOR, SHAFT
 
 
 @dataclass(frozen=True)
@@ -152,6 +152,7 @@ RotorSpeed = Annotated[Datum, Reading("number", "rad/s", POSITIVE)]
 Density = Annotated[Datum | None, Reading("number", "kg/m**3", NOT_NEGATIVE)]
 Speed = Annotated[Datum | None, Reading("number", "m/s", POSITIVE)]
 DampingRatio = Annotated[Datum | None, Reading("number", "", BELOW_CRITICAL)]
+PositiveFrequency = Annotated[Datum | None, Reading("frequency", "rad/s", POSITIVE)]
 Frequency = Annotated[Datum | None, Reading("frequency", "rad/s", NOT_NEGATIVE)]
 Count = Annotated[Datum | None, Reading("count", least=3)]
 Size = Annotated[Datum | None, Reading("count", least=1)]
@@ -169,6 +170,10 @@ Abscissa = Annotated[
 File = Annotated[Datum | None, Reading("file")]
 IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
 Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
+Held = Annotated[
+    Datum | None, Reading("choice", choices=tuple(held for held in INCLUDES_ROTOR if isinstance(held, str)))
+]
+Carries = Annotated[Datum | None, Reading("choice", choices=CARRIES)]
 
 _of_mode = partial(AfterChoice, "number", choice="coordinate", usual="length")
 GeneralizedMass = Annotated[Datum | None, _of_mode("kg", POSITIVE, other_unit="kg*m**2")]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _FILES = (
     ("rotor", "airfoil", "table", "value"),
-    *(("support", name, "value") for name in ("file", "mass", "stiffness", "damping", "dofs")),
+    *(("support", name, "value") for name in ("file", "mass", "stiffness", "damping", "dofs", "hub_motion")),
 )
 _MAY_BE_COLUMNS = ("chord", "twist", "mass_distribution")  # in [rotor]: { file = ..., column = ... }
 

@@ -7,7 +7,7 @@
 
     problem = om.Problem()
     problem.model.add_subsystem(
-        "wing", WhirlFlutter(case="xv15", inputs=["rotor.precone", "support.modes[chord].frequency"]), promotes=["*"]
+        "wing", WhirlFlutter(case="xv15", inputs=["rotor.precone", "support.chord_frequency"]), promotes=["*"]
     )
     problem.setup()
     problem.set_val("rotor_precone", 2.0, units="deg")

@@ -33,16 +33,12 @@ from proprotor.typing import Array, Numbers
 
 JOINT = ("held", "free")
 _Joint = Numbers | Literal["held", "free"]
-_SLOPES = {
-    "chord_slope": "alpha_x",
-    "twist": "alpha_y",
-    "bending_slope": "alpha_z",
-}  # in the order of the axes
+_SLOPES = {"chord_slope": "alpha_x", "twist": "alpha_y", "bending_slope": "alpha_z"}
 _KINDS = {
     "alpha_x": "chord",
     "alpha_y": "torsion",
     "alpha_z": "beam",
-}  # the stiffness that a spring belongs to
+}  # of the stiffness of a joint about each axis
 _X, _Y, _Z, _ALPHA_X, _ALPHA_Y, _ALPHA_Z = range(6)
 
 
@@ -149,7 +145,7 @@ class CarryThrough:
     Raises
     ------
     InputError
-        When the width is not above zero, a spring is not above zero, or a word is unknown.
+        When the width or a spring is not above zero, or a word is unknown.
     """
 
     half_width: Numbers

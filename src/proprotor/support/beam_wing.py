@@ -345,10 +345,12 @@ def on_coordinates(
     damping_ratio: ArrayLike | Mapping[str, Numbers],
     rotor_mass: Numbers,
     names: Sequence[str] = (),
+    at_hub: Array | None = None,
 ) -> ModalSupport:
     """Return the structure as a support on all coordinates or on its `count` lowest modes; see `beam_wing`.
 
-    `names` is the order of the modes of every design, by default the order of the first design.
+    `names` is the order of the modes of every design, by default the order of the first design; `at_hub` (..., 6, 6) is
+    a mass like `rotor_mass` on all motions of the hub.
     """
     given: ArrayLike | Callable[[Array], ArrayLike]
     if isinstance(damping_ratio, Mapping):
@@ -364,6 +366,7 @@ def on_coordinates(
         count=count,
         damping_ratio=given,
         rotor_mass=rotor_mass,
+        at_hub=at_hub,
         arrange=partial(arranged, structure.stiffness_parts, tuple(names)),
     )
 
