@@ -81,8 +81,12 @@ def changes() -> Iterator[tuple[str, Change]]:
     for degrees in (10, 25):
         yield f"δs {degrees}° (15°)", _rotor(structural_pitch_offset=f"{degrees} deg")
     yield "precone 1.5° (2.5°)", _rotor(precone="1.5 deg")
-    bell = pp.load_case("xv15-bell-frequencies").frequencies
-    yield "Bell's blade frequencies", Change(options={"structure": "tabulated", "frequencies": bell})
+    bell = {"structure": "tabulated", "frequencies": pp.load_case("xv15-bell-frequencies").frequencies}
+    yield "Bell's blade frequencies", Change(options=bell)
+    incompressible = {"compressibility": False}
+    yield "the same, without Prandtl and Glauert's factor", Change(options=bell | incompressible)
+    soft = _rotor(control_stiffness="7400 ft*lbf/rad").settings
+    yield "K_θ 7,400, without Prandtl and Glauert's factor", Change(soft, incompressible)
     yield "without damping of sections", Change(options={"section_damping": False})
     yield "section moment c_m -.02 (0)", Change({"rotor.airfoil.moment": "-0.02"})
     yield "blade chord 14 in (14.6 in)", _rotor(chord="14 in")

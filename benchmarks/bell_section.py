@@ -30,7 +30,7 @@ FIGURES = {
     "20 % less stiff": "xv15-aircraft-soft.png",
     "off the downstop": "xv15-aircraft-off.png",
 }
-_SHOWN = np.arange(290.0, 690.0, 30.0)  # rpm
+_SHOWN = np.arange(275.0, 700.0, 30.0)  # rpm
 _WING = (2.0, 10.0)  # Hz, of the modes in the pictures
 _LIMITS = (200.0, 520.0)  # kt
 

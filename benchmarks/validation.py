@@ -22,6 +22,7 @@ from benchmarks.paper_figures.input_ranges import XV15 as XV15_RANGES
 from benchmarks.paper_figures.published import XV15_FLUTTER, XV15_MARK
 from benchmarks.paper_figures.sample_band import Band
 from benchmarks.paper_figures.wing_modes import OF_THE_ROTOR
+from benchmarks.semispan_band import as_built, first_of_wing
 from proprotor.files.output import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -75,6 +76,7 @@ def page(analyses: Analyses, rows: list[Row], claims: list[Claim]) -> str:
         _summary(claims),
         _boundary_section(rows),
         _bell_section(analyses),
+        _as_built_section(),
         _figures_section(),
         _claims_section(claims),
         _models_section(analyses),
@@ -166,6 +168,38 @@ def _bell_section(analyses: Analyses) -> Iterator[str]:
         "rotor: Bell's frequencies",
     )
     yield from _table(head, cells)
+    yield ""
+
+
+def _as_built_section() -> Iterator[str]:
+    """Yield the boundaries of the wing as built, for each lag and control stiffness with a source."""
+    low, high = min(XV15_FLUTTER.values()), max(XV15_FLUTTER.values())
+    yield "### The wing as built"
+    yield ""
+    yield "The deck `xv15` has a beam wing with the published stiffnesses, fitted to the frequencies of the test, whose"
+    yield "modes couple ([the wing as built](xv15.md#the-wing-as-built)). Pitch equations with section damping; rows"
+    yield "differ in their source of blade frequencies and control stiffness (`python -m benchmarks.semispan_band`)."
+    yield ""
+    names = (*WING, OF_THE_ROTOR)
+    yield from _table(
+        ("blade frequencies", "K_θ, ft lbf/rad", *WING, "rotor", "first of the wing"),
+        (
+            (
+                lag,
+                f"{stiffness:,}",
+                *(as_text(found[name], 520) for name in names),
+                as_text(first_of_wing(found)),
+            )
+            for lag, stiffness, found in as_built()
+        ),
+    )
+    speeds = [first_of_wing(found) for _, _, found in as_built()]
+    inside = sum(low <= speed <= high for speed in speeds)
+    yield ""
+    within = "lie within" if min(speeds) <= low and high <= max(speeds) else "do not lie within"
+    yield f"The published {low:.0f} to {high:.0f} kt {within} the {min(speeds):.0f} to {max(speeds):.0f} kt of these"
+    yield f"rows; rows between the published speeds: {inside or 'none'}. Lag and control stiffness are each worth as"
+    yield "much as the distance from the published speeds."
     yield ""
 
 
