@@ -1,10 +1,12 @@
 """Bell's points as the benchmark reads and judges them, and the identity that splits slopes into parts."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import proprotor as pp
-from benchmarks.bell_boundaries import below, relative, root_mean_square, slope_parts
+from benchmarks.bell_boundaries import ACREE, below, relative, root_mean_square, slope_parts
 from benchmarks.bell_points import (
     CONFIGURATIONS,
     NONE,
@@ -21,6 +23,7 @@ from benchmarks.bell_points import (
 from proprotor.tables.points import read_points
 
 KNOT = 1852 / 3600
+PAGE = Path(__file__).parents[2] / "docs" / "xv15-aircraft.md"
 AS_HANDED_OUT = """\
 figure,configuration,mode,rotor_rpm,altitude_ft,airspeed_kt
 7.2.3,airplane mode (on downstop),wing chord sym,458,0,400
@@ -126,3 +129,26 @@ def test_root_mean_square_tells_points_without_a_boundary():
     found = dict(zip(points, (Crossing(403, 5, "a"), Crossing(396, 5, "a"), NONE), strict=True))
     assert root_mean_square(found, lambda point: True) == (pytest.approx(np.sqrt(12.5)), 2, 1)
     assert [below(point) for point in points] == [True, True, False]
+
+
+@pytest.fixture(scope="module")
+def found():
+    return beside(read())
+
+
+def test_the_symmetric_boundary_is_near_the_published_points(found):
+    """At most 20 kt, root mean square over the points below a tip Mach number of .9: what was asked for, not a fit."""
+    chord, beam = (
+        root_mean_square(found, lambda point, mode=mode: point.mode == mode and below(point))
+        for mode in SYMMETRIES
+    )
+    assert chord[0] < 20
+    assert (chord[1:], beam[1:]) == ((23, 0), (9, 0))
+    page = PAGE.read_text()
+    assert f"rms **{chord[0]:.0f} kt** below tip Mach .9 ({chord[1]} points)" in page
+    assert f"rms **{beam[0]:.0f} kt** below tip Mach .9 ({beam[1]} points)" in page
+
+
+def test_the_antisymmetric_boundary_lies_between_the_two_published_ones(found):
+    point = Point("on the downstop", "beam antisymmetric", 458, 0, 465)
+    assert ACREE < found[point].airspeed < 465
