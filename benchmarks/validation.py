@@ -217,9 +217,9 @@ def _boundary_words(rows: list[Row]) -> Iterator[str]:
     shares = f"{min(share):.0%} to {max(share):.0%}"
     yield f"- The 5 to 95 % band {inside} them; {shares} of the samples become unstable below"
     yield from _early_words([row for row in rows if row.band.share_below(high)], high)
-    yield "- So the doubtful inputs, as judged here, do not explain the difference unless they conspire. What the"
-    yield "  model leaves out (more than one elastic bending mode, measured wing modes, sweep, airfoil tables) is"
-    yield "  discussed in [xv15.md](xv15.md)."
+    yield "- So the doubtful inputs, as judged here, do not explain the difference unless they conspire. What these"
+    yield "  decks leave out are wing modes that couple, which [the wing as built](#the-wing-as-built) has, more than"
+    yield "  one elastic bending mode of the blade, and airfoil tables; [xv15.md](xv15.md) discusses them."
     yield f"- One consistent blade in place of Table 1 moves the boundary by {moved:.1f} kt at most: Table 1's"
     yield "  inconsistent integrals are not the reason."
 
