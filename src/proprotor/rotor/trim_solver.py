@@ -155,7 +155,7 @@ class _Search:
             size = np.abs(step).max(axis=1)
             arrived = size <= _NEAR
             if few is self.balance:
-                arrived &= _next(size, before[active]) <= _ROUNDING
+                arrived &= _small(size, before[active]) | (_next(size, before[active]) <= _ROUNDING)
             before[active] = size
             near.append(active[arrived])
             active = active[~arrived & ~np.isnan(size)]
@@ -204,7 +204,7 @@ class _Search:
             step, here = _newton(self.balance, self.state, active, doubts)
             found.put(active, here.slopes)
             size = np.abs(step).max(axis=1)
-            small = (size <= _CONVERGED) | ((size <= _STALLED) & (size >= size_before[active] / 2))
+            small = _small(size, size_before[active])
             size_before[active] = size
             if count == 0 and small.all():
                 self.last = _Loads(_after(here, step), here, doubts)
@@ -223,6 +223,11 @@ def _newton(
     """Return Newton's step (n, k) at all of the loads, and the balance before the step."""
     here = balance.near(state, rows, doubts=doubts)
     return newton_step(here.slopes.full, here.residual), here
+
+
+def _small(size: Array, before: Array) -> Array:
+    """Return whether a step (n,) is the last, by its size and the size of the step before."""
+    return np.asarray((size <= _CONVERGED) | ((size <= _STALLED) & (size >= before / 2)))
 
 
 def _next(size: Array, before: Array) -> Array:
