@@ -10,9 +10,9 @@ from proprotor.plots.canvas import Limits, along, axes_or_new, grid, note, point
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
 from proprotor.plots.points import draw_points
-from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles, white_box
+from proprotor.plots.style import LABEL_SIZE, UNSTABLE, mode_styles, white_box
 from proprotor.tables.points import FREQUENCY, GROWTH, Points, Quantity
-from proprotor.tables.sweep_summary import growth_rate, leaps
+from proprotor.tables.sweep_summary import broad_modes, growth_rate, leaps
 from proprotor.typing import Array, Axes, Dataset, Line2D
 
 _RATIOS = (0.01, 0.02, 0.05, 0.10, 0.20, 0.50)

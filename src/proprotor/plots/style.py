@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import cycle
 from typing import Any, NamedTuple
 
-from proprotor.tables.sweep_summary import growth_rate, support_coordinates
+from proprotor.tables.sweep_summary import broad_modes
 from proprotor.typing import Dataset
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish; without the yellow, which is too pale on white.
@@ -34,12 +34,6 @@ class ModeStyle(NamedTuple):
     linestyle: str
     linewidth: float
     marker: str
-
-
-def broad_modes(sweep: Dataset) -> set[str]:
-    """Return the modes that have broad lines: modes of the support, and modes that are unstable at some point."""
-    grows = (growth_rate(sweep) > 0).any(axis=0)
-    return {*support_coordinates(sweep), *sweep.mode.values[grows].tolist()}
 
 
 def mode_styles(sweep: Dataset) -> list[ModeStyle]:
