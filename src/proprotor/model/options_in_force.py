@@ -77,7 +77,9 @@ def option_text(value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, Mapping):
         units = _UNITS | {"at": _ABSCISSAE.get(str(value.get("against")), "")}
-        parts = {name: f"{option_text(part)} {units.get(name, '')}".strip() for name, part in value.items() if part}
+        parts = {
+            name: f"{option_text(part)} {units.get(name, '')}".strip() for name, part in value.items() if part
+        }
         return options_text(parts)
     if isinstance(value, list | tuple):
         return " and ".join(map(option_text, value)) or "nothing"

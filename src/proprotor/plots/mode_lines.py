@@ -21,9 +21,7 @@ def draw_modes(ax: Axes, sweep: Dataset, values: Array, line: Positions) -> list
     Of more modes than have room for their names, only modes of the support and unstable modes have lines. Points of the
     sweep that could not be analysed are gaps, with a cross on the axis.
     """
-    shown = _shown(sweep)
-    if left_out := len(sweep.mode) - len(shown):
-        note(ax, f"Modes of the support and unstable modes; {left_out} other modes are not drawn")
+    shown = modes_drawn(ax, sweep)
     sweep, values = sweep.isel(mode=shown), values[:, shown]
     spacing, gaps = max(1, len(line.values) // 7), leaps(sweep)
     lines: list[Line2D] = []
@@ -39,9 +37,14 @@ def draw_modes(ax: Axes, sweep: Dataset, values: Array, line: Positions) -> list
     return lines
 
 
-def _shown(sweep: Dataset) -> list[int]:
-    """Return the places of the modes that have lines."""
+def modes_drawn(ax: Axes, sweep: Dataset) -> list[int]:
+    """Return the places of the modes that have lines, and write above the axes how many modes have none."""
     if len(sweep.mode) <= _MOST:
         return list(range(len(sweep.mode)))
     broad = np.isin(sweep.mode.values, list(broad_modes(sweep)))
-    return modes_of_interest(sweep, min(_MOST, int(broad.sum())))
+    shown = modes_of_interest(sweep, min(_MOST, int(broad.sum())))
+    note(
+        ax,
+        f"Modes of the support and unstable modes; {len(sweep.mode) - len(shown)} other modes are not drawn",
+    )
+    return shown

@@ -73,6 +73,21 @@ def only_first(found: Dataset) -> Dataset:
     return kept.assign(onset=("branch", np.array([True]), found.onset.attrs)).assign_attrs(found.attrs)
 
 
+def without_doubtful(found: Dataset) -> tuple[Dataset, list[str]]:
+    """Return the boundaries without the branches of which every boundary is doubtful, and the labels of these.
+
+    A branch that is the first instability at any value of the input stays.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Of `Case.boundary_against`.
+    """
+    sure = (np.isfinite(found.airspeed.values) & (found.warning.values == "")).any(axis=0)
+    shown = sure | np.isin(found.branch.values, found.first_branch.values)
+    return found.isel(branch=np.flatnonzero(shown)), found.branch.values[~shown].tolist()
+
+
 def boundary_records(found: Dataset, unit: str) -> list[dict[str, Any]]:
     """Return a record for each boundary, by the input and the airspeed; one without airspeed where there is none.
 
