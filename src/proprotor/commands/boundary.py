@@ -129,7 +129,10 @@ def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str
     whole = path if "." in path else f"{_OPERATION}{path}"
     if whole == "operation.altitude" and whole not in known:
         at = f"0 {arguments.unit_of(given)}"
-        factor_to_si(given, arguments.unit_of(given), "m")
+        try:
+            factor_to_si(given, arguments.unit_of(given), "m")
+        except InputError as error:
+            raise error.within(whole) from None
         own = {"case.title": case.title or case.name, whole: at}  # the title must not tell one altitude
         request = request._replace(settings={**request.settings, **own})
         case = request.load()
