@@ -45,7 +45,7 @@ _OPERATION = "operation."
 @click.option(
     "--all-boundaries",
     is_flag=True,
-    help="Show boundaries that are doubtful at every value of the input as well.",
+    help="Show boundaries above the others as well that are doubtful at every value of the input.",
 )
 @click.option(
     "--speed-unit",
@@ -72,10 +72,11 @@ def boundary(
 ) -> None:
     """Find the airspeeds at which modes become unstable, or stable again, at each value of an input.
 
-    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. Each boundary is exact to rounding.
-    Boundaries at neighbouring values are one branch if the same root becomes unstable. A branch that is doubtful at
-    every value, and nowhere the first, is in files alone, or shown with --all-boundaries. A deck that gives the air by
-    density and speed of sound is taken to an altitude in the standard atmosphere by --against altitude=...
+    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. Each boundary is exact to
+    rounding. Boundaries at neighbouring values are one branch if the same root becomes unstable. A branch that is
+    doubtful at every value, and nowhere below another that is shown, is in files alone, or shown with
+    --all-boundaries. A deck that gives the air by density and speed of sound is taken to an altitude in the standard
+    atmosphere by --against altitude=...
 
     \b
     Examples:
@@ -102,7 +103,7 @@ def boundary(
         from proprotor.plots import plot_boundary_against, rests_on  # here, so that --help answers without it
 
         ax = plot_boundary_against(shown, unit=unit, speed_unit=shown_in, points=measured)
-        more = [f"{len(left_out)} more branches, doubtful throughout, are not drawn."] if left_out else []
+        more = ["Boundaries that are doubtful throughout are not drawn."] if left_out else []
         return rests_on(ax, case, f"{case.title or case.name}.", *more)
 
     outputs.write(
@@ -172,9 +173,7 @@ def _print(case: Case, shown: Dataset, left_out: Sequence[str], unit: str) -> No
     columns = (unit or "value", KTAS, KEAS, "Hz", "/rev", "mode", "kind", "")
     output.print_table(columns, map(boundary_cells, records), text=columns[5:])
     if left_out:
-        out.print(
-            f"{len(left_out)} more branches, doubtful throughout (--all-boundaries): {'; '.join(left_out)}."
-        )
+        out.print(f"Not shown, doubtful throughout (--all-boundaries): {'; '.join(left_out)}.")
     failures = dict.fromkeys(reason for reason in shown.reason.values.tolist() if reason)
     for reason in failures:
         values = [r for r in records if r["failure"] == reason]

@@ -76,15 +76,20 @@ def only_first(found: Dataset) -> Dataset:
 def without_doubtful(found: Dataset) -> tuple[Dataset, list[str]]:
     """Return the boundaries without the branches of which every boundary is doubtful, and the labels of these.
 
-    A branch that is the first instability at any value of the input stays.
+    Nothing is left out below a boundary that stays: a branch stays that is the first instability at any value of the
+    input, or has a lower airspeed than a branch that stays.
 
     Parameters
     ----------
     found : xarray.Dataset
         Of `Case.boundary_against`.
     """
-    sure = (np.isfinite(found.airspeed.values) & (found.warning.values == "")).any(axis=0)
-    shown = sure | np.isin(found.branch.values, found.first_branch.values)
+    speed = np.nan_to_num(found.airspeed.values, nan=np.inf)
+    sure = (np.isfinite(speed) & (found.warning.values == "")).any(axis=0)
+    shown, before = sure | np.isin(found.branch.values, found.first_branch.values), np.zeros_like(sure)
+    while not np.array_equal(shown, before):
+        highest = np.where(np.isfinite(speed) & shown, speed, 0).max(axis=1, initial=0, keepdims=True)
+        before, shown = shown, shown | (speed < highest).any(axis=0)
     return found.isel(branch=np.flatnonzero(shown)), found.branch.values[~shown].tolist()
 
 
