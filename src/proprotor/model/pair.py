@@ -364,8 +364,12 @@ def _check(right: LinearModel, airframe: Airframe, left: LinearModel | None) -> 
     if left is None:
         return
     if left.dofs != right.dofs:
-        rule = f"must have the coordinates of the right rotor, {', '.join(right.dofs)}"
-        raise InputError("left", ", ".join(left.dofs), rule)
+        own = {"left": set(left.dofs) - set(right.dofs), "right": set(right.dofs) - set(left.dofs)}
+        alone = [
+            f"the {side} one alone has {', '.join(sorted(names))}" for side, names in own.items() if names
+        ]
+        rule = "must have the coordinates of the right rotor in the same order"
+        raise InputError("left", None, "; ".join([rule, *alone]))
     if not {*airframe.symmetry} >= {*HALVES} and "" not in airframe.symmetry:
         rule = "must hold symmetric and antisymmetric coordinates where the left side differs: both halves couple"
         raise InputError("support.symmetry", ", ".join(dict.fromkeys(airframe.symmetry)), rule)
