@@ -112,7 +112,7 @@ def number_in(number: int, cells: list[str], head: Head) -> float:
     if not _NUMBER.fullmatch(text):
         raise fault_at(number, head, f'"{printable(text.strip())[:30]}" is no number')
     if not math.isfinite(found := float(text)):
-        raise fault_at(number, head, f'"{text.strip()[:30]}" is too large for a number')
+        raise fault_at(number, head, "must be finite")
     return found
 
 
