@@ -24,7 +24,7 @@ from proprotor.tables.boundary_table import (
 from proprotor.tables.csv_text import csv_of
 from proprotor.tables.points import Quantity
 from proprotor.typing import Dataset
-from proprotor.units import KEAS, KTAS, factor_to_si, is_equivalent, speeds
+from proprotor.units import KEAS, KTAS, factor_to_si, is_equivalent, speeds, values_in_si
 
 _EXAMPLE = '"operation.rotor_speed=300:610:20 rpm"'
 _OPERATION = "operation."
@@ -130,10 +130,7 @@ def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str
     whole = path if "." in path else f"{_OPERATION}{path}"
     if whole == "operation.altitude" and whole not in known:
         at = f"0 {arguments.unit_of(given)}"
-        try:
-            factor_to_si(given, arguments.unit_of(given), "m")
-        except InputError as error:
-            raise error.within(whole) from None
+        values_in_si(given, "m", whole)  # raises an error that names the input
         own = {"case.title": case.title or case.name, whole: at}  # the title must not tell one altitude
         request = request._replace(settings={**request.settings, **own})
         case = request.load()
@@ -145,8 +142,8 @@ def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str
 
 def _scan_of(case: Case, scan: str | None) -> str | None:
     """Return the airspeeds of the search as text, which the analysis converts in the air of each value."""
-    if scan is not None:
-        speeds(scan, "--scan", case.operation.density)  # raises an error that names the option
+    if scan is not None and speeds(scan, "--scan", case.operation.density).size < 2:
+        raise InputError("--scan", scan, 'must be a range of airspeeds that rise, such as "50:400:5ktas"')
     return scan
 
 
