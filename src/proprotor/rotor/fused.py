@@ -1,0 +1,221 @@
+"""Matrices of a whole rotor by the fused functions, for batches and for one point.
+
+A fused function is one plan of operations with two renderings. Arrays of a batch go through the plan in blocks of
+points, so that all temporaries stay in the cache. Plain numbers of one point go through the same lines of the plan as
+Python floats, or as complex numbers for derivatives by a complex step.
+
+A design has the same bits in every batch. One point agrees with a batch to rounding: the sine of `math` and the sine of
+NumPy may differ in the last bit.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from proprotor_equations.fused import rotor as plans
+
+from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate, keywords
+from proprotor.rotor.section_loads import LOAD_MOMENTS
+from proprotor.typing import Array
+
+_BLOCK = 512  # points
+_SPARSE = 0.5  # share of entries; a matrix with fewer is filled entry by entry
+_OF_SEGMENTS = ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS)
+
+_Quantities = Mapping[str, Any]
+Matrices = dict[str, Array]
+
+
+def serves(equations: EquationSet) -> bool:
+    """Return whether the fused functions hold these equations."""
+    return equations == EQUATION_SETS["consistent"]
+
+
+def rotor_matrices(
+    quantities: _Quantities, segments: _Quantities | None, points: int, one: bool = False
+) -> Matrices:
+    """Return M, C, K (points, 18, 18) and B (points, 18, 6) of a rotor.
+
+    Parameters
+    ----------
+    quantities : mapping
+        Quantities of the blade by name, numbers or arrays (points,).
+    segments : mapping, optional
+        Quantities of each segment, numbers or arrays with a last axis of segments. A rotor without airloads has none.
+    points : int
+        Number of points.
+    one : bool
+        Compute the only point with plain numbers.
+    """
+    functions = (plans.in_vacuum,) if segments is None else (plans.in_air, plans.segment)
+    names = {name for function in functions for name in keywords(function)} & quantities.keys()
+    blade = {name: quantities[name] for name in names}
+    along = None if segments is None else {name: segments[name] for name in _OF_SEGMENTS}
+    return _one_point(blade, along) if one else _batch(blade, along, points)
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Where the results of a plan stand in its matrices.
+
+    opposite : places of the results whose negative is needed as well, counted from 1.
+    places : by the name of a matrix, the place of each entry among zero, the results, and the negatives.
+    sparse : by the name of a matrix with few entries, row, column and place of each.
+    """
+
+    opposite: Array
+    places: dict[str, Array]
+    sparse: dict[str, list[tuple[int, int, int]]]
+
+    @classmethod
+    def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> _Layout:
+        """Return the layout of a table, in which n is the n-th result, -n its negative and 0 is zero."""
+        signed = {name: np.array(rows) for name, rows in table.items()}
+        every = np.concatenate([rows.ravel() for rows in signed.values()])
+        opposite = np.unique(-every[every < 0])
+        behind = 1 + np.abs(every).max() + np.arange(len(opposite))
+        places = {}
+        for name, rows in signed.items():
+            places[name] = rows.copy()
+            negative = rows < 0
+            places[name][negative] = behind[np.searchsorted(opposite, -rows[negative])]
+        few = {name: rows for name, rows in places.items() if np.count_nonzero(rows) < _SPARSE * rows.size}
+        sparse = {name: [(i, j, rows[i, j]) for i, j in np.argwhere(rows).tolist()] for name, rows in few.items()}
+        return cls(opposite, places, sparse)
+
+
+@cache
+def _layouts() -> dict[str, _Layout]:
+    tables = {"in_vacuum": plans.IN_VACUUM, "in_air": plans.IN_AIR, "segment": plans.SEGMENT}
+    return {name: _Layout.of(table) for name, table in tables.items()}
+
+
+# Batches
+
+
+def _batch(quantities: _Quantities, segments: _Quantities | None, points: int) -> Matrices:
+    """Return the matrices of many points, a block of points at a time."""
+    numbers = (*quantities.values(), *(segments or {}).values())
+    kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
+    layout = _layouts()["in_vacuum" if segments is None else "in_air"]
+    found = {name: np.zeros((points, *places.shape), dtype=kind) for name, places in layout.places.items()}
+    for start in range(0, points, _BLOCK):
+        rows = slice(start, min(start + _BLOCK, points))
+        here = {name: _of_rows(value, rows) for name, value in quantities.items()}
+        if segments is None:
+            results = evaluate(plans.in_vacuum, here, np.cos, np.sin)
+        else:
+            along = {name: _segments_first(value, rows) for name, value in segments.items()}
+            results = _in_air(here, along, rows.stop - rows.start, kind)
+        _fill({name: matrix[rows] for name, matrix in found.items()}, results, layout, kind)
+    return found
+
+
+def _fill(matrices: Matrices, results: Sequence[Any], layout: _Layout, kind: np.dtype[Any]) -> None:
+    """Put results into matrices of zeros."""
+    count = len(next(iter(matrices.values())))
+    pool = _pool(results, layout, (count,), kind)
+    by_points = None if layout.sparse.keys() == matrices.keys() else np.ascontiguousarray(pool.T)
+    for name, matrix in matrices.items():
+        if name in layout.sparse:
+            for row, column, place in layout.sparse[name]:
+                matrix[:, row, column] = pool[place]
+        else:
+            np.take(by_points, layout.places[name], axis=1, out=matrix, mode="clip")
+
+
+def _of_rows(value: Any, rows: slice) -> Any:
+    """Return a quantity at some points; what is one number for all points stays one."""
+    return value[rows] if np.ndim(value) and len(value) > 1 else value
+
+
+def _segments_first(value: Any, rows: slice) -> Any:
+    """Return a quantity of the segments at some points as an array (segments, points), or (segments, 1)."""
+    if np.ndim(value) == 0:
+        return value
+    some = value[rows] if np.ndim(value) > 1 and len(value) > 1 else np.atleast_2d(value)
+    return np.ascontiguousarray(some.T)
+
+
+def _in_air(
+    quantities: _Quantities, segments: _Quantities, points: int, kind: np.dtype[Any]
+) -> tuple[Any, ...]:
+    """Return the results of `in_air`."""
+    layout = _layouts()["segment"]
+    count = len(segments["beyond_flap_hinge"])
+    results = evaluate(plans.segment, {**quantities, **segments}, np.cos, np.sin)
+    pool = np.ascontiguousarray(_pool(results, layout, (count, points), kind).T)
+    arrays = {name: np.take(pool, places, axis=2) for name, places in layout.places.items()}
+    work = _work(arrays).reshape(points, -1)
+    geometric = arrays["geometric_stiffness"].sum(axis=1).reshape(points, -1)
+    groups = (np.ascontiguousarray(part.T) for part in (work, geometric))
+    found: tuple[Any, ...] = evaluate(plans.in_air, quantities, np.cos, np.sin, *groups)
+    return found
+
+
+def _work(arrays: Mapping[str, Array]) -> Array:
+    """Return W^T L U of segments (..., segments, rows, columns), summed over the segments."""
+    virtual, derivatives, motion = (
+        arrays[name] for name in ("virtual_motion", "load_derivatives", "motion")
+    )
+    loads = derivatives @ motion
+    together = (*virtual.shape[:-3], virtual.shape[-3] * virtual.shape[-2], -1)
+    return np.asarray(np.swapaxes(virtual.reshape(together), -1, -2) @ loads.reshape(together))
+
+
+def _pool(results: Sequence[Any], layout: _Layout, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
+    """Return zero, the results and their negatives as a layout counts them, on a first axis."""
+    count = 1 + len(results)
+    pool = np.empty((count + len(layout.opposite), *shape), dtype=kind)
+    pool[0] = 0.0
+    for place, result in enumerate(results, start=1):
+        pool[place] = result
+    np.negative(pool[layout.opposite], out=pool[count:])
+    return pool
+
+
+# One point
+
+
+def _one_point(quantities: _Quantities, segments: _Quantities | None) -> Matrices:
+    """Return the matrices of one point by plain numbers, with an axis of one point."""
+    blade = {name: _number(value) for name, value in quantities.items()}
+    along = [] if segments is None else _one_by_one(segments)
+    is_complex = any(isinstance(number, complex) for part in (blade, *along) for number in part.values())
+    functions = (cmath.cos, cmath.sin) if is_complex else (math.cos, math.sin)
+    if segments is None:
+        results, layout = evaluate(plans.in_vacuum, blade, *functions), _layouts()["in_vacuum"]
+    else:
+        rows = [evaluate(plans.segment, {**blade, **here}, *functions) for here in along]
+        arrays = _matrices(np.array(rows), _layouts()["segment"])
+        geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
+        groups = (_work(arrays).ravel().tolist(), geometric)
+        results, layout = evaluate(plans.in_air, blade, *functions, *groups), _layouts()["in_air"]
+    return _matrices(np.array([results]), layout)
+
+
+def _number(value: Any) -> Any:
+    """Return an array of one number, or a number of NumPy, as a plain number."""
+    return value.item() if isinstance(value, np.ndarray | np.generic) else value
+
+
+def _one_by_one(segments: _Quantities) -> list[dict[str, Any]]:
+    """Return the quantities of each segment as plain numbers."""
+    count = np.size(segments["beyond_flap_hinge"])
+    lists = [
+        np.ravel(value).tolist() if np.ndim(value) else [_number(value)] * count
+        for value in segments.values()
+    ]
+    return [dict(zip(segments, numbers, strict=True)) for numbers in zip(*lists, strict=True)]
+
+
+def _matrices(results: Array, layout: _Layout) -> Matrices:
+    """Return the matrices of some rows of results."""
+    pool = np.concatenate([np.zeros((len(results), 1)), results, -results[:, layout.opposite - 1]], axis=1)
+    return {name: np.take(pool, places, axis=1) for name, places in layout.places.items()}
