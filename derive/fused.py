@@ -310,6 +310,13 @@ def in_air() -> FusedFunction:
     return _fused("in_air", steps, _fixed_frame(blade), in_air, groups)
 
 
+def named_values(module: str, name: str) -> FusedFunction:
+    """Plan the named values of a function."""
+    function = _function(module, name)
+    made = plan(function.steps, {}, [symbol.name for symbol in function.values])
+    return FusedFunction(name, function.summary, made, _arguments(made, function.steps))
+
+
 def _fused(
     name: str,
     steps: Steps,
@@ -318,11 +325,21 @@ def _fused(
     groups: tuple[Group, ...] = (),
 ) -> FusedFunction:
     made = plan(steps, matrices)
-    needed = set().union(*(value.free_symbols for _, value in made.lines))
-    arguments = [symbol for symbol in QUANTITIES if symbol in needed - {symbol for symbol, _ in steps}]
-    return FusedFunction(name, (of.__doc__ or "").partition("\n")[0], made, arguments, groups)
+    summary = (of.__doc__ or "").partition("\n")[0]
+    return FusedFunction(name, summary, made, _arguments(made, steps), groups)
+
+
+def _arguments(made: Plan, steps: Steps) -> list[sp.Symbol]:
+    """Return the quantities that a plan needs, in the order of their declaration."""
+    needed = set().union(*(value.free_symbols for _, value in made.lines)) - {symbol for symbol, _ in steps}
+    return [symbol for symbol in QUANTITIES if symbol in needed]
 
 
 def fused_functions() -> list[FusedFunction]:
     """Return all fused functions of the rotor."""
-    return [in_vacuum(), segment(), in_air()]
+    return [
+        named_values("flap_lag_springs", "effective_stiffness"),
+        in_vacuum(),
+        segment(),
+        in_air(),
+    ]

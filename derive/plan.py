@@ -46,8 +46,11 @@ class Plan:
         return int(sum(sp.count_ops(value) for _, value in self.lines))
 
 
-def plan(steps: Steps, matrices: Mapping[str, Matrix]) -> Plan:
-    """Plan the matrices from their entries; steps are named values that entries and later steps may use."""
+def plan(steps: Steps, matrices: Mapping[str, Matrix], values: Sequence[str] = ()) -> Plan:
+    """Plan the matrices from their entries; steps are named values that entries and later steps may use.
+
+    The steps that `values` names are results as well, before those of the matrices.
+    """
     results = Results()
     layouts = {name: results.layout(name, matrix) for name, matrix in matrices.items()}
     named = [(symbol.name, sp.sympify(value)) for symbol, value in steps]
@@ -55,9 +58,9 @@ def plan(steps: Steps, matrices: Mapping[str, Matrix]) -> Plan:
     shared, reduced = sp.cse([value for _, value in named + outcomes], symbols=_temporaries())
     lines = dict(zip([name for name, _ in named + outcomes], reduced, strict=True))
     made = _with_plain_powers({symbol.name: value for symbol, value in shared} | lines)
-    order = list(_in_order(made, [name for name, _ in outcomes]))
+    wanted = [*values, *results.named]
     names = {name for name, _ in named + outcomes}
-    return Plan(_with_registers(order, made, names), [name for name, _ in outcomes], layouts)
+    return Plan(_with_registers(list(_in_order(made, wanted)), made, names), wanted, layouts)
 
 
 class Results:

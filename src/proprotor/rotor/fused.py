@@ -24,7 +24,7 @@ from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate, keyw
 from proprotor.rotor.section_loads import LOAD_MOMENTS
 from proprotor.typing import Array
 
-_BLOCK = 512  # points
+_BLOCK = 1024  # points
 _SPARSE = 0.5  # share of entries; a matrix with fewer is filled entry by entry
 _OF_SEGMENTS = ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS)
 
@@ -69,7 +69,7 @@ class _Layout:
     sparse : by the name of a matrix with few entries, row, column and place of each.
     """
 
-    opposite: Array
+    opposite: list[int]
     places: dict[str, Array]
     sparse: dict[str, list[tuple[int, int, int]]]
 
@@ -87,7 +87,7 @@ class _Layout:
             places[name][negative] = behind[np.searchsorted(opposite, -rows[negative])]
         few = {name: rows for name, rows in places.items() if np.count_nonzero(rows) < _SPARSE * rows.size}
         sparse = {name: [(i, j, rows[i, j]) for i, j in np.argwhere(rows).tolist()] for name, rows in few.items()}
-        return cls(opposite, places, sparse)
+        return cls(opposite.tolist(), places, sparse)
 
 
 @cache
@@ -104,7 +104,7 @@ def _batch(quantities: _Quantities, segments: _Quantities | None, points: int) -
     numbers = (*quantities.values(), *(segments or {}).values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
     layout = _layouts()["in_vacuum" if segments is None else "in_air"]
-    found = {name: np.zeros((points, *places.shape), dtype=kind) for name, places in layout.places.items()}
+    found = _zeros(layout, points, kind)
     for start in range(0, points, _BLOCK):
         rows = slice(start, min(start + _BLOCK, points))
         here = {name: _of_rows(value, rows) for name, value in quantities.items()}
@@ -113,21 +113,32 @@ def _batch(quantities: _Quantities, segments: _Quantities | None, points: int) -
         else:
             along = {name: _segments_first(value, rows) for name, value in segments.items()}
             results = _in_air(here, along, rows.stop - rows.start, kind)
-        _fill({name: matrix[rows] for name, matrix in found.items()}, results, layout, kind)
+        _fill({name: matrix[rows] for name, matrix in found.items()}, results, layout)
     return found
 
 
-def _fill(matrices: Matrices, results: Sequence[Any], layout: _Layout, kind: np.dtype[Any]) -> None:
+def _zeros(layout: _Layout, points: int, kind: np.dtype[Any]) -> Matrices:
+    """Return matrices of zeros in one piece of memory, which a large batch gets from the system as zeros."""
+    sizes = [points * places.size for places in layout.places.values()]
+    parts = np.split(np.zeros(sum(sizes), dtype=kind), np.cumsum(sizes)[:-1])
+    return {
+        name: part.reshape(points, *places.shape)
+        for part, (name, places) in zip(parts, layout.places.items(), strict=True)
+    }
+
+
+def _fill(matrices: Matrices, results: Sequence[Any], layout: _Layout) -> None:
     """Put results into matrices of zeros."""
-    count = len(next(iter(matrices.values())))
-    pool = _pool(results, layout, (count,), kind)
-    by_points = None if layout.sparse.keys() == matrices.keys() else np.ascontiguousarray(pool.T)
+    values = _values(results, layout)
+    if layout.sparse.keys() != matrices.keys():
+        matrix = next(iter(matrices.values()))
+        pool = _pool(values, matrix.shape[:1], matrix.dtype)
     for name, matrix in matrices.items():
         if name in layout.sparse:
             for row, column, place in layout.sparse[name]:
-                matrix[:, row, column] = pool[place]
+                matrix[:, row, column] = values[place]
         else:
-            np.take(by_points, layout.places[name], axis=1, out=matrix, mode="clip")
+            np.take(pool, layout.places[name], axis=1, out=matrix, mode="clip")
 
 
 def _of_rows(value: Any, rows: slice) -> Any:
@@ -150,7 +161,7 @@ def _in_air(
     layout = _layouts()["segment"]
     count = len(segments["beyond_flap_hinge"])
     results = evaluate(plans.segment, {**quantities, **segments}, np.cos, np.sin)
-    pool = np.ascontiguousarray(_pool(results, layout, (count, points), kind).T)
+    pool = _pool(_values(results, layout), (count, points), kind)
     arrays = {name: np.take(pool, places, axis=2) for name, places in layout.places.items()}
     work = _work(arrays).reshape(points, -1)
     geometric = arrays["geometric_stiffness"].sum(axis=1).reshape(points, -1)
@@ -169,15 +180,17 @@ def _work(arrays: Mapping[str, Array]) -> Array:
     return np.asarray(np.swapaxes(virtual.reshape(together), -1, -2) @ loads.reshape(together))
 
 
-def _pool(results: Sequence[Any], layout: _Layout, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
-    """Return zero, the results and their negatives as a layout counts them, on a first axis."""
-    count = 1 + len(results)
-    pool = np.empty((count + len(layout.opposite), *shape), dtype=kind)
-    pool[0] = 0.0
-    for place, result in enumerate(results, start=1):
-        pool[place] = result
-    np.negative(pool[layout.opposite], out=pool[count:])
-    return pool
+def _values(results: Sequence[Any], layout: _Layout) -> list[Any]:
+    """Return zero, the results and their negatives as a layout counts them."""
+    return [0.0, *results, *(-results[place - 1] for place in layout.opposite)]
+
+
+def _pool(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
+    """Return values as one array, with the axes of the shape in reverse and a last axis of values."""
+    pool = np.empty((len(values), *shape), dtype=kind)
+    for place, value in enumerate(values):
+        pool[place] = value
+    return np.ascontiguousarray(pool.T)
 
 
 # One point
@@ -217,5 +230,5 @@ def _one_by_one(segments: _Quantities) -> list[dict[str, Any]]:
 
 def _matrices(results: Array, layout: _Layout) -> Matrices:
     """Return the matrices of some rows of results."""
-    pool = np.concatenate([np.zeros((len(results), 1)), results, -results[:, layout.opposite - 1]], axis=1)
+    pool = np.concatenate([np.zeros((len(results), 1)), results, -results[:, [n - 1 for n in layout.opposite]]], axis=1)
     return {name: np.take(pool, places, axis=1) for name, places in layout.places.items()}
