@@ -4,29 +4,29 @@ Nothing is derived here. `in_vacuum` is the rotor without airloads. With airload
 the arrays of a segment, a product of these arrays summed over the segments gives the work of the airloads, and
 `in_air` makes the rotor with this work.
 
-The columns of W and U are not independent: a gimbal tilt is a turn of the hub with another pitch, the azimuth is a turn,
-and a gust is the hub's motion seen from the air. Only independent columns are multiplied, and `in_air` combines them.
+The product takes the independent columns of W and U alone, and `in_air` combines them, as `derive.columns` finds them.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import functools
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import cast
 
 import sympy as sp
 
-from derive import airloads, multiblade
 from derive import kinematics as kin
+from derive import multiblade
+from derive.columns import Columns, Combination
 from derive.coordinates import SEGMENT_LOADS, SEGMENT_MOTIONS, names
 from derive.equations import consistent_functions
 from derive.function import Function
-from derive.plan import Entries, Matrix, Place, Plan, Results, Steps, plan
+from derive.plan import Matrix, Place, Plan, Results, Steps, plan
 from derive.rotor import Assembly, Call, Code
 from derive.symbols import QUANTITIES
 
-Combination = dict[str, sp.Expr]  # independent columns, and how much of each makes a column
 Blade = dict[str, dict[Place, sp.Expr]]  # entries of the matrices of one blade by name
 
 _BASES = {
@@ -35,8 +35,6 @@ _BASES = {
 }
 _INDEX = multiblade.BLADE_INDEX | multiblade.GUST_INDEX
 _SIDE = {"_beside(swashplate, gust)": ("swashplate", "gust")}
-# Motions whose rates or sizes U takes; the product of the readable functions names each.
-_MOTIONS = ("rate_motion", "displacement_motion", "gust_motion")
 
 
 @dataclass(frozen=True)
@@ -67,101 +65,26 @@ def _values(function: Function) -> dict[Place, sp.Expr]:
     return {place: entry.value for place, entry in function.entries.items()}
 
 
-# Arrays of a segment
+# W, U and G
 
 
-@dataclass(frozen=True)
-class Columns:
-    """Columns of W or U: the independent ones with their entries, and every column as a combination of these."""
-
-    entries: dict[Place, sp.Expr]
-    independent: tuple[str, ...]
-    combinations: dict[str, Combination]
-
-
-def _columns(function: Function, known: Columns | None = None) -> Columns:
-    """Find independent columns, among those of `known` if there are any."""
-    values = _values(function)
-    own = [column for column in function.columns if any(place[1] == column for place in values)]
-    found = dict(known.entries) if known else {}
-    independent = list(known.independent) if known else []
-    combinations = {}
-    # A column that is one row, such as the pitch, is told first: others are made of it.
-    for column in sorted(own, key=lambda name: _height(values, name) > 1):
-        this = {row: value for (row, other), value in values.items() if other == column}
-        combination = _combination(this, found, independent)
-        if combination is None:
-            combination = {column: sp.Integer(1)}
-            independent.append(column)
-            found |= {(row, column): value for row, value in this.items()}
-        combinations[column] = combination
-    return Columns(found, tuple(independent), combinations)
+@functools.cache
+def _virtual() -> tuple[Matrix, dict[str, Combination]]:
+    """W of the independent rows of the work, and every row in these."""
+    columns = Columns(names(SEGMENT_LOADS))
+    found = columns.combinations(_function("airloads", "virtual_motion"))
+    return columns.matrix, found
 
 
-def _height(values: Entries, column: str) -> int:
-    return sum(place[1] == column for place in values)
-
-
-def _combination(
-    column: Mapping[str, sp.Expr], entries: Entries, independent: Iterable[str]
-) -> Combination | None:
-    """Return the column as plus or minus another, with a multiple of one that has a single row, 1; None otherwise."""
-    single = {
-        next(row for row, other in entries if other == name): name
-        for name in independent
-        if _height(entries, name) == 1
+@functools.cache
+def _motions() -> tuple[Matrix, dict[str, dict[str, Combination]]]:
+    """U of the independent motions, and the columns of every function of motions in these."""
+    columns = Columns(names(SEGMENT_MOTIONS))
+    prefixes = {"rate_motion": "rate_", "gust_motion": "gust_", "displacement_motion": "change_"}
+    found = {
+        name: columns.combinations(_function("airloads", name), prefix) for name, prefix in prefixes.items()
     }
-    for name in independent:
-        other = {row: value for (row, by), value in entries.items() if by == name}
-        for sign in (1, -1):
-            rows = column.keys() | other.keys()
-            rest = {row: sp.expand(column.get(row, 0) - sign * other.get(row, 0)) for row in rows}
-            rest = {row: value for row, value in rest.items() if value != 0}
-            if not rest:
-                return {name: sp.Integer(sign)}
-            (row, value), *more = rest.items()
-            if not more and row in single and single[row] != name and _of_the_blade(value):
-                return {name: sp.Integer(sign), single[row]: value / entries[row, single[row]]}
-    return None
-
-
-def _of_the_blade(value: sp.Expr) -> bool:
-    """Say whether a value is the same on all segments of a blade."""
-    geometry = {symbol for symbol, _ in airloads.segment_geometry()}
-    return not value.free_symbols & (geometry | {kin.beyond_flap_hinge, kin.beyond_lag_hinge})
-
-
-@functools.cache
-def _virtual() -> Columns:
-    return _columns(_function("airloads", "virtual_motion"))
-
-
-@functools.cache
-def _motions() -> dict[str, tuple[str, Columns]]:
-    """Columns of U by the names of the functions, each with a prefix that its independent columns have in the product."""
-    rate = _columns(_function("airloads", "rate_motion"))
-    gust = _columns(_function("airloads", "gust_motion"), rate)
-    displacement = _columns(_function("airloads", "displacement_motion"))
-    if gust.independent != rate.independent:
-        raise ValueError("gusts move the air along a segment as no motion of the blade does")
-    return {
-        "rate_motion": ("rate", rate),
-        "gust_motion": ("rate", gust),
-        "displacement_motion": ("change", displacement),
-    }
-
-
-@functools.cache
-def _moving() -> Matrix:
-    """U of the independent motions, rates beside displacements."""
-    _, rate = _motions()["rate_motion"]
-    _, change = _motions()["displacement_motion"]
-    entries = {(row, f"rate_{column}"): value for (row, column), value in rate.entries.items()}
-    entries |= {(row, f"change_{column}"): value for (row, column), value in change.entries.items()}
-    columns = [f"rate_{name}" for name in rate.independent] + [
-        f"change_{name}" for name in change.independent
-    ]
-    return Matrix(names(SEGMENT_MOTIONS), tuple(columns), entries)
+    return columns.matrix, found
 
 
 @functools.cache
@@ -181,20 +104,6 @@ def _geometric() -> tuple[Matrix, dict[Place, sp.Expr]]:
     return Matrix(tuple(different), ("segment",), column), entries
 
 
-def segment() -> FusedFunction:
-    """Arrays of one segment: W, L and U of the independent motions, and G."""
-    loads = names(SEGMENT_LOADS)
-    geometry = _function("airloads", "segment_geometry").steps
-    matrices = {
-        "virtual_motion": Matrix(loads, _virtual().independent, _virtual().entries),
-        "load_derivatives": Matrix(
-            loads, names(SEGMENT_MOTIONS), _values(_function("airloads", "load_derivatives"))
-        ),
-        "motion": _moving(),
-    }
-    return _fused("segment", geometry, matrices | {"geometric_stiffness": _geometric()[0]}, segment)
-
-
 # The blade
 
 
@@ -203,11 +112,13 @@ def _work(row: str, column: str) -> sp.Symbol:
     return sp.Symbol(f"{row}_{column}", real=True)
 
 
-def _air(product: sp.MatrixExpr) -> dict[Place, sp.Expr]:
-    """Entries of a product of the arrays of the segments."""
+def _air(term: Code) -> dict[Place, sp.Expr]:
+    """Entries of one of the blade's airload matrices, a product of the arrays of the segments."""
+    name = term.removeprefix("air.")
+    product = _function("airloads", {"gusts": "gust_loads"}.get(name, name)).product
     found: dict[Place, sp.Expr] = {}
-    for term in sp.MatAdd.make_args(product):
-        factor, matrices = term.as_coeff_matrices()
+    for part in sp.MatAdd.make_args(product):
+        factor, matrices = part.as_coeff_matrices()
         last = matrices[-1].name
         entries = _geometric()[1] if last == "geometric_stiffness" else _work_entries(last)
         for place, value in entries.items():
@@ -216,18 +127,18 @@ def _air(product: sp.MatrixExpr) -> dict[Place, sp.Expr]:
 
 
 def _work_entries(motion: str) -> dict[Place, sp.Expr]:
-    prefix, columns = _motions()[motion]
+    rows, columns = _virtual()[1], _motions()[1][motion]
     return {
         (row, column): sum(
             (
-                left * right * _work(name, f"{prefix}_{other}")
-                for name, left in _virtual().combinations[row].items()
-                for other, right in columns.combinations[column].items()
+                left * right * _work(name, other)
+                for name, left in rows[row].items()
+                for other, right in columns[column].items()
             ),
             sp.Integer(0),
         )
-        for row in _virtual().combinations
-        for column in columns.combinations
+        for row in rows
+        for column in columns
     }
 
 
@@ -244,25 +155,11 @@ def _blade(airloads_too: bool) -> tuple[list[tuple[sp.Symbol, sp.Expr]], Blade]:
                 steps += term.function.steps
                 more = _values(term.function)
             else:
-                more = _named_air(term, steps) if airloads_too else {}
+                more = _air(term) if airloads_too else {}
             for place, value in more.items():
                 entries[place] = entries.get(place, sp.Integer(0)) + value
         blade[line.result] = entries
     return steps, blade
-
-
-def _named_air(term: Code, steps: list[tuple[sp.Symbol, sp.Expr]]) -> dict[Place, sp.Expr]:
-    """Return the airloads' entries of one of the blade's matrices; one that is a sum becomes a step with a name."""
-    name = term.removeprefix("air.")
-    product = _function("airloads", {"gusts": "gust_loads"}.get(name, name)).product
-    found = {}
-    for (row, column), value in _air(cast(sp.MatrixExpr, product)).items():
-        if value.is_Add:
-            symbol = sp.Symbol(f"air_{name}_{row}_{column}", real=True)
-            steps.append((symbol, value))
-            value = symbol
-        found[row, column] = value
-    return found
 
 
 # The rotor
@@ -299,15 +196,34 @@ def in_vacuum() -> FusedFunction:
     return _fused("in_vacuum", steps, _fixed_frame(blade), in_vacuum)
 
 
+@functools.cache
 def in_air() -> FusedFunction:
     """M, C, K and B of a whole rotor with the work of its airloads."""
     steps, blade = _blade(airloads_too=True)
-    work = tuple(_work(row, column).name for row in _virtual().independent for column in _moving().columns)
+    made = _fused("in_air", steps, _fixed_frame(blade), in_air)
+    used = {symbol.name for _, value in made.plan.lines for symbol in value.free_symbols}
+    work = tuple(_work(row, column).name for row in _virtual()[0].columns for column in _motions()[0].columns)
+    geometric = tuple(name for name in _geometric()[0].rows if name in used)
     groups = (
-        Group("work", "work of the airloads, W^T L U summed over the segments, row by row", work),
-        Group("geometric", "results for G, summed over the segments", _geometric()[0].rows),
+        Group("work", "the work of the airloads, W^T L U summed over the segments, row by row", work),
+        Group("geometric", "the results for G, summed over the segments", geometric),
     )
-    return _fused("in_air", steps, _fixed_frame(blade), in_air, groups)
+    return dataclasses.replace(made, groups=groups)
+
+
+def segment() -> FusedFunction:
+    """Arrays of one segment: W, L and U of the independent motions, and what the rotor needs of G as a column."""
+    loads, motions = names(SEGMENT_LOADS), names(SEGMENT_MOTIONS)
+    geometric = _geometric()[0]
+    _, needed = in_air().groups  # the rest of G vanishes in the sum over the blades
+    entries = {place: value for place, value in geometric.entries.items() if place[0] in needed.members}
+    matrices = {
+        "virtual_motion": _virtual()[0],
+        "load_derivatives": Matrix(loads, motions, _values(_function("airloads", "load_derivatives"))),
+        "motion": _motions()[0],
+        "geometric_stiffness": Matrix(needed.members, geometric.columns, entries),
+    }
+    return _fused("segment", _function("airloads", "segment_geometry").steps, matrices, segment)
 
 
 def named_values(module: str, name: str) -> FusedFunction:
@@ -322,11 +238,10 @@ def _fused(
     steps: Steps,
     matrices: Mapping[str, Matrix],
     of: object,
-    groups: tuple[Group, ...] = (),
 ) -> FusedFunction:
     made = plan(steps, matrices)
     summary = (of.__doc__ or "").partition("\n")[0]
-    return FusedFunction(name, summary, made, _arguments(made, steps), groups)
+    return FusedFunction(name, summary, made, _arguments(made, steps))
 
 
 def _arguments(made: Plan, steps: Steps) -> list[sp.Symbol]:

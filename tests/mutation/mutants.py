@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import ModuleType
 
 import proprotor_equations
-from proprotor_equations import published
+from proprotor_equations import fused, published
 
 
 def _flipped(value: ast.expr) -> ast.expr:
@@ -53,12 +53,12 @@ class Mutant:
 
 def generated_modules() -> dict[str, ModuleType]:
     """Every generated module by its name within the package."""
-    both = {"": proprotor_equations, "published.": published}
+    packages = {"": proprotor_equations, "published.": published, "fused.": fused}
     return {
         prefix + name: getattr(package, name)
-        for prefix, package in both.items()
+        for prefix, package in packages.items()
         for name in package.__all__
-        if isinstance(getattr(package, name), ModuleType) and name != "published"
+        if isinstance(getattr(package, name), ModuleType) and getattr(package, name) not in packages.values()
     }
 
 

@@ -18,6 +18,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from proprotor_equations import flap_lag_springs
 from proprotor_equations.fused import rotor as plans
 
 from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate, keywords
@@ -26,7 +27,11 @@ from proprotor.typing import Array
 
 _BLOCK = 1024  # points
 _SPARSE = 0.5  # share of entries; a matrix with fewer is filled entry by entry
-_OF_SEGMENTS = ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS)
+OF_SEGMENTS = tuple(
+    name
+    for name in ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS)
+    if name in keywords(plans.segment)
+)
 
 _Quantities = Mapping[str, Any]
 Matrices = dict[str, Array]
@@ -35,6 +40,15 @@ Matrices = dict[str, Array]
 def serves(equations: EquationSet) -> bool:
     """Return whether the fused functions hold these equations."""
     return equations == EQUATION_SETS["consistent"]
+
+
+def effective_stiffness(quantities: _Quantities) -> dict[str, Any]:
+    """Return the springs of hub and blade in series and their derivatives with structural pitch, by name."""
+    names = keywords(plans.effective_stiffness)
+    numbers = all(isinstance(quantities[name], float) for name in names)
+    waves = (math.cos, math.sin) if numbers else (np.cos, np.sin)
+    results = evaluate(plans.effective_stiffness, quantities, *waves)
+    return dict(zip(flap_lag_springs.EffectiveStiffness._fields, results, strict=True))
 
 
 def rotor_matrices(
@@ -56,7 +70,7 @@ def rotor_matrices(
     functions = (plans.in_vacuum,) if segments is None else (plans.in_air, plans.segment)
     names = {name for function in functions for name in keywords(function)} & quantities.keys()
     blade = {name: quantities[name] for name in names}
-    along = None if segments is None else {name: segments[name] for name in _OF_SEGMENTS}
+    along = None if segments is None else {name: segments[name] for name in OF_SEGMENTS}
     return _one_point(blade, along) if one else _batch(blade, along, points)
 
 
@@ -86,7 +100,9 @@ class _Layout:
             negative = rows < 0
             places[name][negative] = behind[np.searchsorted(opposite, -rows[negative])]
         few = {name: rows for name, rows in places.items() if np.count_nonzero(rows) < _SPARSE * rows.size}
-        sparse = {name: [(i, j, rows[i, j]) for i, j in np.argwhere(rows).tolist()] for name, rows in few.items()}
+        sparse = {
+            name: [(i, j, rows[i, j]) for i, j in np.argwhere(rows).tolist()] for name, rows in few.items()
+        }
         return cls(opposite.tolist(), places, sparse)
 
 
@@ -172,9 +188,7 @@ def _in_air(
 
 def _work(arrays: Mapping[str, Array]) -> Array:
     """Return W^T L U of segments (..., segments, rows, columns), summed over the segments."""
-    virtual, derivatives, motion = (
-        arrays[name] for name in ("virtual_motion", "load_derivatives", "motion")
-    )
+    virtual, derivatives, motion = (arrays[name] for name in ("virtual_motion", "load_derivatives", "motion"))
     loads = derivatives @ motion
     together = (*virtual.shape[:-3], virtual.shape[-3] * virtual.shape[-2], -1)
     return np.asarray(np.swapaxes(virtual.reshape(together), -1, -2) @ loads.reshape(together))
@@ -230,5 +244,7 @@ def _one_by_one(segments: _Quantities) -> list[dict[str, Any]]:
 
 def _matrices(results: Array, layout: _Layout) -> Matrices:
     """Return the matrices of some rows of results."""
-    pool = np.concatenate([np.zeros((len(results), 1)), results, -results[:, [n - 1 for n in layout.opposite]]], axis=1)
+    pool = np.concatenate(
+        [np.zeros((len(results), 1)), results, -results[:, [n - 1 for n in layout.opposite]]], axis=1
+    )
     return {name: np.take(pool, places, axis=1) for name, places in layout.places.items()}
