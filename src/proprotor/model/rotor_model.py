@@ -78,8 +78,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     coordinates = (*FIXED, *(reactionless_coordinates(reactionless) if reactionless else ()))
     found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
     matrices: dict[str, Any] = {
-        name: matrix.reshape(*shape, *matrix.shape[-2:])
-        for name, matrix in found.items()
+        name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in found.items()
     }
     model = LinearModel(
         **matrices,
@@ -141,12 +140,14 @@ def _matrices(
     if len(rows):
         quantities = settled.quantities | couplings(options, settled.quantities)
         segments = _segments(sections.take(rows), quantities, settled.segments, options)
-        if reactionless is None and fused.serves(options.equation_set):
+        given = segments | quantities | {"equations": options.equation_set}
+        served = fused.serves(options.equation_set)
+        if reactionless is not None or not served:
+            blade = evaluate(whole_rotor.blade_matrices, given)
+        if served:
             in_air = None if options.airloads == "none" else segments
             found = fused.rotor_matrices(quantities, in_air, len(rows), one)
         else:
-            given = segments | quantities | {"equations": options.equation_set}
-            blade = evaluate(whole_rotor.blade_matrices, given)
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
         if not options.pitch_is_free:
             found["B"] = _without_pitch_equations(found["K"], found["B"])

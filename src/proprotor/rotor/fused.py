@@ -4,14 +4,12 @@ A fused function is one plan of operations with two renderings. Arrays of a batc
 points, so that all temporaries stay in the cache. Plain numbers of one point go through the same lines of the plan as
 Python floats, or as complex numbers for derivatives by a complex step.
 
-A design has the same bits in every batch. One point agrees with a batch to rounding: the sine of `math` and the sine of
-NumPy may differ in the last bit.
+A design has the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and sines are NumPy's
+in both. Complex numbers agree to rounding.
 """
 
 from __future__ import annotations
 
-import cmath
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -46,7 +44,7 @@ def effective_stiffness(quantities: _Quantities) -> dict[str, Any]:
     """Return the springs of hub and blade in series and their derivatives with structural pitch, by name."""
     names = keywords(plans.effective_stiffness)
     numbers = all(isinstance(quantities[name], float) for name in names)
-    waves = (math.cos, math.sin) if numbers else (np.cos, np.sin)
+    waves = (_cos, _sin) if numbers else (np.cos, np.sin)
     results = evaluate(plans.effective_stiffness, quantities, *waves)
     return dict(zip(flap_lag_springs.EffectiveStiffness._fields, results, strict=True))
 
@@ -214,17 +212,25 @@ def _one_point(quantities: _Quantities, segments: _Quantities | None) -> Matrice
     """Return the matrices of one point by plain numbers, with an axis of one point."""
     blade = {name: _number(value) for name, value in quantities.items()}
     along = [] if segments is None else _one_by_one(segments)
-    is_complex = any(isinstance(number, complex) for part in (blade, *along) for number in part.values())
-    functions = (cmath.cos, cmath.sin) if is_complex else (math.cos, math.sin)
     if segments is None:
-        results, layout = evaluate(plans.in_vacuum, blade, *functions), _layouts()["in_vacuum"]
+        results, layout = evaluate(plans.in_vacuum, blade, _cos, _sin), _layouts()["in_vacuum"]
     else:
-        rows = [evaluate(plans.segment, {**blade, **here}, *functions) for here in along]
+        rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in along]
         arrays = _matrices(np.array(rows), _layouts()["segment"])
         geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
         groups = (_work(arrays).ravel().tolist(), geometric)
-        results, layout = evaluate(plans.in_air, blade, *functions, *groups), _layouts()["in_air"]
+        results, layout = evaluate(plans.in_air, blade, _cos, _sin, *groups), _layouts()["in_air"]
     return _matrices(np.array([results]), layout)
+
+
+def _cos(angle: complex) -> Any:
+    """Return NumPy's cosine as a plain number."""
+    return np.cos(angle).item()
+
+
+def _sin(angle: complex) -> Any:
+    """Return NumPy's sine as a plain number."""
+    return np.sin(angle).item()
 
 
 def _number(value: Any) -> Any:
