@@ -1,17 +1,17 @@
 """The whole rotor as plans of operations, from the same functions of the catalogue as the readable modules.
 
-Nothing is derived here. `in_vacuum` is the rotor without airloads. With airloads there are three parts: `segment` makes
-the arrays of a segment, a product of these arrays summed over the segments gives the work of the airloads, and
-`in_air` makes the rotor with this work.
+Nothing is derived here. `in_vacuum` is the rotor without airloads. Airloads have three parts: `segment` makes the
+arrays of a segment, a product of these arrays summed over the segments gives the work of the airloads, and
+`of_airloads` makes what is added to C, K and B of this work.
 
-The product takes the independent columns of W and U alone, and `in_air` combines them, as `derive.columns` finds them.
+The product takes the independent columns of W and U alone, as `derive.columns` finds them; `of_airloads` combines them.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import cast
 
@@ -116,14 +116,13 @@ def _air(term: Code) -> dict[Place, sp.Expr]:
     """Entries of one of the blade's airload matrices, a product of the arrays of the segments."""
     name = term.removeprefix("air.")
     product = _function("airloads", {"gusts": "gust_loads"}.get(name, name)).product
-    found: dict[Place, sp.Expr] = {}
+    parts = []
     for part in sp.MatAdd.make_args(product):
         factor, matrices = part.as_coeff_matrices()
         last = matrices[-1].name
         entries = _geometric()[1] if last == "geometric_stiffness" else _work_entries(last)
-        for place, value in entries.items():
-            found[place] = found.get(place, sp.Integer(0)) + factor * value
-    return found
+        parts.append({place: factor * value for place, value in entries.items()})
+    return _sum(parts)
 
 
 def _work_entries(motion: str) -> dict[Place, sp.Expr]:
@@ -142,31 +141,36 @@ def _work_entries(motion: str) -> dict[Place, sp.Expr]:
     }
 
 
-def _blade(airloads_too: bool) -> tuple[list[tuple[sp.Symbol, sp.Expr]], Blade]:
-    """Return the named values and the entries of one blade's matrices, as `rotor.blade_matrices` puts them together."""
+def _blade() -> tuple[list[tuple[sp.Symbol, sp.Expr]], Blade, Blade]:
+    """Return named values, and the entries of one blade's matrices without airloads and of airloads alone.
+
+    `rotor.blade_matrices` adds the same functions.
+    """
     steps: list[tuple[sp.Symbol, sp.Expr]] = []
-    blade: Blade = {}
+    blade, air = {}, {}
     for line in cast(Assembly, _function("rotor", "blade_matrices")).lines:
-        entries: dict[Place, sp.Expr] = {}
-        for term in line.terms:
-            if isinstance(term, Call) and isinstance(term.function, Assembly):
-                continue
-            if isinstance(term, Call):
-                steps += term.function.steps
-                more = _values(term.function)
-            else:
-                more = _air(term) if airloads_too else {}
-            for place, value in more.items():
-                entries[place] = entries.get(place, sp.Integer(0)) + value
-        blade[line.result] = entries
-    return steps, blade
+        functions = [term.function for term in line.terms if isinstance(term, Call)]
+        plain = [function for function in functions if not isinstance(function, Assembly)]
+        steps += [step for function in plain for step in function.steps]
+        blade[line.result] = _sum(_values(function) for function in plain)
+        air[line.result] = _sum(_air(term) for term in line.terms if isinstance(term, Code))
+    return steps, blade, air
+
+
+def _sum(parts: Iterable[Mapping[Place, sp.Expr]]) -> dict[Place, sp.Expr]:
+    """Add matrices entry by entry."""
+    total: dict[Place, sp.Expr] = {}
+    for part in parts:
+        for place, value in part.items():
+            total[place] = total.get(place, sp.Integer(0)) + value
+    return total
 
 
 # The rotor
 
 
-def _fixed_frame(blade: Blade) -> dict[str, Matrix]:
-    """Sum over the blades as `rotor.fixed_frame` does."""
+def _fixed_frame(blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
+    """Sum over the blades as `rotor.fixed_frame` does, or with `of_blades` without engine, shaft and swashplate."""
     entries = {
         base[_INDEX[row], _INDEX[column]]: blade[name].get((row, column), sp.Integer(0))
         for name, base in _BASES.items()
@@ -182,25 +186,25 @@ def _fixed_frame(blade: Blade) -> dict[str, Matrix]:
             both = {**left.entries, **right.entries}
             matrices[line.result] = Matrix(left.rows, left.columns + right.columns, both)
             continue
-        total: dict[Place, sp.Expr] = {}
-        for term in line.terms:
-            for place, value in _values(cast(Call, term).function).items():
-                total[place] = total.get(place, sp.Integer(0)) + value.xreplace(entries)
+        functions = [term.function for term in line.terms if isinstance(term, Call)]
+        total = _sum(_values(function) for function in functions if function.blade_matrices or not of_blades)
+        total = {place: value.xreplace(entries) for place, value in total.items()}
         matrices[line.result] = Matrix(first.function.rows, first.function.columns, total)
     return {name: matrices[name] for name in assembly.results}
 
 
 def in_vacuum() -> FusedFunction:
     """M, C, K and B of a whole rotor without airloads."""
-    steps, blade = _blade(airloads_too=False)
+    steps, blade, _ = _blade()
     return _fused("in_vacuum", steps, _fixed_frame(blade), in_vacuum)
 
 
 @functools.cache
-def in_air() -> FusedFunction:
-    """M, C, K and B of a whole rotor with the work of its airloads."""
-    steps, blade = _blade(airloads_too=True)
-    made = _fused("in_air", steps, _fixed_frame(blade), in_air)
+def of_airloads() -> FusedFunction:
+    """What airloads add to C, K and B of a whole rotor, from the work of the airloads."""
+    _, _, air = _blade()
+    matrices = {name: matrix for name, matrix in _fixed_frame(air, of_blades=True).items() if name != "M"}
+    made = _fused("of_airloads", [], matrices, of_airloads)
     used = {symbol.name for _, value in made.plan.lines for symbol in value.free_symbols}
     work = tuple(_work(row, column).name for row in _virtual()[0].columns for column in _motions()[0].columns)
     geometric = tuple(name for name in _geometric()[0].rows if name in used)
@@ -215,7 +219,7 @@ def segment() -> FusedFunction:
     """Arrays of one segment: W, L and U of the independent motions, and what the rotor needs of G as a column."""
     loads, motions = names(SEGMENT_LOADS), names(SEGMENT_MOTIONS)
     geometric = _geometric()[0]
-    _, needed = in_air().groups  # the rest of G vanishes in the sum over the blades
+    _, needed = of_airloads().groups  # the rest of G vanishes in the sum over the blades
     entries = {place: value for place, value in geometric.entries.items() if place[0] in needed.members}
     matrices = {
         "virtual_motion": _virtual()[0],
@@ -256,5 +260,5 @@ def fused_functions() -> list[FusedFunction]:
         named_values("flap_lag_springs", "effective_stiffness"),
         in_vacuum(),
         segment(),
-        in_air(),
+        of_airloads(),
     ]

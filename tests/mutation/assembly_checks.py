@@ -48,7 +48,7 @@ def _fused(expected: Quantities, natural: Quantities) -> Iterator[Check]:
     """Checks of the plans of a whole rotor: the same rotors in the air, and without airloads."""
     segments = {name: value for name, value in _quantities().items() if name in OF_SEGMENTS}
     told = "the sum over blades of the nonlinear rotor"
-    for name, given in (("segment", segments), ("in_air", segments), ("in_vacuum", None)):
+    for name, given in (("segment", segments), ("of_airloads", segments), ("in_vacuum", None)):
         here, size = (expected, natural) if given else _rotor(_blade(with_air=False), _sizes())
         actual = functools.partial(rotor_matrices, _quantities(), given, len(points()))
         yield Check(("fused.rotor", name), told, actual, here, size)

@@ -4,8 +4,8 @@ A fused function is one plan of operations with two renderings. Arrays of a batc
 points, so that all temporaries stay in the cache. Plain numbers of one point go through the same lines of the plan as
 Python floats, or as complex numbers for derivatives by a complex step.
 
-A design has the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and sines are NumPy's
-in both. Complex numbers agree to rounding.
+A design has the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and both
+renderings take the sines of NumPy. Complex numbers agree to rounding.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from proprotor.rotor.section_loads import LOAD_MOMENTS
 from proprotor.typing import Array
 
 _BLOCK = 1024  # points
-_SPARSE = 0.5  # share of entries; a matrix with fewer is filled entry by entry
 OF_SEGMENTS = tuple(
     name
     for name in ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS)
@@ -65,7 +64,9 @@ def rotor_matrices(
     one : bool
         Compute the only point with plain numbers.
     """
-    functions = (plans.in_vacuum,) if segments is None else (plans.in_air, plans.segment)
+    functions = (
+        (plans.in_vacuum,) if segments is None else (plans.in_vacuum, plans.of_airloads, plans.segment)
+    )
     names = {name for function in functions for name in keywords(function)} & quantities.keys()
     blade = {name: quantities[name] for name in names}
     along = None if segments is None else {name: segments[name] for name in OF_SEGMENTS}
@@ -78,12 +79,12 @@ class _Layout:
 
     opposite : places of the results whose negative is needed as well, counted from 1.
     places : by the name of a matrix, the place of each entry among zero, the results, and the negatives.
-    sparse : by the name of a matrix with few entries, row, column and place of each.
+    filled : name of the matrix, row, column and place of each entry that is not zero.
     """
 
     opposite: list[int]
     places: dict[str, Array]
-    sparse: dict[str, list[tuple[int, int, int]]]
+    filled: list[tuple[str, int, int, int]]
 
     @classmethod
     def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> _Layout:
@@ -97,16 +98,17 @@ class _Layout:
             places[name] = rows.copy()
             negative = rows < 0
             places[name][negative] = behind[np.searchsorted(opposite, -rows[negative])]
-        few = {name: rows for name, rows in places.items() if np.count_nonzero(rows) < _SPARSE * rows.size}
-        sparse = {
-            name: [(i, j, rows[i, j]) for i, j in np.argwhere(rows).tolist()] for name, rows in few.items()
-        }
-        return cls(opposite.tolist(), places, sparse)
+        filled = [
+            (name, i, j, int(rows[i, j]))
+            for name, rows in places.items()
+            for i, j in np.argwhere(rows).tolist()
+        ]
+        return cls(opposite.tolist(), places, filled)
 
 
 @cache
 def _layouts() -> dict[str, _Layout]:
-    tables = {"in_vacuum": plans.IN_VACUUM, "in_air": plans.IN_AIR, "segment": plans.SEGMENT}
+    tables = {"in_vacuum": plans.IN_VACUUM, "of_airloads": plans.OF_AIRLOADS, "segment": plans.SEGMENT}
     return {name: _Layout.of(table) for name, table in tables.items()}
 
 
@@ -117,17 +119,15 @@ def _batch(quantities: _Quantities, segments: _Quantities | None, points: int) -
     """Return the matrices of many points, a block of points at a time."""
     numbers = (*quantities.values(), *(segments or {}).values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
-    layout = _layouts()["in_vacuum" if segments is None else "in_air"]
-    found = _zeros(layout, points, kind)
+    found = _zeros(_layouts()["in_vacuum"], points, kind)
     for start in range(0, points, _BLOCK):
         rows = slice(start, min(start + _BLOCK, points))
+        matrices = {name: matrix[rows] for name, matrix in found.items()}
         here = {name: _of_rows(value, rows) for name, value in quantities.items()}
-        if segments is None:
-            results = evaluate(plans.in_vacuum, here, np.cos, np.sin)
-        else:
+        _fill(matrices, evaluate(plans.in_vacuum, here, np.cos, np.sin))
+        if segments is not None:
             along = {name: _segments_first(value, rows) for name, value in segments.items()}
-            results = _in_air(here, along, rows.stop - rows.start, kind)
-        _fill({name: matrix[rows] for name, matrix in found.items()}, results, layout)
+            _add_airloads(matrices, _of_airloads(here, along, rows.stop - rows.start, kind))
     return found
 
 
@@ -141,18 +141,20 @@ def _zeros(layout: _Layout, points: int, kind: np.dtype[Any]) -> Matrices:
     }
 
 
-def _fill(matrices: Matrices, results: Sequence[Any], layout: _Layout) -> None:
-    """Put results into matrices of zeros."""
+def _fill(matrices: Matrices, results: Sequence[Any]) -> None:
+    """Put the results of a rotor without airloads, which has many zeros, into matrices of zeros."""
+    layout = _layouts()["in_vacuum"]
     values = _values(results, layout)
-    if layout.sparse.keys() != matrices.keys():
-        matrix = next(iter(matrices.values()))
-        pool = _pool(values, matrix.shape[:1], matrix.dtype)
-    for name, matrix in matrices.items():
-        if name in layout.sparse:
-            for row, column, place in layout.sparse[name]:
-                matrix[:, row, column] = values[place]
-        else:
-            np.take(pool, layout.places[name], axis=1, out=matrix, mode="clip")
+    for name, row, column, place in layout.filled:
+        matrices[name][:, row, column] = values[place]
+
+
+def _add_airloads(matrices: Matrices, results: Sequence[Any]) -> None:
+    """Add the results of the airloads, which have few zeros."""
+    layout, matrix = _layouts()["of_airloads"], matrices["C"]
+    pool = _pool(_values(results, layout), matrix.shape[:1], matrix.dtype)
+    for name, places in layout.places.items():
+        matrices[name] += np.take(pool, places, axis=1)
 
 
 def _of_rows(value: Any, rows: slice) -> Any:
@@ -168,10 +170,10 @@ def _segments_first(value: Any, rows: slice) -> Any:
     return np.ascontiguousarray(some.T)
 
 
-def _in_air(
+def _of_airloads(
     quantities: _Quantities, segments: _Quantities, points: int, kind: np.dtype[Any]
 ) -> tuple[Any, ...]:
-    """Return the results of `in_air`."""
+    """Return the results of the plan `of_airloads`."""
     layout = _layouts()["segment"]
     count = len(segments["beyond_flap_hinge"])
     results = evaluate(plans.segment, {**quantities, **segments}, np.cos, np.sin)
@@ -180,7 +182,7 @@ def _in_air(
     work = _work(arrays).reshape(points, -1)
     geometric = arrays["geometric_stiffness"].sum(axis=1).reshape(points, -1)
     groups = (np.ascontiguousarray(part.T) for part in (work, geometric))
-    found: tuple[Any, ...] = evaluate(plans.in_air, quantities, np.cos, np.sin, *groups)
+    found: tuple[Any, ...] = evaluate(plans.of_airloads, quantities, np.cos, np.sin, *groups)
     return found
 
 
@@ -211,16 +213,15 @@ def _pool(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) ->
 def _one_point(quantities: _Quantities, segments: _Quantities | None) -> Matrices:
     """Return the matrices of one point by plain numbers, with an axis of one point."""
     blade = {name: _number(value) for name, value in quantities.items()}
-    along = [] if segments is None else _one_by_one(segments)
+    found = _matrices(np.array([evaluate(plans.in_vacuum, blade, _cos, _sin)]), _layouts()["in_vacuum"])
     if segments is None:
-        results, layout = evaluate(plans.in_vacuum, blade, _cos, _sin), _layouts()["in_vacuum"]
-    else:
-        rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in along]
-        arrays = _matrices(np.array(rows), _layouts()["segment"])
-        geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
-        groups = (_work(arrays).ravel().tolist(), geometric)
-        results, layout = evaluate(plans.in_air, blade, _cos, _sin, *groups), _layouts()["in_air"]
-    return _matrices(np.array([results]), layout)
+        return found
+    rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in _one_by_one(segments)]
+    arrays = _matrices(np.array(rows), _layouts()["segment"])
+    geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
+    results = evaluate(plans.of_airloads, blade, _cos, _sin, _work(arrays).ravel().tolist(), geometric)
+    added = _matrices(np.array([results]), _layouts()["of_airloads"])
+    return found | {name: matrix + found[name] for name, matrix in added.items()}
 
 
 def _cos(angle: complex) -> Any:
