@@ -30,7 +30,9 @@ from proprotor.units import KNOT, airspeed_unit, speed_factor, speeds
 @arguments.command(short_help="Find flutter and divergence boundaries, and the margin.")
 @arguments.case_argument
 @arguments.scan_option
-@click.option("--speed", metavar="SPEED", help='Airspeed whose margin to flutter is wanted: "250 kt".')
+@click.option(
+    "--speed", metavar="SPEED", help='Airspeed whose margin to flutter is wanted: "250 ktas" or "250 keas".'
+)
 @arguments.level_option
 @output.output_options(csv="Write a row for each boundary.")
 @arguments.model_options
@@ -42,9 +44,11 @@ def flutter(
     CASE is a bundled case (see `proprotor cases`) or a TOML file.
 
     The search covers the whole range, also between the airspeeds of the scan, and is exact to rounding. At flutter a
-    pair of eigenvalues loses its damping, at divergence a real eigenvalue does. The mechanism says which modes take
-    part in the motion at the boundary, and how much. If no mode becomes unstable, the command prints the range of the
-    search, and the least damping in the range with its mode. If airspeeds could not be analysed, it says why.
+    pair of eigenvalues loses its damping, at divergence a real eigenvalue does. Of an aircraft that flies free,
+    instabilities of the rigid body are a third kind, and the flutter speed is that of flutter alone. The mechanism says
+    which modes take part in the motion at the boundary, and how much. If no mode becomes unstable, the command prints
+    the range of the search, and the least damping in the range with its mode. If airspeeds could not be analysed, it
+    says why.
 
     \b
     Examples:

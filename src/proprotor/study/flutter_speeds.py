@@ -9,9 +9,11 @@ import numpy as np
 
 from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
+from proprotor.stability.boundary import instability
 from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.crossings import Search
-from proprotor.stability.matching import Spectrum
+from proprotor.stability.kinds import FLUTTER, kinds
+from proprotor.stability.matching import Modes, Spectrum
 from proprotor.stability.mode_names import moving
 from proprotor.stability.modes import coordinate_shares
 from proprotor.study.variables import ALWAYS, STABLE, UNSTABLE
@@ -25,7 +27,13 @@ _Models = Callable[[Array, Array], LinearModel]
 
 
 def put_flutter_speeds(
-    found: dict[str, Array], batch: Batch, rows: Array, models: _Models, states: int, tolerance: float
+    found: dict[str, Array],
+    batch: Batch,
+    rows: Array,
+    models: _Models,
+    states: int,
+    tolerance: float,
+    flies_free: bool = False,
 ) -> None:
     """Put the variables of the quantity "flutter" of some designs in their places.
 
@@ -42,23 +50,30 @@ def put_flutter_speeds(
         Number of eigenvalues of the model; 0 if the number is not known.
     tolerance : float
         Tolerance of a flutter speed, m/s.
+    flies_free : bool
+        Whether the designs are aircraft, whose flutter speed is the lowest onset of flutter alone, and not of
+        divergence or of an instability of the rigid body.
     """
     speeds = batch.shape[1]
     search = Search(
         models,
         np.repeat(rows, speeds),
         np.tile(np.asarray(batch.speeds, dtype=float), len(rows)),
-        onset_only=True,
+        onset_only=not flies_free,
         forgiving=True,
         states=states or None,
     )
     for name in ALWAYS:
         found[name][rows] = getattr(search.scanned, name).reshape(len(rows), speeds)
-    found["flutter_note"][:] = _notes(found["reason"], batch, search)
+    found["flutter_note"][:] = _notes(found["reason"], batch, search, models if flies_free else None)
     if search.scanned.points is None:
         return
     brackets = Brackets(search, tolerance)
-    downwards = sorted(brackets.close(), key=lambda one: one.position, reverse=True)
+    onsets = [one for one in brackets.close() if one.onset]
+    aside: dict[int, str] = {}
+    if flies_free and onsets:
+        onsets, aside = _flutter_apart(onsets, models)
+    downwards = sorted(onsets, key=lambda one: one.position, reverse=True)
     first = {one.line: one for one in downwards}  # the lowest onset of each design that has one
     for place, why in brackets.lost.items():
         if brackets.line[place] not in first:
@@ -66,14 +81,39 @@ def put_flutter_speeds(
     _put_least_damping(found, search)
     if first:
         _put_onsets(found, first, models)
+    for line, text in aside.items():
+        found["flutter_warning"][line] = "; ".join(filter(None, (str(found["flutter_warning"][line]), text)))
+
+
+def _flutter_apart(onsets: list[Crossing], models: _Models) -> tuple[list[Crossing], dict[int, str]]:
+    """Return the onsets that are flutter, and a sentence by line on the lowest onset that is not."""
+    lines, positions = np.array([one.line for one in onsets]), np.array([one.position for one in onsets])
+    model, every = models(lines, positions), _modes_at(onsets)
+    kind, names = kinds(model, every), moving(model, every.values, every.left, every.right).names
+    flutters, aside = [], {}
+    for row in np.argsort(-positions):
+        one = onsets[row]
+        if kind[row, one.state] == FLUTTER:
+            flutters.append(one)
+        else:
+            event = instability(kind[row, one.state], names[row, one.state])
+            aside[one.line] = f"{event} begins at {one.position:.6g} m/s"
+    return flutters, aside
+
+
+def _modes_at(onsets: list[Crossing]) -> Modes:
+    """Return all modes at some crossings."""
+    values, right = (
+        np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right")
+    )
+    return Spectrum(values, right, blocks=onsets[0].spectrum.blocks).all_modes
 
 
 def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: _Models) -> None:
     """Put the lowest onset of each design in its place, with the name and the main coordinate of the mode."""
     rows, onsets = np.array(list(first)), list(first.values())
     model = models(rows, np.array([one.position for one in onsets]))
-    spectra = (np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right"))
-    values, right, left = Spectrum(*spectra).all_modes
+    values, right, left = _modes_at(onsets)
     every, state = np.arange(len(rows)), np.array([one.state for one in onsets])
     held = held_coordinates(model, values.shape[-1])
     shares = coordinate_shares(held, len(model.dofs), left, right)[every, :, state]
@@ -86,15 +126,19 @@ def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: 
     found["flutter_note"][rows[stable]] = ""
 
 
-def _notes(reason: Array, batch: Batch, search: Search) -> Array:
-    """Return a sentence on each design before any boundary is known."""
+def _notes(reason: Array, batch: Batch, search: Search, models: _Models | None) -> Array:
+    """Return a sentence on each design before any boundary is known; with `models`, of aircraft, by flutter alone."""
     notes = np.array([why[0] or "no airspeed could be analysed" for why in reason], dtype=object)
     if search.scanned.points is not None:
         points = search.first_points
         order = np.lexsort((points.position, points.line))
         lines, place = np.unique(points.line[order], return_index=True)
         first = order[place]
-        grows = np.any(points.growth[first] > points.error[first], axis=1)
+        beyond = points.growth[first] > points.error[first]
+        if models is not None:
+            model = models(points.line[first], points.position[first])
+            beyond &= kinds(model, points.spectrum.at(first).all_modes) == FLUTTER
+        grows = np.any(beyond, axis=1)
         for line, unstable in zip(lines, grows, strict=True):
             notes[line] = UNSTABLE if unstable else STABLE + _beyond(batch.speeds, reason[line])
     return notes
