@@ -129,9 +129,11 @@ class MutatedFunction:
 def _entry(statement: ast.stmt) -> str | None:
     """What a statement gives a value to; None where it computes nothing."""
     if isinstance(statement, ast.Assign):
+        if isinstance(statement.targets[0], ast.Tuple):  # names for the members of a group
+            return None
         text = ast.unparse(statement.targets[0])
         return None if text == "matrix" else text.removeprefix("matrix")
-    if isinstance(statement, ast.Return) and not isinstance(statement.value, ast.Name):
+    if isinstance(statement, ast.Return) and not isinstance(statement.value, ast.Name | ast.Tuple):
         called = statement.value.func if isinstance(statement.value, ast.Call) else None
         return None if isinstance(called, ast.Name) else "result"
     return None
