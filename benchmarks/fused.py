@@ -3,8 +3,8 @@
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.fused
 
 Without airloads, from the numbers of a blade to M, C and K, as in benchmarks/peers.md; with airloads, from the trim and
-the loads of the segments of the XV-15 to M, C, K and B. Rounds are interleaved, all of one run. A time is the median of the
-rounds, and a ratio is the median of the ratios of the rounds. Processor time.
+the loads of the segments of the XV-15 to M, C, K and B. Rounds are interleaved, all of one run. A time is the median of
+the rounds, and a ratio is the median of the ratios of the rounds. Processor time.
 """
 
 from __future__ import annotations

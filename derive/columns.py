@@ -45,11 +45,12 @@ class Columns:
 
     @property
     def matrix(self) -> Matrix:
-        """The independent columns side by side."""
+        """The independent columns side by side; rows of zeros are left out."""
         entries: dict[Place, sp.Expr] = {
             (row, name): value for name, column in self.independent.items() for row, value in column.items()
         }
-        return Matrix(self.rows, tuple(self.independent), entries)
+        rows = tuple(row for row in self.rows if any(place[0] == row for place in entries))
+        return Matrix(rows, tuple(self.independent), entries)
 
     def _combination(self, column: Column) -> Combination | None:
         """Return a column in those that are known; None if it is none of their combinations."""

@@ -217,14 +217,14 @@ def of_airloads() -> FusedFunction:
 
 def segment() -> FusedFunction:
     """Arrays of one segment: W, L and U of the independent motions, and what the rotor needs of G as a column."""
-    loads, motions = names(SEGMENT_LOADS), names(SEGMENT_MOTIONS)
-    geometric = _geometric()[0]
+    virtual, motion, geometric = _virtual()[0], _motions()[0], _geometric()[0]
+    derivatives = _values(_function("airloads", "load_derivatives"))
     _, needed = of_airloads().groups  # the rest of G vanishes in the sum over the blades
     entries = {place: value for place, value in geometric.entries.items() if place[0] in needed.members}
     matrices = {
-        "virtual_motion": _virtual()[0],
-        "load_derivatives": Matrix(loads, motions, _values(_function("airloads", "load_derivatives"))),
-        "motion": _motions()[0],
+        "virtual_motion": virtual,
+        "load_derivatives": Matrix(virtual.rows, motion.rows, derivatives),
+        "motion": motion,
         "geometric_stiffness": Matrix(needed.members, geometric.columns, entries),
     }
     return _fused("segment", _function("airloads", "segment_geometry").steps, matrices, segment)

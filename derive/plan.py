@@ -72,11 +72,15 @@ class Results:
 
     def layout(self, name: str, matrix: Matrix) -> list[list[int]]:
         """Lay a matrix out, and add what is neither equal nor opposite to an earlier result."""
-        numbers = {place: self._number(name, place, value) for place, value in matrix.entries.items()}
+        numbers = {
+            (row, column): self._number(name, (row, column), value)
+            for (row, column), value in matrix.entries.items()
+            if row in matrix.rows and column in matrix.columns
+        }
         return [[numbers.get((row, column), 0) for column in matrix.columns] for row in matrix.rows]
 
     def _number(self, name: str, place: Place, value: sp.Expr) -> int:
-        expanded = sp.expand(value)
+        expanded = sp.expand(value.xreplace(_squares(value)))
         if expanded == 0:
             return 0
         short, opposite = sp.factor_terms(expanded), sp.factor_terms(sp.expand(-expanded))
@@ -86,6 +90,16 @@ class Results:
             self.named["_".join((name, *place))] = short
             self._numbers[short] = len(self.named)
         return self._numbers[short]
+
+
+def _squares(value: sp.Expr) -> dict[sp.Expr, sp.Expr]:
+    """Return squares of sines and cosines by the cosine of the double angle, so that fewer waves are needed."""
+    found = {}
+    for square in value.atoms(sp.Pow):
+        if square.exp == 2 and isinstance(square.base, sp.sin | sp.cos):
+            sign = 1 if isinstance(square.base, sp.cos) else -1
+            found[square] = (1 + sign * sp.cos(2 * square.base.args[0])) / 2
+    return found
 
 
 def _temporaries() -> Iterator[sp.Symbol]:

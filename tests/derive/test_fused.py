@@ -14,6 +14,7 @@ from proprotor_equations import rotor as readable
 import proprotor as pp
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate, keywords
+from proprotor.rotor.section_loads import LOAD_MOMENTS
 
 ROUNDING = 1e-13
 MATRICES = "MCKB"
@@ -24,14 +25,14 @@ def random_rotors(count, seed=0):
     """Numbers of order one for every quantity, (count,), and for every load of three segments, (count, 3)."""
     rng = np.random.default_rng(seed)
     names = [name for name in keywords(readable.matrices) if name not in (*SEGMENTS, "equations")]
-    of_segments = [name for name in names if name in fused.OF_SEGMENTS]
+    of_segments = [name for name in names if name in LOAD_MOMENTS]
     blade = {name: rng.uniform(-1.0, 1.0, count) for name in names if name not in of_segments}
     blade |= {name: rng.uniform(0.3, 0.9, count) for name in ("rotor_speed", "n_blades")}
     return blade, SEGMENTS | {name: rng.uniform(-1.0, 1.0, (count, 3)) for name in of_segments}
 
 
 def expected_matrices(blade, segments):
-    loads = segments if segments else SEGMENTS | dict.fromkeys(fused.OF_SEGMENTS[2:], 0.0)
+    loads = segments if segments else SEGMENTS | dict.fromkeys(LOAD_MOMENTS, 0.0)
     return evaluate(readable.matrices, loads | blade)._asdict()
 
 
@@ -133,7 +134,7 @@ def test_a_complex_step_goes_through_both_renderings(rotors, name):
     if segments is None and name.startswith("fn"):
         name = "coning"
     step, moved = 1e-30j, [dict(part) if part else None for part in (blade, segments)]
-    moved[name in fused.OF_SEGMENTS][name] = moved[name in fused.OF_SEGMENTS][name] + step
+    moved[name in LOAD_MOMENTS][name] = moved[name in LOAD_MOMENTS][name] + step
     # An imaginary part is divided by its step; the real part, added, is the size of what cancels.
     slopes = {k: v.real + v.imag / 1e-30 for k, v in expected_matrices(*moved).items()}
     found = fused.rotor_matrices(*moved, 300)
