@@ -233,7 +233,7 @@ def _written_range(text: str, unit: str, field: str) -> NDArray[np.float64]:
     match = _ANY_RANGE.fullmatch(text)
     if match is None:
         raise InputError(field, text, 'must be a value such as "2 deg" or a range such as "1:4:0.5 deg"')
-    numbers = [float(as_si(f"{match[place]} {match[4]}", unit, field)) for place in (1, 2, 3)]
+    numbers = [float(as_si(f"{match[place]} {match[4]}".strip(), unit, field)) for place in (1, 2, 3)]
     return _rising(text, numbers, _MOST_VALUES, "values", field)
 
 
@@ -384,8 +384,6 @@ def _written_speeds(text: str, field: str, unit: str) -> NDArray[np.float64]:
     match = _RANGE_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None or ":" in match[4]:
         raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
-    if match[4].lower() in _INDICATED:
-        raise InputError(field, text, f"must be ktas or keas; {match[4]} is none of the units here")
     try:
         factor = factor_to_si(text, match[4], unit)
         numbers = [_finite(text, float(number)) for number in match.group(1, 2, 3) if number]
@@ -424,7 +422,11 @@ def _parse_unit(text: object, unit: str) -> pint.Unit:
             return unit_registry().parse_units(product)
         except pint.UndefinedUnitError as error:
             name = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
-            raise InputError("", text, f"has an {unknown_name(name, _unit_names(), 'unit')}") from None
+            if name.lower() in _INDICATED:
+                rule = f"must be ktas or keas; {name} is none of the units here"
+            else:
+                rule = f"has an {unknown_name(name, _unit_names(), 'unit')}"
+            raise InputError("", text, rule) from None
         except Exception:  # a third-party parser may raise anything: the text is wrong
             pass
     raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')

@@ -70,6 +70,17 @@ def test_boundaries_have_speed_frequency_mode_and_mechanism(boundaries):
     assert positions == sorted(positions) and all(340 <= p <= 400 for p in positions)
 
 
+def test_the_flutter_speed_stands_below_the_doubts():
+    shown = run("flutter", "xv15-bell-frequencies", "--scan", "230:400:34kt").stdout
+    assert "? Doubtful" in shown
+    assert shown.splitlines()[-1].startswith("Flutter speed 244.1")
+
+
+def test_options_that_are_tables_have_units():
+    shown = " ".join(run("flutter", "xv15-bell-frequencies", "--scan", "230:260:10kt").stdout.split())
+    assert "at 0.3491 and 0.8727 rad, at rotor speed 47.96 rad/s" in shown
+
+
 def test_the_margin_is_that_of_the_airspeed_given(boundaries):
     at = boundaries["at"]
     assert at["airspeed (m/s)"] == pytest.approx(350 * KT)
@@ -351,6 +362,18 @@ def test_figures_are_written_and_not_blank(tmp_path, arguments):
             "--speed: must be given",
         ),
         ((*MAP, "--speed", "300 kt"), "is one of the axes already"),
+        (
+            ("boundary", "xv15-uncoupled", "--against", "altitude=0:9:3 m/s"),
+            "operation.altitude = 0 m/s: must be a length",
+        ),
+        (
+            ("boundary", "xv15-uncoupled", "--against", "rotor_speed=400:500:20"),
+            "operation.rotor_speed = 400: needs a unit",
+        ),
+        (
+            ("boundary", "xv15-uncoupled", "--against", "rotor_speed=400:500:20 rpm", "--scan", "300kt"),
+            "--scan = 300kt: must be a range",
+        ),
         (("cases", "--set", "rotor.precone=1 deg"), "needs a case"),
         (
             ("study", "xv15-uncoupled", "--vary", "rotor.precone=1 deg", "--speed", "9 kt", "--set", "x=1"),

@@ -61,7 +61,7 @@ def draw_points(
     ax.set_xlim(*_widened(ax.get_xlim(), x, there))
     ax.set_ylim(*_widened(ax.get_ylim(), y, there))
     if series:
-        ax.legend(handles=series, fontsize=LABEL_SIZE, loc="best", framealpha=0.9).set_zorder(8)
+        _write_legend(ax, series)
     return bool(series)
 
 
@@ -106,6 +106,15 @@ def _draw_series(ax: Axes, x: Column, y: Column, own: Array, place: int, label: 
     return ax.errorbar(x.values[own], y.values[own], label=label, **bars, **marker, **style, **ends)
 
 
+def _write_legend(ax: Axes, series: list[Any]) -> None:
+    """Write the labels as they are: a dollar sign is no mathematics, an underscore in front hides nothing."""
+    labels = [container.get_label() for container in series]
+    legend = ax.legend(series, labels, fontsize=LABEL_SIZE, loc="best", framealpha=0.9)
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+    legend.set_zorder(8)
+
+
 def _has_bars(column: Column, own: Array) -> bool:
     return bool((column.high[own] > column.low[own]).any())
 
@@ -116,8 +125,7 @@ def _lengths(column: Column, own: Array) -> Array:
 
 
 def _widened(limits: tuple[float, float], column: Column, there: Array) -> tuple[float, float]:
-    """Return limits of an axis that hold all points, with a little room."""
-    low, high = column.low[there], column.high[there]
+    """Return limits of an axis that hold all points, with room for whole markers."""
     room = 0.03 * abs(limits[1] - limits[0])
-    least = min([limits[0], *(low[low < limits[0]] - room).tolist()])
-    return least, max([limits[1], *(high[high > limits[1]] + room).tolist()])
+    low, high = column.low[there] - room, column.high[there] + room
+    return min([limits[0], *low.tolist()]), max([limits[1], *high.tolist()])
