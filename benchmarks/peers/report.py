@@ -270,7 +270,7 @@ What the figures do not show:
   matrix can be read, tested and replaced by itself, with a name and an equation number beside every entry.
 - The model takes the fused functions beside the readable ones, `proprotor_equations.fused`: 347 operations from the
   springs to M, C, K and B. `python -m benchmarks.fused`, interleaved rounds of one run, gives their time in that of
-  `lambdify(cse=True)`: 0.53 at 1, 1.03 at 100, 0.65 at 10,000 (numpy 2.4.6, OpenBLAS 0.3.31 Haswell). So `lambdify` is
+  `lambdify(cse=True)`: 0.51 at 1, 1.00 at 100, 0.61 at 10,000 (numpy 2.4.6, OpenBLAS 0.3.31 Haswell). So `lambdify` is
   as fast as the fused functions at 100, where calls of NumPy and the filling of the matrices are the cost of both.
 - What it is worth: the whole of `rotor_model` for the XV-15, trim and airloads included, takes {runtime_100} μs a
   point at a batch of 100 and {runtime_10000} μs at 10,000; the matrices of this page are {share} % of the latter.
