@@ -26,6 +26,8 @@ from derive.coordinates import PARTNER, SAME_TURN
 from derive.equations import REDUCED_MODULES, STEPS, consistent_functions, reduced_functions
 from derive.files import write_whole
 from derive.function import Function
+from derive.fused import FusedFunction, fused_functions
+from derive.plan import print_line
 from derive.published import DROPPED_TERMS
 from derive.rotor import OF_SEGMENTS, OPTIONAL, Assembly, Call
 from derive.symbols import QUANTITIES
@@ -238,6 +240,43 @@ def _printed_call(call: Call, known: Mapping[str, str]) -> str:
     return f"{place}{function.name}({', '.join(given)})"
 
 
+def _describe_fused(function: FusedFunction) -> dict[str, Any]:
+    """Everything the template needs of a plan."""
+    return {
+        "name": function.name,
+        "summary": function.summary,
+        "operations": function.plan.operations,
+        "groups": [{"name": g.name, "meaning": g.meaning, "members": g.members} for g in function.groups],
+        "arguments": [
+            {
+                "name": symbol.name,
+                "unit": QUANTITIES[symbol].unit or "-",
+                "meaning": QUANTITIES[symbol].meaning,
+                "optional": symbol in OPTIONAL,
+            }
+            for symbol in function.arguments
+        ],
+        "lines": [{"name": name, "code": print_line(value)} for name, value in function.plan.lines],
+        "results": function.plan.results,
+        "layouts": list(function.plan.layouts.items()),
+    }
+
+
+def render_fused() -> str:
+    """Text of the module of fused functions."""
+    return _rendered(
+        "fused.py.jinja",
+        "fused/rotor.py",
+        title="A whole rotor as plans of few operations",
+        functions=[_describe_fused(function) for function in fused_functions()],
+    )
+
+
+def _rendered(template: str, name: str, **given: Any) -> str:
+    """Text of a template, formatted."""
+    return formatted(_environment().get_template(template).render(**given, **_header()), name)
+
+
 def coordinate_lists() -> list[dict[str, Any]]:
     """The records of `derive.coordinates`, list by list."""
     return [
@@ -348,30 +387,17 @@ def render() -> Iterator[tuple[str, str]]:
     for module in REDUCED_MODULES:
         title = f"{STEPS[module].title}, as published"
         yield f"published/{module}.py", render_module(reduced_functions(module), title)
-    package = (
-        _environment()
-        .get_template("package.py.jinja")
-        .render(
-            modules=list(STEPS),
-            **_header(),
-        )
-    )
-    yield "__init__.py", formatted(package, "__init__.py")
-    published = (
-        _environment()
-        .get_template("published.py.jinja")
-        .render(
-            modules=REDUCED_MODULES,
-            terms=[{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()],
-            **_header(),
-        )
-    )
-    yield "published/__init__.py", formatted(published, "__init__.py")
+    yield "fused/rotor.py", render_fused()
+    yield "fused/__init__.py", _rendered("fused_package.py.jinja", "__init__.py")
+    yield "__init__.py", _rendered("package.py.jinja", "__init__.py", modules=list(STEPS))
+    terms = [{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()]
+    text = _rendered("published.py.jinja", "__init__.py", modules=REDUCED_MODULES, terms=terms)
+    yield "published/__init__.py", text
 
 
 def derive_files(progress: Progress = print) -> dict[str, str]:
     """All generated files, with a progress line per step."""
-    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 2
+    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 4
     start = time.perf_counter()
     for count, (name, text) in enumerate(render(), start=1):
         files[name] = text

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES
 
+from proprotor.rotor.fused import OF_SEGMENTS, rotor_matrices
 from tests.mutation import one_blade
 from tests.mutation.airload_checks import BEYOND_FLAP, BEYOND_LAG, moments
 from tests.mutation.comparison import Check, matrix_check, values_check
@@ -32,7 +33,7 @@ def checks() -> Iterator[Check]:
     blade, size = _blade(with_structure=False), _sizes()
     told = "virtual work of the airloads on the nonlinear rotor"
     yield values_check(("rotor", "blade_airloads"), told, _quantities(), blade, size)
-    blade = _blade(with_structure=True)
+    blade = _blade()
     told = "one blade of the nonlinear rotor in the air"
     yield values_check(("rotor", "blade_matrices"), told, _quantities(), blade, size)
     expected, natural = _rotor(blade, size)
@@ -40,6 +41,17 @@ def checks() -> Iterator[Check]:
     yield values_check(("rotor", "matrices"), told, _quantities(), expected, natural)
     told = "the sum over the blades"
     yield values_check(("rotor", "fixed_frame"), told, _quantities(), expected, natural, *blade.values())
+    yield from _fused(expected, natural)
+
+
+def _fused(expected: Quantities, natural: Quantities) -> Iterator[Check]:
+    """Checks of the plans of a whole rotor: the same rotors in the air, and without airloads."""
+    segments = {name: value for name, value in _quantities().items() if name in OF_SEGMENTS}
+    told = "the sum over blades of the nonlinear rotor"
+    for name, given in (("segment", segments), ("of_airloads", segments), ("in_vacuum", None)):
+        here, size = (expected, natural) if given else _rotor(_blade(with_air=False), _sizes())
+        actual = functools.partial(rotor_matrices, _quantities(), given, len(points()))
+        yield Check(("fused.rotor", name), told, actual, here, size)
 
 
 def _transform() -> Check:
@@ -85,16 +97,16 @@ def _quantities() -> Quantities:
     return blade_quantities() | segments | _ADDED | {"n_blades": _n_blades()}
 
 
-def _blade(with_structure: bool) -> dict[str, NDArray]:
-    """Mass, damping, stiffness (points, 12, 12), gust loads (points, 12, 3) of one blade, or of its airloads alone."""
-    parts = [one_blade.air_matrices]
+def _blade(with_structure: bool = True, with_air: bool = True) -> dict[str, NDArray]:
+    """Mass, damping, stiffness (points, 12, 12), gust loads (points, 12, 3) of one blade, or of a part alone."""
+    parts = [one_blade.air_matrices] * with_air
     if with_structure:
         parts += [one_blade.mass_matrices, one_blade.spring_matrices, one_blade.pitch_matrices]
     sums = [np.sum([part(point) for part in parts], axis=0) for point in points()]
     found = dict(zip(_NAMES, np.moveaxis(np.array(sums), 1, 0), strict=True))
     if not with_structure:
         del found["mass"]
-    return found | {"gusts": np.array([one_blade.gust_columns(point) for point in points()])}
+    return found | {"gusts": with_air * np.array([one_blade.gust_columns(point) for point in points()])}
 
 
 def _sizes() -> dict[str, NDArray]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 from proprotor_equations import BLADE_COORDINATES
 
+from proprotor.rotor.fused import effective_stiffness
 from tests.mutation import one_blade, paper_blade
 from tests.mutation.comparison import Check, Names, matrix_check, values_check
 from tests.mutation.inputs import (
@@ -67,6 +69,10 @@ def _springs() -> Iterator[Check]:
     size = quantities["flap_stiffness"] + quantities["lag_stiffness"]  # slopes are differences of the two
     sees, told = ("flap_lag_springs", "effective_stiffness"), "energy of springs in series"
     yield values_check(sees, told, quantities, constants, dict.fromkeys(constants, size))
+    fused = functools.partial(effective_stiffness, quantities)
+    yield Check(
+        ("fused.rotor", "effective_stiffness"), told, fused, constants, dict.fromkeys(constants, size)
+    )
     matrices = [one_blade.spring_matrices(p) for p in points()]
     yield from _of_matrices((None, None, ("flap_lag_springs", "stiffness")), told, quantities, matrices)
     flap, lag, pitch = (BLADE_COORDINATES.index(name) for name in ("flap", "lag", "pitch"))

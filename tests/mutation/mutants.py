@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import ModuleType
 
 import proprotor_equations
-from proprotor_equations import published
+from proprotor_equations import fused, published
 
 
 def _flipped(value: ast.expr) -> ast.expr:
@@ -53,12 +53,12 @@ class Mutant:
 
 def generated_modules() -> dict[str, ModuleType]:
     """Every generated module by its name within the package."""
-    both = {"": proprotor_equations, "published.": published}
+    packages = {"": proprotor_equations, "published.": published, "fused.": fused}
     return {
         prefix + name: getattr(package, name)
-        for prefix, package in both.items()
+        for prefix, package in packages.items()
         for name in package.__all__
-        if isinstance(getattr(package, name), ModuleType) and name != "published"
+        if isinstance(getattr(package, name), ModuleType) and getattr(package, name) not in packages.values()
     }
 
 
@@ -129,9 +129,11 @@ class MutatedFunction:
 def _entry(statement: ast.stmt) -> str | None:
     """What a statement gives a value to; None where it computes nothing."""
     if isinstance(statement, ast.Assign):
+        if isinstance(statement.targets[0], ast.Tuple):  # names for the members of a group
+            return None
         text = ast.unparse(statement.targets[0])
         return None if text == "matrix" else text.removeprefix("matrix")
-    if isinstance(statement, ast.Return) and not isinstance(statement.value, ast.Name):
+    if isinstance(statement, ast.Return) and not isinstance(statement.value, ast.Name | ast.Tuple):
         called = statement.value.func if isinstance(statement.value, ast.Call) else None
         return None if isinstance(called, ast.Name) else "result"
     return None

@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import difflib
+import functools
 import importlib
 import inspect
 import json
@@ -47,6 +48,8 @@ _DERIVE = (
     "import json, sys; from derive import emit; json.dump(emit.derive_files(lambda line: None), sys.stdout)"
 )
 _MATRIX = re.compile(r"^    (\w+) : .*\(\.\.\., (segments, )?(\d+), (\d+)\)", re.MULTILINE)
+_GROUP = re.compile(r"^    (\w+) : (\d+) numbers", re.MULTILINE)  # of a fused function
+_WAVES = {"cos": np.cos, "sin": np.sin}
 
 Files = dict[str, str]
 Functions = dict[str, dict[str, Callable]]  # by path of the module, and by name
@@ -224,13 +227,14 @@ def _functions(package: str, path: str) -> dict[str, Callable]:
 
 def random_arguments(function, seed: int) -> dict[str, np.ndarray]:
     """Numbers of order one for each argument, the same for a name wherever it stands; matrices as documented."""
-    shapes = {
+    shapes: dict[str, tuple[int, ...]] = {
         name: ((2,) if segments else ()) + (int(n), int(m))
         for name, segments, n, m in _MATRIX.findall(function.__doc__)
     }
+    shapes |= {name: (int(count),) for name, count in _GROUP.findall(function.__doc__)}
     found = {}
     for name in inspect.signature(function).parameters:
-        if name == "equations":  # the modules of its own package
+        if name == "equations" or name in _WAVES:  # the modules of its own package, and what is no number
             continue
         rng = np.random.default_rng([seed, zlib.crc32(name.encode())])
         found[name] = rng.uniform(0.2, 0.9, shapes.get(name, ()))
@@ -239,6 +243,7 @@ def random_arguments(function, seed: int) -> dict[str, np.ndarray]:
 
 def _difference(function, other, arguments: Mapping[str, np.ndarray]) -> float:
     """The largest difference of an entry relative to it, cancellation allowed for."""
+    function, other = (_with_waves(it) for it in (function, other))
     values, others = (_entries(it(**arguments)) for it in (function, other))
     difference = np.abs(values - others)
     if not difference.any():
@@ -248,6 +253,12 @@ def _difference(function, other, arguments: Mapping[str, np.ndarray]) -> float:
         moved = dict(arguments) | {name: arguments[name] * (1 + 1e-6)}
         scale = np.maximum(scale, np.abs(_entries(function(**moved)) - values) / 1e-6)
     return float(np.max(difference / np.where(scale > 0, scale, 1.0)))
+
+
+def _with_waves(function: Callable) -> Callable:
+    """The function with the cosine and sine that a fused function takes."""
+    waves = {name: wave for name, wave in _WAVES.items() if name in inspect.signature(function).parameters}
+    return functools.partial(function, **waves)
 
 
 def _entries(values) -> np.ndarray:

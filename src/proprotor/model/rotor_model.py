@@ -19,6 +19,7 @@ from proprotor.model.mast import with_mast
 from proprotor.model.quantities import batch_shape, couplings, flat, model_quantities
 from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
+from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.motions import MAST_TWIST, ROTOR_SPEED, reactionless_coordinates, reactionless_harmonics
 from proprotor.rotor.operation import Operation
@@ -77,9 +78,9 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     settled = solve_trim(sections, few, quantities, choice, target, points)
     reactionless = _reactionless(rotor, choice)
     coordinates = (*FIXED, *(reactionless_coordinates(reactionless) if reactionless else ()))
+    found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
     matrices: dict[str, Any] = {
-        name: matrix.reshape(*shape, *matrix.shape[-2:])
-        for name, matrix in _matrices(sections, choice, settled, reactionless, len(coordinates)).items()
+        name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in found.items()
     }
     model = LinearModel(
         **matrices,
@@ -132,20 +133,27 @@ def _free_coordinates(options: Options, coordinates: tuple[Coordinate, ...]) -> 
 
 
 def _matrices(
-    sections: BladeSections, options: Options, settled: Settled, reactionless: int | None, n: int
+    sections: BladeSections, options: Options, settled: Settled, reactionless: int | None, n: int, one: bool
 ) -> dict[str, Array]:
     """Return M, C, K (points, n, n) and B (points, n, 6) in the fixed frame; points without a trim are NaN.
 
-    `reactionless` is the number of blades whose reactionless motions follow the coordinates of Eq. 17, or None.
+    `reactionless` is the number of blades whose reactionless motions follow the coordinates of Eq. 17, or None. `one`
+    says that there is one point, by plain numbers and not an array of one.
     """
     points, rows = len(settled.trim.converged), settled.rows
     found: dict[str, Array] = {}
     if len(rows):
         quantities = settled.quantities | couplings(options, settled.quantities)
-        given = _segments(sections.take(rows), quantities, settled.segments, options) | quantities
-        given["equations"] = options.equation_set
-        blade = evaluate(whole_rotor.blade_matrices, given)
-        found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
+        segments = _segments(sections.take(rows), quantities, settled.segments, options)
+        given = segments | quantities | {"equations": options.equation_set}
+        served = fused.serves(options.equation_set)
+        if reactionless is not None or not served:
+            blade = evaluate(whole_rotor.blade_matrices, given)
+        if served:
+            in_air = None if options.airloads == "none" else segments
+            found = fused.rotor_matrices(quantities, in_air, len(rows), one)
+        else:
+            found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
         if not options.pitch_is_free:
             found["B"] = _without_pitch_equations(found["K"], found["B"])
         if reactionless is not None:

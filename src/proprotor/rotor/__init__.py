@@ -18,6 +18,7 @@ How a rotor is used:
     atmosphere           the standard atmosphere
     options              modelling options
     generated            calls of the generated equations by names of quantities
+    fused                matrices of a whole rotor by the fused functions, batches and one point
     motions              coordinates as motions, and the names of their modes
 
 Loads and trim:
@@ -32,7 +33,7 @@ Loads and trim:
     trim_reasons         reasons and warnings
     trim_solver          Newton's method for all points
 
-All public names of the modules `generated`, `motions`, `options` and `section_loads` belong to the face.
+All public names of the modules `fused`, `generated`, `motions`, `options` and `section_loads` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -63,6 +64,7 @@ __all__ = [
     "Target",
     "Trim",
     "Warns",
+    "fused",
     "generated",
     "motions",
     "options",

@@ -11,6 +11,7 @@ from proprotor_equations import flap_lag_springs, inertia
 from proprotor_equations import trim as equations
 
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.fused import effective_stiffness
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options
@@ -135,14 +136,8 @@ def _springs(options: Options, quantities: dict[str, Any]) -> dict[str, Any]:
     """Return effective flap and lag stiffness and its change with pitch, as the option `structure` has it."""
     if options.frequencies is not None:
         return _springs_of_frequencies(options.frequencies, quantities)
-    springs = _turning_springs(quantities)
+    springs = effective_stiffness(quantities)
     return springs | dict.fromkeys(_FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
-
-
-def _turning_springs(quantities: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the stiffness of the rotor's own springs, which turn with the pitch, and its derivatives."""
-    springs: dict[str, Any] = evaluate(flap_lag_springs.effective_stiffness, quantities)._asdict()
-    return springs
 
 
 def _springs_of_frequencies(frequencies: BladeFrequencies, quantities: dict[str, Any]) -> dict[str, Any]:
@@ -157,7 +152,7 @@ def _springs_of_frequencies(frequencies: BladeFrequencies, quantities: dict[str,
 
 def _turned_by_elastic_pitch(quantities: dict[str, Any]) -> dict[str, Any]:
     """Return what elastic pitch adds to the stiffness of the rotor's own springs, and the derivatives with pitch."""
-    turned = _turning_springs(quantities)
+    turned = effective_stiffness(quantities)
     rigid = quantities["structural_pitch"] - quantities["elastic_pitch"]
-    before = _turning_springs(quantities | {"structural_pitch": rigid})
+    before = effective_stiffness(quantities | {"structural_pitch": rigid})
     return turned | {name: turned[name] - before[name] for name in turned if name.endswith("_stiffness")}

@@ -1,0 +1,176 @@
+"""A plan of operations: many expressions in few operations, in the order in which they need few registers.
+
+A fused function is a plan printed line by line. All its results are expanded, so that terms cancel across the
+functions that a result came from, one pass looks for common subexpressions, and each result is computed as soon as
+what it needs is there. A temporary takes the register of one that is no longer needed. Results that are equal or
+opposite are computed once; a layout tells which result, with which sign, stands where in a matrix.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+from sympy.printing.str import StrPrinter
+
+Place = tuple[str, str]  # row and column of an entry
+Steps = Sequence[tuple[sp.Symbol, sp.Expr]]
+Entries = Mapping[Place, sp.Expr]
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """A matrix that a plan fills: the names of its rows and columns, and the entries that are not zero."""
+
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    entries: Entries
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Lines of names and expressions in their order, the results, and the layout of each matrix.
+
+    A layout has a whole number for each entry: 0 for zero, n for the n-th result from 1 on, -n for its negative.
+    """
+
+    lines: list[tuple[str, sp.Expr]]
+    results: list[str]
+    layouts: dict[str, list[list[int]]]
+
+    @property
+    def operations(self) -> int:
+        """Arithmetic operations per point."""
+        return int(sum(sp.count_ops(value) for _, value in self.lines))
+
+
+def plan(steps: Steps, matrices: Mapping[str, Matrix], values: Sequence[str] = ()) -> Plan:
+    """Plan the matrices from their entries; steps are named values that entries and later steps may use.
+
+    The steps that `values` names are results as well, before those of the matrices.
+    """
+    results = Results()
+    layouts = {name: results.layout(name, matrix) for name, matrix in matrices.items()}
+    named = [(symbol.name, sp.sympify(value)) for symbol, value in steps]
+    outcomes = list(results.named.items())
+    shared, reduced = sp.cse([value for _, value in named + outcomes], symbols=_temporaries())
+    lines = dict(zip([name for name, _ in named + outcomes], reduced, strict=True))
+    made = _with_plain_powers({symbol.name: value for symbol, value in shared} | lines)
+    wanted = [*values, *results.named]
+    names = {name for name, _ in named + outcomes}
+    return Plan(_with_registers(list(_in_order(made, wanted)), made, names), wanted, layouts)
+
+
+class Results:
+    """Different results, named after the first place that each has in a matrix."""
+
+    def __init__(self) -> None:
+        self.named: dict[str, sp.Expr] = {}
+        self._numbers: dict[sp.Expr, int] = {}
+
+    def layout(self, name: str, matrix: Matrix) -> list[list[int]]:
+        """Lay a matrix out, and add what is neither equal nor opposite to an earlier result."""
+        numbers = {
+            (row, column): self._number(name, (row, column), value)
+            for (row, column), value in matrix.entries.items()
+            if row in matrix.rows and column in matrix.columns
+        }
+        return [[numbers.get((row, column), 0) for column in matrix.columns] for row in matrix.rows]
+
+    def _number(self, name: str, place: Place, value: sp.Expr) -> int:
+        expanded = sp.expand(value.xreplace(_squares(value)))
+        if expanded == 0:
+            return 0
+        short, opposite = sp.factor_terms(expanded), sp.factor_terms(sp.expand(-expanded))
+        if opposite in self._numbers:
+            return -self._numbers[opposite]
+        if short not in self._numbers:
+            self.named["_".join((name, *place))] = short
+            self._numbers[short] = len(self.named)
+        return self._numbers[short]
+
+
+def _squares(value: sp.Expr) -> dict[sp.Expr, sp.Expr]:
+    """Return squares of sines and cosines by the cosine of the double angle, so that fewer waves are needed."""
+    found = {}
+    for square in value.atoms(sp.Pow):
+        if square.exp == 2 and isinstance(square.base, sp.sin | sp.cos):
+            sign = 1 if isinstance(square.base, sp.cos) else -1
+            found[square] = (1 + sign * sp.cos(2 * square.base.args[0])) / 2
+    return found
+
+
+def _temporaries() -> Iterator[sp.Symbol]:
+    return (sp.Symbol(f"temporary_{count}") for count in itertools.count())
+
+
+def _with_plain_powers(made: Mapping[str, sp.Expr]) -> dict[str, sp.Expr]:
+    """Give the base of each whole power a line of its own, so that the power can be a product."""
+    bases: dict[sp.Expr, sp.Symbol] = {}
+    found = {}
+    for name, value in made.items():
+        powers = {
+            power: bases.setdefault(power.base, sp.Symbol(f"base_{len(bases)}")) ** power.exp
+            for power in sorted(value.atoms(sp.Pow), key=sp.default_sort_key)
+            if power.exp.is_Integer and power.exp > 1 and not power.base.is_Symbol
+        }
+        found[name] = value.xreplace(powers)
+    return {symbol.name: base for base, symbol in bases.items()} | found
+
+
+def _in_order(made: Mapping[str, sp.Expr], wanted: Sequence[str]) -> Iterator[str]:
+    """Yield names so that each comes after what it needs and as late as its first use allows."""
+    done: set[str] = set()
+
+    def visit(name: str) -> Iterator[str]:
+        if name in done or name not in made:
+            return
+        done.add(name)
+        for needed in sorted(symbol.name for symbol in made[name].free_symbols):
+            yield from visit(needed)
+        yield name
+
+    for name in wanted:
+        yield from visit(name)
+
+
+def _with_registers(
+    order: Sequence[str], made: Mapping[str, sp.Expr], names: set[str]
+) -> list[tuple[str, sp.Expr]]:
+    """Give each temporary a register; a register is free again after the last use of its temporary."""
+    last = {symbol.name: place for place, name in enumerate(order) for symbol in made[name].free_symbols}
+    free: list[int] = []
+    registers: dict[sp.Symbol, sp.Symbol] = {}
+    count = itertools.count()
+    lines = []
+    for place, name in enumerate(order):
+        value = made[name].xreplace(registers)
+        for symbol in sorted(made[name].free_symbols & registers.keys(), key=str):
+            if last[symbol.name] == place:
+                free.append(int(registers[symbol].name[1:]))
+        if name not in names:
+            register = free.pop() if free else next(count)
+            registers[sp.Symbol(name)] = sp.Symbol(f"r{register}")
+        lines.append((registers[sp.Symbol(name)].name if name not in names else name, value))
+    return lines
+
+
+class PlanPrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no types
+    """Python code for numbers as for arrays: a small whole power is a product."""
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        base, exponent = expr.as_base_exp()
+        if base.is_Symbol and exponent in (2, 3):
+            return "*".join([self._print(base)] * int(exponent))
+        if exponent != -1:
+            raise ValueError(f"cannot print {expr} in a plan")
+        printed: str = super()._print_Pow(expr, rational=rational)
+        return printed
+
+
+def print_line(value: sp.Expr) -> str:
+    """Return the expression as code."""
+    code: str = PlanPrinter().doprint(value)
+    return code

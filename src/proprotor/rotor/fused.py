@@ -1,0 +1,257 @@
+"""Matrices of a whole rotor by the fused functions, for batches and for one point.
+
+A fused function is one plan of operations with two renderings. Arrays of a batch go through the plan in blocks of
+points, so that all temporaries stay in the cache. Plain numbers of one point go through the same lines of the plan as
+Python floats, or as complex numbers for derivatives by a complex step.
+
+A design has the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and both
+renderings take the sines of NumPy. Complex numbers agree to rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from proprotor_equations import flap_lag_springs
+from proprotor_equations.fused import rotor as plans
+
+from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate, keywords
+from proprotor.rotor.section_loads import LOAD_MOMENTS
+from proprotor.typing import Array
+
+_BLOCK = 1024  # points
+OF_SEGMENTS = tuple(
+    name
+    for name in ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS)
+    if name in keywords(plans.segment)
+)
+
+_Quantities = Mapping[str, Any]
+Matrices = dict[str, Array]
+
+
+def serves(equations: EquationSet) -> bool:
+    """Return whether the fused functions hold these equations."""
+    return equations == EQUATION_SETS["consistent"]
+
+
+def effective_stiffness(quantities: _Quantities) -> dict[str, Any]:
+    """Return the springs of hub and blade in series and their derivatives with structural pitch, by name."""
+    names = keywords(plans.effective_stiffness)
+    numbers = all(isinstance(quantities[name], float) for name in names)
+    waves = (_cos, _sin) if numbers else (np.cos, np.sin)
+    results = evaluate(plans.effective_stiffness, quantities, *waves)
+    return dict(zip(flap_lag_springs.EffectiveStiffness._fields, results, strict=True))
+
+
+def rotor_matrices(
+    quantities: _Quantities, segments: _Quantities | None, points: int, one: bool = False
+) -> Matrices:
+    """Return M, C, K (points, 18, 18) and B (points, 18, 6) of a rotor.
+
+    Parameters
+    ----------
+    quantities : mapping
+        Quantities of the blade by name, numbers or arrays (points,).
+    segments : mapping, optional
+        Quantities of each segment, numbers or arrays with a last axis of segments. A rotor without airloads has none.
+    points : int
+        Number of points.
+    one : bool
+        Compute the only point with plain numbers.
+    """
+    functions = (
+        (plans.in_vacuum,) if segments is None else (plans.in_vacuum, plans.of_airloads, plans.segment)
+    )
+    names = {name for function in functions for name in keywords(function)} & quantities.keys()
+    blade = {name: quantities[name] for name in names}
+    along = None if segments is None else {name: segments[name] for name in OF_SEGMENTS}
+    return _one_point(blade, along) if one else _batch(blade, along, points)
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Where the results of a plan stand in its matrices.
+
+    opposite : places of the results whose negative is needed as well, counted from 1.
+    places : by the name of a matrix, the place of each entry among zero, the results, and the negatives.
+    filled : name of the matrix, row, column and place of each entry that is not zero.
+    """
+
+    opposite: list[int]
+    places: dict[str, Array]
+    filled: list[tuple[str, int, int, int]]
+
+    @classmethod
+    def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> _Layout:
+        """Return the layout of a table, in which n is the n-th result, -n its negative and 0 is zero."""
+        signed = {name: np.array(rows) for name, rows in table.items()}
+        every = np.concatenate([rows.ravel() for rows in signed.values()])
+        opposite = np.unique(-every[every < 0])
+        behind = 1 + np.abs(every).max() + np.arange(len(opposite))
+        places = {}
+        for name, rows in signed.items():
+            places[name] = rows.copy()
+            negative = rows < 0
+            places[name][negative] = behind[np.searchsorted(opposite, -rows[negative])]
+        filled = [
+            (name, i, j, int(rows[i, j]))
+            for name, rows in places.items()
+            for i, j in np.argwhere(rows).tolist()
+        ]
+        return cls(opposite.tolist(), places, filled)
+
+
+@cache
+def _layouts() -> dict[str, _Layout]:
+    tables = {"in_vacuum": plans.IN_VACUUM, "of_airloads": plans.OF_AIRLOADS, "segment": plans.SEGMENT}
+    return {name: _Layout.of(table) for name, table in tables.items()}
+
+
+# Batches
+
+
+def _batch(quantities: _Quantities, segments: _Quantities | None, points: int) -> Matrices:
+    """Return the matrices of many points, a block of points at a time."""
+    numbers = (*quantities.values(), *(segments or {}).values())
+    kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
+    found = _zeros(_layouts()["in_vacuum"], points, kind)
+    for start in range(0, points, _BLOCK):
+        rows = slice(start, min(start + _BLOCK, points))
+        matrices = {name: matrix[rows] for name, matrix in found.items()}
+        here = {name: _of_rows(value, rows) for name, value in quantities.items()}
+        _fill(matrices, evaluate(plans.in_vacuum, here, np.cos, np.sin))
+        if segments is not None:
+            along = {name: _segments_first(value, rows) for name, value in segments.items()}
+            _add_airloads(matrices, _of_airloads(here, along, rows.stop - rows.start, kind))
+    return found
+
+
+def _zeros(layout: _Layout, points: int, kind: np.dtype[Any]) -> Matrices:
+    """Return matrices of zeros in one piece of memory, which a large batch gets from the system as zeros."""
+    sizes = [points * places.size for places in layout.places.values()]
+    parts = np.split(np.zeros(sum(sizes), dtype=kind), np.cumsum(sizes)[:-1])
+    return {
+        name: part.reshape(points, *places.shape)
+        for part, (name, places) in zip(parts, layout.places.items(), strict=True)
+    }
+
+
+def _fill(matrices: Matrices, results: Sequence[Any]) -> None:
+    """Put the results of a rotor without airloads, which has many zeros, into matrices of zeros."""
+    layout = _layouts()["in_vacuum"]
+    values = _values(results, layout)
+    for name, row, column, place in layout.filled:
+        matrices[name][:, row, column] = values[place]
+
+
+def _add_airloads(matrices: Matrices, results: Sequence[Any]) -> None:
+    """Add the results of the airloads, which have few zeros."""
+    layout, matrix = _layouts()["of_airloads"], matrices["C"]
+    pool = _pool(_values(results, layout), matrix.shape[:1], matrix.dtype)
+    for name, places in layout.places.items():
+        matrices[name] += np.take(pool, places, axis=1)
+
+
+def _of_rows(value: Any, rows: slice) -> Any:
+    """Return a quantity at some points; what is one number for all points stays one."""
+    return value[rows] if np.ndim(value) and len(value) > 1 else value
+
+
+def _segments_first(value: Any, rows: slice) -> Any:
+    """Return a quantity of the segments at some points as an array (segments, points), or (segments, 1)."""
+    if np.ndim(value) == 0:
+        return value
+    some = value[rows] if np.ndim(value) > 1 and len(value) > 1 else np.atleast_2d(value)
+    return np.ascontiguousarray(some.T)
+
+
+def _of_airloads(
+    quantities: _Quantities, segments: _Quantities, points: int, kind: np.dtype[Any]
+) -> tuple[Any, ...]:
+    """Return the results of the plan `of_airloads`."""
+    layout = _layouts()["segment"]
+    count = len(segments["beyond_flap_hinge"])
+    results = evaluate(plans.segment, {**quantities, **segments}, np.cos, np.sin)
+    pool = _pool(_values(results, layout), (count, points), kind)
+    arrays = {name: np.take(pool, places, axis=2) for name, places in layout.places.items()}
+    work = _work(arrays).reshape(points, -1)
+    geometric = arrays["geometric_stiffness"].sum(axis=1).reshape(points, -1)
+    groups = (np.ascontiguousarray(part.T) for part in (work, geometric))
+    found: tuple[Any, ...] = evaluate(plans.of_airloads, quantities, np.cos, np.sin, *groups)
+    return found
+
+
+def _work(arrays: Mapping[str, Array]) -> Array:
+    """Return W^T L U of segments (..., segments, rows, columns), summed over the segments."""
+    virtual, derivatives, motion = (arrays[name] for name in ("virtual_motion", "load_derivatives", "motion"))
+    loads = derivatives @ motion
+    together = (*virtual.shape[:-3], virtual.shape[-3] * virtual.shape[-2], -1)
+    return np.asarray(np.swapaxes(virtual.reshape(together), -1, -2) @ loads.reshape(together))
+
+
+def _values(results: Sequence[Any], layout: _Layout) -> list[Any]:
+    """Return zero, the results and their negatives as a layout counts them."""
+    return [0.0, *results, *(-results[place - 1] for place in layout.opposite)]
+
+
+def _pool(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
+    """Return values as one array, with the axes of the shape in reverse and a last axis of values."""
+    pool = np.empty((len(values), *shape), dtype=kind)
+    for place, value in enumerate(values):
+        pool[place] = value
+    return np.ascontiguousarray(pool.T)
+
+
+# One point
+
+
+def _one_point(quantities: _Quantities, segments: _Quantities | None) -> Matrices:
+    """Return the matrices of one point by plain numbers, with an axis of one point."""
+    blade = {name: _number(value) for name, value in quantities.items()}
+    found = _matrices(np.array([evaluate(plans.in_vacuum, blade, _cos, _sin)]), _layouts()["in_vacuum"])
+    if segments is None:
+        return found
+    rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in _one_by_one(segments)]
+    arrays = _matrices(np.array(rows), _layouts()["segment"])
+    geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
+    results = evaluate(plans.of_airloads, blade, _cos, _sin, _work(arrays).ravel().tolist(), geometric)
+    added = _matrices(np.array([results]), _layouts()["of_airloads"])
+    return found | {name: matrix + found[name] for name, matrix in added.items()}
+
+
+def _cos(angle: complex) -> Any:
+    """Return NumPy's cosine as a plain number."""
+    return np.cos(angle).item()
+
+
+def _sin(angle: complex) -> Any:
+    """Return NumPy's sine as a plain number."""
+    return np.sin(angle).item()
+
+
+def _number(value: Any) -> Any:
+    """Return an array of one number, or a number of NumPy, as a plain number."""
+    return value.item() if isinstance(value, np.ndarray | np.generic) else value
+
+
+def _one_by_one(segments: _Quantities) -> list[dict[str, Any]]:
+    """Return the quantities of each segment as plain numbers."""
+    count = np.size(segments["beyond_flap_hinge"])
+    lists = [
+        np.ravel(value).tolist() if np.ndim(value) else [_number(value)] * count
+        for value in segments.values()
+    ]
+    return [dict(zip(segments, numbers, strict=True)) for numbers in zip(*lists, strict=True)]
+
+
+def _matrices(results: Array, layout: _Layout) -> Matrices:
+    """Return the matrices of some rows of results."""
+    pool = np.concatenate(
+        [np.zeros((len(results), 1)), results, -results[:, [n - 1 for n in layout.opposite]]], axis=1
+    )
+    return {name: np.take(pool, places, axis=1) for name, places in layout.places.items()}
