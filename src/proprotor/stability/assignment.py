@@ -40,7 +40,7 @@ def best_assignment(gain: Array) -> Array:
     cost = gain.max(axis=1, keepdims=True) - gain
     column_of, row_of = _best_of_rows(cost)
     row_price, column_price = np.zeros(rows), np.zeros(columns)
-    for row in np.flatnonzero(column_of < 0):
+    for row in np.flatnonzero(column_of < 0).tolist():
         way, column, length, reached = _cheapest_way(cost - column_price, row_price, row_of, row)
         on_way = np.flatnonzero(reached < length)
         column_price[on_way] += reached[on_way] - length
