@@ -17,7 +17,7 @@ from proprotor.typing import Dataset
 _COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)", "warning")
 
 
-@arguments.command(short_help="Show what drives and what damps a mode, by physical origin.")
+@arguments.command()
 @arguments.case_argument
 @click.option("--speed", required=True, metavar="SPEED", help='Airspeed: "300 kt".')
 @click.option("--mode", help="Name of the mode; by default the mode that is damped least.")
