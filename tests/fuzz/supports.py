@@ -15,7 +15,7 @@ from scipy.io import mmwrite
 from scipy.sparse import coo_array
 
 from proprotor.support.matrix_files import read_matrix_market, read_npz
-from proprotor.support.normal_modes import HUB_AXES, INCLUDES_ROTOR, SHAFT
+from proprotor.support.normal_modes import CARRIES, HUB_AXES, INCLUDES_ROTOR, SHAFT
 from tests.fuzz.mutation import NUMBERS, other_lines, other_number, several, spoiled_bytes
 
 _HUB = [f"hub_{axis}" for axis in HUB_AXES]
@@ -38,6 +38,8 @@ def make(rng: Random) -> tuple[dict[str, bytes], dict]:
     arrays = dict(seeds(rng.choice((6, 7, 12)), rng.random() < 0.5))
     options = _options(rng) if rng.random() < 0.4 else {}
     if rng.random() < 0.5:
+        if rng.random() < 0.3:  # modal coordinates
+            arrays["hub"], options["carries"] = np.eye(6, len(arrays["dofs"])), rng.choice(CARRIES)
         return {"support.npz": _npz(rng, arrays)}, {"kind": "npz", "options": options}
     return _market(rng, arrays), {"kind": "mtx", "options": options}
 
@@ -70,6 +72,7 @@ def _options(rng: Random) -> dict[str, Any]:
         "damping_ratio": (0.01, [0.01, 0.02], 0.999, 1.0, -1.0, float("nan"), []),
         "includes_rotor": (*INCLUDES_ROTOR, "loose", 1),
         "shaft": (*SHAFT, "loose", None),
+        "carries": (*CARRIES, "three rotors", None),
         "rotor_mass": (0.0, 100.0, 1e300, -1.0, float("nan"), float("inf")),
         "length_unit": (0.0254, 1e-300, 1e300, 0.0, -1.0, float("inf")),
         "mass_unit": (175.0, 1e-300, 1e300, 0.0, float("nan")),

@@ -319,6 +319,7 @@ LARGE = {
     "airspeeds": lambda: CASE.linearize(FAR),
     "airspeeds of a sweep": lambda: CASE.sweep(FAR),
     "airspeeds of boundaries": lambda: CASE.boundaries(FAR),
+    "against": lambda: CASE.boundary_against({PRECONE: np.linspace(0.01, 0.05, 10**6)}, "1:400:1e-2kt"),
     "values of an input": lambda: CASE.sweep(100.0, {"rotor.blade_mass": FAR}),
     "workers": lambda: pp.study(CASE, {PRECONE: FAR[:200_000]}, 100.0, workers=200_000),
     "batch": lambda: pp.study(CASE, pp.sampling.points({PRECONE: FAR[: 10**7]}), 100.0, batch=10**7),

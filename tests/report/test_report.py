@@ -105,6 +105,18 @@ def test_the_boundaries_are_those_of_flutter_point(page, written, case):
     assert written[1]["flutter speed (m/s)"] == pytest.approx(point.speed, rel=1e-9)
 
 
+def test_points_of_a_file_stand_on_the_plots_that_have_their_columns(tmp_path):
+    points = tmp_path / "points.csv"
+    points.write_text("airspeed [ktas], damping [%], label\n250, 3, wind tunnel of Elsewhere\n")
+    out = tmp_path / "report.html"
+    more = ("--speed", "250:300:50kt", "--points", str(points), "--out", str(out))
+    result = CliRunner().invoke(main, ["report", "xv15-uncoupled", *more])
+    assert result.exit_code == 0, result.output
+    plain = tmp_path / "plain.html"
+    CliRunner().invoke(main, ["report", "xv15-uncoupled", *more[:2], "--out", str(plain)])
+    assert len(out.read_bytes()) > len(plain.read_bytes())
+
+
 def test_the_tables_of_modes_are_those_of_sweep(page, case):
     modes = case.sweep(SPEEDS)
     damping, frequency = table(page, "Damping"), table(page, "Frequency")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.deck import build_support
+from proprotor.deck import each_design
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.model.first_order import state_matrix
@@ -338,7 +338,7 @@ def test_every_number_of_a_wing_may_vary_at_once_and_in_parts(monkeypatch):
     paths = [path for path in design_inputs(case) if path.startswith("support.")]
     values = {path: float(case.given[path].si) * rng.uniform(0.95, 1.05, 5) for path in paths}
     whole = case.vary(values).support.at(150.0, 1.0)
-    monkeypatch.setattr(build_support, "_PART", 2 * build_support._BYTES * 81)
+    monkeypatch.setattr(each_design, "_PART", 2 * each_design._BYTES * 81)
     parts = case.vary(values).support.at(150.0, 1.0)
     for place in range(5):
         one = case.vary({path: value[place] for path, value in values.items()}).support.at(150.0, 1.0)

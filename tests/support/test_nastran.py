@@ -106,6 +106,15 @@ def test_modes_are_read_in_the_rotors_axes_and_units(file, modes):
     np.testing.assert_allclose(ratio, [0.01] + 7 * [0.02], rtol=3 * SINGLE)
 
 
+def test_of_a_run_with_two_rotors_half_goes_with_one(file):
+    one, two = read(file), read(file, carries="two rotors")
+    for matrix in ("mass", "stiffness"):
+        np.testing.assert_array_equal(getattr(two, matrix), getattr(one, matrix) / 2)
+    np.testing.assert_array_equal(two.hub, one.hub)
+    with pytest.raises(InputError, match=r'^carries = both: must be "one rotor" or "two rotors"'):
+        read(file, carries="both")
+
+
 def test_with_the_rotor_they_are_the_wing_they_came_from(file):
     """Eight modes, and six named by hand, of the finite elements all of whose coordinates were kept."""
     wing, pylon, _ = xv15_wing()

@@ -29,7 +29,6 @@ Command = Callable[..., Any]
 Option = Callable[[Command], Command]  # a decorator
 
 # Quantities that a file of `--points` may have, in any unit.
-AIRSPEED = Quantity("airspeed", "m/s", 1.0, {"keas": 1.0})
 FREQUENCY = Quantity("frequency", "rad/s", 1.0, {"per rev": 1.0})
 DAMPING = Quantity("damping", "", 1.0)
 
@@ -198,7 +197,10 @@ def name_and_value(option: str, text: str, rule: str) -> tuple[str, str]:
 
 def scan_option(command: Command) -> Command:
     """Add `--scan`, the airspeeds between which a command searches for boundaries."""
-    scan_help = 'Airspeeds between which to search: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed.'
+    scan_help = (
+        'Airspeeds between which to search: "50:400:5ktas" (kt is the same) or "50:400:5keas"; by default 0.2 to 1.2 '
+        "of the tip speed."
+    )
     return click.option("--scan", metavar="RANGE", help=scan_help)(command)
 
 
@@ -206,6 +208,11 @@ def points_option(command: Command) -> Command:
     """Add `--points`, a file of points to draw; `points_of` reads it."""
     points_help = 'CSV file of points to draw beside the results: "airspeed [ktas], damping [%], label".'
     return click.option("--points", metavar="FILE", help=points_help)(command)
+
+
+def airspeed_points(density: float | None) -> Quantity:
+    """Return the airspeed as a column of points may have it; in keas only in air of a known density (kg/m³)."""
+    return Quantity("airspeed", "m/s", 1.0, {"keas": 1.0} if density else {})
 
 
 def points_of(path: str | None, plot: str | None, across: Quantity, up: Sequence[Quantity]) -> Points | None:

@@ -19,7 +19,9 @@ _COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critic
 
 @arguments.command()
 @arguments.case_argument
-@click.option("--speed", required=True, metavar="SPEED", help='Airspeed: "300 kt".')
+@click.option(
+    "--speed", required=True, metavar="SPEED", help='Airspeed: "300 ktas" (kt is the same) or "300 keas".'
+)
 @click.option("--mode", help="Name of the mode; by default the mode that is damped least.")
 @output.output_options(csv="Write a row for each origin.", plot="Draw the damping of each origin")
 @arguments.model_options

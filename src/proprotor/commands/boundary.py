@@ -80,7 +80,9 @@ def boundary(
     case, path, given = _case_and_input(request, against)
     unit = arguments.unit_of(given)
     across = Quantity(path, design_inputs(case)[path].unit)
-    measured = arguments.points_of(points, outputs.plot, across, [arguments.AIRSPEED])
+    measured = arguments.points_of(
+        points, outputs.plot, across, [arguments.airspeed_points(case.operation.density)]
+    )
     with waiting("Looking for boundaries"):
         found = case.boundary_against({path: given}, _scan_of(case, scan), level=level, **request.options)
     shown = only_first(found) if first else of_mode(found, mode) if mode else found

@@ -30,7 +30,9 @@ from proprotor.units import KNOT, airspeed_unit, speed_factor, speeds
 @arguments.command()
 @arguments.case_argument
 @arguments.scan_option
-@click.option("--speed", metavar="SPEED", help='Airspeed whose margin to flutter is wanted: "250 kt".')
+@click.option(
+    "--speed", metavar="SPEED", help='Airspeed whose margin to flutter is wanted: "250 ktas" or "250 keas".'
+)
 @arguments.level_option
 @output.output_options(csv="Write a row for each boundary.")
 @arguments.model_options

@@ -136,6 +136,7 @@ def main() -> None:
       proprotor cases                               the bundled cases
       proprotor sweep xv15 --speed 50:400:5kt       frequency and damping of each mode
       proprotor flutter xv15                        flutter speed and all other boundaries
+      proprotor boundary --help                     boundaries over altitude, rotor speed or an input
       proprotor report xv15                         all results on one page, HTML or PDF
       proprotor explore xv15                        a page with sliders on the inputs
       proprotor new my.toml                         a commented deck of your own

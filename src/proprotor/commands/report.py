@@ -36,9 +36,17 @@ _SUFFIXES = (".html", ".pdf")
     help="File to write, .html or .pdf; by default the name of the case and -report.html.",
 )
 @click.option("--pdf", is_flag=True, help="Write a PDF beside the HTML (pip install 'proprotor[report]').")
+@arguments.points_option
 @output.json_option
 @arguments.model_options
-def report(request: arguments.Request, speed: str | None, out: str | None, pdf: bool, as_json: bool) -> None:
+def report(
+    request: arguments.Request,
+    speed: str | None,
+    out: str | None,
+    pdf: bool,
+    points: str | None,
+    as_json: bool,
+) -> None:
     """Write a report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
 
     CASE is a bundled case or a TOML file. The report is one file that needs no other file. Its first page has
@@ -56,6 +64,9 @@ def report(request: arguments.Request, speed: str | None, out: str | None, pdf: 
 
     date, case = _date(), request.load()
     airspeeds = None if speed is None else speeds(speed, "--speed", case.operation.density)
+    up = [arguments.FREQUENCY, arguments.DAMPING]
+    across = arguments.airspeed_points(case.operation.density)
+    measured = arguments.points_of(points, out or case.name, across, up)
     places = _places(out or f"{case.name}-report.html", pdf)
     for place in places:
         output.check_writable("--out", place)
@@ -69,6 +80,7 @@ def report(request: arguments.Request, speed: str | None, out: str | None, pdf: 
             deck_hash=_deck_hash(case, request),
             date=date,
             unit=arguments.unit_of(speed or "kt"),
+            points=measured,
         )
         contents = {
             place: pdf_of(document) if _is_pdf(place) else html_of(document).encode() for place in places

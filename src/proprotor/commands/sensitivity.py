@@ -33,7 +33,7 @@ from proprotor.units import KNOT, KTAS, speeds
     show_default=True,
     help="Quantity whose derivatives are wanted.",
 )
-@click.option("--speed", metavar="SPEED", help='Airspeed, for --of damping: "300 kt".')
+@click.option("--speed", metavar="SPEED", help='Airspeed, for --of damping: "300 ktas" or "300 keas".')
 @click.option("--mode", help="Name of the mode; by default the mode that flutters first, or is damped least.")
 @click.option(
     "--wrt",

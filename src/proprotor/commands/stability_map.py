@@ -44,7 +44,9 @@ def _axis_option(name: str, meaning: str) -> arguments.Option:
     "--x", f'Input on the axis across, by deck path, and its values: {_EXAMPLE} or "airspeed=100:400:10kt".'
 )
 @_axis_option("--y", "Input on the axis up, and its values, likewise.")
-@click.option("--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 kt".')
+@click.option(
+    "--speed", metavar="SPEED", help='Airspeed, if it is neither x nor y: "300 ktas" or "300 keas".'
+)
 @arguments.level_option
 @arguments.points_option
 @output.output_options(
@@ -69,7 +71,7 @@ def stability_map(
     \b
     Examples:
       proprotor map xv15 --x airspeed=200:400:10kt --y "rotor.precone=0:5:0.5 deg" --plot map.png
-      proprotor map xv15 --speed "350 kt" --x "support.modes[beam].frequency=2:5:0.1 Hz"
+      proprotor map xv15 --speed "350 kt" --x "support.beam_frequency=2:4:0.1 Hz"
         --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
     """
     from proprotor.plots import plot_stability_map  # here, so that --help answers without it
@@ -83,7 +85,7 @@ def stability_map(
         raise InputError("--y", y, "must not be the input of --x")
     if airspeed is None and _AIRSPEED not in (axis.path for axis in axes):
         raise InputError("--speed", None, "must be given, or be --x or --y: airspeed=100:400:10kt")
-    across, up = (_quantity(axis, case) for axis in axes)
+    across, up = (_quantity(axis, case, density) for axis in axes)
     measured = arguments.points_of(points, outputs.plot, across, [up])
     with waiting("Analysing"):
         values = {axis.path: axis.values for axis in axes}
@@ -117,13 +119,11 @@ def _axis(option: str, path: str, given: str, case: Case, density: float | None)
     return _Axis(path, values, unit, factor)
 
 
-def _quantity(axis: _Axis, case: Case) -> Quantity:
+def _quantity(axis: _Axis, case: Case, density: float | None) -> Quantity:
     """Return what a column of points for an axis may be."""
-    return (
-        arguments.AIRSPEED
-        if axis.path == _AIRSPEED
-        else Quantity(axis.path, design_inputs(case)[axis.path].unit)
-    )
+    if axis.path == _AIRSPEED:
+        return arguments.airspeed_points(density)
+    return Quantity(axis.path, design_inputs(case)[axis.path].unit)
 
 
 def _label(axis: _Axis) -> str:

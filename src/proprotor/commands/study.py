@@ -71,7 +71,7 @@ def study(
     \b
     Examples:
       proprotor study xv15 --vary "rotor.precone=1:4:1 deg" --speed 160:460:20kt --flutter
-      proprotor study xv15 --vary "rotor.precone=1:4 deg" --vary "support.modes[chord].frequency=0.9:1.1 of deck"
+      proprotor study xv15 --vary "rotor.precone=1:4 deg" --vary "support.chord_frequency=0.9:1.1 of deck"
         --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter --out study.nc --checkpoint batches
     """
     output.check_writable("--out", out)

@@ -48,11 +48,12 @@ def sweep(
     """
     from proprotor.plots import plot_sweep  # here, so that --help answers without it
 
-    up = [arguments.FREQUENCY, arguments.DAMPING]
-    measured = arguments.points_of(points, outputs.plot, arguments.AIRSPEED, up)
     with waiting("Analysing"):
         case = request.load()
-        airspeeds = speeds(speed, "--speed", case.operation.density)
+        density = case.operation.density
+        airspeeds = speeds(speed, "--speed", density)
+        up = [arguments.FREQUENCY, arguments.DAMPING]
+        measured = arguments.points_of(points, outputs.plot, arguments.airspeed_points(density), up)
         found = case.sweep(airspeeds, **request.options)
     table = SweepTable(found, case.operation.rotor_speed, arguments.unit_of(speed))
     outputs.write(

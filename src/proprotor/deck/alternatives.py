@@ -20,13 +20,20 @@ AIR_ALTERNATIVES = ((("density", "speed_of_sound"), ("altitude", "temperature_of
 # Fields of [operation.trim] and of [support]: one side only.
 TRIM_ALTERNATIVES = ((("collective",), ("thrust_coefficient",), ("power_coefficient",)),)
 DAMPING_ALTERNATIVES = ((("damping_ratio",), ("loss_factor",)),)
-FILE_ALTERNATIVES = ((("file",), ("mass", "stiffness", "damping", "dofs")),)
+ROTOR_ALTERNATIVES = ((("rotor_mass",), ("rotor_held",)),)
+STIFFNESS_ALTERNATIVES = tuple(
+    ((f"{kind}_stiffness_factor",), (f"{kind}_frequency",)) for kind in ("beam", "chord", "torsion")
+)
+FILE_ALTERNATIVES = ((("file",), ("mass", "stiffness", "damping", "dofs", "hub_motion")),)
 _BY_SECTION = (
     (("rotor",), ALTERNATIVES),
     (("rotor", "airfoil"), AIRFOIL_ALTERNATIVES),
     (("operation",), AIR_ALTERNATIVES),
     (("operation", "trim"), TRIM_ALTERNATIVES),
-    (("support",), (*DAMPING_ALTERNATIVES, *FILE_ALTERNATIVES)),
+    (
+        ("support",),
+        (*DAMPING_ALTERNATIVES, *ROTOR_ALTERNATIVES, *STIFFNESS_ALTERNATIVES, *FILE_ALTERNATIVES),
+    ),
 )
 
 _Place = tuple[str, ...]
@@ -42,10 +49,10 @@ def altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     superseded = [
         place for section, choices in _BY_SECTION for place in _superseded(changes, section, choices)
     ]
-    if _is_section(changes.get("support")) and "kind" in changes["support"]:
+    if is_section(changes.get("support")) and "kind" in changes["support"]:
         superseded.append(("support",))
     rotor: Any = changes.get("rotor")
-    if _is_section(rotor) and not rotor.keys().isdisjoint(MASS_INTEGRALS):
+    if is_section(rotor) and not rotor.keys().isdisjoint(MASS_INTEGRALS):
         superseded.append(("rotor", "hub_mass"))  # belongs to a distribution; the integrals contain the hub
     for place in superseded:
         base = without(base, place)
@@ -81,11 +88,11 @@ def _merged(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     """Return tables with changes, section by section."""
     result = base | changes
     for key, change in changes.items():
-        if _is_section(change) and _is_section(base.get(key)):
+        if is_section(change) and is_section(base.get(key)):
             result[key] = _merged(base[key], change)
     return result
 
 
-def _is_section(entry: Any) -> bool:
+def is_section(entry: Any) -> bool:
     """Return whether an entry is a section, rather than a number written as a table."""
     return isinstance(entry, dict) and "value" not in entry and "column" not in entry

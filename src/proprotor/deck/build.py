@@ -7,19 +7,21 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from proprotor.datum import Datum
 from proprotor.deck.alternatives import fields_instead_of
-from proprotor.deck.build_support import build_support
+from proprotor.deck.build_aircraft import fuselage_of
+from proprotor.deck.build_support import build_support, fitted_stiffness_factors
 from proprotor.deck.file import read_tables
-from proprotor.deck.numbers import numbers_of, own_numbers
+from proprotor.deck.numbers import left_numbers, numbers_of, own_numbers
 from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
 from proprotor.model.mass_at_rest import mass_at_rest
-from proprotor.model.rotor_share import settled, spring_warnings
+from proprotor.model.rotor_share import rotor_share, settled, spring_warnings
+from proprotor.model.side import Side
 from proprotor.rotor.airfoil import Airfoil, SectionModel
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
@@ -28,6 +30,7 @@ from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.support.normal_modes import NormalModes
+from proprotor.typing import Array
 
 if TYPE_CHECKING:
     from proprotor.deck.sections import Deck
@@ -68,6 +71,48 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
     InputError
         When a number is not physical, with the number as the deck has it.
     """
+    rotor, operation, frequencies, train, derived = _machinery(deck, numbers)
+    with _errors_as_written("support", numbers):
+        at_rest = mass_at_rest(rotor)
+        fitted = fitted_stiffness_factors(deck.support, numbers, at_rest)
+        built = build_support(
+            deck.support, dict(numbers) | fitted, names, mass_at_rest=at_rest, left=_left_structure(deck)
+        )
+        support = settled(built, at_rest)
+        as_given = _with_rotor(support, numbers, at_rest) if fitted else support
+        doubts = spring_warnings(as_given, at_rest, rotor.gimbal_stiffness)
+        if deck.support.kind == "aircraft":
+            derived |= fuselage_of(deck.support, numbers)
+    return kind(
+        name=deck.case.name,
+        title=deck.case.title,
+        description=deck.case.description,
+        calibration=deck.case.calibration,
+        warnings=(*deck.case.warnings, *doubts),
+        rotor=rotor,
+        operation=operation,
+        support=support,
+        sources=dict(numbers) | derived | fitted | _how_held(support, numbers),
+        frequencies=frequencies,
+        drive_train=train,
+        left=_left(deck, numbers),
+        deck=deck,
+        given=numbers,
+    )
+
+
+class _Machinery(NamedTuple):
+    """What turns, and the numbers that follow from given ones."""
+
+    rotor: Rotor
+    operation: Operation
+    frequencies: BladeFrequencies | None
+    drive_train: DriveTrain | None
+    derived: dict[str, Datum]
+
+
+def _machinery(deck: Deck, numbers: Mapping[str, Datum]) -> _Machinery:
+    """Return rotor, operation, blade frequencies and drive train of a deck."""
     with _errors_as_written("operation", numbers):
         operation, air = _operation(deck, numbers)
     with _errors_as_written("rotor.airfoil", numbers):
@@ -79,25 +124,40 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         frequencies = _frequencies(deck, _values(numbers, "rotor.frequencies"))
     with _errors_as_written("drive_train", numbers):
         train = None if deck.drive_train is None else DriveTrain(**_values(numbers, "drive_train"))
-    with _errors_as_written("support", numbers):
-        at_rest = mass_at_rest(rotor)
-        support = settled(build_support(deck.support, numbers, names), at_rest)
-        doubts = spring_warnings(support, at_rest, rotor.gimbal_stiffness)
-    return kind(
-        name=deck.case.name,
-        title=deck.case.title,
-        description=deck.case.description,
-        calibration=deck.case.calibration,
-        warnings=(*deck.case.warnings, *doubts),
-        rotor=rotor,
-        operation=operation,
-        support=support,
-        sources=dict(numbers) | air | derived | _how_held(support, numbers),
-        frequencies=frequencies,
-        drive_train=train,
-        deck=deck,
-        given=numbers,
-    )
+    return _Machinery(rotor, operation, frequencies, train, air | derived)
+
+
+def _left(deck: Deck, numbers: Mapping[str, Datum]) -> Side | None:
+    """Return the left side of an aircraft, if more than the structure differs there."""
+    if deck.left is None or deck.left_side is None:
+        return None
+    if deck.left.model_fields_set <= {"support"}:
+        return None
+    try:
+        rotor, operation, frequencies, train, _ = _machinery(
+            deck.left_side, left_numbers(deck.left_side, numbers)
+        )
+    except InputError as error:
+        raise error.within("left") from None
+    return Side(rotor, operation, frequencies, train)
+
+
+def _left_structure(deck: Deck) -> Any:
+    """Return the section [support] of the left side, if it differs."""
+    if deck.left is None or deck.left.support is None or deck.left_side is None:
+        return None
+    return deck.left_side.support
+
+
+def _with_rotor(support: NormalModes, numbers: Mapping[str, Datum], mass_at_rest: Array) -> NormalModes:
+    """Return a wing whose stiffness was fitted to frequencies with the rotor, with the rotor in its mass."""
+    held = numbers.get("support.rotor_held")
+    if held is None:
+        return support
+    shaft = numbers["support.shaft"].si if "support.shaft" in numbers else "held"
+    share = rotor_share(mass_at_rest, held.si, shaft)
+    mass = support.mass + np.swapaxes(support.hub, -1, -2) @ share @ support.hub
+    return replace(support, mass=mass, includes_rotor=held.si)
 
 
 @contextmanager
@@ -106,10 +166,11 @@ def _errors_as_written(section: str, numbers: Mapping[str, Datum]) -> Iterator[N
     try:
         yield
     except InputError as error:
-        name = error.field.rpartition(".")[2]
-        for written_as in (name, *fields_instead_of(name)):
-            if number := numbers.get(f"{section}.{written_as}"):
-                raise InputError(f"{section}.{written_as}", number.written, error.rule) from None
+        inner, _, name = error.field.removeprefix(f"{section}.").rpartition(".")
+        for place in dict.fromkeys((f"{section}.{inner}".rstrip("."), section)):
+            for written_as in (name, *fields_instead_of(name)):
+                if number := numbers.get(f"{place}.{written_as}"):
+                    raise InputError(f"{place}.{written_as}", number.written, error.rule) from None
         raise error.within(section) from None
 
 

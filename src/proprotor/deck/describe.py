@@ -22,6 +22,8 @@ from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.rotor import Rotor
+from proprotor.support.aircraft_airloads import Tail
+from proprotor.support.aircraft_structure import CarryThrough, Fuselage
 from proprotor.support.beam_wing import Pylon, Wing
 from proprotor.support.wing_aerodynamics import WingAerodynamics
 from proprotor.units import meaning
@@ -39,7 +41,12 @@ _FORMS = {
 }
 _PLAIN = {bool: "true or false", str: "text"}
 # Forms of fields that are no numbers, by their possible values.
-_PLAIN_FORMS = {"true or false": "bool", "a list of texts": "list", "a table of texts": "table"}
+_PLAIN_FORMS = {
+    "true or false": "bool",
+    "a list of texts": "list",
+    "a table of texts": "table",
+    "a table of fields": "fields",
+}
 
 
 @dataclass(frozen=True)
@@ -155,6 +162,8 @@ def _takes(reading: Reading) -> str:
         return _FORMS[reading.form]
     if reading.form == "choice":
         return list_choices(reading.choices)
+    if reading.form == "joint":
+        return f"{list_choices(reading.choices)}, or {meaning(reading.unit)}"
     values = meaning(reading.unit)
     if isinstance(reading, AfterChoice):
         values = f"of a length {values}; of an angle {meaning(reading.other_unit)}"
@@ -171,7 +180,9 @@ def _takes_plain(annotation: Any) -> str:
         return list_choices(get_args(annotation))
     if sections_of(annotation):
         return '"windmill", or a table with one of the fields below' if str in get_args(annotation) else ""
-    return "a list of texts" if get_origin(annotation) is list else "a table of texts"
+    if get_origin(annotation) is list:
+        return "a list of texts"
+    return "a table of fields" if dict[str, Any] in get_args(annotation) else "a table of texts"
 
 
 def _unit(reading: Reading) -> str:
@@ -200,6 +211,10 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
         deck.AirfoilSection: (Airfoil,),
         deck.DriveTrainSection: (DriveTrain,),
         support_sections.BeamWingSection: (Wing, Pylon),
+        support_sections.AircraftSection: (Wing, Pylon),
+        support_sections.FuselageSection: (Fuselage,),
+        support_sections.CarryThroughSection: (CarryThrough,),
+        support_sections.TailSection: (Tail,),
         support_sections.WingAerodynamicsSection: (WingAerodynamics,),
         support_sections.AssumedShapeSection: (WingAerodynamics,),
     }

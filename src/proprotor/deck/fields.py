@@ -18,7 +18,8 @@ from proprotor.datum import Datum
 from proprotor.deck import reading, reading_lists
 from proprotor.deck.reading import ANY, BELOW_CRITICAL, FRACTION, NOT_NEGATIVE, POSITIVE, Bound
 from proprotor.rotor.rotor import HELD, NOTHING
-from proprotor.support.normal_modes import INCLUDES_ROTOR, SHAFT
+from proprotor.support.aircraft_structure import JOINT
+from proprotor.support.normal_modes import CARRIES, INCLUDES_ROTOR, SHAFT
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,9 @@ class Reading:
     Parameters
     ----------
     form : str
-        "number", "count", "frequency", "along the blade", "distribution" (along the blade, never one number),
-        "along the wing", "curve" (one number or a list of them), "rising list", "file" or "choice".
+        "number", "count", "joint" (a number or a choice), "frequency", "along the blade", "distribution" (along the
+        blade, never one number), "along the wing", "curve" (one number or a list of them), "rising list", "file" or
+        "choice".
     unit : str
         SI unit.
     bound : Bound
@@ -75,6 +77,7 @@ _READERS: dict[str, Callable[[Any, Reading], Datum]] = {
     "number": lambda raw, field: reading.read_quantity(raw, field.unit, field.bound),
     "count": lambda raw, field: reading.read_count(raw, field.least),
     "choice": lambda raw, field: reading.read_choice(raw, field.choices),
+    "joint": lambda raw, field: reading.read_joint(raw, field.unit, field.bound, field.choices),
     "frequency": lambda raw, field: reading.read_frequency(raw, field.bound),
     "along the blade": lambda raw, field: reading_lists.read_profile(
         raw, field.unit, field.bound, field.beyond
@@ -149,6 +152,7 @@ RotorSpeed = Annotated[Datum, Reading("number", "rad/s", POSITIVE)]
 Density = Annotated[Datum | None, Reading("number", "kg/m**3", NOT_NEGATIVE)]
 Speed = Annotated[Datum | None, Reading("number", "m/s", POSITIVE)]
 DampingRatio = Annotated[Datum | None, Reading("number", "", BELOW_CRITICAL)]
+PositiveFrequency = Annotated[Datum | None, Reading("frequency", "rad/s", POSITIVE)]
 Frequency = Annotated[Datum | None, Reading("frequency", "rad/s", NOT_NEGATIVE)]
 Count = Annotated[Datum | None, Reading("count", least=3)]
 Size = Annotated[Datum | None, Reading("count", least=1)]
@@ -166,6 +170,10 @@ Abscissa = Annotated[
 File = Annotated[Datum | None, Reading("file")]
 IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
 Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
+Held = Annotated[
+    Datum | None, Reading("choice", choices=tuple(held for held in INCLUDES_ROTOR if isinstance(held, str)))
+]
+Carries = Annotated[Datum | None, Reading("choice", choices=CARRIES)]
 
 _of_mode = partial(AfterChoice, "number", choice="coordinate", usual="length")
 GeneralizedMass = Annotated[Datum | None, _of_mode("kg", POSITIVE, other_unit="kg*m**2")]
@@ -177,6 +185,14 @@ AxialStiffness = Annotated[Datum | None, Reading("along the wing", "N", POSITIVE
 MassPerLength = Annotated[Datum | None, Reading("along the wing", "kg/m", NOT_NEGATIVE)]
 InertiaPerLength = Annotated[Datum | None, Reading("along the wing", "kg*m**2/m", NOT_NEGATIVE)]
 OffsetOfMass = Annotated[Datum | None, Reading("along the wing", "m")]
+
+UniformStiffness = Annotated[Datum | None, Reading("number", "N*m**2", POSITIVE)]
+UniformAxialStiffness = Annotated[Datum | None, Reading("number", "N", POSITIVE)]
+UniformMass = Annotated[Datum | None, Reading("number", "kg/m", NOT_NEGATIVE)]
+UniformInertia = Annotated[Datum | None, Reading("number", "kg*m**2/m", NOT_NEGATIVE)]
+ProductOfInertia = Annotated[Datum | None, Reading("number", "kg*m**2")]
+Area = Annotated[Datum | None, Reading("number", "m**2", POSITIVE)]
+Joint = Annotated[Datum | None, Reading("joint", "N*m/rad", POSITIVE, choices=JOINT)]
 
 Text = Annotated[str, StringConstraints(min_length=1, max_length=2000)]
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]*$", max_length=60)]

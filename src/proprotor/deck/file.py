@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from proprotor.deck.alternatives import altered, without
+from proprotor.deck.left import nested
 from proprotor.deck.per_revolution import per_revolution_of
 from proprotor.deck.written import FileName
 from proprotor.errors import InputError, unknown_name
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 _FILES = (
     ("rotor", "airfoil", "table", "value"),
-    *(("support", name, "value") for name in ("file", "mass", "stiffness", "damping", "dofs")),
+    *(("support", name, "value") for name in ("file", "mass", "stiffness", "damping", "dofs", "hub_motion")),
 )
 _MAY_BE_COLUMNS = ("chord", "twist", "mass_distribution")  # in [rotor]: { file = ..., column = ... }
 
@@ -55,6 +56,8 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
     """Return the tables of a deck that is named from a folder; `altered_by` are the files that lead to it as a base."""
     file = _find(name, folder)
     tables = _parse(file, name)
+    if "left" in tables:
+        tables["left"] = nested(tables["left"])
     folder = file.parent if isinstance(file, Path) else folder
     for place in _FILES:
         _locate_file(tables, folder, place)

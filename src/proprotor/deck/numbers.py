@@ -7,15 +7,35 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from proprotor.datum import PER_REV, Datum
+from proprotor.deck.left import left_paths
 
 if TYPE_CHECKING:
     from proprotor.deck.fields import Section
     from proprotor.deck.sections import Deck
 
 
+LEFT = "left."  # before the path of a number that differs on the left side
+
+
 def numbers_of(deck: Deck) -> dict[str, Datum]:
-    """Return every number of a deck by path, frequencies per revolution in rad/s."""
-    return {path: _per_second(number, deck.operation.rotor_speed.si) for path, number in _numbers(deck)}
+    """Return every number of a deck by path, frequencies per revolution in rad/s.
+
+    A number that differs on the left side of an aircraft has the path ``left.rotor.control_stiffness``.
+    """
+    found = {path: _per_second(number, deck.operation.rotor_speed.si) for path, number in _numbers(deck)}
+    if deck.left is None or deck.left_side is None:
+        return found
+    differ = left_paths(deck.left.model_dump(exclude_none=True))
+    return found | {
+        LEFT + path: number for path, number in numbers_of(deck.left_side).items() if path in differ
+    }
+
+
+def left_numbers(left_side: Deck, numbers: Mapping[str, Datum]) -> dict[str, Datum]:
+    """Return the numbers of the left side of an aircraft by path: its own, and the numbers that both sides share."""
+    return {
+        path: numbers.get(LEFT + path, numbers.get(path, own)) for path, own in numbers_of(left_side).items()
+    }
 
 
 def own_numbers(numbers: Mapping[str, Datum], section: str) -> dict[str, Datum]:

@@ -58,6 +58,19 @@ def read_choice(raw: Any, choices: tuple[bool | str, ...]) -> Datum:
     return datum(table, as_toml(value), value, "")
 
 
+def read_joint(raw: Any, unit: str, bound: Bound, choices: tuple[bool | str, ...]) -> Datum:
+    """Return one of some words, or a quantity."""
+    value = as_table(raw, ("value",))["value"]
+    try:
+        return read_choice(raw, choices) if value in choices else read_quantity(raw, unit, bound)
+    except InputError as error:
+        if error.field:
+            raise
+        raise InputError(
+            "", value, f"must be {list_choices(choices)}, or {meaning(unit)} above zero"
+        ) from None
+
+
 def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
     """Return a frequency; per revolution (``"0.42/rev"``) with the unit `PER_REV` and the rotor speed, if known."""
     table = as_table(raw, ("value",))

@@ -117,7 +117,9 @@ def _value(reading: Reading) -> _Schema:
         return {"type": "string", "minLength": 1}
     if reading.form == "choice":
         return {"enum": list(reading.choices)}
-    text = {"type": "string", "pattern": _NUMBER, "description": _description(reading)}
+    text: _Schema = {"type": "string", "pattern": _NUMBER, "description": _description(reading)}
+    if reading.form == "joint":
+        return {"anyOf": [{"enum": list(reading.choices)}, text]}
     plain = {"type": "number", **_LIMITS.get(reading.bound, {})}
     may_be_plain = not reading.unit or (isinstance(reading, AfterChoice) and not reading.other_unit)
     return {"anyOf": [text, plain]} if may_be_plain else text

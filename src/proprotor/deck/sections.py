@@ -38,9 +38,16 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
     { power_coefficient = 0.01 }; density and speed_of_sound, or instead: altitude, a pressure altitude in the
     standard atmosphere, and temperature_offset (`proprotor.rotor.atmosphere`).
 ``[drive_train]``
-    Optional; the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness.
+    Optional; the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness, mast_stiffness,
+    engine_inertia, engine_damping and, of an aircraft, interconnect_stiffness.
 ``[support]``
     kind and the fields of that kind: `proprotor.deck.support_sections` lists them.
+
+``[left]``
+    Optional, for a support of kind "aircraft": fields that differ on the left side, ``support.downstop = false`` or
+    ``rotor.control_stiffness = "8000 ft*lbf/rad"``; of [rotor] all but the number of blades and the radius, of
+    [operation] the trim, of [drive_train] all but the interconnect shaft, and of [support] the wing, the
+    carry-through box, the pylon and its springs. The whole unsymmetric aircraft is then one problem.
 
 A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
 written in the same file, or in the base if the file gives none. The frequency is then fixed in hertz: a deck that
@@ -53,7 +60,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import Field, PlainValidator, model_validator
+from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 
 from proprotor.deck import fields
 from proprotor.deck.alternatives import (
@@ -280,6 +287,27 @@ class DriveTrainSection(Section):
     shaft_stiffness: fields.Stiffness = optional(
         "Torque per azimuth of a shaft with an end of constant speed; 0 for a rotor whose speed is free."
     )
+    mast_stiffness: fields.PositiveStiffness = optional(
+        "Torque per twist of the mast between the rotor and its gearbox; a rigid mast if left out."
+    )
+    engine_inertia: fields.InertiaOrNone = optional(
+        "Inertia of gearbox and engine, behind the mast; above 0 with mast_stiffness."
+    )
+    engine_damping: fields.Damping = optional("Torque per change of the speed of gearbox and engine.")
+    interconnect_stiffness: fields.Stiffness = optional(
+        "Of an aircraft: torque of the shaft between both gearboxes per difference of their azimuths."
+    )
+
+
+class LeftSection(Section):
+    """Fields that differ on the left side of an aircraft, by their place: support.downstop = false."""
+
+    rotor: dict[str, Any] | None = optional("Fields of the left rotor.")
+    operation: dict[str, Any] | None = optional("The trim of the left rotor.")
+    drive_train: dict[str, Any] | None = optional("Fields of the left drive train.")
+    support: dict[str, Any] | None = optional(
+        "Fields of the left wing, carry-through box, pylon and springs."
+    )
 
 
 class Deck(Section):
@@ -290,6 +318,20 @@ class Deck(Section):
     operation: OperationSection = needed("The operation of the rotor, and the air.")
     drive_train: DriveTrainSection | None = optional("Engine and shaft; none if left out.")
     support: SupportSection = needed("The support of the rotor.")
+    left: LeftSection | None = optional("What differs on the left side of an aircraft; nothing if left out.")
+
+    _left_side: Deck | None = PrivateAttr(default=None)
+
+    @property
+    def left_side(self) -> Deck | None:
+        """The whole deck of the left side, if the left side differs."""
+        return self._left_side
+
+    def with_left_side(self, other: Deck) -> Deck:
+        """Return the deck with the whole deck of the left side."""
+        whole = self.model_copy()
+        whole._left_side = other
+        return whole
 
 
 def sections_of(annotation: Any) -> list[type[Section]]:

@@ -2,22 +2,31 @@
 
 ``kind = "normal-modes"``
     includes_rotor and shaft, how the rotor was held while the modes were found with the rotor on, see
-    `proprotor.model.rotor_share`; a table ``[[support.modes]]`` for each mode with name; coordinate, "length" or
-    "angle"; generalized_mass, frequency, damping_ratio; and the motion of the hub per unit of the coordinate, x, y, z,
-    alpha_x, alpha_y, alpha_z, zero if left out.
+    `proprotor.model.rotor_share`; carries, one rotor or two; a table ``[[support.modes]]`` for each mode with name;
+    coordinate, "length" or "angle"; generalized_mass, frequency, damping_ratio; and the motion of the hub per unit of
+    the coordinate, x, y, z, alpha_x, alpha_y, alpha_z, zero if left out.
 ``kind = "beam-wing"``
     The arguments of `proprotor.support.beam_wing.Wing` and `Pylon`, a property along the wing one value or
     ``{ y_over_span = [...], value = [...], unit = "lbf*in**2" }``. The downstop: downstop, on (true) or off;
-    downstop_stiffness_on and downstop_stiffness_off, rigid if left out. rotor_mass, the mass of the rotor model at the
-    hub. modes, the number of modes, all coordinates if left out; damping_ratio or loss_factor of every mode, and
+    downstop_stiffness_on and downstop_stiffness_off, rigid if left out. The rotor in the wing's modes: rotor_mass, the
+    mass of the rotor model at the hub, or rotor_held and shaft, how this rotor is held. beam_stiffness_factor and so
+    on, or beam_frequency and so on, to which these factors are fitted: `proprotor.support.stiffness_factors`. modes,
+    the number of modes, all coordinates if left out; damping_ratio or loss_factor of every mode, and
     beam_damping_ratio, chord_damping_ratio, torsion_damping_ratio of the modes of these kinds.
+``kind = "aircraft"``
+    The fields of a beam wing, for each side of the aircraft; spindle_yaw_stiffness_on, spindle_yaw_stiffness_off and
+    pylon_yaw_damping_ratio; modes, the number of elastic modes of each symmetry; symmetry, "both", "symmetric" or
+    "antisymmetric". Tables fuselage, carry_through, horizontal_tail, vertical_tail: see
+    `proprotor.support.aircraft_structure`, `free_airframe` and `aircraft_airloads`. A table ``[left]`` at the top of
+    the deck has what differs on the left side.
 ``kind = "matrices"``
     file, an .npz file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names: see
-    `proprotor.support.matrix_files`. A table hub; includes_rotor, shaft, rotor_mass, modes, damping_ratio, length_unit,
-    mass_unit.
+    `proprotor.support.matrix_files`. A table hub, or for modal coordinates the motion of the hub (the array hub of the
+    .npz file, or hub_motion) and carries, one rotor or two. includes_rotor, shaft, rotor_mass, modes, damping_ratio,
+    length_unit, mass_unit.
 ``kind = "nastran"``
     file, an .op2 file, and grid: see `proprotor.support.nastran`. subcase, a table hub, includes_rotor, shaft, modes,
-    damping_ratio, length_unit, mass_unit.
+    damping_ratio, length_unit, mass_unit; carries, one rotor or two.
 ``kind = "pivot"``
     distance from pivot to hub; pitch_inertia, yaw_inertia, pitch_stiffness, yaw_stiffness, pitch_damping,
     yaw_damping; includes_rotor, shaft.
@@ -31,12 +40,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from proprotor.deck import fields
-from proprotor.deck.alternatives import DAMPING_ALTERNATIVES, FILE_ALTERNATIVES
+from proprotor.deck.alternatives import (
+    DAMPING_ALTERNATIVES,
+    FILE_ALTERNATIVES,
+    ROTOR_ALTERNATIVES,
+    STIFFNESS_ALTERNATIVES,
+)
 from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.errors import InputError
 from proprotor.support.normal_modes import HUB_AXES
@@ -45,6 +59,10 @@ _HELD = (
     "How the rotor, whose share is taken off, was held in these modes: tilting on its gimbal, as one body with the "
     "shaft, or a point mass at the hub; false for modes without rotor, true for gimballed if the rotor has a gimbal, "
     "else rigid."
+)
+_CARRIES = (
+    "What the structure of these masses carries: one rotor, as a semispan or half an aircraft does, or two rotors, as "
+    "a whole aircraft does, in modes of one symmetry; half of its masses then go with one rotor."
 )
 _SHAFT = "Whether a gimballed or rigid rotor could turn about its shaft in these modes; held if left out."
 
@@ -95,6 +113,7 @@ class NormalModesSection(Section):
     kind: Literal["normal-modes"] = needed("Normal modes, a `[[support.modes]]` each.")
     includes_rotor: fields.IncludesRotor = needed(_HELD)
     shaft: fields.Shaft = optional(_SHAFT)
+    carries: fields.Carries = optional(f"{_CARRIES} One rotor if left out.")
     modes: Annotated[list[ModeSection], Field(min_length=1)] = needed("One table for each mode.")
     wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
 
@@ -107,12 +126,12 @@ class NormalModesSection(Section):
         return self
 
 
-class BeamWingSection(Section):
-    """A cantilever wing of beam elements with a rigid pylon."""
+class _WingSection(Section):
+    """A wing of beam elements with a pylon: what a cantilever and one side of an aircraft have in common."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = DAMPING_ALTERNATIVES
 
-    kind: Literal["beam-wing"] = needed("A wing of beam elements.")
+    kind: Any = needed("")
     span: fields.PositiveLength = needed("Span, from the mount outboard to the pylon.")
     beam_stiffness: fields.BendingStiffness = needed("Stiffness EI of bending up and down.")
     chord_stiffness: fields.BendingStiffness = needed("Stiffness EI of bending fore and aft.")
@@ -157,27 +176,168 @@ class BeamWingSection(Section):
     wing_aerodynamics: WingAerodynamicsSection | None = optional("Airloads of the wing; none if left out.")
 
     @model_validator(mode="after")
-    def _one_damping(self) -> BeamWingSection:
+    def _one_damping(self) -> Self:
         _exactly_one(self, "damping_ratio", "loss_factor")
         return self
+
+
+class BeamWingSection(_WingSection):
+    """A cantilever wing of beam elements with a rigid pylon."""
+
+    alternatives: ClassVar[tuple[Sides, ...]] = (
+        *DAMPING_ALTERNATIVES,
+        *ROTOR_ALTERNATIVES,
+        *STIFFNESS_ALTERNATIVES,
+    )
+    may_lack: ClassVar[tuple[str, ...]] = tuple(
+        name for choice in STIFFNESS_ALTERNATIVES for side in choice for name in side
+    )
+
+    kind: Literal["beam-wing"] = needed("A wing of beam elements.")
+    rotor_mass: fields.MassOrNone = optional("Mass of the rotor model at the hub, which the modes include.")
+    rotor_held: fields.Held = optional(
+        "How the rotor, which the modes include, is held in them, in place of a mass: tilting on its gimbal, as one "
+        "body with the shaft, or a point mass at the hub."
+    )
+    shaft: fields.Shaft = optional(
+        "Whether a rotor that is held gimballed or rigid can turn about its shaft; held if left out."
+    )
+    beam_stiffness_factor: fields.Positive = optional("Factor on beam_stiffness; 1 if left out.")
+    chord_stiffness_factor: fields.Positive = optional("Factor on chord_stiffness; 1 if left out.")
+    torsion_stiffness_factor: fields.Positive = optional("Factor on torsion_stiffness; 1 if left out.")
+    beam_frequency: fields.PositiveFrequency = optional(
+        "Frequency of the beam mode with the rotor, to which beam_stiffness_factor is fitted."
+    )
+    chord_frequency: fields.PositiveFrequency = optional(
+        "Frequency of the chord mode with the rotor, to which chord_stiffness_factor is fitted."
+    )
+    torsion_frequency: fields.PositiveFrequency = optional(
+        "Frequency of the torsion mode with the rotor, to which torsion_stiffness_factor is fitted."
+    )
+
+    @model_validator(mode="after")
+    def _one_rotor(self) -> BeamWingSection:
+        _exactly_one(self, "rotor_mass", "rotor_held")
+        for (factor,), (frequency,) in STIFFNESS_ALTERNATIVES:
+            if self.model_fields_set.issuperset((factor, frequency)):
+                rule = f"must not be given with {frequency}, to which the factor is fitted"
+                raise InputError(factor, None, rule)
+        return self
+
+
+class FuselageSection(Section):
+    """A free rigid fuselage, by its own mass or by that of the whole aircraft."""
+
+    whole_aircraft: bool = needed(
+        "Whether the numbers are those of the whole aircraft; what wings, nacelles and rotors have is then taken off."
+    )
+    mass: fields.Mass = needed("Mass.")
+    roll_inertia: fields.Inertia = needed("Inertia about the axis forward through the centre of mass.")
+    pitch_inertia: fields.Inertia = needed("Inertia about the axis outboard through the centre of mass.")
+    yaw_inertia: fields.Inertia = needed("Inertia about the axis upward through the centre of mass.")
+    product_of_inertia: fields.ProductOfInertia = optional(
+        "Integral of distance forward times distance up from the centre of mass."
+    )
+    centre_forward: fields.Offset = needed(
+        "Centre of mass ahead of the elastic axis of the wing at the fuselage side."
+    )
+    centre_up: fields.Offset = needed(
+        "Centre of mass above the elastic axis of the wing at the fuselage side."
+    )
+
+
+class CarryThroughSection(Section):
+    """The box that carries the wing through the fuselage, and what the fuselage holds at its side.
+
+    Displacements are held; properties left out are those of the wing root."""
+
+    half_width: fields.PositiveLength = needed("Distance from the plane of symmetry to the fuselage side.")
+    beam_stiffness: fields.UniformStiffness = optional("Stiffness EI of bending up and down.")
+    chord_stiffness: fields.UniformStiffness = optional("Stiffness EI of bending fore and aft.")
+    torsion_stiffness: fields.UniformStiffness = optional("Torsion stiffness GJ.")
+    axial_stiffness: fields.UniformAxialStiffness = optional("Axial stiffness EA.")
+    mass_per_length: fields.UniformMass = optional("Mass per length.")
+    torsional_inertia_per_length: fields.UniformInertia = optional(
+        "Inertia per length about the elastic axis."
+    )
+    bending_slope: fields.Joint = optional(
+        'Turn of the wing against the fuselage about the forward axis: "held", "free" or a stiffness at each side; '
+        "free if left out."
+    )
+    chord_slope: fields.Joint = optional(
+        'Turn of the wing against the fuselage about the upward axis: "held", "free" or a stiffness at each side; '
+        "free if left out."
+    )
+    twist: fields.Joint = optional(
+        'Turn of the wing against the fuselage about the outboard axis: "held" or a stiffness at each side, or "free" '
+        "with antisymmetric motion alone; held if left out."
+    )
+    elements: fields.Size = optional("Number of elements of equal length.")
+
+
+class TailSection(Section):
+    """A tail of the aircraft: quasi-steady airloads on the motion of the fuselage."""
+
+    area: fields.Area = needed("Area; of all vertical tails together.")
+    lift_slope: fields.Slope = needed("Lift slope of the whole tail on its area.")
+    arm: fields.Offset = needed(
+        "Aerodynamic centre behind the elastic axis of the wing at the fuselage side."
+    )
+    height: fields.Offset = optional(
+        "Aerodynamic centre above the elastic axis of the wing at the fuselage side."
+    )
+    wash: fields.Fraction = optional(
+        "Downwash dε/dα or sidewash: share of the incidence that is lost at the tail."
+    )
+
+
+class AircraftSection(_WingSection):
+    """A whole aircraft with two mirrored rotors: free fuselage, box, wings, and pylons on springs.
+
+    The fields of the wing and the pylon are those of each side, the span from the fuselage side to the pylon."""
+
+    kind: Literal["aircraft"] = needed("A whole aircraft.")
+    modes: fields.Size = needed("Number of lowest elastic modes of each symmetry.")
+    symmetry: Literal["both", "symmetric", "antisymmetric"] = optional(
+        "Which motions of the aircraft the model has.", "both"
+    )
+    spindle_yaw_stiffness_on: fields.PositiveStiffness = optional(
+        "Yaw stiffness from pylon to wing, on the downstop; rigid if left out."
+    )
+    spindle_yaw_stiffness_off: fields.PositiveStiffness = optional(
+        "Yaw stiffness from pylon to wing, off the downstop; rigid if left out."
+    )
+    pylon_yaw_damping_ratio: fields.DampingRatio = optional(
+        "Damping ratio of pylon yaw modes, if it differs."
+    )
+    fuselage: FuselageSection = needed("The fuselage.")
+    carry_through: CarryThroughSection = needed("The box through the fuselage.")
+    horizontal_tail: TailSection | None = optional("Airloads of the horizontal tail; none if left out.")
+    vertical_tail: TailSection | None = optional("Airloads of the vertical tails; none if left out.")
 
 
 class MatricesSection(Section):
     """Mass, stiffness and damping matrices of any finite-element code."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = FILE_ALTERNATIVES
-    may_lack: ClassVar[tuple[str, ...]] = ("damping",)
+    may_lack: ClassVar[tuple[str, ...]] = ("damping", "hub_motion")
 
     kind: Literal["matrices"] = needed("Matrices from files.")
-    file: fields.File = optional("An .npz file with mass, stiffness, dofs and perhaps damping.")
+    file: fields.File = optional(
+        "An .npz file with mass, stiffness, dofs and perhaps damping; hub for modal coordinates."
+    )
     mass: fields.File = optional("Matrix Market file of the mass.")
     stiffness: fields.File = optional("Matrix Market file of the stiffness.")
     damping: fields.File = optional("Matrix Market file of the damping.")
     dofs: fields.File = optional("Text file with the name of a coordinate on each line.")
+    hub_motion: fields.File = optional(
+        "Matrix Market file of the hub's motion, 6 rows with x to alpha_z and a column for each modal coordinate."
+    )
     hub: dict[str, str] | None = optional(
         'Coordinate of the hub for each of x, y, z, alpha_x, alpha_y, alpha_z, with "-" in front if it has the '
-        "opposite direction; hub_x and so on if left out."
+        "opposite direction; hub_x and so on if left out. Not for modal coordinates."
     )
+    carries: fields.Carries = optional(f"{_CARRIES} Needed for modal coordinates, and for no others.")
     includes_rotor: fields.IncludesRotor = needed(_HELD)
     shaft: fields.Shaft = optional(_SHAFT)
     rotor_mass: fields.MassOrNone = optional(
@@ -194,12 +354,18 @@ class MatricesSection(Section):
     @model_validator(mode="after")
     def _one_file_or_several(self) -> MatricesSection:
         _exactly_one(self, "file", "mass")
-        several = [name for name in ("stiffness", "damping", "dofs") if name in self.model_fields_set]
+        several = [
+            name for name in ("stiffness", "damping", "dofs", "hub_motion") if name in self.model_fields_set
+        ]
         if self.file is not None and several:
             raise InputError(several[0], None, "must not be given with file, which holds it")
         for name in ("stiffness", "dofs"):
             if self.file is None and name not in self.model_fields_set:
                 raise InputError(name, None, "is missing")
+        if self.hub_motion is not None and self.hub is not None:
+            raise InputError(
+                "hub", None, "must not be given with hub_motion, which has the motion of the hub"
+            )
         return self
 
 
@@ -216,6 +382,7 @@ class NastranSection(Section):
     )
     includes_rotor: fields.IncludesRotor = needed(_HELD)
     shaft: fields.Shaft = optional(_SHAFT)
+    carries: fields.Carries = optional(f"{_CARRIES} One rotor if left out.")
     modes: fields.Size = optional("Number of lowest modes to keep; all if left out.")
     damping_ratio: fields.DampingRatio = optional("Damping ratio of every mode; 0 if left out.")
     length_unit: fields.PositiveLength = optional("Unit of length of the run; 1 m if left out.")
@@ -245,7 +412,13 @@ class RigidSection(Section):
 
 
 SupportSection = Annotated[
-    NormalModesSection | BeamWingSection | MatricesSection | NastranSection | PivotSection | RigidSection,
+    NormalModesSection
+    | BeamWingSection
+    | AircraftSection
+    | MatricesSection
+    | NastranSection
+    | PivotSection
+    | RigidSection,
     Field(discriminator="kind"),
 ]
 

@@ -37,6 +37,12 @@ _EXAMPLES = {
     "curve": "{ value = [1.9, 1.8, 1.7] }",
     "table": '{ x = "hub_x" }',
 }
+_EXAMPLES_OF_FIELDS = {
+    "left.rotor": '{ control_stiffness = "8000 ft*lbf/rad" }',
+    "left.operation": '{ trim = { collective = "30 deg" } }',
+    "left.drive_train": '{ drive_damping = "100 N*m*s/rad" }',
+    "left.support": "{ downstop = false }",
+}
 _COLUMNS = 13  # numbers of a list in one line
 
 
@@ -83,7 +89,9 @@ def example(field: DeckField) -> str:
     if field.form == "distribution":
         unit = _first_example(field.unit).strip('"').partition(" ")[2]
         return f'{{ r_over_R = [0, 1], value = [0.3, 0.2], unit = "{unit}" }}'
-    if field.form == "choice":
+    if field.form == "fields":
+        return _EXAMPLES_OF_FIELDS[field.path]
+    if field.form in ("choice", "joint"):
         return field.takes.partition(" or ")[0]
     unit = field.unit.partition(" or ")[0]
     return _EXAMPLES.get(field.form) or _first_example("" if unit == "1" else unit)

@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from proprotor.deck.left import left_tables
 from proprotor.deck.sections import SECTIONS, SUPPORT_KINDS, Deck, in_the_deck
 from proprotor.deck.text import plain_text
 from proprotor.errors import InputError, unknown_name
@@ -31,6 +32,20 @@ def validate(tables: dict[str, Any]) -> Deck:
         With a line for every problem.
     """
     tables = plain_text(tables, _field_name)
+    deck = _checked(tables)
+    if deck.left is None:
+        return deck
+    own = {name: table for name, table in tables.items() if name != "left"}
+    altered = left_tables(own, tables["left"])
+    try:
+        return deck.with_left_side(_checked(altered))
+    except InputError as error:
+        first, *others = [one.within("left") for one in (error, *error.others)]
+        raise InputError(first.field, first.value, first.rule, others) from None
+
+
+def _checked(tables: dict[str, Any]) -> Deck:
+    """Return the deck in tables, without the deck of the left side."""
     try:
         return Deck.model_validate(tables)
     except ValidationError as error:

@@ -18,7 +18,7 @@ import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.files.output import check_place, write_whole
-from proprotor.model.linear_model import INPUTS, LinearModel
+from proprotor.model.linear_model import LinearModel
 from proprotor.model.stamp import of_model
 from proprotor.typing import Array, Dataset
 
@@ -108,7 +108,7 @@ def _of_model(model: LinearModel) -> dict[str, Any]:
     if model.hub is not None:
         content["hub"] = _pages(model.hub)
     if model.B is not None:
-        content |= {"B": _pages(model.B), "inputs": _cells(INPUTS)}
+        content |= {"B": _pages(model.B), "inputs": _cells(model.inputs)}
         space = model.to_state_space()
         content["state_space"] = {name: _pages(getattr(space, name)) for name in "ABCD"} | {
             name: _cells(getattr(space, name)) for name in ("states", "inputs", "outputs")

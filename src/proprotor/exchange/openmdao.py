@@ -7,7 +7,7 @@
 
     problem = om.Problem()
     problem.model.add_subsystem(
-        "wing", WhirlFlutter(case="xv15", inputs=["rotor.precone", "support.modes[chord].frequency"]), promotes=["*"]
+        "wing", WhirlFlutter(case="xv15", inputs=["rotor.precone", "support.chord_frequency"]), promotes=["*"]
     )
     problem.setup()
     problem.set_val("rotor_precone", 2.0, units="deg")
@@ -40,7 +40,7 @@ from proprotor.errors import InputError, check_known
 from proprotor.model.stamp import one_density
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
-from proprotor.stability.flutter import flutter_point
+from proprotor.stability.flutter import boundary_of, flutter_point
 from proprotor.stability.modes import decomposition
 from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
 from proprotor.typing import Dataset
@@ -238,12 +238,7 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         """Return the boundary whose position is the flutter speed."""
         mode, level = self.options["mode"], self.options["level"]
         found = flutter_point(case, self.options["search"], level=level, **self._model_options)
-        wanted = [b for b in found.boundaries if (b.onset if mode is None else b.mode == mode)]
-        if not wanted:
-            rule = "nothing becomes unstable" if mode is None else "has no boundary"
-            low, high = found.searched
-            raise InputError("flutter_speed", mode, f"{rule} between {low:.6g} and {high:.6g} m/s")
-        return wanted[0]
+        return boundary_of(found, mode)
 
     def _flutter_partials(self, case: Case, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
         boundary = self._found.get(self._key(inputs)) or self._boundary(case)

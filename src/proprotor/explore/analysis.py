@@ -40,6 +40,8 @@ class LiveModes:
         Unstable ranges of airspeed, with ends interpolated between the points.
     leaps : array (points - 1, modes) of bool
         True where a name passes to a root that lies elsewhere, see `proprotor.tables.sweep_summary.leaps`.
+    rigid_body : tuple of str
+        Names of the coordinates that move an aircraft as one body.
     """
 
     airspeed: Array
@@ -49,11 +51,17 @@ class LiveModes:
     warning: Array
     unstable: list[UnstableRange]
     leaps: Array
+    rigid_body: tuple[str, ...] = ()
 
     @property
     def flutter(self) -> UnstableRange | None:
-        """The unstable range that begins at the lowest airspeed; None if no mode becomes unstable within the points."""
-        onsets = [found for found in self.unstable if not found.open_start]
+        """The unstable range that begins at the lowest airspeed; None if no mode becomes unstable within the points.
+
+        Modes that are named after a motion of an aircraft as one body do not count.
+        """
+        onsets = [
+            found for found in self.unstable if not found.open_start and found.mode not in self.rigid_body
+        ]
         return min(onsets, key=lambda found: found.start, default=None)
 
     @property
@@ -106,7 +114,8 @@ def live_modes(
     )
     reason, warning = model.trim.reason[shown], model.trim.warning[shown]
     sweep = _as_sweep(airspeeds, names, found, labels, error)
-    return LiveModes(airspeeds, names, found, reason, warning, unstable_ranges(sweep), leaps(sweep))
+    ranges = unstable_ranges(sweep)
+    return LiveModes(airspeeds, names, found, reason, warning, ranges, leaps(sweep), model.rigid_body)
 
 
 def _between(model: LinearModel) -> Any:
@@ -124,7 +133,7 @@ def _between(model: LinearModel) -> Any:
 
     def linearize(positions: Array) -> LinearModel:
         M, C, K = np.moveaxis(spline(positions), 1, 0)
-        parts: dict[str, Any] = dict.fromkeys(("B", "rotor", "shapes"))
+        parts: dict[str, Any] = dict.fromkeys(("B", "rotor", "left", "shapes"))
         return replace(model, airspeed=positions, M=M, C=C, K=K, **parts)
 
     return linearize

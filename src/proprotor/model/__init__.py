@@ -10,11 +10,14 @@ configuration, and the stamp that every result has.
     mass_at_rest         the rotor's mass matrix at rest with locked blades
     rotor_share          the rotor's share, taken off a support whose masses include the rotor
     mount                one rotor on a support
+    pair                 two mirrored rotors on an airframe, in symmetric and antisymmetric coordinates
+    mast                 a mast that twists between a rotor and its engine
     several_rotors       several rotors on a support
     massless             motions that move no mass, which have no eigenvalue
     first_order          which points and coordinates have states, and the state matrix
     state_space          A, B, C, D with names
     structural_damping   structural damping at which a model is neutrally stable
+    side                 the left side of an aircraft where it differs from the right side
     configuration        the record Configuration: rotor, operation, support, sources; `linearize`
     provenance           which numbers of a configuration were not read in a source
     doubts               marks and reasons of doubtful numbers
@@ -32,14 +35,18 @@ from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
+from proprotor.model.mast import with_mast
 from proprotor.model.mount import mount
+from proprotor.model.pair import mount_pair, rotors_on, shares
 from proprotor.model.rotor_model import airload_moments, in_closed_form, rotor_model
+from proprotor.model.side import Side
 
 __all__ = [
     "INPUTS",
     "SWASHPLATE",
     "Configuration",
     "LinearModel",
+    "Side",
     "airload_moments",
     "deck_fingerprint",
     "doubts",
@@ -47,6 +54,7 @@ __all__ = [
     "in_closed_form",
     "mass_at_rest",
     "mount",
+    "mount_pair",
     "options_in_force",
     "options_of_result",
     "provenance",
@@ -54,9 +62,12 @@ __all__ = [
     "rigid_propeller",
     "rotor_model",
     "rotor_share",
+    "rotors_on",
     "several_rotors",
+    "shares",
     "stamp",
     "state_space",
     "structural_damping",
+    "with_mast",
     "with_reasons",
 ]

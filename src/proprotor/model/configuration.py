@@ -10,14 +10,18 @@ from typing import Any
 import numpy as np
 
 from proprotor.datum import Datum
+from proprotor.errors import InputError
 from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
+from proprotor.model.pair import mount_pair
 from proprotor.model.provenance import reservations
 from proprotor.model.rotor_model import rotor_model
+from proprotor.model.side import Side
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
+from proprotor.support.airframe import Airframe
 from proprotor.support.normal_modes import NormalModes
 
 _RPM = math.pi / 30  # rad/s
@@ -46,6 +50,9 @@ class Configuration:
         Frequencies of the blades; a case that has some has structure="tabulated" unless an option says otherwise.
     drive_train : DriveTrain, optional
         Drive train on the rotor's azimuth, unless an option says otherwise.
+    left : Side, optional
+        The left side of an aircraft whose sides differ; the support then is an `proprotor.support.airframe.Airframe`
+        with symmetric and antisymmetric coordinates, which the two sides couple.
     deck : Deck, optional
         The deck of the configuration, from which `proprotor.deck.vary` builds other designs.
     given : mapping of str to Datum
@@ -63,6 +70,7 @@ class Configuration:
     sources: Mapping[str, Datum] = field(default_factory=dict)
     frequencies: BladeFrequencies | None = None
     drive_train: DriveTrain | None = None
+    left: Side | None = None
     deck: Any = None
     given: Mapping[str, Datum] = field(default_factory=dict)
 
@@ -98,9 +106,14 @@ class Configuration:
         InputError
             For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
         """
-        rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **self.model_options(options))
+        own = self.model_options(options)
+        rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **own)
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
-        model = mount(rotor_alone, support)
+        if isinstance(support, Airframe):
+            model = self._pair(rotor_alone, support, airspeed, options)
+        else:
+            self._check_one_rotor(own)
+            model = mount(rotor_alone, support)
         return model if model.origin is None else replace(model, origin=model.origin._replace(case=self))
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
@@ -117,12 +130,67 @@ class Configuration:
             The options given, with ``structure="tabulated"`` and ``frequencies`` if the case has blade frequencies,
             and with ``drive_train`` if the case has one and the rotor speed is not constant.
         """
-        found = dict(options)
-        if self.frequencies is not None and found.get("structure", "tabulated") == "tabulated":
-            found = {"structure": "tabulated", "frequencies": self.frequencies} | found
-        if self.drive_train is not None and found.get("rotor_speed") != "constant":
-            found = {"drive_train": self.drive_train} | found
-        return found
+        return _completed(options, self.frequencies, self.drive_train)
+
+    def _pair(
+        self, right: LinearModel, airframe: Airframe, airspeed: Any, options: Mapping[str, Any]
+    ) -> LinearModel:
+        """Return the model of an aircraft: its right rotor, and the mirror image of that rotor or another left one."""
+        own = self.model_options(options)
+        if self.left is None:
+            return mount_pair(right, airframe, None, _interconnect(own, own))
+        other = self._left_options(self.left, options)
+        return mount_pair(right, airframe, _left_rotor(self.left, airspeed, other), _interconnect(own, other))
+
+    def _left_options(self, left: Side, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the options of the left side, with blade frequencies and a drive train of its own.
+
+        An option that repeats what the right side of the case brings is none for the left side.
+        """
+        own = {"frequencies": self.frequencies, "drive_train": self.drive_train}
+        given = {
+            name: value for name, value in options.items() if value is None or value is not own.get(name)
+        }
+        return _completed(given, left.frequencies, left.drive_train)
+
+    def _check_one_rotor(self, options: Mapping[str, Any]) -> None:
+        """Refuse what only an aircraft with two rotors has."""
+        if self.left is not None:
+            raise InputError("left", self.left, "goes with an aircraft that has two rotors")
+        train = options.get("drive_train")
+        if train is not None and np.any(np.real(train.interconnect_stiffness) > 0):
+            rule = "must be zero without a second rotor"
+            raise InputError("drive_train.interconnect_stiffness", train.interconnect_stiffness, rule)
+
+
+def _left_rotor(left: Side, airspeed: Any, options: Mapping[str, Any]) -> LinearModel:
+    """Return the left rotor alone, in its mirrored axes."""
+    try:
+        return rotor_model(left.rotor, left.operation, airspeed, **options)
+    except InputError as error:
+        raise error.within("left") from None
+
+
+def _interconnect(right: Mapping[str, Any], left: Mapping[str, Any]) -> Any:
+    """Return the stiffness of the interconnect shaft, N m/rad, by the options of both sides."""
+    trains = [options.get("drive_train") for options in (right, left)]
+    stiffness, other = (0.0 if train is None else train.interconnect_stiffness for train in trains)
+    if not np.array_equal(stiffness, other):
+        rule = f"must be that of the right side, {stiffness}: one shaft connects both"
+        raise InputError("left.drive_train.interconnect_stiffness", other, rule)
+    return stiffness
+
+
+def _completed(
+    options: Mapping[str, Any], frequencies: BladeFrequencies | None, drive_train: DriveTrain | None
+) -> dict[str, Any]:
+    """Return options completed with the blade frequencies and the drive train of a side."""
+    found = dict(options)
+    if frequencies is not None and found.get("structure", "tabulated") == "tabulated":
+        found = {"structure": "tabulated", "frequencies": frequencies} | found
+    if drive_train is not None and found.get("rotor_speed") != "constant":
+        found = {"drive_train": drive_train} | found
+    return found
 
 
 def _held(support: NormalModes) -> str:

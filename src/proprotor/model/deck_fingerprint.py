@@ -21,7 +21,7 @@ def deck_fingerprint(case: Configuration) -> str:
     For a case without a deck the text identifies the rotor, operation and support themselves.
     """
     if case.deck is None:
-        parts = [case.rotor, case.operation, case.support, case.frequencies, case.drive_train]
+        parts = [case.rotor, case.operation, case.support, case.frequencies, case.drive_train, case.left]
         return short_fingerprint(parts)
     numbers = {
         path: [_number(n.si), n.r_over_R] for path, n in case.given.items() if not isinstance(n.si, str)

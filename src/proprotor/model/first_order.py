@@ -1,11 +1,14 @@
 """The equations of motion in first order, ẋ = A x: which points and coordinates have states, and the state matrix.
 
-The state x is the displacements, then the velocities of all n coordinates. The rotor's azimuth has no stiffness unless
-a shaft holds it; a free azimuth is no displacement of x, only a velocity.
+The state x is the displacements, then the velocities of all n coordinates. A coordinate along which nothing has
+stiffness is no displacement of x, only a velocity: the rates of the model, and an azimuth that no shaft holds.
+Coordinates that do not couple have states of their own (`blocks`), and eigenvalues of their own, one block after the
+other.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -14,9 +17,11 @@ import numpy as np
 from proprotor.errors import InputError
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import massless, massless_coordinates
-from proprotor.rotor.motions import ROTOR_SPEED
 from proprotor.typing import Array
 
+StateBlocks = tuple[
+    tuple[Array, slice], ...
+]  # rows of the state vector, and columns of the modes, of each block
 _NO_SHAFT = "no shaft holds the azimuth: its rate has one root, where a shaft gives two"
 
 
@@ -29,9 +34,9 @@ def state_matrix(model: LinearModel) -> Array:
 
     Returns
     -------
-    array (..., 2n - 1, 2n - 1), with a shaft (..., 2n, 2n)
-        SI units, NaN at points without modes. In a batch with a shaft at some points only, the row and column of the
-        azimuth are NaN at the other points.
+    array (..., states, states)
+        SI units, NaN at points without modes; 2n states, less one for each coordinate that has a rate alone. In a batch
+        with a shaft at some points only, the row and column of the azimuth are NaN at the other points.
 
     Raises
     ------
@@ -50,13 +55,11 @@ def first_order(model: LinearModel) -> Array:
     held = held_coordinates(model)
     acceleration = -np.linalg.solve(model.M, np.concatenate([model.K[..., held], model.C], axis=-1))
     matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
-    matrix[..., np.arange(len(held)), len(held) + np.array(held)] = 1
+    matrix[..., np.arange(len(held)), len(held) + np.array(held, dtype=int)] = 1
     matrix[..., len(held) :, :] = acceleration
-    free = lack_azimuth(model)
-    if free.any():
-        azimuth = model.dofs.index(ROTOR_SPEED)
-        matrix[free, azimuth, :] = np.nan
-        matrix[free, :, azimuth] = np.nan
+    for state, free in lacking_states(model):
+        matrix[free, state, :] = np.nan
+        matrix[free, :, state] = np.nan
     return matrix
 
 
@@ -88,11 +91,12 @@ def some_points(model: LinearModel, points: Any) -> LinearModel:
     """Return the model at some of its points, with M, C and K only."""
     parts = {name: getattr(model, name)[points] for name in "MCK"}
     shapes = None if model.shapes is None else model.shapes[points]
-    return replace(model, **parts, B=None, hub=None, rotor=None, shapes=shapes)
+    none: dict[str, Any] = dict.fromkeys(("B", "hub", "rotor", "left", "left_hub"))
+    return replace(model, **parts, **none, shapes=shapes)
 
 
 def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]:
-    """Return the places of the coordinates whose displacement is a state: all but an azimuth that no shaft holds.
+    """Return the places of the coordinates whose displacement is a state: all but rates and azimuths without shaft.
 
     Parameters
     ----------
@@ -100,15 +104,33 @@ def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]
     states : int, optional
         Number of states of the larger batch that the model is a part of, where the shaft may hold other points.
     """
-    n = len(model.dofs)
-    held = bool(model.shaft_holds_azimuth.any()) if states is None else states == 2 * n
-    return [place for place, name in enumerate(model.dofs) if name != ROTOR_SPEED or held]
+    azimuths = model.azimuths
+    if states is None:
+        count = int(np.count_nonzero(_anywhere(model.azimuths_held)))
+    else:
+        count = states - (2 * len(model.dofs) - len(model.rates) - len(azimuths))
+    loose = {*model.rates, *azimuths[count:]}
+    return [place for place, name in enumerate(model.dofs) if name not in loose]
 
 
-def lack_azimuth(model: LinearModel) -> Array:
-    """Return which points (...) lack the azimuth among their states, while other points of the batch have it."""
-    holds = model.shaft_holds_azimuth
-    return np.asarray(holds.any() & ~holds & np.isfinite(model.K).all(axis=(-2, -1)))
+def lack_azimuths(model: LinearModel) -> Array:
+    """Return which azimuths points (..., azimuths) lack among their states though other points of the batch do not."""
+    holds = model.azimuths_held
+    works = np.asarray(np.isfinite(model.K).all(axis=(-2, -1)))[..., None]
+    return np.asarray(_anywhere(holds) & ~holds & works)
+
+
+def _anywhere(holds: Array) -> Array:
+    """Return which azimuths (azimuths,) a shaft holds at some point (..., azimuths)."""
+    return np.asarray(holds.any(axis=tuple(range(holds.ndim - 1))))
+
+
+def lacking_states(model: LinearModel) -> Iterator[tuple[int, Array]]:
+    """Yield the place of each azimuth among the states that some points lack, with these points (...)."""
+    lacks, held = lack_azimuths(model), held_coordinates(model)
+    for name, free in zip(model.azimuths, np.moveaxis(lacks, -1, 0), strict=True):
+        if free.any():
+            yield held.index(model.dofs.index(name)), free
 
 
 def missing_roots(model: LinearModel, states: int | None = None) -> Array:
@@ -116,8 +138,25 @@ def missing_roots(model: LinearModel, states: int | None = None) -> Array:
 
     `states` is by default the largest number of states in the batch.
     """
-    n, holds = len(model.dofs), model.shaft_holds_azimuth
+    n, holds = len(model.dofs), model.azimuths_held
     most = n + len(held_coordinates(model)) if states is None else states
-    own = 2 * n - ((ROTOR_SPEED in model.dofs) & ~holds)
+    own = 2 * n - len(model.rates) - (~holds).sum(axis=-1)
     fewer = (own < most) & np.isfinite(model.K).all(axis=(-2, -1))
     return np.where(fewer, _NO_SHAFT, "").astype(object)
+
+
+def blocks(model: LinearModel, held: list[int]) -> StateBlocks:
+    """Return the states of each group of coordinates that do not couple with others: rows, and columns of modes.
+
+    Parameters
+    ----------
+    model : LinearModel
+    held : list of int
+        Places of the coordinates whose displacement is a state.
+    """
+    found, start = [], 0
+    for own in model.blocks:
+        rows = [held.index(place) for place in own if place in held] + [len(held) + place for place in own]
+        found.append((np.array(rows, dtype=int), slice(start, start + len(rows))))
+        start += len(rows)
+    return tuple(found)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from proprotor_equations import FIXED_GUSTS
@@ -12,7 +12,7 @@ from proprotor_equations import FIXED_GUSTS
 from proprotor.model import stamp
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.model.stamp import Origin
-from proprotor.rotor.motions import ROTOR_SPEED
+from proprotor.rotor.motions import HALVES, ROTOR_SPEED, in_half
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array, Dataset
 
@@ -38,11 +38,13 @@ class LinearModel:
     airspeed : array (...)
         m/s.
     B : array (..., n, 6), optional
-        Loads per unit of the inputs `INPUTS`: swashplate collective and cyclics in rad, gusts along I, J, K in m/s.
+        Loads per unit of the inputs `INPUTS`: swashplate collective and cyclics in rad, gusts along I, J, K in m/s; of
+        two rotors, the loads of each half of the motion in turn.
     hub : array (6, n), optional
-        Hub motion per unit of each coordinate; None for a model whose first six coordinates are the hub's own.
+        Hub motion per unit of each coordinate; None for a model whose first six coordinates are the hub's own. Of two
+        rotors, the motion of the right hub.
     rotor : LinearModel, optional
-        The rotor alone of a rotor on a support, from which the hub loads follow.
+        The rotor alone of a rotor on a support, from which the hub loads follow; of two rotors, the right one.
     mass_at_rest : array (..., 6, 6) or (..., 8, 8), optional
         For a rotor alone: its mass matrix at rest with locked blades, in kg, kg m and kg m², on the hub's coordinates
         and, for a rotor with a gimbal, on the gimbal's, whatever the options. A support whose masses include the rotor
@@ -52,6 +54,23 @@ class LinearModel:
         `proprotor.support.normal_modes.NormalModes`.
     origin : Origin, optional
         The options in force and the case, if the model is one of a case: see `proprotor.model.stamp`.
+    rates : tuple of str
+        Coordinates along which nothing has stiffness, such as the heave of an aircraft: only their rates are states.
+    rigid_body : tuple of str
+        Coordinates that move an aircraft as one body.
+    symmetry : tuple of str
+        Of a model of two mirrored rotors (`proprotor.model.pair`): "symmetric", "antisymmetric" or "" for each
+        coordinate; empty for any other model.
+    halves_couple : bool
+        Whether symmetric coordinates couple with antisymmetric ones; if not, the terms between them are exactly zero,
+        and each half is a problem of its own.
+    left : LinearModel, optional
+        Of two rotors that differ: the left rotor alone, in its mirrored axes.
+    left_hub : array (..., 6, n), optional
+        Of two rotors: motion of the left hub per unit of each coordinate, m and rad, in the mirrored axes of the left
+        rotor.
+    inputs : tuple of str
+        Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on.
     """
 
     M: Array
@@ -66,6 +85,13 @@ class LinearModel:
     mass_at_rest: Array | None = None
     shapes: Array | None = None
     origin: Origin | None = None
+    rates: tuple[str, ...] = ()
+    rigid_body: tuple[str, ...] = ()
+    symmetry: tuple[str, ...] = ()
+    halves_couple: bool = True
+    left: LinearModel | None = None
+    left_hub: Array | None = None
+    inputs: tuple[str, ...] = INPUTS
 
     def __repr__(self) -> str:
         """Return the coordinates, the shape of the batch and its failed and doubtful points, in a few lines."""
@@ -90,15 +116,35 @@ class LinearModel:
         return {name: matrix for name in "MCKB" if (matrix := getattr(self, name)) is not None}
 
     @property
-    def shaft_holds_azimuth(self) -> Array:
-        """Points (...) at which a shaft with an end of constant speed makes the azimuth a displacement, in rad.
+    def blocks(self) -> list[list[int]]:
+        """Places of the coordinates, in groups of which no two couple."""
+        if self.halves_couple or not self.symmetry:
+            return [list(range(len(self.dofs)))]
+        places = {half: [k for k, own in enumerate(self.symmetry) if own == half] for half in HALVES}
+        return [own for own in places.values() if own]
 
-        Without a shaft only the rate of the azimuth counts.
+    @property
+    def azimuths(self) -> tuple[str, ...]:
+        """Coordinates that are displacements only where a shaft holds them; what holds one holds those before it too.
+
+        An interconnect shaft between two rotors holds the antisymmetric azimuth alone.
         """
-        if ROTOR_SPEED not in self.dofs:
-            return np.zeros(self.K.shape[:-2], dtype=bool)
-        place = self.dofs.index(ROTOR_SPEED)
-        return np.asarray(np.nan_to_num(np.real(self.K[..., place, place])) > 0)
+        names = [in_half(half, ROTOR_SPEED) for half in reversed(HALVES)] if self.symmetry else [ROTOR_SPEED]
+        return tuple(name for name in names if name in self.dofs)
+
+    @property
+    def azimuths_held(self) -> Array:
+        """Points (..., azimuths) at which a shaft makes an azimuth a displacement, in rad.
+
+        Without a shaft only the rate of an azimuth counts.
+        """
+        places = [self.dofs.index(name) for name in self.azimuths]
+        return np.asarray(np.nan_to_num(np.real(self.K[..., places, places])) > 0)
+
+    @property
+    def shaft_holds_azimuth(self) -> Array:
+        """Points (...) at which shafts make every azimuth a displacement, in rad: see `azimuths_held`."""
+        return np.asarray(self.azimuths_held.all(axis=-1) & bool(self.azimuths))
 
     def modes(self) -> Dataset:
         """Return eigenvalues and mode shapes, see `proprotor.stability.modes.modes`.
@@ -148,10 +194,14 @@ class LinearModel:
         places = [self.dofs.index(name) for name in dofs]
         parts = {name: getattr(self, name)[..., places, :][..., places] for name in "MCK"}
         inputs = None if self.B is None else self.B[..., places, :]
-        hub = None if self.hub is None else self.hub[:, places]
+        hub, left = (None if motion is None else motion[..., places] for motion in (self.hub, self.left_hub))
         whole = self.shapes is not None and places[: self.shapes.shape[-1]] == [*range(self.shapes.shape[-1])]
         shapes = self.shapes if whole else None
-        return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts)
+        rates, rigid = (tuple(name for name in own if name in dofs) for own in (self.rates, self.rigid_body))
+        more: dict[str, Any] = {"rates": rates, "rigid_body": rigid, "left_hub": left}
+        if self.symmetry:
+            more["symmetry"] = tuple(self.symmetry[place] for place in places)
+        return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts, **more)
 
 
 def range_text(values: Array) -> str:

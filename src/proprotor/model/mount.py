@@ -51,7 +51,7 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     additions = {"M": mass, "C": support.damping, "K": support.stiffness}
     parts = (rotor_alone.M, support.hub, *additions.values())
     shape = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in parts))
-    rotor_alone = _broadcast(rotor_alone, shape)
+    rotor_alone = broadcast(rotor_alone, shape)
     matrices: dict[str, Any] = {
         name: _on_support(getattr(rotor_alone, name), support.hub, addition)
         for name, addition in additions.items()
@@ -67,8 +67,8 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
         hub=np.concatenate([support.hub, still], axis=-1),
         rotor=rotor_alone,
         mass_at_rest=None,
-        shapes=_at_points(support.shapes, shape, 2),
-        trim=_with_warning(rotor_alone.trim, _at_points(support.warning, shape, 0)),
+        shapes=at_points(support.shapes, shape, 2),
+        trim=with_warning(rotor_alone.trim, at_points(support.warning, shape, 0)),
     )
     return refused_where(refusal, with_reasons(coupled), support)
 
@@ -100,14 +100,14 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
     return replace(model, **matrices, trim=trim)
 
 
-def _at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
+def at_points(values: Array | None, shape: tuple[int, ...], own: int) -> Array | None:
     """Return an array of many designs, whose last `own` axes are not axes of the batch, at each point of a batch."""
     if values is None:
         return None
     return np.broadcast_to(values, (*shape, *values.shape[values.ndim - own :]))
 
 
-def _with_warning(trim: Trim, warning: Array | None) -> Trim:
+def with_warning(trim: Trim, warning: Array | None) -> Trim:
     """Return the trim with the warnings of the support appended to its own."""
     if warning is None:
         return trim
@@ -139,10 +139,10 @@ def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:
     check_distinct("support.names", (*support, *own))
 
 
-def _broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
+def broadcast(model: LinearModel, shape: tuple[int, ...]) -> LinearModel:
     """Return the model at every point of a batch that has more axes, the axes of the supports."""
     if model.M.shape[:-2] == shape:
         return model
-    matrices: dict[str, Any] = {name: _at_points(matrix, shape, 2) for name, matrix in model.matrices.items()}
+    matrices: dict[str, Any] = {name: at_points(matrix, shape, 2) for name, matrix in model.matrices.items()}
     airspeed = np.broadcast_to(model.airspeed, shape)
     return replace(model, **matrices, trim=model.trim.broadcast(shape), airspeed=airspeed)

@@ -24,7 +24,7 @@ _ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling")
 
 
 def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options that a result of a case was computed with, as keywords for the next analysis.
+    """Return the options that a result of a case was computed with, as keywords for the next analysis of the case.
 
     Parameters
     ----------
@@ -42,11 +42,13 @@ def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str
         has no options among its attributes, and an option that cannot be read back and is not repeated.
     """
     own = check_options(found, case, given)
+    # What the case itself brings is left out, so that a varied case brings its own.
+    brought = {name for name in _RECORDS if own[name] is not None and plain(getattr(case, name)) == own[name]}
     return {
         name: _keyword(case, name, value, given)
         for name, value in own.items()
         # Without None here, the drive train of the case would count.
-        if value is not None or name == "drive_train"
+        if (value is not None or name == "drive_train") and (name not in brought or name in given)
     }
 
 

@@ -56,7 +56,7 @@ def model_quantities(
     given |= {name: np.maximum(given[name], softest) for name in ("flap_stiffness", "lag_stiffness")}
     given |= {"propeller_moment": float(rotor.propeller_moment), "airspeed": airspeed}
     given |= {name: value for name in COUPLINGS if (value := getattr(options, name)) is not None}
-    given |= {} if options.drive_train is None else vars(options.drive_train)
+    given |= {} if options.drive_train is None else options.drive_train.at_rotor
     given["section_damping"] = float(bool(options.section_damping))
     return {name: flat(value, shape) for name, value in given.items()}
 

@@ -15,11 +15,12 @@ from proprotor_equations.coordinates import FIXED, Coordinate
 from proprotor.errors import InputError
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
+from proprotor.model.mast import with_mast
 from proprotor.model.quantities import batch_shape, couplings, flat, model_quantities
 from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.motions import ROTOR_SPEED, reactionless_coordinates, reactionless_harmonics
+from proprotor.rotor.motions import MAST_TWIST, ROTOR_SPEED, reactionless_coordinates, reactionless_harmonics
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -87,6 +88,9 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice),
     )
+    if choice.drive_train is not None and choice.drive_train.mast_stiffness is not None:
+        model = with_mast(model, choice.drive_train)
+        coordinates = (*coordinates, Coordinate(MAST_TWIST, MAST_TWIST, 0, "", "rad"))
     free = _free_coordinates(choice, coordinates)
     return model if free == model.dofs else model.submodel(free)
 

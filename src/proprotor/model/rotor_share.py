@@ -193,7 +193,7 @@ def spring_warnings(
     if not changes:
         return ()
     return (
-        f"At rest the hub spring moves {', '.join(changes)} from the frequency given: the rotor's share taken off the "
+        f"At rest the hub spring moves {', '.join(changes)} from the frequency given: the rotor's share of the "
         "support's modes is that of a gimbal without spring, for a spring is no mass.",
     )
 

@@ -1,23 +1,29 @@
 """Build the state space of a linear model, with names, for control design, frequency response and simulation.
 
 Inputs are swashplate collective and cyclics (rad) and gusts along I, J, K (m/s). Outputs are hub motion, the rotor's
-loads on the hub and the blades' motion. With the pitch equations kept, the pitch coordinates are the whole
-perturbation of blade pitch.
+loads on the hub and the blades' motion; of two rotors, each of these in symmetric and antisymmetric motion. With the
+pitch equations kept, the pitch coordinates are the whole perturbation of blade pitch.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.first_order import held_coordinates, lack_azimuth, state_matrix, without_massless
-from proprotor.model.linear_model import INPUTS, LinearModel
+from proprotor.model.first_order import (
+    held_coordinates,
+    lacking_states,
+    state_matrix,
+    without_massless,
+)
+from proprotor.model.linear_model import LinearModel
+from proprotor.model.pair import halves_of, hub_inputs, hub_rows
 from proprotor.model.stamp import Stamp, of_model
 from proprotor.needs import need
-from proprotor.rotor.motions import HUB, ROTOR_SPEED
+from proprotor.rotor.motions import HALVES, HUB, in_half
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
@@ -33,6 +39,12 @@ LOADS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 @dataclass(frozen=True, eq=False)
 class StateSpace:
     """ẋ = A x + B u, y = C x + D u, batched over leading axes; NaN at failed points.
+
+    Of two rotors, an input or output of a half, "symmetric force_x", is that of the right rotor in this half of the
+    motion: the left one is alike in its mirrored axes, or the opposite in the antisymmetric half.
+
+    Along an axis in which a coordinate without displacement moves the hub, as heave does an aircraft, rate and
+    acceleration of the hub are outputs and the displacement is none.
 
     If a shaft holds the azimuth at some points of a batch only, the azimuth is a state and an output. At the other
     points its row and column of A, its rows of B, C and D and its column of C are NaN. Its rate is an output too.
@@ -115,45 +127,71 @@ def state_space(model: LinearModel) -> StateSpace:
     n, held = len(model.dofs), held_coordinates(model)
     rates = slice(len(held), len(held) + n)
     acceleration_by_input = np.linalg.solve(mass, model.B)
-    inputs = np.zeros((*system.shape[:-1], len(INPUTS)))
+    inputs = np.zeros((*system.shape[:-1], len(model.inputs)))
     inputs[..., rates, :] = acceleration_by_input
     displacement = np.pad(np.eye(n)[:, held], ((0, 0), (0, n)))
     rate = np.pad(np.eye(n), ((0, 0), (len(held), 0)))
     motion = (displacement, rate, system[..., rates, :])
     names, rows, feedthrough = _outputs(model, motion, acceleration_by_input)
-    free, failed = lack_azimuth(model), ~np.isfinite(mass).all(axis=(-2, -1))
-    if free.any():
-        state, output = model.dofs.index(ROTOR_SPEED), names.index(ROTOR_SPEED)
+    failed = ~np.isfinite(mass).all(axis=(-2, -1))
+    for state, free in lacking_states(model):
+        output = names.index(model.dofs[held[state]])
         inputs[free, state], rows[free, :, state] = np.nan, np.nan
         rows[free, output], feedthrough[free, output] = np.nan, np.nan
     for part in (inputs, rows, feedthrough):
         part[failed] = np.nan
     states = (*(model.dofs[place] for place in held), *(f"{name} rate" for name in model.dofs))
     doubt = model.trim.warning, model.trim.reason
-    return StateSpace(system, inputs, rows, feedthrough, states, INPUTS, names, *doubt, of_model(model))
+    return StateSpace(system, inputs, rows, feedthrough, states, model.inputs, names, *doubt, of_model(model))
+
+
+class _Loads(NamedTuple):
+    """The loads on a hub, of one rotor or of one half of the motion of two rotors.
+
+    half : "", or the half; to_rotor (..., 6 + own, n) : the rotor's coordinates per unit of each coordinate of the
+    model; rows : hub rows of M, C and K (..., 6, n); inputs (..., 6, inputs) : hub rows of the inputs.
+    """
+
+    half: str
+    to_rotor: Array
+    rows: dict[str, Array]
+    inputs: Array
+
+    def names(self, names: tuple[str, ...], ending: str = "") -> tuple[str, ...]:
+        """Return names of outputs, with the half before and an ending after each."""
+        return tuple(f"{self.half} {name}{ending}".lstrip() for name in names)
 
 
 def _outputs(
     model: LinearModel, motion: _Rows, acceleration_by_input: Array
 ) -> tuple[tuple[str, ...], Array, Array]:
     """Return the names of the outputs and their rows of C and D."""
-    rotor, to_rotor = _rotor_alone(model)
-    hub = to_rotor[..., : len(HUB), :]
-    own = [place for place, name in enumerate(model.dofs) if name in rotor.dofs[len(HUB) :]]
     displacement, rate, acceleration = motion
-    loads, loads_by_input = _hub_loads(rotor, to_rotor, motion, acceleration_by_input)
-    shape = acceleration.shape[:-2]
-    blocks: list[_Block] = [
-        (HUB, hub @ displacement, None),
-        (tuple(f"{name} rate" for name in HUB), hub @ rate, None),
-        (tuple(f"{name} acceleration" for name in HUB), hub @ acceleration, hub @ acceleration_by_input),
-        (LOADS, loads, loads_by_input),
-        *_own_motion(model, own, displacement, rate),
-    ]
+    shape, own = acceleration.shape[:-2], _own_coordinates(model)
+    blocks: list[_Block] = []
+    for part in _hubs(model):
+        hub = part.to_rotor[..., : len(HUB), :]
+        loads, loads_by_input = _hub_loads(part, motion, acceleration_by_input)
+        known = _with_displacement(hub, displacement)
+        blocks += [
+            (part.names(tuple(HUB[axis] for axis in known)), (hub @ displacement)[..., known, :], None),
+            (part.names(HUB, " rate"), hub @ rate, None),
+            (part.names(HUB, " acceleration"), hub @ acceleration, hub @ acceleration_by_input),
+            (part.names(LOADS), loads, loads_by_input),
+        ]
+    blocks += _own_motion(model, own, displacement, rate)
     names = tuple(name for part, _, _ in blocks for name in part)
     rows = [part for _, part, _ in blocks]
-    feedthrough = [np.zeros((len(part), len(INPUTS))) if d is None else d for part, _, d in blocks]
+    none = np.zeros((1, len(model.inputs)))
+    feedthrough = [none.repeat(len(part), axis=0) if d is None else d for part, _, d in blocks]
     return names, _stacked(rows, shape), _stacked(feedthrough, shape)
+
+
+def _with_displacement(hub: Array, displacement: Array) -> list[int]:
+    """Return the hub axes whose displacement follows from states: no coordinate that has a rate alone moves them."""
+    free = ~displacement.any(axis=-1)
+    moved = (hub[..., free] != 0).any(axis=-1)
+    return [axis for axis in range(len(HUB)) if not moved[..., axis].any()]
 
 
 def _stacked(parts: list[Array], shape: tuple[int, ...]) -> Array:
@@ -161,33 +199,54 @@ def _stacked(parts: list[Array], shape: tuple[int, ...]) -> Array:
     return np.concatenate([np.broadcast_to(p, (*shape, *p.shape[-2:])) for p in parts], axis=-2)
 
 
+def _own_coordinates(model: LinearModel) -> list[int]:
+    """Return the places of the coordinates of the rotor, or of both rotors."""
+    rotor = model if model.rotor is None else model.rotor
+    own = rotor.dofs[len(HUB) :]
+    halves = [half for half in HALVES if half in model.symmetry] or [""]
+    names = {in_half(half, name) if half else name for half in halves for name in own}
+    return [place for place, name in enumerate(model.dofs) if name in names]
+
+
 def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: Array) -> list[_Block]:
     """Return the rotor's own displacements, and the rate of a coordinate that is not a state at every point."""
-    held, mixed = held_coordinates(model), bool(lack_azimuth(model).any())
+    held = held_coordinates(model)
+    mixed = [held[state] for state, _ in lacking_states(model)]
     moved = [place for place in own if place in held]
-    turning = [p for p in own if p not in held or (mixed and model.dofs[p] == ROTOR_SPEED)]
+    turning = [place for place in own if place not in held or place in mixed]
     return [
         (tuple(model.dofs[p] for p in moved), displacement[moved], None),
         (tuple(f"{model.dofs[p]} rate" for p in turning), rate[turning], None),
     ]
 
 
-def _hub_loads(
-    rotor: LinearModel, to_rotor: Array, motion: _Rows, acceleration_by_input: Array
-) -> tuple[Array, Array]:
+def _hub_loads(part: _Loads, motion: _Rows, acceleration_by_input: Array) -> tuple[Array, Array]:
     """Return the perturbation of the rotor's loads on the hub by states and inputs.
 
     These loads are minus the hub rows of the rotor alone, plus the hub rows of its inputs.
     """
+    displacement, rate, acceleration = motion
+    rows = part.rows
+    loads = -(rows["M"] @ acceleration + rows["C"] @ rate + rows["K"] @ displacement)
+    return loads, part.inputs - rows["M"] @ acceleration_by_input
+
+
+def _hubs(model: LinearModel) -> list[_Loads]:
+    """Return the loads on the hub of a rotor, or on both hubs by half of the motion."""
+    if model.left_hub is not None:
+        rows, inputs = {name: hub_rows(model, name) for name in "MCK"}, hub_inputs(model)
+        return [
+            _Loads(half, to_rotor, {name: rows[name][half] for name in "MCK"}, inputs[half])
+            for half, to_rotor in halves_of(model)
+        ]
+    rotor, to_rotor = _rotor_alone(model)
     if rotor.dofs[: len(HUB)] != HUB:
         raise InputError(
             "dofs", ", ".join(rotor.dofs), "must begin with the hub's, from which its loads follow"
         )
-    rows = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
-    displacement, rate, acceleration = motion
-    loads = -(rows["M"] @ acceleration + rows["C"] @ rate + rows["K"] @ displacement)
     assert rotor.B is not None  # the mounted model has inputs, so its rotor has too
-    return loads, rotor.B[..., : len(HUB), :] - rows["M"] @ acceleration_by_input
+    of_hub = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
+    return [_Loads("", to_rotor, of_hub, rotor.B[..., : len(HUB), :])]
 
 
 def _rotor_alone(model: LinearModel) -> tuple[LinearModel, Array]:

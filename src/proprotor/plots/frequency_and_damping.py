@@ -12,9 +12,9 @@ from proprotor.plots.canvas import RIGHT, Limits, add_footer, along, axes_or_new
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions
 from proprotor.plots.mode_lines import draw_modes
-from proprotor.plots.points import DAMPING, draw_points, frequency_quantity, quantity_of
+from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE
-from proprotor.tables.points import Points, Quantity
+from proprotor.tables.points import DAMPING, Points, Quantity
 from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
 from proprotor.typing import Array, Axes, Dataset, Figure
 

@@ -21,6 +21,9 @@ from proprotor.case import Case
 from proprotor.errors import InputError, check_known
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.stamp import Stamp, of_model
+from proprotor.rotor.motions import HALVES, half_of
+from proprotor.rotor.rotor import Rotor
+from proprotor.rotor.trim import Trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
@@ -45,6 +48,8 @@ class WingSketch(NamedTuple):
         Sweep of the wing's axis, rad, positive backwards.
     assumed : bool
         Whether the size is assumed because the deck does not give it.
+    root : float
+        From the plane of symmetry of an aircraft to the root, m.
     """
 
     span: float
@@ -52,6 +57,7 @@ class WingSketch(NamedTuple):
     chord: float
     sweep: float = 0.0
     assumed: bool = False
+    root: float = 0.0
 
 
 class Part(NamedTuple):
@@ -164,9 +170,9 @@ def mode_motion(
         value, shape = value.conjugate(), shape.conj()
     model = case.linearize(speed[0], **options)
     sketch = wing or sketch_of(case)
-    coordinates = dict(zip(model.dofs, shape.tolist(), strict=True))
-    hub = shape[:6] if model.hub is None else model.hub @ shape  # displacement and rotation
-    parts, largest_angle = _parts(case, model, coordinates, hub, sketch)
+    by_side = [_parts(side, sketch) for side in _sides(case, model, shape, sketch)]
+    parts = [part for own, _ in by_side for part in own]
+    largest_angle = max(largest for _, largest in by_side)
     scale = _scale(parts, largest_angle, float(case.rotor.radius))
     return ModeMotion(
         mode=mode,
@@ -203,17 +209,66 @@ def sketch_of(case: Case) -> WingSketch:
             span, mast = given[f"{section}span"], given[f"{section}mast_length"]
             chord = given.get("wing_aerodynamics.chord", _CHORD * radius)
             sweep = given.get(f"{section}sweep", 0.0)
-            return WingSketch(float(span), float(mast), float(chord), float(sweep))
+            root = float(given.get("carry_through.half_width", 0.0))
+            return WingSketch(float(span), float(mast), float(chord), float(sweep), root=root)
     return WingSketch(_SPAN * radius, _MAST * radius, _CHORD * radius, assumed=True)
 
 
-def _parts(
-    case: Case, model: LinearModel, coordinates: dict[str, complex], hub: Array, wing: WingSketch
-) -> tuple[list[Part], float]:
-    """Return all lines with their motions, and the largest angle of any coordinate."""
-    blade = _Blade(case, model)
-    azimuths = 2 * np.pi * np.arange(int(case.rotor.n_blades)) / int(case.rotor.n_blades)
-    parts = _wing(wing, hub)
+class _Side(NamedTuple):
+    """A rotor of a case with its wing: the trim, and the motion in a mode.
+
+    coordinates : of the rotor by name; hub (6,) : displacement and rotation of the hub, and rigid (6,), the part of
+    it in which the aircraft moves as one body; left : m from the right hub to the left one, for a left side, whose
+    motion is that of its mirror image.
+    """
+
+    rotor: Rotor
+    trim: Trim
+    coordinates: dict[str, complex]
+    hub: Array
+    rigid: Array
+    left: float | None = None
+
+
+def _sides(case: Case, model: LinearModel, shape: Array, wing: WingSketch) -> list[_Side]:
+    """Return the rotor of a case in a mode, or both rotors of an aircraft."""
+    own = dict(zip(model.dofs, shape.tolist(), strict=True))
+    if model.hub is None or model.left_hub is None:
+        hub = shape[:6] if model.hub is None else model.hub @ shape
+        return [_Side(case.rotor, model.trim, own, hub, np.zeros(6))]
+    moved = np.where(np.isin(model.dofs, model.rigid_body), shape, 0)
+    right, left = ((one, one @ shape, one @ moved) for one in (model.hub, model.left_hub))
+    other = case.rotor if case.left is None else case.left.rotor
+    trim = model.trim if model.left is None else model.left.trim
+    return [
+        _Side(case.rotor, model.trim, _of_side(own, 1), *right[1:]),
+        _Side(other, trim, _of_side(own, -1), *left[1:], left=2 * (wing.span + wing.root)),
+    ]
+
+
+def _of_side(coordinates: dict[str, complex], sign: int) -> dict[str, complex]:
+    """Return the coordinates of the right rotor (1) or of the left one (-1), sum or difference of both halves."""
+    found: dict[str, complex] = {}
+    for name, value in coordinates.items():
+        half, own = half_of(name)
+        found[own] = found.get(own, 0) + (sign * value if half == HALVES[1] else value)
+    return found
+
+
+def _mirrored(part: Part, left: float) -> Part:
+    """Return a line of a left side, from its mirrored axes, where the right hub has its axes."""
+    mirror = np.array([1.0, -1.0, 1.0])
+    return Part(f"left {part.name}", part.points * mirror - np.array([0.0, left, 0.0]), part.motion * mirror)
+
+
+def _parts(side: _Side, wing: WingSketch) -> tuple[list[Part], float]:
+    """Return all lines of a side with their motions, and the largest angle of any coordinate."""
+    blade, coordinates, hub = _Blade(side.rotor, side.trim), side.coordinates, side.hub
+    azimuths = 2 * np.pi * np.arange(int(side.rotor.n_blades)) / int(side.rotor.n_blades)
+    parts = _wing(wing, hub - side.rigid)
+    for place, part in enumerate(parts):
+        carried = side.rigid[:3] + np.cross(side.rigid[3:], part.points)
+        parts[place] = part._replace(motion=part.motion + carried)
     for number, azimuth in enumerate(azimuths.tolist(), start=1):
         parts.append(Part(f"blade {number}", *blade.outline(azimuth, coordinates, hub)))
     circle = np.linspace(0, 2 * np.pi, _PER_CIRCLE)
@@ -221,6 +276,8 @@ def _parts(
     rings = np.array([points[-1] for points, _ in tips]), np.array([motion[-1] for _, motion in tips])
     parts.append(Part("tip path", *rings))
     angles = [abs(value) for name, value in coordinates.items() if _HARMONIC.fullmatch(name)]
+    if side.left is not None:
+        parts = [_mirrored(part, side.left) for part in parts]
     return parts, max([*angles, *np.abs(hub[3:]).tolist()])
 
 
@@ -255,14 +312,13 @@ def _wing(wing: WingSketch, hub: Array) -> list[Part]:
 
 
 class _Blade:
-    """A blade of a case, in the trim state of a model.
+    """A blade of a rotor, in its trim state.
 
     r, flap_arm, lag_arm, chord : arrays (k,), m; pitch : of the sections (k,), rad; the others are angles in rad and a
     ratio of angles.
     """
 
-    def __init__(self, case: Case, model: LinearModel) -> None:
-        rotor, trim = case.rotor, model.trim
+    def __init__(self, rotor: Rotor, trim: Trim) -> None:
         self.r = np.linspace(float(rotor.root_cutout), float(rotor.radius), _PER_BLADE)
         self.flap_arm = np.maximum(self.r - float(rotor.flap_hinge_offset), 0)
         self.lag_arm = np.maximum(self.r - float(rotor.lag_hinge_offset), 0)

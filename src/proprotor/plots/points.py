@@ -10,11 +10,10 @@ from numpy.typing import ArrayLike
 
 from proprotor.plots.line_of_sweep import Positions
 from proprotor.plots.style import LABEL_SIZE
-from proprotor.tables.points import Column, Points, Quantity
+from proprotor.tables.points import FREQUENCY, Column, Points, Quantity
 from proprotor.typing import Array, Axes
 from proprotor.units import KEAS, speed_factor
 
-FREQUENCY, DAMPING, GROWTH = "frequency", "damping", "growth"  # names of columns
 _MARKERS = "D^sovP*X"
 _FILLS = ("white", "#FFD166", "#9AD1D4", "0.75")  # on white, on grey and in print all differ from the lines
 _WIDTH = 44  # characters of a line of the legend

@@ -9,9 +9,9 @@ import numpy as np
 from proprotor.plots.canvas import Limits, along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
-from proprotor.plots.points import FREQUENCY, GROWTH, draw_points
+from proprotor.plots.points import draw_points
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles, white_box
-from proprotor.tables.points import Points, Quantity
+from proprotor.tables.points import FREQUENCY, GROWTH, Points, Quantity
 from proprotor.tables.sweep_summary import growth_rate, leaps
 from proprotor.typing import Array, Axes, Dataset, Line2D
 

@@ -22,6 +22,7 @@ from proprotor.report import pictures
 from proprotor.report.analyses import Findings
 from proprotor.report.document import Document, Section, Table, Text
 from proprotor.stability.flutter_messages import boundary_record, boundary_row, verdict
+from proprotor.tables.points import Points
 from proprotor.tables.sensitivity_summary import (
     NEARLY_DEFECTIVE,
     READ_IN,
@@ -37,6 +38,7 @@ _ANGLES = ("collective", "coning", "lag", "elastic_pitch")  # of the trim
 _PAIRS = 5  # stations in a row of a distribution
 
 _CONVENTIONS = (
+    "Airspeed is true airspeed, in KTAS or m/s; equivalent airspeed where KEAS is said.",
     "Inputs are converted to SI units; hub axes have z along the shaft, which is the direction of flight.",
     "Flap is positive towards thrust, lag against the rotation, pitch nose up at 0.75 R.",
     "Eigenvalues s = −ζω ± iω√(1 − ζ²). Damping is −Re s/|s| in percent of critical, negative where a mode is "
@@ -54,6 +56,7 @@ def report_document(
     deck_hash: str,
     date: str,
     unit: str = "kt",
+    points: Points | None = None,
 ) -> Document:
     """Return the report on a case.
 
@@ -70,6 +73,8 @@ def report_document(
         Day of the report, ISO 8601.
     unit : str
         Unit of airspeeds.
+    points : Points, optional
+        Of `proprotor.tables.points.read_points`, to stand on the plots of frequency and damping.
 
     Raises
     ------
@@ -82,7 +87,9 @@ def report_document(
         Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),
         Section("What was analysed", tuple(_model(case, table, settings))),
         Section("Conventions", (Text(_CONVENTIONS),)),
-        Section("Frequency and damping", tuple(pictures.of_sweep(case, found, unit) if found.mode else ())),
+        Section(
+            "Frequency and damping", tuple(pictures.of_sweep(case, found, unit, points) if found.mode else ())
+        ),
         Section(f"Causes {_where(found, unit, factor)}".strip(), tuple(_causes(found, unit, factor))),
         Section("Modes", tuple(_modes(table))),
         Section("Sensitivities", tuple(_sensitivities(case, found, unit, factor))),

@@ -17,6 +17,7 @@ from proprotor.plots import (
 )
 from proprotor.plots.headless import drawn
 from proprotor.report.document import Picture
+from proprotor.tables.points import DAMPING, FREQUENCY, Points
 from proprotor.typing import Axes
 
 if TYPE_CHECKING:
@@ -37,8 +38,11 @@ def _svg_of(draw: Callable[[], Axes]) -> bytes:
     return file.getvalue()
 
 
-def of_sweep(case: Case, found: Findings, unit: str) -> Iterator[Picture]:
-    """Yield the plots of frequency and damping, and the root locus."""
+def of_sweep(case: Case, found: Findings, unit: str, points: Points | None = None) -> Iterator[Picture]:
+    """Yield the plots of frequency and damping, with points of a file that has their columns, and the root locus."""
+    of_frequency, of_damping = (
+        points if points and name in points.columns else None for name in (FREQUENCY, DAMPING)
+    )
     omega = float(case.operation.rotor_speed)
     low, high = (f"{speed:.4g} m/s" for speed in found.flutter.searched)
     across = f"from {low} to {high}; the tables of modes have the numbers."
@@ -48,14 +52,14 @@ def of_sweep(case: Case, found: Findings, unit: str) -> Iterator[Picture]:
         "frequency",
         f"Frequency of each mode over airspeed. {broad}",
         f"Line plot of the frequency, per revolution, of the modes {names}, {across}",
-        _svg_of(lambda: plot_frequency(found.sweep, rotor_speed=omega, unit=unit)),
+        _svg_of(lambda: plot_frequency(found.sweep, rotor_speed=omega, unit=unit, points=of_frequency)),
     )
     yield Picture(
         "damping",
         "Damping of each mode over airspeed; below zero a mode is unstable. "
         "Circles are interpolated between the airspeeds drawn, the boundaries of the summary are exact.",
         f"Line plot of the damping, in percent of critical, of the modes {names}, {across}",
-        _svg_of(lambda: plot_damping(found.sweep, unit=unit)),
+        _svg_of(lambda: plot_damping(found.sweep, unit=unit, points=of_damping)),
     )
     yield Picture(
         "root-locus",

@@ -16,6 +16,8 @@ HUB = tuple(coordinate.name for coordinate in FIXED if coordinate.angle in ("hub
 ROTOR_SPEED = (
     "azimuth"  # only the rate of this coordinate is a state, because nothing holds the rotor's azimuth
 )
+MAST_TWIST = "mast twist"
+HALVES = ("symmetric", "antisymmetric")  # of the motion of an aircraft with two mirrored rotors
 _NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning"}  # of the modes of single coordinates
 _PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
@@ -63,6 +65,17 @@ def motions(dofs: tuple[str, ...]) -> list[Motion]:
     return found
 
 
+def in_half(half: str, name: str) -> str:
+    """Return the name of a rotor's coordinate, mode or input in one half of the motion of an aircraft."""
+    return f"{half} {name}"
+
+
+def half_of(name: str) -> tuple[str, str]:
+    """Return the half of the motion that a name begins with, "" for none, and the rest of the name."""
+    half, _, rest = name.partition(" ")
+    return (half, rest) if half in HALVES and rest else ("", name)
+
+
 def _is_cosine(dof: str) -> bool:
     """Return whether a coordinate is the cosine part of a cyclic motion, such as flap_1c."""
     stem, _, part = dof.rpartition("_")
@@ -71,15 +84,19 @@ def _is_cosine(dof: str) -> bool:
 
 def _cyclic_names(dof: str) -> tuple[str, str]:
     """Return the names of the two modes of a cyclic motion, by its cosine part."""
-    stem, _, part = dof.rpartition("_")
+    half, own = half_of(dof)
+    stem, _, part = own.rpartition("_")
     motion = stem if part == "1c" else f"{stem} {part[:-1]}"
-    return f"regressive {motion}", f"progressive {motion}"
+    regressive, progressive = (f"{half} {way} {motion}".lstrip() for way in ("regressive", "progressive"))
+    return regressive, progressive
 
 
 def _single_name(dof: str) -> str:
     """Return the name of the mode of a single coordinate."""
-    stem, _, part = dof.rpartition("_")
-    return _NAMES.get(dof) or (f"{_PARTS[part]} {stem}" if stem and part in _PARTS else dof)
+    half, own = half_of(dof)
+    stem, _, part = own.rpartition("_")
+    name = _NAMES.get(own) or (f"{_PARTS[part]} {stem}" if stem and part in _PARTS else own)
+    return in_half(half, name) if half else name
 
 
 def name_list(dofs: tuple[str, ...]) -> list[str]:
@@ -131,5 +148,5 @@ def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
 def _names_of_rotors() -> frozenset[str]:
     """Return the coordinates and modes of rotors with any number of blades, each harmonic written as 2."""
     reactionless = (coordinate.name for coordinate in reactionless_coordinates(6))
-    dofs = (*FIXED_COORDINATES[len(HUB) :], *reactionless)
+    dofs = (*FIXED_COORDINATES[len(HUB) :], MAST_TWIST, *reactionless)
     return frozenset(re.sub(r"\d+", "2", name) for name in (*dofs, *name_list(dofs)))

@@ -25,6 +25,7 @@ Boundaries: where damping passes a level
     cubic                   cubics over a step
     crossings, brackets     the search for steps with crossings; each crossing found by Newton's method
     boundary, boundaries    records of boundaries; the search along a line of a case
+    kinds                   divergence, instability of the rigid body, flutter
     flutter                 the flutter point: the lowest onset
     flutter_messages        records and sentences for people
     map, boundary_lines     the plane of two inputs; its boundary by mode
@@ -46,11 +47,12 @@ from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.branches import BranchLabels, NamedStates, branch_labels, by_branch, named_at
 from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
-from proprotor.stability.flutter import FlutterPoint, flutter_point
+from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
-from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
+from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import (
     at_columns,
@@ -68,6 +70,7 @@ from proprotor.stability.sweep import mode_columns, sweep, sweep_case
 __all__ = [
     "ANCHORS",
     "DOUBTFUL",
+    "FLUTTER",
     "NOT_TOLD",
     "Boundary",
     "BoundaryLine",
@@ -78,6 +81,7 @@ __all__ = [
     "Crossings",
     "Failed",
     "FlutterPoint",
+    "Modes",
     "NamedStates",
     "ParameterLine",
     "Search",
@@ -88,6 +92,7 @@ __all__ = [
     "boundaries",
     "boundary_against",
     "boundary_lines",
+    "boundary_of",
     "branch_labels",
     "by_branch",
     "coordinate_motion",
@@ -98,10 +103,12 @@ __all__ = [
     "eigenvalues",
     "error_near_zero",
     "find_crossings",
+    "flies_free",
     "flutter_messages",
     "flutter_point",
     "follow",
     "frequency_response",
+    "kinds",
     "match_modes",
     "mode_columns",
     "modes",

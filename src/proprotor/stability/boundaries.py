@@ -25,6 +25,7 @@ from proprotor.stability.branches import name_states
 from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import defect
 from proprotor.stability.following import Branches
+from proprotor.stability.kinds import kinds
 from proprotor.stability.matching import Matches, Spectrum
 from proprotor.stability.mode_names import Moving, moving
 from proprotor.stability.parameter_lines import ParameterLine, approach_to, line_of_case, tip_speed
@@ -253,12 +254,17 @@ def _named(
         np.stack([*getattr(points.spectrum.at(rows), part), *(getattr(one.spectrum, part) for one in found)])
         for part in ("values", "right")
     )
-    every = Spectrum(values, right).all_modes
-    moves = moving(model, every.values, every.left, every.right)
+    every = Spectrum(values, right, blocks=points.spectrum.blocks).all_modes
+    moves, kind = moving(model, every.values, every.left, every.right), kinds(model, every)
     names, warnings = moves.names, model.trim.warning.tolist()
     above = (points.growth[rows[0]] > points.error[rows[0]]) & (values[0].imag >= 0)
     boundaries = tuple(
-        replace(_boundary(one, moves, row), branch=label, warning=str(warnings[row]), level=search.level)
+        replace(
+            _boundary(one, moves, row, str(kind[row, one.state])),
+            branch=label,
+            warning=str(warnings[row]),
+            level=search.level,
+        )
         for row, (one, label) in enumerate(zip(found, labels, strict=True), start=len(rows))
     )
     beyond = tuple(dict.fromkeys(names[0, above].tolist()))
@@ -284,7 +290,7 @@ def _least_damped(points: Points) -> tuple[int, int] | None:
     return int(point), int(state)
 
 
-def _boundary(found: Crossing, moves: Moving, row: int) -> Boundary:
+def _boundary(found: Crossing, moves: Moving, row: int, kind: str) -> Boundary:
     """Return the boundary of a crossing, with what moves in its mode: a row of `moves`."""
     value = found.value
     shares = moves.shares[row, :, found.state]
@@ -292,7 +298,7 @@ def _boundary(found: Crossing, moves: Moving, row: int) -> Boundary:
     return Boundary(
         position=found.position,
         mode=str(moves.names[row, found.state]),
-        kind="divergence" if value.imag == 0 else "flutter",
+        kind=kind,
         onset=found.onset,
         eigenvalue=value if value.imag >= 0 else value.conjugate(),
         rate=found.slope,

@@ -24,8 +24,8 @@ class Boundary:
         Airspeed in m/s, or another input in SI.
     mode : str
         What moves most in the mode that crosses, by `proprotor.stability.mode_names`: its name at the boundary itself.
-    kind : "flutter" or "divergence"
-        A pair, or a real root.
+    kind : "flutter", "divergence" or "rigid body"
+        A pair; a real root; or a pair in which an aircraft moves as one body: see `proprotor.stability.kinds`.
     onset : bool
         Whether damping falls through the level as the position grows; otherwise damping rises through the level.
     eigenvalue : complex
@@ -68,7 +68,7 @@ class Boundary:
 
     def __repr__(self) -> str:
         """Return where which mode crosses the level, and how."""
-        hertz = f", {self.frequency / math.tau:.4g} Hz" if self.kind == "flutter" else ""
+        hertz = f", {self.frequency / math.tau:.4g} Hz" if self.eigenvalue.imag else ""
         doubt = f" (doubtful: {self.warning})" if self.warning else ""
         return f"Boundary at {marked(f'{self.position:.6g}', self.warning)}: {self.event}{hertz}{doubt}"
 
@@ -80,7 +80,8 @@ class Boundary:
     @property
     def event(self) -> str:
         """What happens at the boundary, as "flutter of beam begins"."""
-        return f"{self.kind} of {self.mode} {'begins' if self.onset else 'ends'}"
+        what = "rigid-body instability" if self.kind == "rigid body" else self.kind
+        return f"{what} of {self.mode} {'begins' if self.onset else 'ends'}"
 
 
 class Failed(NamedTuple):

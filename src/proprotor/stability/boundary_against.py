@@ -21,9 +21,11 @@ from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
+from proprotor.needs import check_memory
 from proprotor.stability.boundaries import scan_shares, steps_of_scan
 from proprotor.stability.brackets import Brackets, Crossing, each_once
 from proprotor.stability.crossings import Search
+from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.matching import Spectrum, conjugate, match_modes
 from proprotor.stability.mode_names import moving
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
@@ -31,6 +33,8 @@ from proprotor.typing import Array, Dataset
 from proprotor.units import KNOT, KTAS, SEA_LEVEL_DENSITY, in_metres_per_second, values_in_si
 
 _AT_ONCE = 2048  # points of one batch
+_FEWEST = 51  # airspeeds of a value, at least about: wide steps are divided
+_BYTES_PER_POINT, _BYTES_AT_ONCE = 100.0, 230_000.0  # of each point, and while a point is analysed
 
 
 class _Lines(NamedTuple):
@@ -50,17 +54,13 @@ class _Lines(NamedTuple):
 class _Found(NamedTuple):
     """A boundary at one value of the input.
 
-    crossing; mode, what moves; warning, what makes the boundary doubtful.
+    crossing; mode, what moves; kind, see `proprotor.stability.kinds`; warning, what makes the boundary doubtful.
     """
 
     crossing: Crossing
     mode: str
+    kind: str
     warning: str
-
-    @property
-    def kind(self) -> str:
-        """Flutter of a pair, or divergence of a real root."""
-        return "flutter" if self.crossing.value.imag else "divergence"
 
 
 class _OfLine(NamedTuple):
@@ -104,12 +104,13 @@ def boundary_against(
     -------
     xarray.Dataset
         Over the input and ``branch``, one for each root that becomes unstable or stable again: airspeed, m/s, true, and
-        equivalent_airspeed, m/s; frequency, rad/s; mode, what moves at the boundary; kind, flutter or divergence;
-        warning, what makes the boundary doubtful. NaN and "" where a branch has no boundary. onset (branch,): whether
-        the root becomes unstable. Over the input alone: first, the lowest onset, m/s, and first_branch; note, why there
-        is no onset, or that it is not the first instability; reason, why airspeeds failed; searched (end,), the lowest
-        and the highest airspeed that could be analysed, m/s; density, kg/m³; rotor_speed, rad/s. Attributes: level,
-        eigen_solves, and the case and its options (`proprotor.model.stamp`).
+        equivalent_airspeed, m/s; frequency, rad/s; mode, what moves at the boundary; kind, flutter, divergence or, of
+        an aircraft, rigid body; warning, what makes the boundary doubtful. NaN and "" where a branch has no boundary.
+        onset (branch,): whether the root becomes unstable. Over the input alone: first, the lowest onset, of a free
+        aircraft of flutter, m/s, and first_branch; note, why there is no onset, or that it is not the first
+        instability; reason, why airspeeds failed; searched (end,), the lowest and the highest airspeed that could be
+        analysed, m/s; density, kg/m³; rotor_speed, rad/s. Attributes: level, eigen_solves, and the case and its options
+        (`proprotor.model.stamp`).
 
     Raises
     ------
@@ -120,6 +121,7 @@ def boundary_against(
     if not -1 < level < 1:
         raise InputError("level", level, "must be a damping ratio, between -1 and 1")
     path, values = _input_of(case, against)
+    _check_size(len(values), airspeeds)
     varied = vary_case(case, {path: values})  # raises an error that names what is wrong with the values
     lines = _lines(varied, path, values, airspeeds)
     found: list[_OfLine] = []
@@ -128,7 +130,7 @@ def boundary_against(
         own, count = _boundaries_of(case, some, level, options)
         found += own
         solves += count
-    dataset = _dataset(lines, found)
+    dataset = _dataset(lines, found, flies_free(case))
     dataset["rotor_speed"] = (
         path,
         np.broadcast_to(varied.operation.rotor_speed, values.shape),
@@ -150,6 +152,14 @@ def _input_of(case: Configuration, against: Mapping[str, ArrayLike]) -> tuple[st
     if values.ndim != 1 or not np.all(np.diff(values) > 0):
         raise InputError(path, np.array2string(values, threshold=6), "must be a list of values that rise")
     return path, values
+
+
+def _check_size(values: int, airspeeds: Any) -> None:
+    """Refuse a search that does not fit into memory."""
+    asked = () if airspeeds is None else in_metres_per_second(airspeeds, 1.0).shape[-1:]
+    count = values * max(*asked, _FEWEST, 1)
+    size = _BYTES_PER_POINT * count + _BYTES_AT_ONCE * min(count, _AT_ONCE)
+    check_memory("against", f"{count:.4g} points", size, "the boundaries", "take larger steps")
 
 
 def _lines(varied: Configuration, path: str, values: Array, airspeeds: Any) -> _Lines:
@@ -230,9 +240,9 @@ def _named(crossings: Sequence[Crossing], models: Any) -> list[_Found]:
     model = models(lines.astype(int), positions)
     spectrum = _stacked(crossings)
     every = spectrum.all_modes
-    names = moving(model, every.values, every.left, every.right).names
+    names, kind = moving(model, every.values, every.left, every.right).names, kinds(model, every)
     return [
-        _Found(one, str(names[row, one.state]), str(model.trim.warning[row]))
+        _Found(one, str(names[row, one.state]), str(kind[row, one.state]), str(model.trim.warning[row]))
         for row, one in enumerate(crossings)
     ]
 
@@ -244,7 +254,8 @@ def _stacked(crossings: Sequence[Crossing]) -> Spectrum:
     )
     shapes = [one.spectrum.shapes for one in crossings]
     known = [shape for shape in shapes if shape is not None]
-    return Spectrum(values, right, np.stack(known) if len(known) == len(shapes) else None)
+    own = np.stack(known) if len(known) == len(shapes) else None
+    return crossings[0].spectrum._replace(values=values, right=right, shapes=own)
 
 
 def _reason(search: Search, lines: _Lines, line: int) -> str:
@@ -319,8 +330,8 @@ def _labels(branches: list[_Branch]) -> list[str]:
     return labels
 
 
-def _dataset(lines: _Lines, found: list[_OfLine]) -> Dataset:
-    """Return the dataset of the branches over the values of the input."""
+def _dataset(lines: _Lines, found: list[_OfLine], free: bool) -> Dataset:
+    """Return the dataset of the branches over the values of the input; of a free aircraft, flutter comes first."""
     import xarray  # here, because it takes long to import
 
     branches = _branches(found)
@@ -335,7 +346,7 @@ def _dataset(lines: _Lines, found: list[_OfLine]) -> Dataset:
     note, reason = (np.array([getattr(one, text) for one in found], dtype=str) for text in ("note", "reason"))
     labels = _labels(branches)
     onset = np.array([_begins(branch) for branch in branches], dtype=bool)
-    first, first_branch = _lowest(speed, onset, labels)
+    first, first_branch = _lowest(np.where(free & (kind != FLUTTER), np.nan, speed), onset, labels)
     both, per_density = (lines.path, "branch"), np.sqrt(lines.density / SEA_LEVEL_DENSITY)
     return xarray.Dataset(
         {
@@ -347,7 +358,7 @@ def _dataset(lines: _Lines, found: list[_OfLine]) -> Dataset:
             ),
             "frequency": (both, frequency, {"units": "rad/s", "long_name": "|Im s|; 0: divergence"}),
             "mode": (both, mode.astype(str), {"long_name": "what moves in the mode at the boundary"}),
-            "kind": (both, kind.astype(str), {"long_name": "flutter or divergence"}),
+            "kind": (both, kind.astype(str), {"long_name": "flutter, divergence or rigid body"}),
             "warning": (both, warning.astype(str), {"long_name": "what makes the boundary doubtful"}),
             "onset": ("branch", onset, {"long_name": "whether the root becomes unstable"}),
             "first": (lines.path, first, {"units": "m/s", "long_name": "lowest true airspeed of an onset"}),

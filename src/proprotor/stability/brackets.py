@@ -163,7 +163,7 @@ class Brackets:
         sides = (beyond == self.onset[active]).astype(int)
         for row, (crossing, side) in enumerate(zip(active, sides, strict=True)):
             self.x[side, crossing], self.place[side, crossing] = points.position[row], place[row]
-            for kept, new in zip(self.ends[side], points.spectrum, strict=True):
+            for kept, new in zip(self.ends[side][:3], points.spectrum[:3], strict=True):
                 if kept is not None and new is not None:
                     kept[crossing] = new[row]
 
@@ -179,6 +179,8 @@ def each_once(found: list[Crossing]) -> list[Crossing]:
 
 def _same(one: Crossing, other: Crossing) -> bool:
     """Return whether two crossings are one: both states of a pair that joins within a step may be found to cross."""
+    if one.spectrum.block[one.state] != other.spectrum.block[other.state]:
+        return False
     near = abs(one.position - other.position) <= 1e-7 * max(abs(one.position), abs(other.position))
     values = [complex(found.value.real, abs(found.value.imag)) for found in (one, other)]
     alike = abs(values[0] - values[1]) <= 1e-6 * max(1.0, abs(one.value))

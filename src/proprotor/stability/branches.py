@@ -19,7 +19,7 @@ from proprotor.rotor.motions import SECOND, name_list
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.matching import NOT_TOLD, POOR, Spectrum, conjugate, match_modes
 from proprotor.stability.mode_names import moving
-from proprotor.stability.modes import with_azimuth
+from proprotor.stability.modes import with_azimuths
 from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.typing import Array, Dataset
 
@@ -113,7 +113,7 @@ def _named_by_approach(branches: Branches, approach: ParameterLine) -> NamedStat
     nearest = int(np.argmin(np.abs(branches.positions[branches.points] - end)))
     here = branches.spectrum.at([int(branches.points[nearest])])
     at_anchor = names_of(some_points(near, [0]), leg.spectrum.at([0]))[leg.places[0]]
-    ends = leg.spectrum.at([last]).joined(with_azimuth(here, near.dofs, n + len(held)))
+    ends = leg.spectrum.at([last]).joined(with_azimuths(here, near, n + len(held)))
     arrived = match_modes(ends, np.array([0]), np.array([1])).successor[0][leg.places[-1]]
     place, trust = np.empty_like(at_anchor), np.empty(len(at_anchor))
     place[arrived], trust[arrived] = at_anchor, leg.quality.min(axis=0, initial=1)

@@ -80,7 +80,8 @@ class Search:
             same = np.diff(self.points.line[order]) == 0
             before, after = order[:-1][same], order[1:][same]
             if onset_only:
-                self.steps = steps_by_values(self.points.spectrum.values, before, after)
+                spectrum = self.points.spectrum
+                self.steps = steps_by_values(spectrum.values, spectrum.block, before, after)
                 self._screen()
             else:
                 self.steps = first_steps(before, after, *match_modes(self.points.spectrum, before, after))

@@ -1,4 +1,4 @@
-"""The flutter point of a case: the lowest airspeed at which a mode becomes unstable."""
+"""The flutter point of a case: the lowest airspeed at which a mode becomes unstable, of an aircraft by flutter."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
 from proprotor.model.doubts import MARK, Doubt, doubt_at, footnotes, marked
@@ -15,12 +16,16 @@ from proprotor.model.stamp import Stamp
 from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary import Boundary, Failed, start_and_gaps
 from proprotor.stability.flutter_messages import least_damping_message
+from proprotor.stability.kinds import leading_onset
 from proprotor.units import KNOT, KTAS, in_metres_per_second
 
 
 @dataclass(frozen=True, repr=False)
 class FlutterPoint:
     """The lowest onset of instability, and all boundaries of the range that was searched.
+
+    Of an aircraft that flies free, the point is the lowest onset of flutter: divergence and instabilities of the rigid
+    body are among the boundaries with their kinds (`proprotor.stability.kinds`).
 
     Attributes
     ----------
@@ -77,7 +82,9 @@ class FlutterPoint:
         """Return the flutter speed, and the other boundaries of the range."""
         low, high = (marked(f"{at / KNOT:.4g}", doubt_at(self.doubts, at)) for at in self.searched)
         if math.isnan(self.speed):
-            first = f"FlutterPoint: nothing becomes unstable between {low} and {high} {KTAS}"
+            begun = any(one.onset for one in self.boundaries)
+            what = "no flutter begins" if begun else "nothing becomes unstable"
+            first = f"FlutterPoint: {what} between {low} and {high} {KTAS}"
             least = least_damping_message(self, KTAS, KNOT)
             first += f"; least damping {least}" if least else ""
         else:
@@ -88,16 +95,22 @@ class FlutterPoint:
         lines = [
             f"{marked(f'{other.position / KNOT:.2f}', other.warning)} {KTAS}: {other.event}"
             for other in self.boundaries
-            if other.position != self.speed
+            if other is not self.boundary
         ]
         lines += start_and_gaps(self.unstable_at_start, self.failed, KTAS, KNOT)
         lines += [f"{MARK} {line}" for line in footnotes(self.doubts, KTAS, KNOT)]
         return "\n  ".join([first, *lines, *stamp.unusual_options(self.stamp)])
 
     @property
+    def boundary(self) -> Boundary | None:
+        """The boundary at the flutter speed; None where there is none."""
+        own = (one for one in self.boundaries if one.position == self.speed and one.kind == self.kind)
+        return next((one for one in own if one.onset), None)
+
+    @property
     def warning(self) -> str:
         """What makes the flutter speed doubtful; empty where nothing does."""
-        return next((found.warning for found in self.boundaries if found.position == self.speed), "")
+        return "" if self.boundary is None else self.boundary.warning
 
     def margin(self, airspeed: Any) -> float:
         """Return how far the flutter speed lies above an airspeed, as a part of the airspeed.
@@ -114,10 +127,42 @@ class FlutterPoint:
         return self.speed / float(in_metres_per_second(airspeed, stamp.density_of(self.stamp))) - 1
 
 
+def boundary_of(found: FlutterPoint, mode: str | None) -> Boundary:
+    """Return the boundary at the flutter speed, or the first one of the mode with a name.
+
+    Parameters
+    ----------
+    found : FlutterPoint
+    mode : str or None
+        Name of the mode; None for the boundary at the flutter speed.
+
+    Returns
+    -------
+    Boundary
+
+    Raises
+    ------
+    InputError
+        Where there is none.
+    """
+    named = next((one for one in found.boundaries if one.mode == mode), None)
+    wanted = found.boundary if mode is None else named
+    if wanted is None:
+        nothing = (
+            "no flutter begins" if any(one.onset for one in found.boundaries) else "nothing becomes unstable"
+        )
+        rule = nothing if mode is None else "has no boundary"
+        low, high = found.searched
+        raise InputError("flutter_speed", mode, f"{rule} between {low:.6g} and {high:.6g} m/s")
+    return wanted
+
+
 def flutter_point(
     case: Configuration, airspeeds: Any = None, *, level: float = 0.0, **options: Any
 ) -> FlutterPoint:
     """Return the lowest airspeed at which a mode becomes unstable, with all boundaries of the range.
+
+    Of an aircraft that flies free, the lowest airspeed at which flutter begins.
 
     Parameters
     ----------
@@ -139,7 +184,7 @@ def flutter_point(
         As `boundaries`.
     """
     found = boundaries(case, airspeeds, level=level, **options)
-    onset = next((boundary for boundary in found.boundaries if boundary.onset), None)
+    onset = leading_onset(case, found.boundaries)
     own = (onset.position, onset.frequency, onset.mode, onset.kind) if onset else (np.nan, np.nan, "", "")
     return FlutterPoint(
         *own,

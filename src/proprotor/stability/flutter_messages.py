@@ -40,12 +40,12 @@ def equivalent(airspeed: float, found: Mapping[Any, Any]) -> float:
     return airspeed / float(speed_factor(KEAS, density)) if density else math.nan
 
 
-def _and_equivalent(airspeed: float, found: Mapping[Any, Any], unit: str) -> str:
+def _and_equivalent(airspeed: float, found: Mapping[Any, Any], unit: str, warning: str) -> str:
     """Return an airspeed in KEAS to stand beside KTAS, where the air is not that at sea level; "" otherwise."""
     density = density_of(found)
     if unit != KTAS or not density or abs(density / SEA_LEVEL_DENSITY - 1) < _SAME_AIR:
         return ""
-    return f", {equivalent(airspeed, found):.2f} {KEAS}"
+    return f", {marked(f'{equivalent(airspeed, found):.2f}', warning)} {KEAS}"
 
 
 def boundary_record(boundary: Boundary, case: Configuration) -> dict[str, Any]:
@@ -93,6 +93,14 @@ def least_damping_message(found: FlutterPoint, unit: str, factor: float) -> str:
     return f"{ratio} % of critical: {found.least_damping_mode} at {speed / factor:.4g} {unit}"
 
 
+def _other_onsets(found: FlutterPoint, unit: str, factor: float) -> Iterator[str]:
+    """Yield a sentence on the first onset of each kind that the flutter speed of an aircraft leaves aside."""
+    kinds = {one.kind: one for one in reversed(found.boundaries) if one.onset}
+    for one in sorted(kinds.values(), key=lambda one: one.position):
+        if found.boundary is None or (one.kind != found.kind and one.position < found.speed):
+            yield f"At {marked(f'{one.position / factor:.2f}', one.warning)} {unit} {one.event}."
+
+
 def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:
     """Return the airspeeds that could not be analysed, and why, as plain data."""
     return [{"from (m/s)": first, "to (m/s)": last, "reason": reason} for first, last, reason in found.failed]
@@ -104,14 +112,17 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
     beyond = f"below {100 * found.level:g} % of critical" if found.level else "unstable"
     if found.unstable_at_start:
         yield f"Already {beyond} at {low} {unit}: {', '.join(found.unstable_at_start)}."
-    if math.isnan(found.speed):
+    if math.isnan(found.speed) and any(one.onset for one in found.boundaries):
+        yield f"No flutter begins between {low} and {high} {unit}."
+    elif math.isnan(found.speed):
         yield f"No mode becomes {beyond} between {low} and {high} {unit}."
         if least := least_damping_message(found, unit, factor):
             yield f"The least damping there is {least}."
     else:
         speed = marked(f"{found.speed / factor:.2f}", found.warning)
-        other = _and_equivalent(found.speed, found.stamp, unit)
+        other = _and_equivalent(found.speed, found.stamp, unit, found.warning)
         yield f"Flutter speed {speed} {unit}{other} ({found.mode}, {found.kind})."
+    yield from _other_onsets(found, unit, factor)
     yield from (stretch.message(unit, factor) for stretch in found.failed)
     if at is None:
         return

@@ -47,7 +47,7 @@ class Branches:
             return np.empty((0, states), dtype=int)
         places = chain(self.steps.successor, np.arange(states))
         followed = np.take_along_axis(self.spectrum.values[self.points], places, 1)
-        return np.take_along_axis(places, keep_upper(followed), 1)
+        return np.take_along_axis(places, keep_upper(followed, self.spectrum.block), 1)
 
     @cached_property
     def quality(self) -> Array:

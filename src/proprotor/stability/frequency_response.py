@@ -12,13 +12,14 @@ from proprotor.errors import InputError, check_known
 from proprotor.model.linear_model import SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
 from proprotor.needs import check_memory
-from proprotor.rotor.motions import HUB
+from proprotor.rotor.motions import HUB, half_of
 from proprotor.stability.modes import doubt_and_failure, leading_dims
 from proprotor.stability.root_error import roots
 from proprotor.typing import Array, Dataset
 from proprotor.units import values_in_si
 
 _BYTES_PER_ENTRY = 48.0  # of a response: a complex number, its magnitude and phase, and a copy
+_PER = {" rate": "/s", " acceleration": "/s**2"}  # by the end of an output's name
 _BLOCK = 4096  # matrices solved at once
 
 
@@ -85,7 +86,7 @@ def frequency_response(
             "output": names,
             "input": moved,
             "output_unit": ("output", [_unit_of(name) for name in names]),
-            "input_unit": ("input", ["rad" if name in SWASHPLATE else "m/s" for name in moved]),
+            "input_unit": ("input", ["rad" if half_of(name)[1] in SWASHPLATE else "m/s" for name in moved]),
             "airspeed": (leading, model.airspeed, {"units": "m/s"}),
         },
         attrs=dict(space.stamp),
@@ -170,8 +171,8 @@ def _stable(model: LinearModel) -> NDArray[np.bool_]:
 
 def _unit_of(output: str) -> str:
     """Return the SI unit of an output by its name."""
-    name, _, kind = output.partition(" ")
+    name = half_of(output)[1]
     if name in LOADS:
         return "N" if name.startswith("force") else "N*m"
-    per = {"": "", "rate": "/s", "acceleration": "/s**2"}[kind]
-    return ("m" if name in HUB[:3] else "rad") + per
+    per = next((unit for ending, unit in _PER.items() if name.endswith(ending)), "")
+    return ("m" if name.split(" ")[0] in HUB[:3] else "rad") + per

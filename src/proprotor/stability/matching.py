@@ -18,10 +18,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from proprotor.model.first_order import StateBlocks
 from proprotor.stability.assignment import best_assignment
 from proprotor.typing import Array
 
 _BLOCK = 64  # steps whose matrices stay in the cache
+_APART = (
+    10.0  # more than likeness and distance can be: taken off where two modes are of blocks that do not couple
+)
 _COUPLED = 1e-6  # likeness of different modes; below it is rounding, and the modes pass each other uncoupled
 NOT_TOLD = "the step to here does not tell which root is which"
 POOR = 0.5  # quality of a step below which it is divided
@@ -66,24 +70,36 @@ class Spectrum(NamedTuple):
 
     A state that a point does not have, though others do, has a vector, and NaN as eigenvalue; a failed point has NaN
     alone.
-    shapes (..., m, k) : shapes of the first k coordinates where these differ from point to point, else None.
+    shapes (..., m, k) : shapes of the first k coordinates where these differ from point to point, else None; held :
+    places of the coordinates whose displacement is a state, which shapes need; blocks : the rows and columns of states
+    that do not couple with others, empty where all may couple.
     """
 
     values: Array
     right: Array
     shapes: Array | None = None
+    held: tuple[int, ...] = ()
+    blocks: StateBlocks = ()
 
     def at(self, points: Any) -> Spectrum:
         """Return some of the points, by an index as of an array."""
         shapes = None if self.shapes is None else self.shapes[points]
-        return Spectrum(self.values[points], self.right[points], shapes)
+        return self._replace(values=self.values[points], right=self.right[points], shapes=shapes)
 
     def joined(self, other: Spectrum) -> Spectrum:
         """Return the points of both spectra."""
         values, right = (np.concatenate(parts) for parts in zip(self[:2], other[:2], strict=True))
-        if self.shapes is None or other.shapes is None:
-            return Spectrum(values, right)
-        return Spectrum(values, right, np.concatenate([self.shapes, other.shapes]))
+        both = self.shapes is not None and other.shapes is not None
+        shapes = np.concatenate([self.shapes, other.shapes]) if both else None
+        return self._replace(values=values, right=right, shapes=shapes)
+
+    @property
+    def block(self) -> Array:
+        """Number of the block that each state (states,) is a mode of."""
+        number = np.zeros(self.values.shape[-1], dtype=int)
+        for place, (_, columns) in enumerate(self.blocks):
+            number[columns] = place
+        return number
 
     @property
     def works(self) -> Array:
@@ -98,11 +114,22 @@ class Spectrum(NamedTuple):
     @property
     def all_modes(self) -> Modes:
         """Every state of every point, with left vectors."""
-        return Modes(self.values, self.right, _left_vectors(self.values, self.right))
+        return Modes(self.values, self.right, _left_by_block(self.values, self.right, self.blocks))
 
     def modes(self, places: Array) -> Modes:
         """Return the states of each point at some places (..., modes)."""
         return self.all_modes.at(places)
+
+
+def _left_by_block(values: Array, right: Array, blocks: StateBlocks) -> Array:
+    """Return left vectors as `_left_vectors` does; exactly zero in all blocks but the mode's own."""
+    if len(blocks) < 2:
+        return _left_vectors(values, right)
+    left = np.zeros(right.shape, dtype=complex)
+    for rows, columns in blocks:
+        left[..., columns, rows] = _left_vectors(values[..., columns], right[..., rows, columns])
+    left[~np.isfinite(values).any(axis=-1)] = np.nan
+    return left
 
 
 def _left_vectors(values: Array, right: Array) -> Array:
@@ -176,16 +203,15 @@ def match_modes(spectrum: Spectrum, before: Array, after: Array) -> Matches:
 def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Array) -> Matches:
     """Match modes of points whose coordinates have different shapes, in the coordinates of the earlier point."""
     turn = np.linalg.pinv(shapes[before]) @ shapes[after]
-    states, count = spectrum.values.shape[-1], turn.shape[-1]
-    # First place of a rate, after all displacements, or all but the azimuth.
-    rates = states - (states + 1) // 2
-    right = spectrum.right[after]
-    for start in (0, rates):
-        places = slice(start, start + count)
-        right[:, places] = turn @ right[:, places]
-    first, last = spectrum.at(before), Spectrum(spectrum.values[after], right)
+    held, right = spectrum.held, spectrum.right[after]
+    rates = slice(len(held), len(held) + turn.shape[-1])
+    moved = [place for place in held if place < turn.shape[-1]]
+    right[:, rates] = turn @ right[:, rates]
+    right[:, : len(moved)] = turn[:, moved][:, :, moved] @ right[:, : len(moved)]
+    first = spectrum._replace(shapes=None).at(before)
+    last = first._replace(values=spectrum.values[after], right=right)
     rows = np.arange(len(before))
-    return match_modes(Spectrum(first.values, first.right).joined(last), rows, len(rows) + rows)
+    return match_modes(first.joined(last), rows, len(rows) + rows)
 
 
 class _Packed(NamedTuple):
@@ -203,7 +229,7 @@ class _Packed(NamedTuple):
 
     @classmethod
     def of(cls, spectrum: Spectrum, pairs: int) -> _Packed:
-        values, right, _ = spectrum
+        values, right = spectrum.values, spectrum.right
         n, states = values.shape
         above = np.nonzero(values.imag > 0)[1].reshape(n, pairs)
         real = np.nonzero(~((values.imag > 0) | (values.imag < 0)))[1].reshape(n, states - 2 * pairs)
@@ -228,7 +254,12 @@ def _match_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) ->
     likeness = _packed_likeness(first, last, pairs)
     scale = np.sqrt(np.fmax.reduce(first.values.real**2 + first.values.imag**2, axis=1))[:, None, None]
     ends = np.concatenate([last.values[:, :pairs], last.values[:, :pairs].conj(), last.values[:, pairs:]], 1)
-    choice = (likeness - _distance(first.values[:, :, None], ends[:, None, :], scale)).argmax(axis=2)
+    gain = likeness - _distance(first.values[:, :, None], ends[:, None, :], scale)
+    if len(spectrum.blocks) > 1:
+        own, other = (spectrum.block[one.places] for one in (first, last))
+        own = np.concatenate([own[:, :pairs], own[:, 2 * pairs :]], axis=1)
+        gain -= _APART * (own[:, :, None] != other[:, None, :])
+    choice = gain.argmax(axis=2)
     # Upper states go to pairs, real ones to real ones, each to another.
     target = np.where((choice >= pairs) & (choice < 2 * pairs), choice - pairs, choice)
     rows = np.arange(likeness.shape[1])
@@ -306,6 +337,7 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     (start, columns, rows), (end, later_columns, later_rows) = first.all_modes, last.all_modes
     likeness = np.sqrt(size_of((rows @ later_columns) * (later_rows @ columns).T))
     gain = likeness - _distance(start[:, None], end, np.nanmax(np.abs(start)))
+    gain -= _APART * (first.block[:, None] != last.block)
     successor = best_assignment(np.where(np.isfinite(gain), gain, -1e300))
     mixing = likeness[:, successor]
     own = np.diagonal(mixing).copy()
@@ -355,13 +387,15 @@ def chain(successor: Array, start: Array) -> Array:
     return np.stack(list(accumulate(successor, lambda places, step: step.take(places), initial=start)))
 
 
-def keep_upper(values: Array) -> Array:
+def keep_upper(values: Array, block: Array) -> Array:
     """Return swaps (points, states) that keep a followed state in the upper half plane after two real roots joined.
 
     Parameters
     ----------
     values : array (points, states)
         Followed eigenvalues, in their places.
+    block : array (states,) of int
+        Of the followed states: two roots of different blocks do not join.
 
     Returns
     -------
@@ -378,7 +412,7 @@ def keep_upper(values: Array) -> Array:
     for begin, end in pairwise([*changes, len(values)]):
         places, now = order[begin].copy(), values[begin]
         for low in np.flatnonzero(now.imag < 0):
-            high = int(np.nanargmin(np.abs(now - now[low].conj())))
+            high = int(np.nanargmin(np.where(block == block[low], np.abs(now - now[low].conj()), np.nan)))
             if above[low] > above[high] or (low < high and not above[low] and not above[high]):
                 places[[low, high]] = high, low
         order[begin:end] = places

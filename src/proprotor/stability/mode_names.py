@@ -3,10 +3,11 @@
 A model has as many names as modes: one for each coordinate of the support, for coning and the collective motion of each
 other blade angle, for the rotor speed, and two for the cyclic motion of each blade angle and of the gimbal, regressive
 and progressive. At each point the modes get their names by the assignment with the largest sum of participations, one
-name to one mode. The names depend on the eigenvalues and vectors of the point alone, and on no other point. Where two
-branches veer and exchange their motions, the names pass from one branch to the other in the middle: where the sum of
-participations is the same for either assignment. Which branch is which is another question, answered by following
-roots: `proprotor.stability.branches`.
+name to one mode. The halves of the motion of an aircraft that do not couple have assignments of their own. The names
+depend on the eigenvalues and vectors of the point alone, and on no other point. Where two branches veer and exchange
+their motions, the names pass from one branch to the other in the middle: where the sum of participations is the same
+for either assignment. Which branch is which is another question, answered by following roots:
+`proprotor.stability.branches`.
 
 The share that a mode has in its own name says how much the name is worth: near 1 nothing else moves, below one third
 something else may move more.
@@ -28,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.model.first_order import held_coordinates, some_points
+from proprotor.model.first_order import blocks, held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import HUB, Motion, motions, name_list
 from proprotor.stability.assignment import best_assignment
@@ -96,7 +97,12 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
         shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
         shares[good] = _name_shares(some_points(model, good), left[good], right[good])
     held = held_coordinates(model, values.shape[-1])
-    place[good] = _assign_names(model.dofs, held, shares[good], roots[good])
+    for own, (_, columns) in zip(model.blocks, blocks(model, held), strict=True):
+        dofs = tuple(model.dofs[one] for one in own)
+        names = np.array([known.index(name) for name in name_list(dofs)])
+        moved = [dofs.index(model.dofs[one]) for one in held if one in own]
+        best = _assign_names(dofs, moved, shares[good][:, names, columns], roots[good][:, columns])
+        place[good, columns] = names[best]
     return Moving(known, place, shares)
 
 
@@ -271,6 +277,9 @@ def _assigned(gain: Array, slots: Array, values: Array) -> Array:
     # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
     counts = np.bincount(slots)
     whole, half = np.flatnonzero(counts == 2), np.flatnonzero(counts == 1)
+    if len(upper) > len(whole):  # two rates swing as one pair, which has one of their names
+        given[upper + 1] = given[upper]
+        return given
     largest = -np.inf
     for left in combinations(whole.tolist(), len(whole) - len(upper)):
         of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)

@@ -3,7 +3,9 @@
 Signs: s = -ζω ± iω√(1 - ζ²), damping ratio ζ = -Re s / |s|, so a negative ratio is an instability. The rotor's
 azimuth has no stiffness unless a shaft gives it one, and enters as a rate: n coordinates have 2n - 1 states.
 In a batch in which a shaft holds the azimuth at some points only, each point has the same states as outside the batch;
-arrays have room for 2n, and where a point has one state fewer its last eigenvalue is NaN.
+arrays have room for 2n, and where a point has one state fewer its last eigenvalue is NaN. Blocks of coordinates that do
+not couple are problems of their own: their eigenvalues stand one block after the other, and vectors are exactly zero in
+other blocks.
 """
 
 from __future__ import annotations
@@ -17,18 +19,20 @@ import numpy as np
 
 from proprotor.model import stamp
 from proprotor.model.first_order import (
+    blocks,
     first_order,
     have_modes,
     held_coordinates,
-    lack_azimuth,
+    lack_azimuths,
     missing_roots,
     some_points,
 )
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
-from proprotor.rotor.motions import ROTOR_SPEED
-from proprotor.stability.matching import Modes, Spectrum
+from proprotor.stability.matching import Modes, Spectrum, size_of
 from proprotor.typing import Array, Dataset
+
+_ROUNDING = 10 * float(np.finfo(float).eps)  # of the largest root: what a root at zero may be off by
 
 if TYPE_CHECKING:
     from proprotor.stability.parameter_lines import ParameterLine
@@ -41,64 +45,126 @@ def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum
     with `held`, places of coordinates whose displacement is a state, of another batch with the same coordinates.
     """
     model = _real(model)
-    states = len(held_coordinates(model) if held is None else held) + len(model.dofs)
-    parts = [
-        (points, with_azimuth(Spectrum(*_solved(first_order(part)), part.shapes), model.dofs, states))
-        for points, part in _alike(model)
-    ]
+    held = held_coordinates(model) if held is None else held
+    states = len(held) + len(model.dofs)
+    parts = [(points, with_azimuths(_by_block(part), part, states)) for points, part in _alike(model)]
     if len(parts) == 1 and parts[0][0] is ...:
         return parts[0][1]
     values = np.full((*model.M.shape[:-2], states), complex(np.nan, np.nan))
     right = np.full((*values.shape, states), np.nan, dtype=complex)
     for points, found in parts:
         values[points], right[points] = found.values, found.right
-    return Spectrum(values, right, model.shapes)
+    return Spectrum(values, right, model.shapes, tuple(held), blocks(model, held))
 
 
 def eigenvalues(model: LinearModel) -> Array:
     """Return the eigenvalues (..., states) alone, in no particular order; NaN where `decomposition` has NaN."""
-    states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
-    values = np.full((*shape, states), complex(np.nan, np.nan))
+    held, shape = held_coordinates(model), model.M.shape[:-2]
+    values = np.full((*shape, len(held) + len(model.dofs)), complex(np.nan, np.nan))
+    places = blocks(model, held)
     for points, part in _alike(_real(model)):
-        found = np.linalg.eigvals(first_order(part))
-        values[points, : found.shape[-1]] = found
+        for (_, columns), own in zip(places, part.blocks, strict=True):
+            found = np.linalg.eigvals(first_order(_of_block(part, own)))
+            found = np.where(_pairs_of_noise(found), 0, found)
+            values[points, columns.start : columns.start + found.shape[-1]] = found
     return values
 
 
 def _alike(model: LinearModel) -> Iterator[tuple[Array | EllipsisType, LinearModel]]:
     """Yield points that have modes, in parts with the same states: places of the points, and their model."""
-    good, free = have_modes(model), lack_azimuth(model)
-    if good.all() and not free.any():
+    good, lacks = have_modes(model), lack_azimuths(model).sum(axis=-1)
+    if good.all() and not lacks.any():
         yield ..., model
         return
-    for points in (good & ~free, good & free):
+    for count in range(len(model.azimuths) + 1):
+        points = good & (lacks == count)
         if points.any():
             yield points, some_points(model, points)
 
 
-def with_azimuth(spectrum: Spectrum, dofs: tuple[str, ...], states: int) -> Spectrum:
-    """Return states of points where nothing holds the azimuth among the states, one more, of points with a shaft.
+def _by_block(model: LinearModel) -> Spectrum:
+    """Return eigenvalues and right vectors of points with the same states, each block by itself."""
+    held = held_coordinates(model)
+    places = blocks(model, held)
+    if len(places) == 1:
+        return Spectrum(*_solved(first_order(model)), model.shapes, tuple(held), places)
+    states = len(held) + len(model.dofs)
+    values = np.empty((*model.M.shape[:-2], states), dtype=complex)
+    right = np.zeros((*values.shape, states), dtype=complex)
+    for (rows, columns), own in zip(places, model.blocks, strict=True):
+        values[..., columns], right[..., rows, columns] = _solved(first_order(_of_block(model, own)))
+    return Spectrum(values, right, model.shapes, tuple(held), places)
 
-    The azimuth moves by its rate over the eigenvalue. The additional state has no eigenvalue, as the azimuth alone
+
+def _of_block(model: LinearModel, places: list[int]) -> LinearModel:
+    """Return the model of a block of coordinates alone; the whole model where the block is all of the model."""
+    if len(places) == len(model.dofs):
+        return model
+    return model.submodel(tuple(model.dofs[place] for place in places))
+
+
+def with_azimuths(spectrum: Spectrum, model: LinearModel, states: int) -> Spectrum:
+    """Return states of points where nothing holds some azimuth among the states, more of them, of points with shafts.
+
+    An azimuth moves by its rate over the eigenvalue. The additional state has no eigenvalue, as the azimuth alone
     moves nothing else: the root at zero tends to this state as the shaft stiffness vanishes.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+    model : LinearModel
+        A model with the coordinates of the spectrum.
+    states : int
+        Number of states of the points with shafts.
     """
-    values, right, shapes = spectrum
+    values, right = spectrum.values, spectrum.right
     if values.shape[-1] == states:
         return spectrum
-    place = dofs.index(ROTOR_SPEED)
-    zero, rate = values == 0, right[..., len(dofs) - 1 + place, :]
+    n, held = len(model.dofs), held_coordinates(model, states)
+    own = held_coordinates(model, values.shape[-1])
+    later = blocks(model, held)
+    columns = [
+        np.arange(new.start, new.start + old.stop - old.start)
+        for (_, old), (_, new) in zip(blocks(model, own), later, strict=True)
+    ]
+    kept = np.concatenate(columns)
+    rows = np.array([*(held.index(place) for place in own), *(len(held) + np.arange(n))])
     whole = np.zeros((*values.shape[:-1], states, states), dtype=complex)
-    whole[..., np.delete(np.arange(states), place), :-1] = right
-    whole[..., place, :-1] = np.where(zero, 0, rate / np.where(zero, 1, values))
-    whole[..., place, -1] = 1
-    none = np.full((*values.shape[:-1], 1), complex(np.nan, np.nan))
-    return Spectrum(np.concatenate([values, none], axis=-1), whole, shapes)
+    found = np.full((*values.shape[:-1], states), complex(np.nan, np.nan))
+    found[..., kept] = values
+    whole[..., rows[:, None], kept] = right
+    free = iter(np.setdiff1d(np.arange(states), kept).tolist())  # in the order of the blocks
+    for own_block in model.blocks:
+        for place in own_block:
+            if place in held and place not in own:
+                rate = right[..., len(own) + place, :]
+                whole[..., held.index(place), kept] = np.where(
+                    values == 0, 0, rate / np.where(values == 0, 1, values)
+                )
+                whole[..., held.index(place), next(free)] = 1
+    return Spectrum(found, whole, spectrum.shapes, tuple(held), later)
 
 
 def _solved(matrix: Array) -> tuple[Array, Array]:
     """Return eigenvalues and right vectors as complex numbers, also where all of them are real."""
     values, right = np.linalg.eig(matrix)
-    return values.astype(complex, copy=False), right.astype(complex, copy=False)
+    values, right = values.astype(complex, copy=False), right.astype(complex, copy=False)
+    if not (noise := _pairs_of_noise(values)).any():
+        return values, right
+    upper = (noise & (values.imag > 0))[..., None, :]
+    right = np.where(upper, right.real, np.where(noise[..., None, :], right.imag, right))
+    right = np.where(noise[..., None, :], right / np.linalg.norm(right, axis=-2, keepdims=True), right)
+    return np.where(noise, 0, values), right
+
+
+def _pairs_of_noise(values: Array) -> Array:
+    """Return which eigenvalues (..., states) are pairs that rounding has made of two real roots at zero.
+
+    Coordinates that have a rate alone have such roots, as many as nothing damps.
+    """
+    size = size_of(values)
+    noise = _ROUNDING * size.max(axis=-1, keepdims=True, initial=0)
+    return np.asarray((values.imag != 0) & (size <= noise))
 
 
 def _real(model: LinearModel) -> LinearModel:

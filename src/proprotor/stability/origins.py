@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_train, multiblade, pitch
 from proprotor_equations import rotor as whole_rotor
 
@@ -18,17 +19,23 @@ from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
+from proprotor.model.mast import with_mast
 from proprotor.model.mount import mount
 from proprotor.model.options_of_result import check_options
-from proprotor.model.quantities import COUPLINGS, batch_shape, couplings, model_quantities
+from proprotor.model.pair import rotors_on, shares
+from proprotor.model.quantities import COUPLINGS, couplings, model_quantities
 from proprotor.model.rotor_model import airload_moments, in_closed_form
 from proprotor.model.rotor_share import without_rotors
 from proprotor.model.stamp import of_model
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.motions import MAST_TWIST
+from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
+from proprotor.rotor.rotor import Rotor
 from proprotor.rotor.section_loads import BladeSections, compressible, segment_quantities
-from proprotor.rotor.trim import UNKNOWNS, with_trim
+from proprotor.rotor.trim import UNKNOWNS, Trim, with_trim
+from proprotor.support.airframe import Airframe
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
@@ -105,30 +112,53 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
         choice = model.origin.options
     if choice.reactionless:
         raise InputError("reactionless", True, "is not taken apart: leave it out")
-    rotor = case.rotor
-    shape = batch_shape(rotor, case.operation, model.airspeed, choice.drive_train)
-    quantities = _quantities(case, choice, model, shape)
-    blade = _structure(quantities, choice) | dict(
-        _airloads(BladeSections.of(rotor, shape), quantities, choice)
-    )
-    own = {name: _in_fixed_frame(part, quantities) for name, part in blade.items()}
-    own |= _other_parts(quantities, choice)
+    rotors = [_Rotor(case.rotor, case.operation, choice, model.trim)]
+    if case.left is not None and (left := model.left) is not None and left.origin is not None:
+        rotors += [_Rotor(case.left.rotor, case.left.operation, left.origin.options, left.trim)]
+    shape = model.M.shape[:-2]
+    by_rotor = [_rotor_parts(rotor, model, shape) for rotor in rotors]
     support = case.support.at(model.airspeed, case.operation.density)
     nothing = np.zeros_like(support.mass)
-    carrier = NormalModes(support.names, nothing, nothing, nothing, support.hub, includes_rotor=False)
-    found = {name: _mounted(part, carrier, model, shape) for name, part in own.items()}
+    carrier = replace(support, mass=nothing, damping=nothing, stiffness=nothing, includes_rotor=False)
+    names = dict.fromkeys(name for parts in by_rotor for name in parts)
+    none = _Part(*[np.zeros((len(FIXED_COORDINATES),) * 2)] * 3)
+    found = {}
+    for name in names:
+        alone = [
+            _alone(name, parts.get(name, none), rotor.choice, model, shape)
+            for parts, rotor in zip(by_rotor, rotors, strict=True)
+        ]
+        found[name] = _mounted(alone, carrier, model)
+    found |= _interconnect(_alone("", none, choice, model, shape), carrier, model, choice)
     found |= _support_parts(case, support, model, shape)
     return {name: part for name, part in found.items() if any(np.any(matrix) for matrix in part)}
 
 
-def _quantities(
-    case: Configuration, choice: Options, model: LinearModel, shape: tuple[int, ...]
-) -> dict[str, Any]:
-    """Return all quantities at the trim of the model, arrays flattened over the batch."""
-    given = model_quantities(case.rotor, case.operation, choice, model.airspeed, shape)
-    state = {name: np.broadcast_to(getattr(model.trim, name), shape).reshape(-1) for name in UNKNOWNS}
-    trimmed = with_trim(given, choice, state)
-    return trimmed | couplings(choice, trimmed)
+class _Rotor(NamedTuple):
+    """A rotor of a case with its operation, the options in force and its trim."""
+
+    rotor: Rotor
+    operation: Operation
+    choice: Options
+    trim: Trim
+
+
+def _rotor_parts(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dict[str, _Part]:
+    """Return M, C and K of a rotor alone by origin (points, 18, 18)."""
+    quantities = _quantities(own, model, shape)
+    blade = _structure(quantities, own.choice) | dict(
+        _airloads(BladeSections.of(own.rotor, shape), quantities, own.choice)
+    )
+    found = {name: _in_fixed_frame(part, quantities) for name, part in blade.items()}
+    return found | _other_parts(quantities, own.choice)
+
+
+def _quantities(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dict[str, Any]:
+    """Return all quantities at the trim of a rotor, arrays flattened over the batch."""
+    given = model_quantities(own.rotor, own.operation, own.choice, model.airspeed, shape)
+    state = {name: np.broadcast_to(getattr(own.trim, name), shape).reshape(-1) for name in UNKNOWNS}
+    trimmed = with_trim(given, own.choice, state)
+    return trimmed | couplings(own.choice, trimmed)
 
 
 def _structure(quantities: dict[str, Any], choice: Options) -> dict[str, _Part]:
@@ -240,16 +270,48 @@ def _other_parts(quantities: Mapping[str, Any], choice: Options) -> dict[str, _P
     return parts
 
 
-def _mounted(part: _Part, carrier: NormalModes, model: LinearModel, shape: tuple[int, ...]) -> _Part:
-    """Return a part of the rotor on the coordinates of the model."""
+def _alone(
+    name: str, part: _Part, choice: Options, model: LinearModel, shape: tuple[int, ...]
+) -> LinearModel:
+    """Return a part of a rotor as a rotor alone, with the twist of its mast; the drive train with its engine."""
     n, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
     matrices: dict[str, Any] = {
-        name: np.broadcast_to(matrix, (points, n, n)).reshape(*shape, n, n)
-        for name, matrix in zip("MCK", part, strict=True)
+        kind: np.broadcast_to(matrix, (points, n, n)).reshape(*shape, n, n)
+        for kind, matrix in zip("MCK", part, strict=True)
     }
     alone = LinearModel(**matrices, dofs=FIXED_COORDINATES, trim=model.trim, airspeed=model.airspeed)
-    whole = mount(alone, carrier).submodel(model.dofs)
+    train = choice.drive_train
+    if train is None or train.mast_stiffness is None:
+        return alone
+    if name == "drive train":
+        return with_mast(alone, train)
+    padded: dict[str, Any] = {
+        kind: np.pad(matrix, [(0, 0)] * len(shape) + [(0, 1), (0, 1)]) for kind, matrix in matrices.items()
+    }
+    return replace(alone, **padded, dofs=(*FIXED_COORDINATES, MAST_TWIST))
+
+
+def _mounted(
+    rotors: list[LinearModel], carrier: NormalModes, model: LinearModel, interconnect: ArrayLike = 0.0
+) -> _Part:
+    """Return a part of one rotor, or of two, on the coordinates of the model."""
+    if isinstance(carrier, Airframe):
+        left = rotors[1] if len(rotors) > 1 else None
+        whole = rotors_on(rotors[0], carrier, left, interconnect)
+    else:
+        whole = mount(rotors[0], carrier)
+    whole = whole.submodel(model.dofs)
     return _Part(whole.M, whole.C, whole.K)
+
+
+def _interconnect(
+    nothing: LinearModel, carrier: NormalModes, model: LinearModel, choice: Options
+) -> dict[str, _Part]:
+    """Return the part of the interconnect shaft, if the drive train has one."""
+    train = choice.drive_train
+    if train is None or not np.any(train.interconnect_stiffness):
+        return {}
+    return {"interconnect shaft": _mounted([nothing], carrier, model, train.interconnect_stiffness)}
 
 
 def _support_parts(
@@ -263,7 +325,11 @@ def _support_parts(
         filled[..., :modes, :modes] = matrix
         return filled
 
-    mass, _ = without_rotors(support, [(support.hub, mass_at_rest(case.rotor))])
+    at_rest = mass_at_rest(case.rotor)
+    rotors: list[tuple[Array, Array | None]] = [(support.hub, at_rest)]
+    if isinstance(support, Airframe):
+        rotors = shares(support, at_rest, None if case.left is None else mass_at_rest(case.left.rotor))
+    mass, _ = without_rotors(support, rotors)
     zero, own = np.zeros((*shape, n, n)), case.support
     air = _Part(
         whole(mass * 0 + support.mass - own.mass),

@@ -235,5 +235,8 @@ def tip_speed(case: Configuration) -> float:
 def _points_of(model: LinearModel, points: slice) -> LinearModel:
     """Return a model of some points of a line of models, with their trim."""
     trim = Trim(**{entry.name: getattr(model.trim, entry.name)[points] for entry in fields(Trim)})
-    hub = model.hub if model.hub is None or model.hub.ndim == 2 else model.hub[points]
-    return replace(some_points(model, points), trim=trim, airspeed=model.airspeed[points], hub=hub)
+    hub, left_hub = (
+        hub if hub is None or hub.ndim == 2 else hub[points] for hub in (model.hub, model.left_hub)
+    )
+    part = some_points(model, points)
+    return replace(part, trim=trim, airspeed=model.airspeed[points], hub=hub, left_hub=left_hub)

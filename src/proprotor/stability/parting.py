@@ -144,10 +144,10 @@ def _learn_quality(steps: Steps, points: Points, near: Array) -> None:
     """Set the quality of some states of steps by values alone: 0 where a state may meet another, else 1."""
     row, state = np.nonzero(near & np.isnan(steps.quality))
     if len(row):
-        values = points.spectrum.values
+        values, block = points.spectrum.values, points.spectrum.block
         first, last = values[steps.before[row]], values[steps.after[row]]
         last = np.take_along_axis(last, steps.successor[row], 1)
-        steps.quality[row, state] = ~may_meet(first, last, state[:, None])[:, 0].any(axis=1)
+        steps.quality[row, state] = ~may_meet(first, last, state[:, None], block)[:, 0].any(axis=1)
 
 
 def _squares(steps: Steps, points: Points) -> tuple[Array, Array]:

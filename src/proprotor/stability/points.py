@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.first_order import held_coordinates, missing_roots, some_points
+from proprotor.model.first_order import blocks, held_coordinates, missing_roots, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.matching import Spectrum
@@ -161,14 +161,22 @@ def _values_alone(
     states = values.shape[-1] if states is None else states
     if not works.any():
         return Solved(None, works, *_texts(model, states))
-    more = states - values.shape[-1]
-    values, error = (
-        np.pad(part[works], [(0, 0), (0, more)], constant_values=np.nan) for part in (values, error)
-    )
-    spectrum = Spectrum(values, np.empty((*values.shape, 0), dtype=complex))
+    values, error = (_with_room(part[works], model, states) for part in (values, error))
+    held = held_coordinates(model, states)
+    none = np.empty((*values.shape, 0), dtype=complex)
+    spectrum = Spectrum(values, none, held=tuple(held), blocks=blocks(model, held))
     unknown = np.full(values.shape, complex(np.nan))
     points = _points(line[works], position[works], spectrum, unknown, error, level)
     return Solved(points, works, *_texts(model, states))
+
+
+def _with_room(values: Array, model: LinearModel, states: int) -> Array:
+    """Return values (k, states of the model) with NaN at the end of each block that has room for more states."""
+    found = np.full((len(values), states), np.nan, dtype=values.dtype)
+    narrow, wide = (blocks(model, held_coordinates(model, count)) for count in (values.shape[-1], states))
+    for (_, own), (_, new) in zip(narrow, wide, strict=True):
+        found[:, new.start : new.start + own.stop - own.start] = values[:, own]
+    return found
 
 
 def _points(

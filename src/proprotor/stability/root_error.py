@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.model.first_order import held_coordinates, some_points
+from proprotor.model.first_order import StateBlocks, blocks, held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.eigenvalue_derivatives import real_times, second_order_left
 from proprotor.stability.matching import Modes, Spectrum, size_of
@@ -73,9 +73,10 @@ def refined(model: LinearModel, modes: Modes) -> _Refined:
         matrices = np.concatenate([model.M.real, model.C.real, model.K.real[..., held]], axis=-1)
         correction = -_products(left, real_times(matrices, motion))
         rounding = _ROUNDINGS * _EPSILON * _products(size_of(left), np.abs(matrices) @ size_of(motion))
-        share = size_of(correction) / _nearest(values)
+        apart = _nearest(values, blocks(model, held) if values.shape[-1] == right.shape[-2] else ())
+        share = size_of(correction) / apart
         better = share < 0.5
-        error = rounding + size_of(correction) * np.where(better, _OF_CORRECTION + share, 1.0)
+        error = rounding + size_of(correction) * (_OF_CORRECTION + np.where(better, share, 1.0))
         error = np.where(np.isnan(values), np.nan, np.fmin(error, _DOUBLE * _largest(values)))
     return _Refined(np.where(better, values + correction, values), error)
 
@@ -143,8 +144,10 @@ def _products(rows: Array, columns: Array) -> Array:
     return np.asarray((rows * np.swapaxes(columns, -1, -2)).sum(axis=-1))
 
 
-def _nearest(values: Array) -> Array:
-    """Return the distance of each root to the nearest other root of its point."""
+def _nearest(values: Array, apart_from: StateBlocks) -> Array:
+    """Return the distance of each root to the nearest other root of its point and of its block, if blocks are given."""
+    if len(apart_from) > 1:
+        return np.concatenate([_nearest(values[..., columns], ()) for _, columns in apart_from], axis=-1)
     apart = size_of(values[..., :, None] - values[..., None, :])
     states = np.arange(values.shape[-1])
     apart[..., states, states] = np.inf

@@ -37,23 +37,24 @@ class _Smooth(NamedTuple):
 PairsWithin = Callable[[Steps, Points, Array, Array, Array], tuple[_Smooth, _Smooth]]
 
 
-def may_meet(first: Array, last: Array, state: Array) -> Array:
+def may_meet(first: Array, last: Array, state: Array, block: Array) -> Array:
     """Return which roots (n, k, states) some roots, state (n, k), may meet or turn away from between two points.
 
     Values (n, states) alone decide: the straight ways of two roots come nearer to each other than their ends, or the
-    roots are much nearer at one end.
+    roots are much nearer at one end. Roots of blocks that do not couple, block (states,), pass each other.
     """
     apart, later = (
         np.take_along_axis(values, state, 1)[:, :, None] - values[:, None, :] for values in (first, last)
     )
     one, other = size_of(apart), size_of(later)
     near, far = np.minimum(one, other), np.maximum(one, other)
-    return np.asarray((way_to_zero(apart, later) < _APPROACH * near) | (near < _MEETING * far))
+    near_each_other = (way_to_zero(apart, later) < _APPROACH * near) | (near < _MEETING * far)
+    return np.asarray(near_each_other & (block[state][:, :, None] == block))
 
 
-def _partners(first: Array, last: Array) -> Array:
+def _partners(first: Array, last: Array, block: Array) -> Array:
     """Return the root (n, states) that each root may meet, if neither may meet a third; -1 elsewhere."""
-    meeting = may_meet(first, last, np.broadcast_to(np.arange(first.shape[1]), first.shape))
+    meeting = may_meet(first, last, np.broadcast_to(np.arange(first.shape[1]), first.shape), block)
     alone = meeting.sum(axis=2) == 1
     partner = meeting.argmax(axis=2)
     return np.where(alone & np.take_along_axis(alone, partner, 1), partner, -1)
@@ -68,7 +69,9 @@ def keep_off(
         return found
     which, place = np.unique(row, return_inverse=True)
     few = steps.at(which)
-    partner = _partners(*few.at_ends(points.spectrum.values))[place, state]
+    spectrum = points.spectrum
+    first, last = few.at_ends(spectrum.values)
+    partner = _partners(first, last, spectrum.block)[place, state]
     sides = few.sides(points)[:, place]
     own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
     side = own[0]
@@ -120,13 +123,14 @@ def _sums_and_squares(
 def _couples(steps: Steps, points: Points) -> tuple[Array, Array, Array]:
     """Return steps (k,), two states (2, k) that are real at one end and a pair at the other, and which end that is."""
     ends = steps.at_ends(points.spectrum.values)
-    real = ends.imag == 0
+    real, block = ends.imag == 0, points.spectrum.block
     found = []
     for end in (0, 1):
         mixed = real[end] & ~real[1 - end] & np.isfinite(ends[0]) & np.isfinite(ends[1])
         some = np.flatnonzero(mixed.sum(axis=1) > 1)
         own, pair = mixed[some], ends[1 - end, some]
         join = own[:, :, None] & own[:, None, :] & (pair[:, :, None] == pair[:, None, :].conj())
+        join &= block[:, None] == block
         row, one, other = np.nonzero(np.triu(join, 1))
         found.append(np.stack([some[row], one, other, np.full(len(row), end)]))
     rows, *couples, ends_of = np.concatenate(found, axis=1)

@@ -30,7 +30,7 @@ from proprotor.stability.eigenvalue_derivatives import (
     eigenvalue_change,
     matrix_derivatives,
 )
-from proprotor.stability.flutter import flutter_point
+from proprotor.stability.flutter import boundary_of, flutter_point
 from proprotor.stability.matching import Modes
 from proprotor.stability.modes import decomposition
 from proprotor.stability.named_modes import doubtful_numbers, named_modes
@@ -188,12 +188,7 @@ def _of_flutter_speed(
     options: Mapping[str, Any],
 ) -> Dataset:
     found = flutter_point(case, airspeeds, level=level, **options)
-    wanted = [b for b in found.boundaries if (b.onset if mode is None else b.mode == mode)]
-    if not wanted:
-        rule = "has no boundary" if mode else "nothing becomes unstable"
-        low, high = found.searched
-        raise InputError("flutter_speed", mode, f"{rule} between {low:.6g} and {high:.6g} m/s")
-    return at_boundary(case, wanted[0], inputs, options, found.eigen_solves)
+    return at_boundary(case, boundary_of(found, mode), inputs, options, found.eigen_solves)
 
 
 def at_boundary(

@@ -17,6 +17,7 @@ from proprotor.errors import InputError
 from proprotor.files.source_code import check_code
 from proprotor.model.first_order import missing_roots
 from proprotor.model.linear_model import LinearModel
+from proprotor.stability.kinds import flies_free
 from proprotor.stability.modes import decomposition, eigenvalues
 from proprotor.study.designs import AIRSPEED
 from proprotor.study.flutter_speeds import put_flutter_speeds
@@ -121,7 +122,7 @@ class Analysis:
             return self._varied(numbers).linearize(speeds, **self.options)
 
         if len(rows := np.flatnonzero(refused == "")):
-            put_flutter_speeds(found, batch, rows, models, self.states, self.tolerance)
+            put_flutter_speeds(found, batch, rows, models, self.states, self.tolerance, flies_free(self.case))
 
     def _find_at_points(self, found: dict[str, Array], batch: Batch) -> None:
         rows, columns = (np.arange(size) for size in batch.shape)

@@ -11,7 +11,8 @@ from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.crossings import Search
-from proprotor.stability.matching import Spectrum
+from proprotor.stability.kinds import FLUTTER, kinds
+from proprotor.stability.matching import Modes, Spectrum
 from proprotor.stability.mode_names import moving
 from proprotor.stability.modes import coordinate_shares
 from proprotor.study.variables import ALWAYS, STABLE, UNSTABLE
@@ -25,7 +26,13 @@ _Models = Callable[[Array, Array], LinearModel]
 
 
 def put_flutter_speeds(
-    found: dict[str, Array], batch: Batch, rows: Array, models: _Models, states: int, tolerance: float
+    found: dict[str, Array],
+    batch: Batch,
+    rows: Array,
+    models: _Models,
+    states: int,
+    tolerance: float,
+    flies_free: bool = False,
 ) -> None:
     """Put the variables of the quantity "flutter" of some designs in their places.
 
@@ -42,13 +49,16 @@ def put_flutter_speeds(
         Number of eigenvalues of the model; 0 if the number is not known.
     tolerance : float
         Tolerance of a flutter speed, m/s.
+    flies_free : bool
+        Whether the designs are aircraft, whose flutter speed is the lowest onset of flutter alone, and not of
+        divergence or of an instability of the rigid body.
     """
     speeds = batch.shape[1]
     search = Search(
         models,
         np.repeat(rows, speeds),
         np.tile(np.asarray(batch.speeds, dtype=float), len(rows)),
-        onset_only=True,
+        onset_only=not flies_free,
         forgiving=True,
         states=states or None,
     )
@@ -58,7 +68,10 @@ def put_flutter_speeds(
     if search.scanned.points is None:
         return
     brackets = Brackets(search, tolerance)
-    downwards = sorted(brackets.close(), key=lambda one: one.position, reverse=True)
+    onsets = [one for one in brackets.close() if one.onset]
+    if flies_free:
+        onsets = _flutters(onsets, models)
+    downwards = sorted(onsets, key=lambda one: one.position, reverse=True)
     first = {one.line: one for one in downwards}  # the lowest onset of each design that has one
     for place, why in brackets.lost.items():
         if brackets.line[place] not in first:
@@ -68,12 +81,28 @@ def put_flutter_speeds(
         _put_onsets(found, first, models)
 
 
+def _flutters(onsets: list[Crossing], models: _Models) -> list[Crossing]:
+    """Return the onsets that are flutter."""
+    if not onsets:
+        return []
+    lines, positions = np.array([one.line for one in onsets]), np.array([one.position for one in onsets])
+    kind = kinds(models(lines, positions), _modes_at(onsets))
+    return [one for one, own in zip(onsets, kind, strict=True) if own[one.state] == FLUTTER]
+
+
+def _modes_at(onsets: list[Crossing]) -> Modes:
+    """Return all modes at some crossings."""
+    values, right = (
+        np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right")
+    )
+    return Spectrum(values, right, blocks=onsets[0].spectrum.blocks).all_modes
+
+
 def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: _Models) -> None:
     """Put the lowest onset of each design in its place, with the name and the main coordinate of the mode."""
     rows, onsets = np.array(list(first)), list(first.values())
     model = models(rows, np.array([one.position for one in onsets]))
-    spectra = (np.stack([getattr(one.spectrum, part) for one in onsets]) for part in ("values", "right"))
-    values, right, left = Spectrum(*spectra).all_modes
+    values, right, left = _modes_at(onsets)
     every, state = np.arange(len(rows)), np.array([one.state for one in onsets])
     held = held_coordinates(model, values.shape[-1])
     shares = coordinate_shares(held, len(model.dofs), left, right)[every, :, state]

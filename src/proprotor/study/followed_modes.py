@@ -67,7 +67,10 @@ def _follow(spectrum: Spectrum) -> tuple[Array, Array, Array]:
     points = np.flatnonzero(good)
     same_design = np.diff(points // speeds) == 0
     before, after = points[:-1][same_design], points[1:][same_design]
-    flat = Spectrum(*(array.reshape(designs * speeds, *array.shape[2:]) for array in spectrum[:2]))
+    flat_values, flat_right = (
+        array.reshape(designs * speeds, *array.shape[2:]) for array in (spectrum.values, spectrum.right)
+    )
+    flat = Spectrum(flat_values, flat_right, blocks=spectrum.blocks)
     steps = match_modes(flat, before, after)
     places = by_frequency(spectrum.values).reshape(-1, states)
     quality = np.full(places.shape, np.nan)

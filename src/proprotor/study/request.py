@@ -14,16 +14,18 @@ from proprotor.case import Case
 from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
-from proprotor.rotor.motions import HUB, ROTOR_SPEED
+from proprotor.model.linear_model import LinearModel
+from proprotor.rotor.motions import HUB
 from proprotor.rotor.options import parse_options
 from proprotor.study.batch import Analysis, Batch
 from proprotor.study.designs import AIRSPEED, Designs, Plan, paths_of
 from proprotor.study.sampling import as_plan
 from proprotor.study.variables import ALONG_AIRSPEEDS, POINT, QUANTITIES, bytes_of, shape_of, variables
+from proprotor.support.airframe import Airframe
 from proprotor.typing import Array, Dataset
 from proprotor.units import in_metres_per_second
 
-_SHAFT = "drive_train.shaft_stiffness"
+_SHAFT, _INTERCONNECT = "drive_train.shaft_stiffness", "drive_train.interconnect_stiffness"
 _MOST_TRIED = 25  # airspeeds, to see the coordinates of the model
 
 
@@ -88,9 +90,10 @@ class Request:
         """Return the same request with the coordinates of the model, found by the analysis of a few points."""
         case, options = self.analysis.case, self.analysis.options
         tried = self.designs.values[AIRSPEED] if self.airspeed is None else self.airspeed
-        dofs = _coordinates(case, tried, options)
-        states = 2 * len(dofs) - (ROTOR_SPEED in dofs and not _a_shaft_holds(case, self.designs, options))
-        return replace(self, analysis=replace(self.analysis, dofs=dofs, states=states))
+        model = _model_of_points(case, tried, options)
+        loose = len(model.azimuths) - _held_azimuths(case, self.designs, options, model)
+        states = 2 * len(model.dofs) - len(model.rates) - loose
+        return replace(self, analysis=replace(self.analysis, dofs=model.dofs, states=states))
 
     def dataset(self, found: Mapping[str, Array]) -> Dataset:
         """Return variables of all designs and airspeeds as a dataset over the inputs and airspeeds."""
@@ -175,23 +178,28 @@ def _check_range(speeds: Array | None, quantity: str) -> None:
 # Coordinates of the model -------------------------------------------------------------------------
 
 
-def _a_shaft_holds(case: Case, designs: Designs, options: Mapping[str, Any]) -> bool:
-    """Return whether a shaft holds the azimuth of any design, which then has one eigenvalue more than others."""
+def _held_azimuths(case: Case, designs: Designs, options: Mapping[str, Any], model: LinearModel) -> int:
+    """Return how many azimuths a shaft holds in any design, which then has as many eigenvalues more than others."""
     train = case.model_options(options).get("drive_train")
-    stiffness = 0.0 if train is None else train.shaft_stiffness
-    if "drive_train" not in options:
-        stiffness = designs.values.get(_SHAFT, stiffness)
-    return bool(np.any(np.nan_to_num(stiffness) > 0))
+    most = len(model.azimuths)
+    for path, held in ((_SHAFT, most), (_INTERCONNECT, min(most, 1))):
+        given = 0.0 if train is None else getattr(train, path.rpartition(".")[2])
+        if "drive_train" not in options:
+            given = designs.values.get(path, given)
+        if np.any(np.nan_to_num(given) > 0):
+            return held
+    return 0
 
 
 def _most_coordinates(case: Case, options: Mapping[str, Any]) -> int:
     """Return the number of coordinates of a model of the case with everything free."""
     blades = 3 * (int(np.max(case.rotor.n_blades)) - 3) if options.get("reactionless") else 0
-    return len(case.support.names) + len(FIXED_COORDINATES) - len(HUB) + blades
+    own = len(FIXED_COORDINATES) - len(HUB) + 1 + blades  # and the twist of the mast
+    return len(case.support.names) + own * (2 if isinstance(case.support, Airframe) else 1)
 
 
-def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the coordinates of the case's model.
+def _model_of_points(case: Case, speeds: Array, options: Mapping[str, Any]) -> LinearModel:
+    """Return the case's model at some points, for its coordinates.
 
     Raises
     ------
@@ -207,4 +215,4 @@ def _coordinates(case: Case, speeds: Array, options: Mapping[str, Any]) -> tuple
     if model.M.shape[:-2] != tried.shape:
         rule = "must not hold arrays: vary the case's inputs instead"
         raise InputError("options", ", ".join(options), rule)
-    return model.dofs
+    return model

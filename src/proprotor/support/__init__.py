@@ -1,6 +1,7 @@
 """Support: the structure that carries a rotor, as coordinates with mass, damping, stiffness and motion at the hub.
 
-In: a beam wing, or modes or matrices of any finite-element code. Out: `NormalModes`, on which `model` mounts rotors.
+In: a beam wing, a whole aircraft, or modes or matrices of any finite-element code. Out: `NormalModes`, on which `model`
+mounts rotors.
 This room imports `errors`, `typing`, `needs`, `files` and, for the names of coordinates, `rotor`.
 
     normal_modes       coordinates of a support; two-axis pivot; rigid support
@@ -8,18 +9,23 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     modal_reduction    lowest modes of a structure, and the structure on these modes
     beam               a chain of beam elements
     beam_wing          a cantilever wing of beam elements with a pylon
+    stiffness_factors  factors on the stiffnesses of such a wing, fitted to frequencies
+    aircraft_structure half an aircraft: free fuselage, box, wing and pylon
+    free_airframe      rigid motions and elastic modes of a free aircraft
+    aircraft_airloads  airloads of a free aircraft: wing strips and tails
     wing_aerodynamics  airloads of the wing itself, by strips
     nastran            modes from a Nastran run
     matrix_files       matrices of any finite-element code
     matrix_market      files of such matrices in the Matrix Market format
 
-All public names of the modules `beam`, `beam_wing`, `matrix_files`, `nastran` and `wing_aerodynamics` belong to the
-face.
+All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam`, `beam_wing`, `free_airframe`,
+`matrix_files`, `nastran`, `stiffness_factors` and `wing_aerodynamics` belong to the face.
 """
 
 from proprotor.support.airframe import SYMMETRIES, Airframe
 from proprotor.support.modal_reduction import StructuralModes, lowest_modes
 from proprotor.support.normal_modes import (
+    CARRIES,
     HUB_AXES,
     INCLUDES_ROTOR,
     SHAFT,
@@ -29,6 +35,7 @@ from proprotor.support.normal_modes import (
 )
 
 __all__ = [
+    "CARRIES",
     "HUB_AXES",
     "INCLUDES_ROTOR",
     "SHAFT",
@@ -36,12 +43,16 @@ __all__ = [
     "Airframe",
     "NormalModes",
     "StructuralModes",
+    "aircraft_airloads",
+    "aircraft_structure",
     "beam",
     "beam_wing",
+    "free_airframe",
     "lowest_modes",
     "matrix_files",
     "nastran",
     "rigid_support",
+    "stiffness_factors",
     "two_axis_pivot",
     "wing_aerodynamics",
 ]

@@ -24,8 +24,8 @@ from proprotor.support.modal_reduction import Arrangement, ModalSupport, on_mode
 from proprotor.support.normal_modes import HUB_AXES, ROTATION, NormalModes
 from proprotor.typing import Array, Numbers
 
-_OUTBOARD = np.array([0.0, 1.0, 0.0])
-_PYLON_PITCH = "pylon_pitch"
+_UP, _OUTBOARD, _ = np.eye(3)
+_TURNS = {"pylon_pitch": ("pitch_stiffness", _OUTBOARD), "pylon_yaw": ("yaw_stiffness", _UP)}
 _SpanwiseProfile = Numbers | tuple[ArrayLike, ArrayLike]
 _MOST_ELEMENTS = 200
 
@@ -94,7 +94,7 @@ class Wing:
     def tip(self) -> Array:
         """Point where the elastic axis meets the pylon, m (..., 3)."""
         span = np.asarray(self.span)
-        return _along_axes(span * np.tan(self.dihedral), span, -span * np.tan(self.sweep))
+        return along_axes(span * np.tan(self.dihedral), span, -span * np.tan(self.sweep))
 
     @property
     def nodes(self) -> Array:
@@ -131,13 +131,14 @@ class Pylon:
         Distances from the elastic axis at the tip to the nacelle's centre of mass along K, I and J, m.
     hub_mass : float
         Mass at the hub that belongs to the rotor but not to its blades, kg.
-    pitch_stiffness : float or None
-        Stiffness of the downstop about J, N m/rad; with None the pylon is rigidly attached to the wing tip.
+    pitch_stiffness, yaw_stiffness : float or None
+        Stiffness of the downstop about J, and of the spindle about I, N m/rad; with None the pylon does not turn
+        against the wing tip about this axis.
 
     Raises
     ------
     InputError
-        When a value is not finite, a mass or inertia negative, or the spring not above zero.
+        When a value is not finite, a mass or inertia negative, or a spring not above zero.
     """
 
     nacelle_mass: Numbers
@@ -152,46 +153,50 @@ class Pylon:
     nacelle_outboard: Numbers = 0.0
     hub_mass: Numbers = 0.0
     pitch_stiffness: Numbers | None = None
+    yaw_stiffness: Numbers | None = None
 
     def __post_init__(self) -> None:
         given = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        downstop = given.pop("pitch_stiffness")
+        springs = {name: given.pop(name) for name, _ in _TURNS.values()}
         for name, value in given.items():
             check_finite(name, value, "not negative" if name.endswith(("mass", "inertia")) else "")
-        if downstop is not None:
-            check_finite("pitch_stiffness", downstop, "above zero")
+        for name, value in springs.items():
+            if value is not None:
+                check_finite(name, value, "above zero")
 
     @property
     def hub(self) -> Array:
         """Vector from the elastic axis at the tip to the hub, m (..., 3) along I, J, K."""
-        return _along_axes(self.mast_height, self.mast_outboard, self.mast_length)
+        return along_axes(self.mast_height, self.mast_outboard, self.mast_length)
 
     @property
     def nacelle(self) -> Array:
         """Vector from the elastic axis at the tip to the nacelle's centre of mass, m (..., 3)."""
-        return _along_axes(self.nacelle_up, self.nacelle_outboard, self.nacelle_forward)
+        return along_axes(self.nacelle_up, self.nacelle_outboard, self.nacelle_forward)
 
     @property
     def mass(self) -> Array:
         """Mass of nacelle and hub hardware on the motion of the hub, kg, kg m and kg m² (..., 6, 6)."""
         turning = (self.nacelle_yaw_inertia, self.nacelle_pitch_inertia, self.nacelle_roll_inertia)
-        nacelle = _diagonal(*[self.nacelle_mass] * 3, *turning)
+        nacelle = diagonal_matrix(*[self.nacelle_mass] * 3, *turning)
         motion = rigid_motion(self.nacelle - self.hub)
-        return np.swapaxes(motion, -1, -2) @ nacelle @ motion + _diagonal(*[self.hub_mass] * 3, *[0.0] * 3)
+        return np.swapaxes(motion, -1, -2) @ nacelle @ motion + diagonal_matrix(
+            *[self.hub_mass] * 3, *[0.0] * 3
+        )
 
 
-_Given = TypeVar("_Given", Wing, Pylon)
+_Given = TypeVar("_Given")
 
 
 class BeamStructure(NamedTuple):
     """Mass and stiffness of wing and pylon on the motions of the nodes between mount and tip, then of the hub.
 
     names : tuple of str
-        Names of the n coordinates: six for each node, six of the hub (m and rad), and with a downstop the pitch of the
-        pylon against the wing tip, nose up.
+        Names of the n coordinates: six for each node, six of the hub (m and rad), and with a spring the pitch of the
+        pylon against the wing tip, nose up, and the yaw about I.
     mass : array (..., n, n)
     stiffness_parts : mapping of str to array (..., n, n)
-        Parts of the stiffness: beam, chord, torsion (with the downstop) and axial.
+        Parts of the stiffness: beam, chord, torsion (with the downstop), axial, and with a spindle pylon yaw.
     hub : array (6, n)
         Motion of the hub for each coordinate.
     nodes : array (..., elements + 1, 6, n)
@@ -222,43 +227,69 @@ def beam_structure(wing: Wing, pylon: Pylon) -> BeamStructure:
     structure = _structure(wing, pylon)
     if np.isrealobj(structure.mass) and np.isrealobj(structure.stiffness):
         return structure
-    real = _structure(_real(wing), _real(pylon))
-    parts = {
-        name: _stepped(real.stiffness_parts[name], part) for name, part in structure.stiffness_parts.items()
-    }
-    return structure._replace(mass=_stepped(real.mass, structure.mass), stiffness_parts=parts)
+    return stepped(_structure(real_part(wing), real_part(pylon)), structure)
 
 
 def _structure(wing: Wing, pylon: Pylon) -> BeamStructure:
     """Return the finite-element matrices of wing and pylon."""
-    mass, parts, positions = wing_elements(wing)
-    nodes, hub, names = _coordinates(wing, pylon)
+    elements = wing_elements(wing)
+    return on_motions(*pylon_coordinates(wing, pylon), elements, pylon)
+
+
+def on_motions(
+    nodes: Array,
+    hub: Array,
+    names: tuple[str, ...],
+    elements: tuple[Array, dict[str, Array], Array],
+    pylon: Pylon,
+) -> BeamStructure:
+    """Return the matrices of beam elements and a pylon on named coordinates.
+
+    Parameters
+    ----------
+    nodes : array (..., k, 6, n)
+        Motion of each node for each coordinate.
+    hub : array (6, n)
+        Motion of the hub for each coordinate.
+    names : tuple of str
+        Names of the n coordinates, among these the turns of a pylon on springs.
+    elements : tuple of (array, dict of str to array, array)
+        Mass and parts of the stiffness on the motions of all nodes, and the positions of the nodes.
+    pylon : Pylon
+    """
+    mass, parts, positions = elements
     motion = nodes.reshape(*nodes.shape[:-3], -1, len(names))
     turned = np.swapaxes(motion, -1, -2)
-    parts = {name: turned @ part @ motion for name, part in parts.items()}
-    if pylon.pitch_stiffness is not None:
-        at_downstop = np.diag([0.0] * (len(names) - 1) + [1.0])
-        parts["torsion"] = parts["torsion"] + np.asarray(pylon.pitch_stiffness)[..., None, None] * at_downstop
-    mass = turned @ mass @ motion + hub.T @ pylon.mass @ hub
-    return BeamStructure(
-        names=names,
-        mass=symmetric(mass),
-        stiffness_parts={name: symmetric(part) for name, part in parts.items()},
-        hub=hub,
-        nodes=nodes,
-        positions=positions,
-    )
+    parts = {name: symmetric(turned @ part @ motion) for name, part in parts.items()}
+    for name, (spring, _) in _TURNS.items():
+        if name in names:
+            kind = "torsion" if name == "pylon_pitch" else "pylon yaw"
+            stiffness = np.asarray(getattr(pylon, spring))[..., None, None] * selected(names, name)
+            parts[kind] = parts.get(kind, 0.0) + stiffness
+    mass = symmetric(turned @ mass @ motion + hub.T @ pylon.mass @ hub)
+    return BeamStructure(names, mass, parts, hub, nodes, positions)
 
 
-def _real(given: _Given) -> _Given:
-    """Return a wing or a pylon with the real parts of its numbers."""
-    numbers = {entry.name: getattr(given, entry.name) for entry in fields(given)}
+def selected(names: Sequence[str], name: str) -> Array:
+    """Return the matrix (n, n) with a one on the diagonal at one of the names."""
+    return np.diag([float(one == name) for one in names])
+
+
+def real_part(given: _Given) -> _Given:
+    """Return a record of a wing, a pylon or a box with the real parts of its numbers."""
+    numbers = {entry.name: getattr(given, entry.name) for entry in fields(given)}  # type: ignore[arg-type]
     steps: dict[str, Any] = {
         name: (value[0], np.real(value[1])) if isinstance(value, tuple) else np.real(value)
         for name, value in numbers.items()
         if np.iscomplexobj(value[1] if isinstance(value, tuple) else value)
     }
-    return replace(given, **steps)
+    return replace(given, **steps)  # type: ignore[type-var]
+
+
+def stepped(real: BeamStructure, moved: BeamStructure) -> BeamStructure:
+    """Return a structure with complex numbers whose real parts are those of another one, to the last digit."""
+    parts = {name: _stepped(real.stiffness_parts[name], part) for name, part in moved.stiffness_parts.items()}
+    return moved._replace(mass=_stepped(real.mass, moved.mass), stiffness_parts=parts)
 
 
 def _stepped(real: Array, moved: Array) -> Array:
@@ -314,15 +345,17 @@ def on_coordinates(
     damping_ratio: ArrayLike | Mapping[str, Numbers],
     rotor_mass: Numbers,
     names: Sequence[str] = (),
+    at_hub: Array | None = None,
 ) -> ModalSupport:
     """Return the structure as a support on all coordinates or on its `count` lowest modes; see `beam_wing`.
 
-    `names` is the order of the modes of every design, by default the order of the first design.
+    `names` is the order of the modes of every design, by default the order of the first design; `at_hub` (..., 6, 6) is
+    a mass like `rotor_mass` on all motions of the hub.
     """
     given: ArrayLike | Callable[[Array], ArrayLike]
     if isinstance(damping_ratio, Mapping):
         _check_kinds(damping_ratio, structure)
-        given = partial(_ratios_by_kind, structure, damping_ratio)
+        given = partial(ratios_by_kind, structure.stiffness_parts, damping_ratio)
     else:
         given = damping_ratio
     return on_modes(
@@ -333,7 +366,8 @@ def on_coordinates(
         count=count,
         damping_ratio=given,
         rotor_mass=rotor_mass,
-        arrange=partial(_by_names, structure, tuple(names)),
+        at_hub=at_hub,
+        arrange=partial(arranged, structure.stiffness_parts, tuple(names)),
     )
 
 
@@ -348,32 +382,34 @@ def _check_kinds(damping_ratio: Mapping[str, Numbers], structure: BeamStructure)
             raise InputError("damping_ratio", kind, rule)
 
 
-def _kinds(structure: BeamStructure, shapes: Array) -> Array:
+def _kinds(stiffness_parts: Mapping[str, Array], shapes: Array) -> Array:
     """Return for each mode (..., k) the place of the part of the stiffness with most of the mode's strain energy."""
     shapes = np.real(shapes)
-    parts = (np.real(part) for part in structure.stiffness_parts.values())
+    parts = (np.real(part) for part in stiffness_parts.values())
     places: Array = np.argmax([(shapes * (part @ shapes)).sum(axis=-2) for part in parts], axis=0)
     return places
 
 
-def _ratios_by_kind(structure: BeamStructure, ratios: Mapping[str, Numbers], shapes: Array) -> Array:
+def ratios_by_kind(
+    stiffness_parts: Mapping[str, Array], ratios: Mapping[str, Numbers], shapes: Array
+) -> Array:
     """Return the damping ratio (..., k) of each mode from the ratio (...) of its kind."""
-    kinds = _kinds(structure, shapes)
-    by_kind = np.stack(np.broadcast_arrays(*(ratios[kind] for kind in structure.stiffness_parts)), axis=-1)
+    kinds = _kinds(stiffness_parts, shapes)
+    by_kind = np.stack(np.broadcast_arrays(*(ratios[kind] for kind in stiffness_parts)), axis=-1)
     return np.take_along_axis(
         np.broadcast_to(by_kind, (*kinds.shape[:-1], by_kind.shape[-1])), kinds, axis=-1
     )
 
 
-def _by_names(structure: BeamStructure, names: tuple[str, ...], shapes: Array) -> Arrangement:
+def arranged(stiffness_parts: Mapping[str, Array], names: tuple[str, ...], shapes: Array) -> Arrangement:
     """Return the order of modes in which each design has them under the same names as far as it has such modes.
 
     A mode is named by its kind, from the second mode of a kind on with a number. Designs with the same kinds in the
     same order are arranged at once.
     """
-    kinds = _kinds(structure, shapes)
+    kinds = _kinds(stiffness_parts, shapes)
     sequences, which = np.unique(kinds.reshape(-1, kinds.shape[-1]), axis=0, return_inverse=True)
-    own = [_numbered([tuple(structure.stiffness_parts)[kind] for kind in sequence]) for sequence in sequences]
+    own = [_numbered([tuple(stiffness_parts)[kind] for kind in sequence]) for sequence in sequences]
     which = which.reshape(kinds.shape[:-1])
     wanted = names or own[which.flat[0]]
     places = np.array([_places(one, wanted) for one in own])[which]
@@ -407,31 +443,31 @@ def wing_elements(wing: Wing) -> tuple[Array, dict[str, Array], Array]:
     return mass, parts, wing.nodes
 
 
-def _coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:
+def pylon_coordinates(wing: Wing, pylon: Pylon) -> tuple[Array, Array, tuple[str, ...]]:
     """Return the motion of the nodes and of the hub for each coordinate, and the names of the coordinates."""
     inner = PER_NODE * (wing.elements - 1)
-    free = pylon.pitch_stiffness is not None
+    turns = {name: axis for name, (spring, axis) in _TURNS.items() if getattr(pylon, spring) is not None}
     names = [f"wing_{node}_{axis}" for node in range(1, wing.elements) for axis in HUB_AXES]
-    names += [f"hub_{axis}" for axis in HUB_AXES] + [_PYLON_PITCH] * free
+    names += [*(f"hub_{axis}" for axis in HUB_AXES), *turns]
     hub = np.zeros((PER_NODE, len(names)))
     hub[:, inner : inner + PER_NODE] = np.eye(PER_NODE)
     tip = rigid_motion(-pylon.hub) @ hub
-    if free:
-        tip[..., ROTATION, -1] = -_OUTBOARD  # the wing tip turns by the rotation of the hub less this pitch
+    for name, axis in turns.items():  # the wing tip turns by the rotation of the hub less these turns
+        tip[..., ROTATION, names.index(name)] = -axis
     nodes = np.zeros((*tip.shape[:-2], wing.elements + 1, *tip.shape[-2:]), dtype=tip.dtype)
     nodes[..., 1:-1, :, :inner] = np.eye(inner).reshape(wing.elements - 1, PER_NODE, inner)
     nodes[..., -1, :, :] = tip
     return nodes, hub, tuple(names)
 
 
-def _along_axes(*components: Numbers) -> Array:
+def along_axes(*components: Numbers) -> Array:
     """Return vectors (..., 3) from their components."""
     return np.stack(np.broadcast_arrays(*components), axis=-1)
 
 
-def _diagonal(*values: Numbers) -> Array:
+def diagonal_matrix(*values: Numbers) -> Array:
     """Return diagonal matrices (..., n, n) of n values (...)."""
-    return _along_axes(*values)[..., None] * np.eye(len(values))
+    return along_axes(*values)[..., None] * np.eye(len(values))
 
 
 def _at(nodes: Array, profile: _SpanwiseProfile) -> Array:

@@ -2,7 +2,8 @@
 
 Coordinates are named, and six coordinates are the hub's: x, y, z in the length unit of the matrices, αx, αy, αz in rad,
 along the rotor's axes (I up, J outboard, K forward along the shaft). A finite-element axis that points the other
-way has a minus sign before its name.
+way has a minus sign before its name. Matrices on modal coordinates come with Φ instead, the motion of the hub per unit
+of each coordinate.
 """
 
 from __future__ import annotations
@@ -23,14 +24,20 @@ from proprotor.errors import InputError, unknown_name
 from proprotor.files.text import read_text
 from proprotor.support.matrix_market import MatrixMarketError, read_matrix
 from proprotor.support.modal_reduction import on_modes
-from proprotor.support.normal_modes import HUB_AXES, TRANSLATION, NormalModes, signed_names
+from proprotor.support.normal_modes import (
+    HUB_AXES,
+    TRANSLATION,
+    NormalModes,
+    share_of_one_rotor,
+    signed_names,
+)
 from proprotor.typing import Array
 
 _LARGEST = 500_000_000  # bytes of a file, unpacked
 _LARGEST_UNIT = 1e12  # m or kg
 _LARGEST_ENTRY = 1e100  # beyond this value products overflow
 _SYMMETRY = 1e-6  # files may have few digits
-_KEYS = ("mass", "stiffness", "damping", "dofs")
+_KEYS = ("mass", "stiffness", "damping", "dofs", "hub")
 
 
 def read_npz(
@@ -38,12 +45,15 @@ def read_npz(
 ) -> NormalModes:
     """Return a support from a NumPy file with the arrays mass, stiffness, dofs (n names) and, optionally, damping.
 
+    Matrices on modal coordinates have the array hub too, the motion Φ (6, n) of the hub per unit of each coordinate.
+    The array dofs may then be left out, and the coordinates are mode_1 and so on.
+
     Parameters
     ----------
     file : str or path
     hub : mapping of str to str, optional
         For each of x, y, z, alpha_x, alpha_y, alpha_z the name of the hub's coordinate, with "-" before a coordinate
-        that points the other way; by default hub_x … hub_alpha_z.
+        that points the other way; by default hub_x … hub_alpha_z. Not for modal coordinates.
     **options
         As for `support_from_matrices`.
 
@@ -61,11 +71,16 @@ def read_npz(
             if name not in _KEYS:
                 raise InputError("file", str(path), unknown_name(name, _KEYS, "array"))
         arrays = {name: archive[name] for name in archive.files}
-    for name in ("mass", "stiffness", "dofs"):
+    modal = "hub" in arrays
+    if modal and hub is not None:
+        raise InputError(
+            "hub", None, "must not be given with a file that has the motion of the hub, its array hub"
+        )
+    for name in ("mass", "stiffness") if modal else ("mass", "stiffness", "dofs"):
         if name not in arrays:
             raise InputError("file", str(path), f"has no array {name}")
-    names = _texts(path, np.atleast_1d(arrays.pop("dofs")))
-    return support_from_matrices(**arrays, dofs=names, hub=hub, **options)
+    names = _texts(path, np.atleast_1d(arrays.pop("dofs"))) if "dofs" in arrays else None
+    return support_from_matrices(**{"hub": hub} | arrays, dofs=names, **options)
 
 
 def read_matrix_market(
@@ -75,6 +90,7 @@ def read_matrix_market(
     *,
     dofs: str | os.PathLike[str],
     hub: Mapping[str, str] | None = None,
+    hub_motion: str | os.PathLike[str] | None = None,
     **options: Any,
 ) -> NormalModes:
     """Return a support from Matrix Market files and a text file with the name of each coordinate on a line.
@@ -82,6 +98,8 @@ def read_matrix_market(
     Parameters
     ----------
     mass, stiffness, damping, dofs : str or path
+    hub_motion : str or path, optional
+        The motion Φ (6, n) of the hub, for matrices on modal coordinates.
     hub, **options
         As for `read_npz`.
 
@@ -90,10 +108,13 @@ def read_matrix_market(
     InputError
         When a file is missing, damaged or too large, or the matrices do not make a support.
     """
+    if hub_motion is not None and hub is not None:
+        raise InputError("hub", None, "must not be given with hub_motion, which has the motion of the hub")
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _matrix_market(name, path) for name, path in given.items() if path is not None}
     names = read_text(Path(dofs), "dofs", str(dofs), _LARGEST).split()
-    return support_from_matrices(**matrices, dofs=names, hub=hub, **options)
+    motion = hub if hub_motion is None else _dense(_matrix_market("hub_motion", hub_motion))
+    return support_from_matrices(**matrices, dofs=names, hub=motion, **options)
 
 
 def support_from_matrices(
@@ -101,10 +122,11 @@ def support_from_matrices(
     stiffness: Any,
     damping: Any = None,
     *,
-    dofs: Sequence[str],
-    hub: Mapping[str, str] | None = None,
+    dofs: Sequence[str] | None = None,
+    hub: Mapping[str, str] | ArrayLike | None = None,
     includes_rotor: bool | str = False,
     shaft: str = "held",
+    carries: str | None = None,
     modes: int | None = None,
     damping_ratio: ArrayLike = 0.0,
     rotor_mass: float = 0.0,
@@ -117,12 +139,15 @@ def support_from_matrices(
     ----------
     mass, stiffness, damping : array or sparse array, shape (n, n)
         Matrices of the whole structure, with the rotor or without.
-    dofs : sequence of str
-        Names of the n coordinates.
-    hub : mapping of str to str, optional
-        As for `read_npz`.
+    dofs : sequence of str, optional
+        Names of the n coordinates; modal coordinates are mode_1 and so on without names.
+    hub : mapping of str to str or array (6, n), optional
+        Names of the hub's coordinates as for `read_npz`, or the motion Φ of the hub per unit of each modal coordinate.
     includes_rotor, shaft : bool or str, str
         How the mass includes the rotor, as for `proprotor.support.normal_modes.NormalModes`.
+    carries : "one rotor" or "two rotors"
+        What the structure of modal coordinates carries; needed with Φ, and only with Φ. See
+        `proprotor.support.normal_modes.share_of_one_rotor`.
     modes : int, optional
         How many of the lowest modes to keep, named mode_1 and so on; by default all coordinates.
     damping_ratio : float or array
@@ -137,12 +162,12 @@ def support_from_matrices(
     Raises
     ------
     InputError
-        When sizes differ, an entry is not finite, a matrix is not symmetric, a coordinate of the hub is missing, or a
-        rotor's mass is given although the mass includes the rotor.
+        When sizes differ, an entry is not finite, a matrix is not symmetric, a coordinate of the hub is missing, a
+        rotor's mass is given although the mass includes the rotor, or `carries` is missing or has no meaning.
     """
     if includes_rotor and np.any(rotor_mass):
         raise InputError("rotor_mass", rotor_mass, "must not be given where the mass includes the rotor")
-    names = _names(dofs)
+    share, names = _share(hub, carries), _names(dofs, len(np.atleast_1d(mass)) if _is_motion(hub) else None)
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _checked(name, part, len(names)) for name, part in given.items() if part is not None}
     for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
@@ -150,9 +175,9 @@ def support_from_matrices(
             rule = f"must be above zero, from {1 / _LARGEST_UNIT:g} to {_LARGEST_UNIT:g}"
             raise InputError(name, unit, rule)
     # A translation counts lengths in the file's unit, a rotation radians: all entries then have the unit of energy.
-    motion = _hub_motion(names, hub)
+    motion = _motion(names, hub)
     motion[TRANSLATION] *= length_unit
-    matrices = {name: matrix * (mass_unit * length_unit**2) for name, matrix in matrices.items()}
+    matrices = {name: matrix * (share * mass_unit * length_unit**2) for name, matrix in matrices.items()}
     return on_modes(
         names,
         hub=motion,
@@ -174,13 +199,46 @@ def _texts(path: Path, dofs: Array) -> list[str]:
     return [str(name) for name in dofs]
 
 
-def _names(dofs: Sequence[str]) -> tuple[str, ...]:
+def _is_motion(hub: Any) -> bool:
+    """Return whether the hub is given by its motion Φ, on modal coordinates, rather than by names of coordinates."""
+    return hub is not None and not isinstance(hub, Mapping)
+
+
+def _share(hub: Any, carries: str | None) -> float:
+    """Return the share of the matrices that goes with one rotor; `carries` must be given with Φ, and only with Φ."""
+    if not _is_motion(hub):
+        if carries is not None:
+            raise InputError(
+                "carries", carries, "must be given with the motion of the hub on modal coordinates only"
+            )
+        return 1.0
+    if carries is None:
+        rule = (
+            'is missing: modal coordinates need "one rotor", for a semispan or half an aircraft, or "two rotors", for '
+            "a whole aircraft in modes of one symmetry, of whose masses one half goes with one rotor"
+        )
+        raise InputError("carries", None, rule)
+    return share_of_one_rotor(carries)
+
+
+def _names(dofs: Sequence[str] | None, modal: int | None) -> tuple[str, ...]:
     """Return the names of the coordinates, or refuse a name that two coordinates have."""
+    if dofs is None:
+        if modal is None:
+            raise InputError("dofs", None, "is missing: coordinates need names, unless they are modal")
+        return tuple(f"mode_{place}" for place in range(1, modal + 1))
     names = tuple(dofs)
     if len(set(names)) < len(names):
         repeated = next(name for place, name in enumerate(names) if name in names[:place])
         raise InputError("dofs", repeated, "must not name two coordinates")
     return names
+
+
+def _motion(names: Sequence[str], hub: Mapping[str, str] | ArrayLike | None) -> Array:
+    """Return Φ (6, n), as given or from the names of the hub's coordinates."""
+    if hub is None or isinstance(hub, Mapping):
+        return _hub_motion(names, hub)
+    return _checked_motion(hub, len(names))
 
 
 def _hub_motion(names: Sequence[str], hub: Mapping[str, str] | None) -> Array:
@@ -194,6 +252,28 @@ def _hub_motion(names: Sequence[str], hub: Mapping[str, str] | None) -> Array:
             raise InputError(f"hub.{axis}", hub[axis], "must not be named for two axes")
         row[names.index(name)] = sign
     return motion
+
+
+def _checked_motion(hub: Any, n: int) -> Array:
+    """Return Φ (6, n), or refuse numbers that are no motion of the hub."""
+    values = np.asarray(hub)
+    if values.dtype.kind not in "fiu":
+        raise InputError("hub", f"numbers of type {values.dtype}", "must be real numbers")
+    if values.shape != (len(HUB_AXES), n):
+        size = " x ".join(map(str, values.shape))
+        raise InputError(
+            "hub", size, f"must be 6 x {n}: x, y, z, alpha_x, alpha_y, alpha_z for each coordinate"
+        )
+    if not (np.abs(values) <= _LARGEST_ENTRY).all():
+        raise InputError("hub", None, f"must be finite, without an entry above {_LARGEST_ENTRY:g}")
+    if not values.any():
+        raise InputError("hub", None, "must not be zero: no coordinate moves the hub")
+    return values.astype(float)
+
+
+def _dense(matrix: Any) -> Array:
+    """Return the matrix of a file as an array."""
+    return np.asarray(matrix.toarray() if hasattr(matrix, "toarray") else matrix)
 
 
 def _checked(name: str, matrix: Any, n: int) -> Any:

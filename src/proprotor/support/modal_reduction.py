@@ -61,6 +61,7 @@ def on_modes(
     count: int | None = None,
     damping_ratio: ArrayLike | Callable[[Array], ArrayLike] = 0.0,
     rotor_mass: Numbers = 0.0,
+    at_hub: Array | None = None,
     includes_rotor: bool | str = False,
     shaft: str = "held",
     arrange: Callable[[Array], Arrangement] | None = None,
@@ -84,6 +85,8 @@ def on_modes(
         Mass at the hub while modes are computed and damped, kg. This mass does not stay in the support, because the
         rotor model brings it. Modes without the rotor would bend too little near the hub, and six such modes would not
         be enough.
+    at_hub : array (..., 6, 6), optional
+        The same on the motions of the hub, for a rotor with more than a mass: kg, kg m and kg m².
     includes_rotor, shaft : bool or str, str
         How the mass includes the rotor already, as for `proprotor.support.normal_modes.NormalModes`.
     arrange : callable, optional
@@ -99,6 +102,8 @@ def on_modes(
         raise InputError("modes", None, f"must be given with more than {_MOST_KEPT} coordinates")
     check_finite("rotor_mass", rotor_mass, "not negative")
     loaded = _with_mass_at_hub(mass, hub, rotor_mass)
+    if at_hub is not None:
+        loaded = loaded + hub.T @ at_hub @ hub
     found = lowest_modes(loaded, stiffness, count)
     if count is None and found.frequency.shape[-1] < len(names):
         raise InputError("modes", None, "must be given: there are coordinates without mass")

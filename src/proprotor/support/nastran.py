@@ -34,6 +34,7 @@ def nastran_modes(
     *,
     includes_rotor: bool | str,
     shaft: str = "held",
+    carries: str = "one rotor",
     damping_ratio: ArrayLike = 0.0,
     modes: int | None = None,
     subcase: int | None = None,
@@ -55,6 +56,9 @@ def nastran_modes(
         How the run had the rotor on, as for `proprotor.support.normal_modes.NormalModes`: "mass only" for a point mass
         at the hub's grid point (CONM2 without inertias), "rigid" with the rotor's inertias, "gimballed" with a gimbal
         between rotor and hub.
+    carries : "one rotor" or "two rotors"
+        What the structure of the run carries: one rotor, as half an aircraft with conditions of symmetry does, or two,
+        as a whole aircraft does, of which one half goes with one rotor. Keep modes of one symmetry then.
     damping_ratio : float or array
         Fraction of critical damping of the lowest modes, the last value for all modes above.
     modes : int, optional
@@ -98,6 +102,7 @@ def nastran_modes(
         hub=motion,
         includes_rotor=includes_rotor,
         shaft=shaft,
+        carries=carries,
     )
 
 

@@ -20,6 +20,7 @@ HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
 TRANSLATION, ROTATION = slice(0, 3), slice(3, 6)  # of the hub axes, or of the six motions of any node
 INCLUDES_ROTOR = ("gimballed", "rigid", "mass only", True, False)
 SHAFT = ("held", "free")
+CARRIES = ("one rotor", "two rotors")
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +119,9 @@ class NormalModes:
         hub: ArrayLike,
         includes_rotor: bool | str,
         shaft: str = "held",
+        carries: str = "one rotor",
     ) -> NormalModes:
-        """Return a support of uncoupled modes: stiffness m ω², damping 2 ζ ω m, with the whole generalised mass m.
+        """Return a support of normal modes: stiffness m ω², damping 2 ζ ω m, with the whole generalised mass m.
 
         Parameters
         ----------
@@ -131,6 +133,8 @@ class NormalModes:
             As for `NormalModes`, SI.
         includes_rotor, shaft : bool or str, str
             As for `NormalModes`.
+        carries : "one rotor" or "two rotors"
+            What the structure of the generalised masses carries, see `share_of_one_rotor`.
 
         Returns
         -------
@@ -139,10 +143,10 @@ class NormalModes:
         Raises
         ------
         InputError
-            When sizes differ, or a value is not finite or negative.
+            When sizes differ, or a value is not finite or negative, and for an unknown word.
         """
         n = (len(names),)
-        m = _finite("generalized_mass", generalized_mass, n)
+        m = share_of_one_rotor(carries) * _finite("generalized_mass", generalized_mass, n)
         omega = _finite("frequency", frequency, n)
         if np.any(np.real(omega) < 0):
             raise InputError("frequency", np.min(np.real(omega)), "must not be negative")
@@ -156,6 +160,31 @@ class NormalModes:
             includes_rotor=includes_rotor,
             shaft=shaft,
         )
+
+
+def share_of_one_rotor(carries: str) -> float:
+    """Return the share of a structure's matrices that goes with one of its rotors.
+
+    Parameters
+    ----------
+    carries : "one rotor" or "two rotors"
+        Two rotors are those of a whole aircraft, in modes that are all symmetric or all antisymmetric: the left hub
+        then moves as the mirror image of the right hub, or opposite to the mirror image, and the whole structure with
+        two rotors has the same roots as half of the structure with one rotor.
+
+    Returns
+    -------
+    float
+        1, or ½ with two rotors.
+
+    Raises
+    ------
+    InputError
+        For an unknown word.
+    """
+    if not is_choice(carries, CARRIES):
+        raise InputError("carries", carries, f"must be {list_choices(CARRIES)}")
+    return 1.0 if carries == "one rotor" else 0.5
 
 
 def two_axis_pivot(

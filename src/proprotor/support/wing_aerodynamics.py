@@ -146,6 +146,14 @@ def beam_strips(structure: BeamStructure, shapes: ArrayLike) -> Strips:
     return Strips(width, motion[..., _UP, :], motion[..., _PITCH, :])
 
 
+def strip_positions(positions: Array) -> Array:
+    """Return the positions (..., k, 3) of the strips of `beam_strips` on the elastic axis through nodes (..., m, 3)."""
+    points, _ = np.polynomial.legendre.leggauss(_PER_ELEMENT)
+    share = ((1 + points) / 2)[:, None]
+    found: Array = positions[..., :-1, None, :] + share * np.diff(positions, axis=-2)[..., None, :]
+    return found.reshape(*found.shape[:-3], -1, 3)
+
+
 def cantilever_strips(support: NormalModes, span: float, mast_length: float) -> Strips:
     """Return strips, in an assumed shape, of a wing whose motion is known at the hub alone.
 

@@ -30,6 +30,8 @@ Scale = (
     float | Callable[[Array], Array]
 )  # of a unit in SI: a number, or a function of the position across in SI
 
+FREQUENCY, DAMPING, GROWTH = "frequency", "damping", "growth"  # names of columns
+
 _LARGEST = 1_000_000  # bytes
 _MOST_POINTS = 10_000
 _WORDS = ("label", "source")
