@@ -198,6 +198,28 @@ def test_a_study_over_the_interconnect_has_room_for_every_root():
     assert (found.missing.values[0] != "").all() and (found.missing.values[1] == "").all()
 
 
+def test_a_study_of_one_half_has_the_roots_of_this_half():
+    """The interconnect holds the azimuth of the antisymmetric half alone."""
+    train = {"drive_train.interconnect_stiffness": "1e4 N*m/rad"}
+    for half in ("symmetric", "antisymmetric"):
+        case = pp.load_case("xv15-aircraft", {**train, "support.symmetry": half})
+        found = pp.study(
+            case, {"drive_train.interconnect_stiffness": [1e4, 2e4]}, [100.0], quantities="eigenvalue"
+        )
+        assert np.isfinite(found.eigenvalue.values).all() and "missing" not in found
+        assert found.sizes["state"] == 2 * 21 - 2 - (half == "symmetric")
+
+
+def test_a_study_over_the_shaft_of_one_side_has_room_for_every_root():
+    settings = {
+        "drive_train.interconnect_stiffness": "1e4 N*m/rad",
+        "left.drive_train.shaft_stiffness": "1e3 N*m/rad",
+    }
+    case = pp.load_case("xv15-aircraft", settings)
+    found = pp.study(case, {"left.drive_train.shaft_stiffness": [0.0, 1e3]}, [100.0], quantities="eigenvalue")
+    assert np.isnan(found.eigenvalue.values).sum(axis=-1).tolist() == [[1], [0]]
+
+
 # Refusals -------------------------------------------------------------------------------------------------------------
 
 

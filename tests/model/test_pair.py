@@ -242,6 +242,30 @@ def test_a_point_fails_where_either_rotor_fails():
     np.testing.assert_array_equal(model.trim.collective, case.linearize([100.0, 150.0]).trim.collective)
 
 
+def test_a_point_is_doubtful_where_either_rotor_is():
+    case = airframes.aircraft()
+    near = replace(case.operation, speed_of_sound=270.0)
+    model = replace(case, left=other_side(case, operation=near)).linearize([60.0, 150.0])
+    alone = rotor_model(other_side(case).rotor, near, [60.0, 150.0]).trim.warning
+    assert alone[0] == "" and alone[1] != ""
+    assert model.trim.warning.tolist() == ["", f"left rotor: {alone[1]}"]
+    both = replace(case, operation=near, left=other_side(case, operation=near)).linearize(150.0)
+    own, left = str(both.rotor.trim.warning), str(both.left.trim.warning)
+    assert str(both.trim.warning) == (own if own == left else f"{own}; left rotor: {left}")
+
+
+def test_motions_that_make_no_load_at_the_hub_are_there_on_both_sides():
+    """Reactionless motions of four blades: the same roots in both halves, each with a name of its own."""
+    case = airframes.aircraft()
+    four = replace(case, rotor=replace(case.rotor, n_blades=4))
+    modes = four.linearize(100.0, reactionless=True).modes()
+    names = modes.name.values.tolist()
+    assert len(set(names)) == len(names)
+    for kind in ("flap", "lag", "pitch"):
+        one, other = (names.index(f"{half} differential {kind}") for half in HALVES)
+        assert modes.eigenvalue.values[one] == pytest.approx(modes.eigenvalue.values[other], rel=1e-12)
+
+
 def test_a_shaft_on_one_side_alone_needs_an_interconnect():
     case = airframes.aircraft(drive_train=pp.DriveTrain(shaft_stiffness=1e4))
     stiffness = np.array([0.0, 1e4])
@@ -250,6 +274,21 @@ def test_a_shaft_on_one_side_alone_needs_an_interconnect():
     model = replace(case, left=other_side(case, drive_train=left)).linearize(100.0)
     assert "holds the azimuth of one side alone" in model.trim.reason[0] and model.trim.reason[1] == ""
     assert np.isnan(model.K[0]).all() and np.isfinite(model.K[1]).all()
+
+
+def test_one_rotor_does_not_go_on_both_halves():
+    frame = airframes.joined(airframes.half("symmetric", 3), airframes.half("antisymmetric", 8))
+    case = airframes.aircraft(frame)
+    with pytest.raises(InputError, match="support = an aircraft: has two rotors"):
+        mount(rotor_model(case.rotor, case.operation, 90.0), frame)
+
+
+@pytest.mark.parametrize("name", ["rotor_speed", "density"])
+def test_both_sides_turn_at_one_speed_in_one_air(name):
+    case = airframes.aircraft()
+    operation = replace(case.operation, **{name: 1.01 * getattr(case.operation, name)})
+    with pytest.raises(InputError, match=f"left.operation.{name} = .* must be that of the right side"):
+        replace(case, left=other_side(case, operation=operation)).linearize(90.0)
 
 
 # Inputs and outputs ---------------------------------------------------------------------------------------------------

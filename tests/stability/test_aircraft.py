@@ -7,10 +7,14 @@ import pytest
 
 import proprotor as pp
 from proprotor.explore.analysis import live_modes
+from proprotor.model.first_order import state_matrix
+from proprotor.model.rotor_model import rotor_model
+from proprotor.model.several_rotors import MountedRotor, mount_rotors
 from proprotor.model.side import Side
 from proprotor.plots.mode_motion import mode_motion
 from proprotor.report import analyse, html_of, report_document
 from proprotor.rotor.motions import half_of
+from proprotor.stability.modes import decomposition
 from proprotor.stability.origins import model_parts
 from tests import airframes
 
@@ -185,3 +189,38 @@ def test_the_side_counts_in_the_fingerprint_of_a_case():
     case = airframes.aircraft()
     other = replace(case, left=Side(replace(case.rotor, precone=0.02), case.operation))
     assert deck_fingerprint(case) != deck_fingerprint(other)
+
+
+def test_a_downstop_lost_on_either_side_is_the_same_aircraft_in_a_mirror():
+    left = pp.load_case("xv15-aircraft", TRAIN | {"left.support.downstop": "false"})
+    right = pp.load_case(
+        "xv15-aircraft", TRAIN | {"support.downstop": "false", "left.support.downstop": "true"}
+    )
+    found, mirrored = (decomposition(case.linearize([120.0, 180.0])).values for case in (left, right))
+    for one, other in zip(found, mirrored, strict=True):
+        apart = np.abs(one[:, None] - other).min(axis=1)
+        assert (apart <= 1e-7 * np.maximum(np.abs(one), 1)).all()
+    assert left.linearize(150.0).halves_couple
+    boundaries = left.flutter_point(SPEEDS).boundaries
+    assert [one.kind for one in boundaries] == ["flutter"] * len(boundaries)
+    assert boundaries[0].mode == "chord"  # the structure has neither symmetry there
+
+
+@pytest.mark.parametrize("settings", [{}, OUT], ids=["equal sides", "an engine out"])
+def test_the_aircraft_of_a_deck_has_the_roots_of_both_rotors_in_their_own_coordinates(settings):
+    """Without interconnect and mast, which the other way of mounting does not know."""
+    case = pp.load_case("xv15-aircraft", {"drive_train.engine_inertia": "45 kg*m**2"} | settings)
+    speeds = np.array([100.0, 180.0])
+    frame = case.support.at(speeds, case.operation.density)
+    doubled = {kind: 2 * getattr(frame, kind) for kind in ("mass", "damping", "stiffness")}
+    sides = [case, case if case.left is None else case.left]
+    rotors = [rotor_model(side.rotor, side.operation, speeds, drive_train=side.drive_train) for side in sides]
+    mounted = {
+        "right": MountedRotor(rotors[0], frame.hub),
+        "left": MountedRotor(rotors[1], airframes.MIRROR @ frame.left_hub, mirrored=True),
+    }
+    names = tuple(name.replace(" ", "_") for name in frame.names)
+    whole = np.linalg.eigvals(state_matrix(mount_rotors(mounted, replace(frame, names=names, **doubled))))
+    for own, every in zip(decomposition(case.linearize(speeds)).values, whole, strict=True):
+        apart = np.abs(own[:, None] - every).min(axis=1)
+        assert (apart <= 1e-9 * np.maximum(np.abs(own), 1)).all()

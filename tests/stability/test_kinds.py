@@ -118,6 +118,38 @@ def test_a_mode_is_of_the_rigid_body_by_more_than_half_of_its_participation():
     assert kept == [2, 2, 2]
 
 
+def test_a_study_of_aircraft_tells_flutter_from_what_else_begins(case, monkeypatch):
+    """Designs are densities, which a case without a deck takes by hand."""
+    from proprotor.study.flutter_speeds import put_flutter_speeds
+    from proprotor.study.variables import STABLE, blank
+
+    density = float(case.operation.density)
+    designs = [case] + [
+        replace(case, support=three_motions(density, **more)) for more in ({"chord": 1e4}, {"pitch": 50.0})
+    ]
+
+    class Batch:
+        shape, speeds = (3, len(SCAN)), SCAN
+
+    def models(rows, speeds):
+        each = [designs[row].linearize(speed) for row, speed in zip(rows, speeds, strict=True)]
+        stacked = {name: np.stack([getattr(one, name) for one in each]) for name in "MCK"}
+        trim = each[0].trim.broadcast((len(each),))
+        speeds = np.array([one.airspeed for one in each]).real
+        return replace(each[0], **stacked, trim=trim, airspeed=speeds, B=None, rotor=None)
+
+    found = blank(("flutter",), Batch.shape, 0, 0)
+    put_flutter_speeds(found, Batch(), np.arange(3), models, 0, 1e-6, flies_free=True)
+    np.testing.assert_allclose(found["flutter_speed"], [CHORD, np.nan, CHORD], rtol=1e-6)
+    assert found["flutter_note"].tolist() == ["", STABLE, ""]
+    begins = "rigid-body instability of symmetric pitch begins at 90 m/s"
+    assert found["flutter_warning"].tolist() == [
+        begins,
+        begins,
+        "divergence of symmetric beam begins at 105 m/s",
+    ]
+
+
 def test_a_study_takes_the_flutter_speed_of_each_aircraft():
     """By the searches of single aircraft; the lowest crossing of a free aircraft need not be flutter."""
     case = pp.load_case("xv15-aircraft")

@@ -44,9 +44,11 @@ def flutter(
     CASE is a bundled case (see `proprotor cases`) or a TOML file.
 
     The search covers the whole range, also between the airspeeds of the scan, and is exact to rounding. At flutter a
-    pair of eigenvalues loses its damping, at divergence a real eigenvalue does. The mechanism says which modes take
-    part in the motion at the boundary, and how much. If no mode becomes unstable, the command prints the range of the
-    search, and the least damping in the range with its mode. If airspeeds could not be analysed, it says why.
+    pair of eigenvalues loses its damping, at divergence a real eigenvalue does. Of an aircraft that flies free,
+    instabilities of the rigid body are a third kind, and the flutter speed is that of flutter alone. The mechanism says
+    which modes take part in the motion at the boundary, and how much. If no mode becomes unstable, the command prints
+    the range of the search, and the least damping in the range with its mode. If airspeeds could not be analysed, it
+    says why.
 
     \b
     Examples:

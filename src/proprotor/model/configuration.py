@@ -78,9 +78,10 @@ class Configuration:
         """Return the rotor, its support and the doubtful numbers, in a few lines."""
         rotor, speed = self.rotor, np.asarray(self.operation.rotor_speed) / _RPM
         radius = range_text(np.asarray(rotor.radius))
+        rotors = "two rotors, each" if isinstance(self.support, Airframe) else "rotor"
         lines = [
             f"Case {self.name}" + (f": {self.title}" if self.title else ""),
-            f"  rotor: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
+            f"  {rotors}: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
             f"  support: {', '.join(self.support.names) or 'a rigid hub'}{_held(self.support)}",
         ]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
@@ -139,6 +140,10 @@ class Configuration:
         own = self.model_options(options)
         if self.left is None:
             return mount_pair(right, airframe, None, _interconnect(own, own))
+        for name in ("rotor_speed", "density"):
+            value, same = (getattr(side.operation, name) for side in (self.left, self))
+            if not np.all(np.equal(value, same)):
+                raise InputError(f"left.operation.{name}", value, f"must be that of the right side, {same}")
         other = self._left_options(self.left, options)
         return mount_pair(right, airframe, _left_rotor(self.left, airspeed, other), _interconnect(own, other))
 

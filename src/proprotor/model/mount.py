@@ -42,9 +42,15 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     ------
     InputError
         When the model does not begin with the hub coordinates, a coordinate of the support has the name of a coordinate
-        of the rotor, the mass at rest is needed and missing, or a single support has no mass without the rotor.
+        of the rotor, the mass at rest is needed and missing, a single support has no mass without the rotor, or the
+        support is an aircraft with both halves of its motion, which has two rotors.
     """
     check_hub("dofs", rotor_alone)
+    if len(set(getattr(support, "symmetry", ()))) > 1:
+        rule = (
+            "has two rotors, see proprotor.model.pair.mount_pair; one rotor goes with one half of the motion"
+        )
+        raise InputError("support", "an aircraft", rule)
     own = rotor_alone.dofs[len(HUB) :]
     _check_names(support.names, own)
     mass, refusal = without_rotors(support, [(support.hub, rotor_alone.mass_at_rest)])

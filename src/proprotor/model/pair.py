@@ -321,7 +321,7 @@ def _trim(right: LinearModel, left: LinearModel, interconnect: ArrayLike) -> Tri
     trim = right.trim
     reason = _first_text(trim.reason, left.trim.reason, "left rotor: ")
     reason = np.where((reason == "") & _one_shaft(right, left, interconnect), _ONE_SHAFT, reason)
-    warning = _first_text(trim.warning, left.trim.warning, "left rotor: ")
+    warning = _both_texts(trim.warning, left.trim.warning, "left rotor: ")
     return replace(trim, reason=reason, warning=warning, converged=np.asarray(reason == ""))
 
 
@@ -339,6 +339,13 @@ def _without_failed(model: LinearModel) -> LinearModel:
 def _first_text(own: Array, other: Array, before: str) -> Array:
     """Return texts of the right rotor; where there is none, those of the left rotor with words before them."""
     return np.where(own != "", own, np.where(other != "", before + other.astype(object), ""))
+
+
+def _both_texts(own: Array, other: Array, before: str) -> Array:
+    """Return texts of both rotors, those of the left one with words before them unless the right one has them too."""
+    more = np.where((other == "") | (other == own), "", before + other.astype(object))
+    between = np.where((own != "") & (more != ""), "; ", "")
+    return np.asarray(own.astype(object) + between.astype(object) + more, dtype=object)
 
 
 def _one_shaft(right: LinearModel, left: LinearModel, interconnect: ArrayLike) -> Array:

@@ -40,7 +40,7 @@ What a mode comes from and depends on
 from proprotor.stability import flutter_messages
 from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries, find_crossings, scan_speeds
-from proprotor.stability.boundary import Boundary, Crossings, Failed
+from proprotor.stability.boundary import Boundary, Crossings, Failed, instability
 from proprotor.stability.boundary_against import boundary_against
 from proprotor.stability.boundary_lines import BoundaryLine, boundary_lines
 from proprotor.stability.brackets import Brackets, Crossing
@@ -108,6 +108,7 @@ __all__ = [
     "flutter_point",
     "follow",
     "frequency_response",
+    "instability",
     "kinds",
     "match_modes",
     "mode_columns",

@@ -14,6 +14,11 @@ from proprotor.model.doubts import Doubt, marked
 from proprotor.model.stamp import Stamp
 
 
+def instability(kind: str, mode: str) -> str:
+    """Return what is unstable in words: "flutter of beam"."""
+    return f"{'rigid-body instability' if kind == 'rigid body' else kind} of {mode}"
+
+
 @dataclass(frozen=True, repr=False)
 class Boundary:
     """One crossing of a damping level.
@@ -80,8 +85,7 @@ class Boundary:
     @property
     def event(self) -> str:
         """What happens at the boundary, as "flutter of beam begins"."""
-        what = "rigid-body instability" if self.kind == "rigid body" else self.kind
-        return f"{what} of {self.mode} {'begins' if self.onset else 'ends'}"
+        return f"{instability(self.kind, self.mode)} {'begins' if self.onset else 'ends'}"
 
 
 class Failed(NamedTuple):

@@ -67,7 +67,7 @@ def stability_map(
     level: float = 0.0,
     **options: Any,
 ) -> Dataset:
-    """Return the stability of a case over two inputs.
+    """Return the stability of a case over two inputs, by modes of every kind: of an aircraft also those of its flight.
 
     Parameters
     ----------

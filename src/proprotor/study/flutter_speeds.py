@@ -9,6 +9,7 @@ import numpy as np
 
 from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
+from proprotor.stability.boundary import instability
 from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.crossings import Search
 from proprotor.stability.kinds import FLUTTER, kinds
@@ -64,13 +65,14 @@ def put_flutter_speeds(
     )
     for name in ALWAYS:
         found[name][rows] = getattr(search.scanned, name).reshape(len(rows), speeds)
-    found["flutter_note"][:] = _notes(found["reason"], batch, search)
+    found["flutter_note"][:] = _notes(found["reason"], batch, search, models if flies_free else None)
     if search.scanned.points is None:
         return
     brackets = Brackets(search, tolerance)
     onsets = [one for one in brackets.close() if one.onset]
-    if flies_free:
-        onsets = _flutters(onsets, models)
+    aside: dict[int, str] = {}
+    if flies_free and onsets:
+        onsets, aside = _flutter_apart(onsets, models)
     downwards = sorted(onsets, key=lambda one: one.position, reverse=True)
     first = {one.line: one for one in downwards}  # the lowest onset of each design that has one
     for place, why in brackets.lost.items():
@@ -79,15 +81,24 @@ def put_flutter_speeds(
     _put_least_damping(found, search)
     if first:
         _put_onsets(found, first, models)
+    for line, text in aside.items():
+        found["flutter_warning"][line] = "; ".join(filter(None, (str(found["flutter_warning"][line]), text)))
 
 
-def _flutters(onsets: list[Crossing], models: _Models) -> list[Crossing]:
-    """Return the onsets that are flutter."""
-    if not onsets:
-        return []
+def _flutter_apart(onsets: list[Crossing], models: _Models) -> tuple[list[Crossing], dict[int, str]]:
+    """Return the onsets that are flutter, and a sentence by line on the lowest onset that is not."""
     lines, positions = np.array([one.line for one in onsets]), np.array([one.position for one in onsets])
-    kind = kinds(models(lines, positions), _modes_at(onsets))
-    return [one for one, own in zip(onsets, kind, strict=True) if own[one.state] == FLUTTER]
+    model, every = models(lines, positions), _modes_at(onsets)
+    kind, names = kinds(model, every), moving(model, every.values, every.left, every.right).names
+    flutters, aside = [], {}
+    for row in np.argsort(-positions):
+        one = onsets[row]
+        if kind[row, one.state] == FLUTTER:
+            flutters.append(one)
+        else:
+            event = instability(kind[row, one.state], names[row, one.state])
+            aside[one.line] = f"{event} begins at {one.position:.6g} m/s"
+    return flutters, aside
 
 
 def _modes_at(onsets: list[Crossing]) -> Modes:
@@ -115,15 +126,19 @@ def _put_onsets(found: dict[str, Array], first: Mapping[int, Crossing], models: 
     found["flutter_note"][rows[stable]] = ""
 
 
-def _notes(reason: Array, batch: Batch, search: Search) -> Array:
-    """Return a sentence on each design before any boundary is known."""
+def _notes(reason: Array, batch: Batch, search: Search, models: _Models | None) -> Array:
+    """Return a sentence on each design before any boundary is known; with `models`, of aircraft, by flutter alone."""
     notes = np.array([why[0] or "no airspeed could be analysed" for why in reason], dtype=object)
     if search.scanned.points is not None:
         points = search.first_points
         order = np.lexsort((points.position, points.line))
         lines, place = np.unique(points.line[order], return_index=True)
         first = order[place]
-        grows = np.any(points.growth[first] > points.error[first], axis=1)
+        beyond = points.growth[first] > points.error[first]
+        if models is not None:
+            model = models(points.line[first], points.position[first])
+            beyond &= kinds(model, points.spectrum.at(first).all_modes) == FLUTTER
+        grows = np.any(beyond, axis=1)
         for line, unstable in zip(lines, grows, strict=True):
             notes[line] = UNSTABLE if unstable else STABLE + _beyond(batch.speeds, reason[line])
     return notes

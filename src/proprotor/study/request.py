@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,7 +15,7 @@ from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
-from proprotor.rotor.motions import HUB
+from proprotor.rotor.motions import HALVES, HUB, half_of
 from proprotor.rotor.options import parse_options
 from proprotor.study.batch import Analysis, Batch
 from proprotor.study.designs import AIRSPEED, Designs, Plan, paths_of
@@ -180,15 +180,22 @@ def _check_range(speeds: Array | None, quantity: str) -> None:
 
 def _held_azimuths(case: Case, designs: Designs, options: Mapping[str, Any], model: LinearModel) -> int:
     """Return how many azimuths a shaft holds in any design, which then has as many eigenvalues more than others."""
-    train = case.model_options(options).get("drive_train")
-    most = len(model.azimuths)
-    for path, held in ((_SHAFT, most), (_INTERCONNECT, min(most, 1))):
-        given = 0.0 if train is None else getattr(train, path.rpartition(".")[2])
-        if "drive_train" not in options:
-            given = designs.values.get(path, given)
-        if np.any(np.nan_to_num(given) > 0):
+    of_shaft = len(model.azimuths)
+    of_interconnect = sum(half_of(name)[0] == HALVES[1] for name in model.azimuths)
+    for path, held in ((_SHAFT, of_shaft), (_INTERCONNECT, of_interconnect)):
+        if any(np.any(np.nan_to_num(given) > 0) for given in _given(case, designs, options, path)):
             return held
     return 0
+
+
+def _given(case: Case, designs: Designs, options: Mapping[str, Any], path: str) -> Iterator[Any]:
+    """Yield the values of a field of the drive trains of a case, in all its designs."""
+    trains = {"": case.model_options(options).get("drive_train")}
+    if "drive_train" not in options and case.left is not None:
+        trains["left."] = case.left.drive_train
+    for side, train in trains.items():
+        own = 0.0 if train is None else getattr(train, path.rpartition(".")[2])
+        yield own if "drive_train" in options else designs.values.get(f"{side}{path}", own)
 
 
 def _most_coordinates(case: Case, options: Mapping[str, Any]) -> int:
