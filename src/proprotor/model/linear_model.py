@@ -127,7 +127,7 @@ class LinearModel:
 
     @cached_property
     def massless(self) -> Array:
-        """Points (...) whose mass matrix has no inverse; False at failed points."""
+        """Points (...) whose mass matrix, scaled to be dimensionless, has no inverse; False at failed points."""
         return massless(self.M)
 
     @cached_property
