@@ -8,7 +8,8 @@ each control stiffness has a source of its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -60,13 +61,24 @@ def boundaries(wing: str, settings: Mapping[str, str], options: Mapping[str, Any
     return {name: found.speed(name) for name in ("beam", "chord", "torsion", OF_THE_ROTOR)}
 
 
-def of_inputs() -> Iterator[tuple[str, str, int, dict[str, float]]]:
+def of_inputs(wings: Iterable[str] = WINGS) -> Iterator[tuple[str, str, int, dict[str, float]]]:
     """Yield wing, lag, control stiffness and boundaries for each choice."""
-    for wing in WINGS:
+    for wing in wings:
         for lag, options in LAGS.items():
             for stiffness in CONTROL_STIFFNESS:
                 given = {"rotor.control_stiffness": f"{stiffness} ft*lbf/rad"}
                 yield wing, lag, stiffness, boundaries(wing, given, options)
+
+
+@cache
+def as_built() -> tuple[tuple[str, int, dict[str, float]], ...]:
+    """Return lag, control stiffness and boundaries of the wing as built, for each choice."""
+    return tuple((lag, stiffness, found) for _, lag, stiffness, found in of_inputs(("xv15",)))
+
+
+def first_of_wing(found: Mapping[str, float]) -> float:
+    """Return the first boundary of the wing in kt; infinite without any."""
+    return min(speed for name, speed in found.items() if name != OF_THE_ROTOR)
 
 
 def of_the_wing() -> Iterator[tuple[str, str, dict[str, float]]]:

@@ -242,7 +242,7 @@ def _written_range(text: str, unit: str, field: str) -> NDArray[np.float64]:
     match = _ANY_RANGE.fullmatch(text)
     if match is None:
         raise InputError(field, text, 'must be a value such as "2 deg" or a range such as "1:4:0.5 deg"')
-    numbers = [float(as_si(f"{match[place]} {match[4]}", unit, field)) for place in (1, 2, 3)]
+    numbers = [float(as_si(f"{match[place]} {match[4]}".strip(), unit, field)) for place in (1, 2, 3)]
     return _rising(text, numbers, _MOST_VALUES, "values", field)
 
 
@@ -393,8 +393,6 @@ def _written_speeds(text: str, field: str, unit: str) -> NDArray[np.float64]:
     match = _RANGE_AND_UNIT.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None or ":" in match[4]:
         raise InputError(field, text, 'must be a speed such as "300 kt" or a range such as "50:400:5kt"')
-    if match[4].lower() in _INDICATED:
-        raise InputError(field, text, f"must be ktas or keas; {match[4]} is none of the units here")
     try:
         factor = factor_to_si(text, match[4], unit)
         numbers = [_finite(text, float(number)) for number in match.group(1, 2, 3) if number]
@@ -432,14 +430,21 @@ def _parse_unit(text: object, unit: str) -> dict[str, int]:
     for written, power in _read_product(product)[1].items():
         name = _known_unit(written)
         if name is None:
-            raise InputError("", text, f"has an {unknown_name(written, _unit_names(), 'unit')}")
+            raise InputError("", text, _unknown_unit(written))
         powers[name] = powers.get(name, 0) + power
     return powers
 
 
+def _unknown_unit(name: str) -> str:
+    """Return the rule that an unknown unit breaks."""
+    if name.lower() in _INDICATED:
+        return f"must be ktas or keas; {name} is none of the units here"
+    return f"has an {unknown_name(name, _unit_names(), 'unit')}"
+
+
 def _is_product(text: str) -> bool:
     """Return whether a text is empty or a product of names, each sign between two factors, parentheses in pairs."""
-    shape = _FACTOR.sub("x", text).replace(" ", "")
+    shape = re.sub(r"\s", "", _FACTOR.sub("x", text))
     while shape != (shape := re.sub(r"\(x(?:[*/]?x)*\)", "x", shape)):
         pass
     return re.fullmatch(r"(?:x(?:[*/]?x)*)?", shape) is not None

@@ -351,6 +351,18 @@ def test_figures_are_written_and_not_blank(tmp_path, arguments):
             "--speed: must be given",
         ),
         ((*MAP, "--speed", "300 kt"), "is one of the axes already"),
+        (
+            ("boundary", "xv15-uncoupled", "--against", "altitude=0:9:3 m/s"),
+            "operation.altitude = 0 m/s: must be a length",
+        ),
+        (
+            ("boundary", "xv15-uncoupled", "--against", "rotor_speed=400:500:20"),
+            "operation.rotor_speed = 400: needs a unit",
+        ),
+        (
+            ("boundary", "xv15-uncoupled", "--against", "rotor_speed=400:500:20 rpm", "--scan", "300kt"),
+            "--scan = 300kt: must be a range",
+        ),
         (("cases", "--set", "rotor.precone=1 deg"), "needs a case"),
         (
             ("study", "xv15-uncoupled", "--vary", "rotor.precone=1 deg", "--speed", "9 kt", "--set", "x=1"),

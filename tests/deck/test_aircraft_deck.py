@@ -1,5 +1,7 @@
 """Decks of a whole aircraft: what [support] of kind "aircraft" and the table [left] build, and what they refuse."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -292,6 +294,49 @@ def test_numbers_of_the_left_side_vary_and_the_others_follow_the_right_side():
 def test_an_impossible_aircraft_is_refused_by_field_value_and_rule(tmp_path, text, message):
     with pytest.raises(InputError, match=f"^{message}"):
         aircraft(name=str(written(tmp_path, text)))
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("mass", 1000.0),
+        ("roll_inertia", 40000.0),
+        ("pitch_inertia", 100.0),
+        ("yaw_inertia", 40000.0),
+        ("product_of_inertia", 40000.0),
+    ],
+)
+def test_an_aircraft_of_a_batch_that_leaves_its_fuselage_too_little_fails_alone(tmp_path, path, value):
+    text = '[support.fuselage]\nproduct_of_inertia = "100 kg*m**2"\n'
+    case = aircraft(name=str(written(tmp_path, text)))
+    field = f"support.fuselage.{path}"
+    good = pp.design_inputs(case)[field].si
+    model = case.vary({field: np.array([value, good])}).linearize([80.0, 90.0])
+    assert model.trim.reason[0].startswith(f"{field} = {value}: must ")
+    assert model.trim.converged.tolist() == [False, True]
+    assert np.isnan(model.K[0]).all()
+    np.testing.assert_array_equal(model.K[1], case.vary({field: np.array([good])}).linearize([90.0]).K[0])
+    with pytest.raises(InputError, match=f"^{field} = {value:g} .*: must "):
+        case.vary({field: value})
+
+
+@pytest.mark.parametrize(
+    ("field", "text", "rule"),
+    [
+        ("dihedral", "90 deg", "must lie between -90 and 90 degrees"),
+        ("nacelle_mass", "-1 kg", "must not be negative"),
+        ("carry_through.beam_stiffness", "-1 N*m**2", "must be positive"),
+    ],
+)
+def test_a_number_of_the_left_side_is_refused_with_its_own_field_and_value(field, text, rule):
+    path = f"left.support.{field}"
+    with pytest.raises(InputError, match=f"^{path} = {re.escape(text)}: {rule}"):
+        aircraft({path: text})
+
+
+def test_a_left_side_that_is_no_table_is_refused():
+    with pytest.raises(InputError, match=r"^left = 3: must be a table"):
+        aircraft({"left": "3"})
 
 
 def test_a_left_side_needs_an_aircraft(tmp_path):

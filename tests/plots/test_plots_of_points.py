@@ -117,6 +117,14 @@ def test_points_on_a_boundary_over_altitude(points):
     np.testing.assert_allclose(lines["chord"].get_ydata(), chord)
 
 
+def test_a_label_is_written_as_it_is(sweep, points):
+    """No formula, no hidden label, no character that a terminal or a font cannot show."""
+    read = points("airspeed [ktas], damping [%], label\n220, 2, $\\frac$\n230, 3, _own\n240, 3, a\x1bb\n")
+    ax = plots.plot_damping(sweep, points=read)
+    ax.figure.canvas.draw()
+    assert [text.get_text() for text in ax.get_legend().get_texts()][-3:] == ["$\\frac$", "_own", "a b"]
+
+
 def test_what_plots_refuse(sweep, points):
     with pytest.raises(pp.InputError, match="needs a column damping"):
         plots.plot_damping(sweep, points=points("airspeed [ktas], frequency [Hz]\n200, 3\n"))

@@ -288,7 +288,18 @@ def test_a_checkpoint_that_cannot_be_is_told_before_anything_is_computed(tmp_pat
 TRILLION = 10**12
 FAR = np.broadcast_to(np.float64(100.0), (10**9,))  # takes no memory itself
 VARY = ("--vary", f"{PRECONE}=1:4 deg", "--speed", "100:200:1kt")
+
+
+def aircraft_of_elements(count):
+    """The aircraft of the deck with many elements in each wing and box, and two different sides."""
+    parts = "support.elements", "support.carry_through.elements"
+    return pp.load_case(
+        "xv15-aircraft", dict.fromkeys(parts, str(count)) | {"left.support.downstop": "false"}
+    )
+
+
 LARGE = {
+    "elements of an aircraft": lambda: aircraft_of_elements(200),
     "--size": lambda: command(
         "study", "xv15-uncoupled", *VARY, "--sample", "latin-hypercube", "--size", TRILLION
     ),

@@ -116,6 +116,7 @@ def test_a_level_and_parts_of_the_result(found):
         ),
         ({"rotor.precon": [0.01]}, None, "rotor.precon"),
         ({"rotor.precone": [0.02, 0.01]}, None, "rotor.precone = .*: must be a list of values that rise"),
+        ({"rotor.precone": []}, None, "rotor.precone = .*: must be a list of values that rise"),
         ({"rotor.precone": [0.01, 0.02]}, "300 kt", "airspeed = 300 kt: must be a range of airspeeds"),
         ({"operation.rotor_speed": [-1.0, 2.0]}, None, "operation.rotor_speed"),
     ],

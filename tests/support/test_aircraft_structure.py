@@ -378,6 +378,14 @@ def test_a_stiff_joint_is_held_and_a_soft_one_is_free(joint):
     assert np.abs(frequency("held", "antisymmetric") / frequency("free", "antisymmetric") - 1).max() > 1e-3
 
 
+def test_a_wing_that_one_side_alone_keeps_from_turning_is_held_through_the_box():
+    """A joint that is free is the limit of a soft spring, and the other side still holds the wing."""
+    lost, soft = (WingSide(replace(BOX, twist=twist), WING, PYLON) for twist in ("free", 1e-3))
+    np.testing.assert_allclose(model(left=lost).frequency, model(left=soft).frequency, rtol=1e-8)
+    with pytest.raises(InputError, match=r"carry_through.twist = free: must be held or a stiffness"):
+        model(right=lost, left=lost)
+
+
 def test_stiff_springs_of_the_pylon_are_rigid():
     stiff = model(WingSide(BOX, WING, replace(PYLON, pitch_stiffness=1e14, yaw_stiffness=1e14))).frequency
     rigid = model(WingSide(BOX, WING, replace(PYLON, pitch_stiffness=None, yaw_stiffness=None))).frequency
@@ -530,6 +538,8 @@ def test_impossible_aircraft_are_refused(change, message):
         (BOX, dict(half_width=0.0), "half_width = 0.0: must be above zero"),
         (BOX, dict(twist="loose"), 'twist = loose: must be "held", "free" or a stiffness'),
         (BOX, dict(chord_slope=0.0), "chord_slope = 0.0: must be above zero"),
+        (BOX, dict(elements=0), "elements = 0: must be a whole number from 1 to 200"),
+        (BOX, dict(elements=5000), "elements = 5000: must be a whole number from 1 to 200"),
         (PYLON, dict(yaw_stiffness=0.0), "yaw_stiffness = 0.0: must be above zero"),
         (TAIL, dict(area=-1.0), "area = -1.0: must not be negative"),
     ],

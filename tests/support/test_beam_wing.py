@@ -14,6 +14,7 @@ from proprotor.deck import each_design
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.model.first_order import state_matrix
+from proprotor.support import modal_reduction
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, beam_wing, rigid_motion, wing_elements
 from proprotor.support.modal_reduction import lowest_modes, per_mode
 from proprotor.support.normal_modes import NormalModes
@@ -385,6 +386,23 @@ def test_every_number_of_a_wing_takes_a_complex_step(modes):
             derivative = np.imag(getattr(exact, name)) * size[path] / 1e-30
             close = 2e-8 * np.abs(found).max()
             np.testing.assert_allclose(derivative, difference, rtol=0, atol=close, err_msg=f"{path} {name}")
+
+
+def test_large_matrices_of_many_designs_and_with_derivatives_have_the_modes_of_small_ones(monkeypatch):
+    """One pair of large real matrices goes to another solver, which knows neither batches nor imaginary parts."""
+    own = beam_structure(wing(elements=4), BARE)
+    step = 1 + 1e-30j
+    given = {
+        "one": (own.mass, own.stiffness),
+        "many": (np.stack([own.mass, 2 * own.mass]), own.stiffness),
+        "step": (own.mass, step * own.stiffness),
+    }
+    expected = {name: lowest_modes(*matrices, 3) for name, matrices in given.items()}
+    monkeypatch.setattr(modal_reduction, "_DENSE", 4)
+    for name, matrices in given.items():
+        found = lowest_modes(*matrices, 3)
+        np.testing.assert_allclose(found.frequency, expected[name].frequency, rtol=1e-8)
+        np.testing.assert_allclose(np.imag(found.frequency), np.imag(expected[name].frequency), rtol=1e-8)
 
 
 @pytest.mark.parametrize("count", [5, None])

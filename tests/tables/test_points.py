@@ -70,6 +70,7 @@ HEAD = "rotor_speed [rpm], airspeed [ktas], airspeed_error [ktas]\n"
         (HEAD, "must have 1 to 10000 points"),
         ("airspeed [ktas], label\n300, a\n", "must have a column for each axis"),
         (HEAD + "458, fast\n", r'line 2, column 2 \(airspeed \[ktas\]\): "fast" is no number'),
+        (HEAD + "458, 1e999\n", r"line 2, column 2 \(airspeed \[ktas\]\): must be finite"),
         (HEAD + "458, 300, -2\n", r"line 2, column 3 \(airspeed_error \[ktas\]\): must not be negative"),
         (HEAD + "458, 300, 2, 7\n", "line 2: has 4 cells for 3 columns"),
         (
@@ -107,6 +108,10 @@ def test_a_file_that_is_not_there(tmp_path):
         ),
         ("speed [rpm], airspeed [ktas]\n458, 2\n", "needs a column rotor_speed for this plot"),
         ("rotor_speed [rpm], airspeed [deg]\n458, 2\n", r"column 2 \(airspeed \[deg\]\): must be a speed"),
+        (
+            "rotor_speed [rpm], airspeed [kias]\n458, 2\n",
+            r"column 2 \(airspeed \[kias\]\): must be ktas or keas",
+        ),
         ("rotor_speed [rpm], airspeed\n458, 2\n", r"column 2 \(airspeed\): needs a unit"),
         (
             "rotor_speed [m], airspeed [ktas]\n458, 2\n",

@@ -23,7 +23,7 @@ from proprotor.tables.boundary_table import (
 from proprotor.tables.csv_text import csv_of
 from proprotor.tables.points import Quantity
 from proprotor.typing import Dataset
-from proprotor.units import KEAS, KTAS, factor_to_si, is_equivalent, speeds
+from proprotor.units import KEAS, KTAS, factor_to_si, is_equivalent, speeds, values_in_si
 
 _EXAMPLE = '"operation.rotor_speed=300:610:20 rpm"'
 _OPERATION = "operation."
@@ -119,7 +119,7 @@ def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str
     whole = path if "." in path else f"{_OPERATION}{path}"
     if whole == "operation.altitude" and whole not in known:
         at = f"0 {arguments.unit_of(given)}"
-        factor_to_si(given, arguments.unit_of(given), "m")
+        values_in_si(given, "m", whole)  # raises an error that names the input
         request = request._replace(settings={**request.settings, whole: at})
         case = request.load()
         known = design_inputs(case)
@@ -130,8 +130,8 @@ def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str
 
 def _scan_of(case: Case, scan: str | None) -> str | None:
     """Return the airspeeds of the search as text, which the analysis converts in the air of each value."""
-    if scan is not None:
-        speeds(scan, "--scan", case.operation.density)  # raises an error that names the option
+    if scan is not None and speeds(scan, "--scan", case.operation.density).size < 2:
+        raise InputError("--scan", scan, 'must be a range of airspeeds that rise, such as "50:400:5ktas"')
     return scan
 
 

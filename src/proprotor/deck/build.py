@@ -16,7 +16,7 @@ from proprotor.deck.alternatives import fields_instead_of
 from proprotor.deck.build_aircraft import fuselage_of
 from proprotor.deck.build_support import build_support, fitted_stiffness_factors
 from proprotor.deck.file import read_tables
-from proprotor.deck.numbers import left_numbers, numbers_of, own_numbers
+from proprotor.deck.numbers import LEFT, left_numbers, numbers_of, own_numbers
 from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
 from proprotor.model.mass_at_rest import mass_at_rest
@@ -167,11 +167,13 @@ def _errors_as_written(section: str, numbers: Mapping[str, Datum]) -> Iterator[N
         yield
     except InputError as error:
         inner, _, name = error.field.removeprefix(f"{section}.").rpartition(".")
-        for place in dict.fromkeys((f"{section}.{inner}".rstrip("."), section)):
+        of_left = inner.startswith(LEFT)
+        places = (inner,) if of_left else (f"{section}.{inner}".rstrip("."), section)
+        for place in dict.fromkeys(places):
             for written_as in (name, *fields_instead_of(name)):
                 if number := numbers.get(f"{place}.{written_as}"):
                     raise InputError(f"{place}.{written_as}", number.written, error.rule) from None
-        raise error.within(section) from None
+        raise error if of_left else error.within(section) from None
 
 
 def _values(numbers: Mapping[str, Datum], section: str) -> dict[str, Any]:

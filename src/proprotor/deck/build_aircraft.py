@@ -60,8 +60,9 @@ def build_aircraft(
     )
     nodes = (sum(elements) + 1) * (1 if left is None else 2)
     designs, place = different_designs(given, nodes)
-    parts = [_aircraft(part, section, left, names if place.ndim else ()) for part in designs]
-    airframe, (fuselage, *strips) = at_each_point(parts, place, own=(2, *(1, 2, 2) * 2))
+    parts = [_aircraft(part, section, left, names, batch=place.ndim > 0) for part in designs]
+    airframe, (refusal, fuselage, *strips) = at_each_point(parts, place, own=(0, 2, *(1, 2, 2) * 2))
+    airframe = replace(airframe, refusal=refusal if np.any(refusal != "") else None)
     motion = AircraftMotion(fuselage, Strips(*strips[:3]), Strips(*strips[3:]))
     return _loaded(airframe, motion, section, numbers, given)
 
@@ -74,7 +75,7 @@ def fuselage_of(section: AircraftSection, numbers: Mapping[str, Datum]) -> dict[
     given = _of_structure(numbers)
     if not section.fuselage.whole_aircraft or any(isinstance(value, np.ndarray) for value in given.values()):
         return {}
-    found = _fuselage(given, section, _side(given, section))
+    found, _ = _fuselage(given, section, _side(given, section), batch=False)
     units = {"mass": "kg", "centre_forward": "m", "centre_up": "m"}
     source = "the whole aircraft less wings, nacelles and rotors (point masses of hub and blades)"
     return {
@@ -100,26 +101,33 @@ def _of_structure(numbers: Mapping[str, Datum]) -> _Numbers:
 
 
 def _aircraft(
-    given: _Numbers, section: AircraftSection, left: AircraftSection | None, names: tuple[str, ...]
+    given: _Numbers,
+    section: AircraftSection,
+    left: AircraftSection | None,
+    names: tuple[str, ...],
+    *,
+    batch: bool,
 ) -> tuple[Airframe, tuple[Array, ...]]:
-    """Return the airframes of designs (designs,), and the motion of what the air loads."""
+    """Return the airframes of designs (designs,), their refusals, and the motion of what the air loads."""
     right = _side(given, section)
     other = None
     if left is not None:
         own = {name.removeprefix(LEFT): value for name, value in given.items() if name.startswith(LEFT)}
-        other = _side(given | own, left)
+        with _errors_within(f"{LEFT}support"):
+            other = _side(given | own, left)
+    fuselage, refusal = _fuselage(given, section, right, batch=batch)
     free = free_airframe(
-        _fuselage(given, section, right),
+        fuselage,
         right,
         other,
         modes=given["modes"],
         symmetry=section.symmetry,
         damping_ratio=_damping_ratios(given),
         rotor_mass=given["rotor_mass"],
-        names=names,
+        names=names if batch else (),
     )
     motion = aircraft_motion(free)
-    return free.airframe, (motion.fuselage, *motion.right, *motion.left)
+    return free.airframe, (refusal, motion.fuselage, *motion.right, *motion.left)
 
 
 def _side(given: _Numbers, section: AircraftSection) -> WingSide:
@@ -149,16 +157,23 @@ def _errors_within(section: str) -> Iterator[None]:
         raise error.within(section) from None
 
 
-def _fuselage(given: _Numbers, section: AircraftSection, side: WingSide) -> Fuselage:
-    """Return the fuselage, as the deck has it or as what wings, nacelles and rotors leave of the aircraft.
+def _fuselage(
+    given: _Numbers, section: AircraftSection, side: WingSide, *, batch: bool
+) -> tuple[Fuselage, Array]:
+    """Return the fuselage as the deck has it, or as what wings, nacelles and rotors leave of it, and refusals (...).
 
-    The numbers of the whole aircraft are those of an aircraft whose left side is as the right side.
+    The numbers of the whole aircraft are those of an aircraft whose left side is as the right side. A design of a batch
+    of which too little is left has the whole aircraft as its fuselage, and a refusal, so that its points fail alone.
     """
     body = _record(Fuselage, given, "fuselage.")
     if not section.fuselage.whole_aircraft:
-        return body
+        return body, np.array("")
+    rest = half_aircraft(side).rigid_mass(given["rotor_mass"])
+    errors = body.lacking(rest) if batch else np.array(None)
+    texts = ["" if error is None else str(error.within("support.fuselage")) for error in errors.flat]
+    refusal = np.array(texts, dtype=object).reshape(errors.shape)
     with _errors_within("fuselage"):
-        return body.without(half_aircraft(side).rigid_mass(given["rotor_mass"]))
+        return body.without(np.where((refusal != "")[..., None, None], 0.0, rest)), refusal
 
 
 def _damping_ratios(given: _Numbers) -> dict[str, Numbers]:

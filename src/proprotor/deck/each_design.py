@@ -11,6 +11,7 @@ import numpy as np
 from proprotor.datum import Datum
 from proprotor.deck.numbers import own_numbers
 from proprotor.errors import InputError
+from proprotor.needs import check_memory
 from proprotor.support.airframe import Airframe
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
@@ -32,7 +33,13 @@ def different_designs(given: Mapping[str, Any], nodes: int) -> tuple[list[dict[s
         The numbers of the structure by name, with a span.
     nodes : int
         Number of nodes of the finite elements of one design.
+
+    Raises
+    ------
+    InputError
+        When the matrices of one design would not fit into the memory.
     """
+    check_memory("elements", None, _BYTES * nodes**2, f"the matrices of {nodes} nodes")
     varied = {name: value for name, value in given.items() if np.ndim(value) and not isinstance(value, tuple)}
     spread = np.broadcast_arrays(np.zeros(()), *varied.values())[1:]
     shape = np.broadcast_shapes(*(value.shape for value in varied.values()))

@@ -270,7 +270,7 @@ class CarryThroughSection(Section):
     )
     twist: fields.Joint = optional(
         'Turn of the wing against the fuselage about the outboard axis: "held" or a stiffness at each side, or "free" '
-        "with antisymmetric motion alone; held if left out."
+        "on one side alone or with antisymmetric motion alone; held if left out."
     )
     elements: fields.Size = optional("Number of elements of equal length.")
 

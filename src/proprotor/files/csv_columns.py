@@ -11,6 +11,7 @@ Commas, semicolons or tabs separate the columns; numbers have a decimal point. E
 from __future__ import annotations
 
 import csv
+import math
 import re
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -110,7 +111,9 @@ def number_in(number: int, cells: list[str], head: Head) -> float:
         raise fault_at(number, head, "is empty")
     if not _NUMBER.fullmatch(text):
         raise fault_at(number, head, f'"{printable(text.strip())[:30]}" is no number')
-    return float(text)
+    if not math.isfinite(found := float(text)):
+        raise fault_at(number, head, "must be finite")
+    return found
 
 
 def fault_at(number: int, head: Head, rule: str) -> Fault:

@@ -161,7 +161,7 @@ class Configuration:
     def _check_one_rotor(self, options: Mapping[str, Any]) -> None:
         """Refuse what only an aircraft with two rotors has."""
         if self.left is not None:
-            raise InputError("left", self.left, "goes with an aircraft that has two rotors")
+            raise InputError("left", None, "goes with an aircraft that has two rotors")
         train = options.get("drive_train")
         if train is not None and np.any(np.real(train.interconnect_stiffness) > 0):
             rule = "must be zero without a second rotor"

@@ -94,11 +94,19 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
         When one refusal holds for all points.
     """
     refuse(refusal, support)
-    everywhere = np.broadcast_to(refusal, model.M.shape[:-2])
-    if not (refused := everywhere != "").any():
+    if not (refused := refusal != "").any():
         return model
     field = str(InputError("support.includes_rotor", support.includes_rotor, ""))
-    reason = np.where(refused, field + everywhere, model.trim.reason)
+    return failed_where(np.where(refused, field + refusal, ""), model)
+
+
+def failed_where(reasons: Array | None, model: LinearModel) -> LinearModel:
+    """Return the model with NaN and the reason at each point that has one; reasons (...) broadcast with the points."""
+    if reasons is None:
+        return model
+    reasons = np.broadcast_to(reasons, model.M.shape[:-2])
+    refused = reasons != ""
+    reason = np.where(refused, reasons, model.trim.reason)
     trim = replace(model.trim, reason=reason, converged=model.trim.converged & ~refused)
     matrices: dict[str, Any] = {
         name: np.where(refused[..., None, None], np.nan, matrix) for name, matrix in model.matrices.items()

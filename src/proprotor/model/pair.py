@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError
 from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.massless import with_reasons
-from proprotor.model.mount import at_points, broadcast, check_hub, refused_where, with_warning
+from proprotor.model.mount import at_points, broadcast, check_hub, failed_where, refused_where, with_warning
 from proprotor.model.rotor_share import without_rotors
 from proprotor.rotor.motions import HALVES, HUB, MAST_TWIST, ROTOR_SPEED, check_distinct, half_of, in_half
 from proprotor.rotor.trim import Trim
@@ -101,7 +101,8 @@ def mount_pair(
         halves_couple=left is not None or _couples(airframe, additions),
     )
     _check_rates(coupled)
-    return refused_where(refusal, with_reasons(_without_failed(coupled)), airframe)
+    coupled = failed_where(airframe.refusal, with_reasons(_without_failed(coupled)))
+    return refused_where(refusal, coupled, airframe)
 
 
 def rotors_on(
@@ -363,8 +364,12 @@ def _check(right: LinearModel, airframe: Airframe, left: LinearModel | None) -> 
     if left is None:
         return
     if left.dofs != right.dofs:
-        rule = f"must have the coordinates of the right rotor, {', '.join(right.dofs)}"
-        raise InputError("left", ", ".join(left.dofs), rule)
+        own = {"left": set(left.dofs) - set(right.dofs), "right": set(right.dofs) - set(left.dofs)}
+        alone = [
+            f"the {side} one alone has {', '.join(sorted(names))}" for side, names in own.items() if names
+        ]
+        rule = "must have the coordinates of the right rotor in the same order"
+        raise InputError("left", None, "; ".join([rule, *alone]))
     if not {*airframe.symmetry} >= {*HALVES} and "" not in airframe.symmetry:
         rule = "must hold symmetric and antisymmetric coordinates where the left side differs: both halves couple"
         raise InputError("support.symmetry", ", ".join(dict.fromkeys(airframe.symmetry)), rule)

@@ -61,7 +61,7 @@ def draw_points(
     ax.set_xlim(*_widened(ax.get_xlim(), x, there))
     ax.set_ylim(*_widened(ax.get_ylim(), y, there))
     if series:
-        ax.legend(handles=series, fontsize=LABEL_SIZE, loc="best", framealpha=0.9).set_zorder(8)
+        _write_legend(ax, series)
     return bool(series)
 
 
@@ -104,6 +104,15 @@ def _draw_series(ax: Axes, x: Column, y: Column, own: Array, place: int, label: 
     style: dict[str, Any] = {"linestyle": "none", "color": "black", "markerfacecolor": fill, "zorder": 6}
     ends: dict[str, Any] = {"elinewidth": 1.1, "capsize": 3.0}
     return ax.errorbar(x.values[own], y.values[own], label=label, **bars, **marker, **style, **ends)
+
+
+def _write_legend(ax: Axes, series: list[Any]) -> None:
+    """Write the labels as they are: a dollar sign is no mathematics, an underscore in front hides nothing."""
+    labels = [container.get_label() for container in series]
+    legend = ax.legend(series, labels, fontsize=LABEL_SIZE, loc="best", framealpha=0.9)
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+    legend.set_zorder(8)
 
 
 def _has_bars(column: Column, own: Array) -> bool:

@@ -149,7 +149,7 @@ def _input_of(case: Configuration, against: Mapping[str, ArrayLike]) -> tuple[st
     known = design_inputs(case)
     check_input(path, known)
     values = np.atleast_1d(values_in_si(given, known[path].unit, path))
-    if values.ndim != 1 or not np.all(np.diff(values) > 0):
+    if values.ndim != 1 or not values.size or not np.all(np.diff(values) > 0):
         raise InputError(path, np.array2string(values, threshold=6), "must be a list of values that rise")
     return path, values
 

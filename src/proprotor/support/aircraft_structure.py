@@ -8,8 +8,9 @@ plane of symmetry, as high and as far forward as at the fuselage side; all axes 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from proprotor.support.beam_wing import (
     Pylon,
     Wing,
     along_axes,
+    check_elements,
     diagonal_matrix,
     on_motions,
     pylon_coordinates,
@@ -74,10 +76,7 @@ class Fuselage:
     def __post_init__(self) -> None:
         for entry in fields(self):
             check_finite(entry.name, getattr(self, entry.name), _SIGNS.get(entry.name, ""))
-        product, roll, yaw = (
-            np.asarray(value) for value in (self.product_of_inertia, self.roll_inertia, self.yaw_inertia)
-        )
-        if np.any(product.real**2 > roll.real * yaw.real):
+        if np.any(_too_large_product(vars(self))):
             rule = "must not exceed the square root of roll_inertia times yaw_inertia"
             raise InputError("product_of_inertia", self.product_of_inertia, rule)
 
@@ -100,28 +99,75 @@ class Fuselage:
         Raises
         ------
         InputError
-            When mass or inertia left would be negative, with the value given and what the others have.
+            When mass or inertia left would not be above zero, with the value given and what is left: `lacking`.
+        """
+        for error in self.lacking(rest).flat:
+            if error is not None:
+                raise error
+        return Fuselage(**_numbers_of(self.mass_at_datum - rest))
+
+    def lacking(self, rest: Array) -> Array:
+        """Return for each design the error of what the body has too little of without other bodies, or None.
+
+        Parameters
+        ----------
+        rest : array (..., 6, 6)
+            As for `without`.
+
+        Returns
+        -------
+        array (...) of InputError or None
         """
         left = self.mass_at_datum - rest
-        _check_left("mass", self.mass, left[..., _X, _X])
-        centre = centre_of_mass(left)
-        body = _turned(rigid_motion(-centre), left)
-        own = {name: body[..., place, place] for name, place in _INERTIAS.items()}
-        for name, value in own.items():
-            _check_left(name, getattr(self, name), value)
-        return Fuselage(
-            mass=left[..., _X, _X],
-            **own,
-            product_of_inertia=-body[..., _ALPHA_X, _ALPHA_Z],
-            centre_forward=centre[..., _Z],
-            centre_up=centre[..., _X],
-        )
+        errors = np.full(left.shape[:-2], None, dtype=object)
+        # Without mass a body has no centre that an inertia could be about.
+        enough = np.real(left[..., _X, _X]) > 0
+        found = _numbers_of(np.where(enough[..., None, None], left, np.eye(6))) | {"mass": left[..., _X, _X]}
+        for name, place, rule in _shortages({name: np.real(value) for name, value in found.items()}):
+            given = np.broadcast_to(np.real(getattr(self, name)), errors.shape)[place]
+            errors[place] = InputError(name, float(given), rule)
+        return errors
 
 
 _INERTIAS = {"roll_inertia": _ALPHA_Z, "pitch_inertia": _ALPHA_Y, "yaw_inertia": _ALPHA_X}
 _PRODUCT = np.zeros((6, 6))
 _PRODUCT[[_ALPHA_X, _ALPHA_Z], [_ALPHA_Z, _ALPHA_X]] = 1.0
 _SIGNS = {"mass": "above zero"} | dict.fromkeys(_INERTIAS, "not negative")
+_UNITS = dict.fromkeys(_INERTIAS, "kg m²") | {"mass": "kg"}
+_LEFT = "must be more than wing, nacelles and rotors have, which leave {:.4g} {} for the fuselage"
+_LEFT_PRODUCT = (
+    "must leave the fuselage without wing, nacelles and rotors at most the square root of its roll_inertia "
+    "times yaw_inertia"
+)
+
+
+def _shortages(left: Mapping[str, Array]) -> Iterator[tuple[str, tuple[int, ...], str]]:
+    """Yield what is too little in numbers (...) that are left for a fuselage: name, place and rule; the worst last."""
+    for place in map(tuple, np.argwhere(_too_large_product(left))):
+        yield "product_of_inertia", place, _LEFT_PRODUCT
+    for name, unit in _UNITS.items():
+        for place in map(tuple, np.argwhere(left[name] <= 0)):
+            yield name, place, _LEFT.format(left[name][place], unit)
+
+
+def _too_large_product(numbers: Mapping[str, Any]) -> Array:
+    """Return whether a product of inertia (...) is more than mass anywhere could have with these inertias."""
+    names = "product_of_inertia", "roll_inertia", "yaw_inertia"
+    product, roll, yaw = (np.real(numbers[name]) for name in names)
+    return np.asarray(product**2 > roll * yaw)
+
+
+def _numbers_of(body: Array) -> dict[str, Array]:
+    """Return the numbers (...) of a fuselage by name from its mass (..., 6, 6) on the motion of the datum."""
+    centre = centre_of_mass(body)
+    about_centre = _turned(rigid_motion(-centre), body)
+    inertias = {name: about_centre[..., place, place] for name, place in _INERTIAS.items()}
+    return inertias | {
+        "mass": body[..., _X, _X],
+        "product_of_inertia": -about_centre[..., _ALPHA_X, _ALPHA_Z],
+        "centre_forward": centre[..., _Z],
+        "centre_up": centre[..., _X],
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,7 +191,7 @@ class CarryThrough:
     Raises
     ------
     InputError
-        When the width or a spring is not above zero, or a word is unknown.
+        When the width or a spring is not above zero, a word is unknown, or there are too many elements.
     """
 
     half_width: Numbers
@@ -168,6 +214,7 @@ class CarryThrough:
                 raise InputError(name, given, 'must be "held", "free" or a stiffness')
             if not isinstance(given, str):
                 check_finite(name, given, "above zero")
+        check_elements(self.elements)
 
     def turns_freely(self, name: str) -> bool:
         """Return whether nothing holds one of the rotations."""
@@ -326,12 +373,3 @@ def side_by_side(first: Array, second: Array) -> Array:
     leading = np.broadcast_shapes(first.shape[:-2], second.shape[:-2])
     parts = [np.broadcast_to(part, (*leading, *part.shape[-2:])) for part in (first, second)]
     return np.concatenate(parts, axis=-1)
-
-
-def _check_left(name: str, whole: Numbers, left: Array) -> None:
-    """Refuse a mass or an inertia of the whole aircraft that its wing, nacelles and rotors exceed."""
-    least = np.min(np.real(left))
-    if least <= 0:
-        given = np.ravel(np.real(np.broadcast_to(whole, np.shape(left))))[np.argmin(np.real(left))]
-        rule = f"must be more than wing, nacelles and rotors have, which leave {least:.4g} for the fuselage"
-        raise InputError(name, float(given), rule)

@@ -36,6 +36,9 @@ class Airframe(NormalModes):
         Names of the coordinates along which neither structure nor air has stiffness; only their rates are states.
     airload_damping, airload_stiffness : array (..., n, n)
         Parts of the airloads of half the airframe in C per ρV and in K per ρV².
+    refusal : array (...) of str, optional
+        Of many designs: the reason for which a design is not physical, "" for others. The matrices of such a design
+        are those of some other aircraft, and its points fail with the reason.
     """
 
     left_hub: Array = field(kw_only=True)
@@ -44,6 +47,7 @@ class Airframe(NormalModes):
     rates: tuple[str, ...] = field(kw_only=True, default=())
     airload_damping: ArrayLike = field(kw_only=True, default=0.0)
     airload_stiffness: ArrayLike = field(kw_only=True, default=0.0)
+    refusal: Array | None = field(kw_only=True, default=None)
 
     symmetric = ("mass",)
 

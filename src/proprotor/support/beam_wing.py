@@ -87,8 +87,7 @@ class Wing:
                 raise InputError(name, angle, "must lie between -90 and 90 degrees")
         for name in _PROFILES:
             _check_profile(name, getattr(self, name))
-        if not isinstance(self.elements, int) or not 1 <= self.elements <= _MOST_ELEMENTS:
-            raise InputError("elements", self.elements, f"must be a whole number from 1 to {_MOST_ELEMENTS}")
+        check_elements(self.elements)
 
     @property
     def tip(self) -> Array:
@@ -113,6 +112,12 @@ class Wing:
 
 
 _PROFILES = tuple(entry.name for entry in fields(BeamProperties))
+
+
+def check_elements(count: object) -> None:
+    """Refuse a number of finite elements that is no whole number, or whose matrices would fill the memory."""
+    if not isinstance(count, int) or not 1 <= count <= _MOST_ELEMENTS:
+        raise InputError("elements", count, f"must be a whole number from 1 to {_MOST_ELEMENTS}")
 
 
 @dataclass(frozen=True, kw_only=True)

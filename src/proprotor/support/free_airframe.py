@@ -106,10 +106,10 @@ def free_airframe(
         raise InputError("symmetry", symmetry, f"must be {list_choices(_CHOICES)}")
     if left is not None and symmetry != "both":
         raise InputError("symmetry", symmetry, 'must be "both" for an aircraft whose left side differs')
-    for side in (right, left or right):
-        if symmetry != "antisymmetric" and side.carry_through.turns_freely("twist"):
-            rule = "must be held or a stiffness: nothing else keeps the wing from turning on the fuselage"
-            raise InputError("carry_through.twist", "free", rule)
+    sides = right, left or right
+    if symmetry != "antisymmetric" and all(side.carry_through.turns_freely("twist") for side in sides):
+        rule = "must be held or a stiffness: nothing else keeps the wing from turning on the fuselage"
+        raise InputError("carry_through.twist", "free", rule)
     half = half_aircraft(right)
     other = half if left is None else half_aircraft(left)
     model = partial(_on_columns, fuselage.mass_at_datum, _by_kind(damping_ratio), rotor_mass, tuple(names))

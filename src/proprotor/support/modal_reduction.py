@@ -21,7 +21,7 @@ _RIGID = 1e-9  # of the largest ω²: a motion without strain
 _NONE = 1e-200  # N/m or N m/rad, whose inverse times a mass would overflow
 _CLOSE = 1e-6  # of 1/ω² or ω²: modes so near to one another are modes of one frequency
 _TIE = 1e-6  # of the largest entry of a shape
-_DENSE = 1500  # coordinates up to which all modes are found at once
+_DENSE = 1500  # coordinates up to which all modes are found at once, as those of a batch always are
 _MOST_KEPT = 400  # coordinates of a support, all of which enter the eigenvalue problem of the rotor
 
 
@@ -198,7 +198,8 @@ def lowest_modes(mass: Any, stiffness: Any, count: int | None = None) -> Structu
     InputError
         When both are singular or one is negative in some direction, or there are fewer modes than asked for.
     """
-    if count is not None and mass.shape[-1] > max(_DENSE, 3 * count):
+    one = mass.ndim == stiffness.ndim == 2 and np.isrealobj(mass) and np.isrealobj(stiffness)
+    if one and count is not None and mass.shape[-1] > max(_DENSE, 3 * count):
         return _lowest_of_many(mass, stiffness, count)
     return _of_few(_dense(mass), _dense(stiffness), count)
 
@@ -328,7 +329,7 @@ def _close(one: Array, other: Array) -> Array:
 
 
 def _lowest_of_many(mass: Any, stiffness: Any, count: int) -> StructuralModes:
-    """Return the lowest modes of large matrices by shifted inverse iteration."""
+    """Return the lowest modes of one pair of large real matrices by shifted inverse iteration."""
     from scipy.sparse import csc_array  # here, because scipy is slow to import
     from scipy.sparse.linalg import ArpackError, eigsh
 

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.errors import InputError
+from proprotor.errors import InputError, printable
 from proprotor.files.csv_columns import Fault, Head, Line, factor_of, fault_at, number_in, table_of
 from proprotor.files.text import read_text
 from proprotor.typing import Array
@@ -209,8 +209,8 @@ def _numbers(head: Head | None, rows: list[Line]) -> Array:
 
 def _words(head: Head | None, rows: list[Line]) -> Array:
     """Return the words of a column, "" for empty cells and for a column that the file does not have."""
-    cells = [cells[head.place].strip() if head and head.place < len(cells) else "" for _, cells in rows]
-    return np.array(cells, dtype=object)
+    cells = [cells[head.place] if head and head.place < len(cells) else "" for _, cells in rows]
+    return np.array([printable(cell).strip() for cell in cells], dtype=object)
 
 
 def _converted(name: str, column: Column, quantity: Quantity, positions: Array) -> Column:

@@ -1,0 +1,322 @@
+"""Bell's stability boundaries of the whole XV-15 beside the model's.
+
+    python -m benchmarks.bell_boundaries
+    python -m benchmarks.bell_boundaries --points FILE    # a CSV file of other points with the same columns
+
+The 40 points are read off Figs. 7.2.1, 7.2.3 and 7.2.5 of NASA TM X-62,407 (to 3 kt), calculations of 1975. The
+model is the decks `xv15-aircraft` and `xv15-aircraft-off` as they are, with the published control stiffness of
+22,400 ft lbf/rad; no input was matched to any point. `benchmarks.bell_points` says which boundary of the model
+belongs to a point.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterable, Mapping
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+import proprotor as pp
+from benchmarks.bell_effects import RPM_OF_SLOPES, Effect, changes, effect, slope_of
+from benchmarks.bell_points import (
+    CONFIGURATIONS,
+    HIGH_MACH,
+    PUBLISHED,
+    SYMMETRIES,
+    Crossing,
+    Point,
+    beside,
+    boundaries,
+    first_crossings,
+    read,
+    tip_mach,
+)
+from proprotor.units import KNOT
+
+ACREE = 335  # kt, antisymmetric beam at 458 rpm: Acree, Peyran and Johnson 1999, another analysis
+_AT = 458.0  # rpm
+_ON, _SOFT, _OFF = CONFIGURATIONS
+_Found = Mapping[Point, Crossing]
+
+BANDS = """\
+Bands of frequency, from the published frequencies of the airframe at rest alone. Symmetric chord: between the
+geometric means with beam below and torsion above. Antisymmetric: beam, chord and torsion are too near each other to
+be told apart, so one band from half an octave below the first to half an octave above the last.
+"""
+WHAT_SETS = """
+Slopes. If all springs and the speed of sound followed the rotor speed, so would the boundary. What does not follow
+takes its share: wing and pylon, the speed of sound (through the Prandtl-Glauert factor of the tips) and the flap spring
+of the blade about alike, the control system less. Of single inputs structural damping, K_θ and the Prandtl-Glauert
+factor change the slopes most; none gives Bell's.
+
+20 % less stiffness. Wing torsion has most of the loss in both symmetries, chord bending and the downstop the rest.
+
+Downstop. Its pitch spring and the yaw spring of the spindle take equal shares of the symmetric boundary; the pitch
+spring takes nearly all of the antisymmetric one.
+
+Bell's points are calculations of 1975, whose damping and rotor model are not told: a difference is one from another
+analysis, not from a test. The antisymmetric boundaries of Bell and of Acree, Peyran and Johnson are 130 kt apart.
+"""
+
+
+# Points ---------------------------------------------------------------------------------------------------------------
+
+
+def print_points(console: Console, found: _Found) -> None:
+    """Print every point beside the model, a table for each configuration and mode."""
+    for name, mode in dict.fromkeys((point.configuration, point.mode) for point in found):
+        symmetry, configuration = SYMMETRIES[mode], CONFIGURATIONS[name]
+        low, high = configuration.band(symmetry)
+        title = f"{name}: {mode}; first flutter among {symmetry} roots of {low:.2f} to {high:.2f} Hz, KTAS"
+        table = Table(
+            "rpm",
+            "altitude, ft",
+            "Bell",
+            "model",
+            "difference",
+            "Hz",
+            "model's name",
+            "tip Mach at Bell's point",
+            title=title,
+        )
+        for point, crossing in found.items():
+            if (point.configuration, point.mode) == (name, mode):
+                table.add_row(*_cells(point, crossing))
+        console.print(table)
+
+
+def _cells(point: Point, crossing: Crossing) -> tuple[str, ...]:
+    mach = tip_mach(point, CONFIGURATIONS[point.configuration])
+    return (
+        f"{point.rpm:g}",
+        f"{point.altitude:g}",
+        f"{point.airspeed:g}",
+        written(crossing.airspeed, ".1f"),
+        written(crossing.airspeed - point.airspeed, "+.1f"),
+        written(crossing.frequency, ".2f"),
+        crossing.mode,
+        f"{mach:.3f}" + (f"  >= {HIGH_MACH}" if mach >= HIGH_MACH else ""),
+    )
+
+
+def written(value: float, layout: str) -> str:
+    """Return a number as text; "none" for NaN."""
+    return "none" if np.isnan(value) else format(value, layout)
+
+
+def root_mean_square(found: _Found, which: Callable[[Point], bool]) -> tuple[float, int, int]:
+    """Return the root mean square difference of some points in knots, their number, and how many have no boundary."""
+    differences = np.array([own.airspeed - point.airspeed for point, own in found.items() if which(point)])
+    there = np.isfinite(differences)
+    rms = float(np.sqrt(np.mean(differences[there] ** 2))) if there.any() else np.nan
+    return rms, int(there.sum()), int((~there).sum())
+
+
+def below(point: Point) -> bool:
+    """Return whether the blade tips at a point are below the Mach number at which the model's air ends."""
+    return tip_mach(point, CONFIGURATIONS[point.configuration]) < HIGH_MACH
+
+
+def print_summary(console: Console, found: _Found) -> None:
+    """Print root mean square differences, and slopes over the rotor speed."""
+    columns = (f"rms below {HIGH_MACH}, kt", "rms of all, kt", "Bell, kt/rpm", "model, kt/rpm")
+    table = Table(
+        "",
+        *columns,
+        title="root mean square differences, and slopes over the points below a tip Mach number of .9",
+    )
+    for mode in SYMMETRIES:
+        for name in (*CONFIGURATIONS, ""):
+            own = {
+                point: one
+                for point, one in found.items()
+                if point.mode == mode and name in ("", point.configuration)
+            }
+            if own:
+                table.add_row(f"{mode}, {name or 'all configurations'}", *_summary(own, slopes=bool(name)))
+    console.print(table)
+
+
+def _summary(own: _Found, *, slopes: bool) -> Iterable[str]:
+    for which in (below, lambda point: True):
+        rms, count, lost = root_mean_square(own, which)
+        yield f"{written(rms, '.1f')} ({count} points{f', {lost} without boundary' if lost else ''})"
+    low = [point for point in own if below(point)]
+    rpm = [point.rpm for point in low]
+    for airspeeds in ([point.airspeed for point in low], [own[point].airspeed for point in low]):
+        yield written(slope_of(rpm, airspeeds), "+.2f") if slopes and len(set(rpm)) > 1 else ""
+
+
+def print_changes(console: Console, found: _Found) -> None:
+    """Print what 20 % less stiffness and the loss of the downstop do, at each rotor speed with points of both."""
+    table = Table("kt", "rpm", "Bell", "model", title="differences from the boundary on the downstop")
+    at = {(point.configuration, point.mode, point.rpm, point.altitude): point for point in found}
+    for point in found:
+        on = at.get((_ON, *point[1:4]))
+        if on is not None and point.configuration != _ON:
+            model = found[point].airspeed - found[on].airspeed
+            name = f"{point.mode}, {point.configuration}"
+            table.add_row(
+                name, f"{point.rpm:g}", f"{point.airspeed - on.airspeed:+g}", written(model, "+.1f")
+            )
+    if table.row_count:
+        console.print(table)
+
+
+# What sets slopes, -20 % and downstop ---------------------------------------------------------------------------------
+
+_SPRINGS_OF_AIRFRAME = {
+    "wing in beam bending": "support.beam_stiffness",
+    "wing in chord bending": "support.chord_stiffness",
+    "wing in torsion": "support.torsion_stiffness",
+    "downstop": "support.downstop_stiffness_on",
+    "spindle in yaw": "support.spindle_yaw_stiffness_on",
+}
+# Inputs with a time in their units, and the power of that time: what does not follow the rotor speed sets the slope.
+_TIMED = {
+    "speed of sound (tip Mach number)": {"operation.speed_of_sound": 1},
+    "flap spring of the blade": {"rotor.flap_frequency": 1},
+    "lag spring of the blade": {"rotor.lag_frequency": 1},
+    "control stiffness K_θ": {"rotor.control_stiffness": 2},
+    "hub spring": {"rotor.gimbal_stiffness": 2},
+    "stiffness of wing and pylon": dict.fromkeys(
+        (*_SPRINGS_OF_AIRFRAME.values(), "support.axial_stiffness"), 2
+    ),
+}
+
+
+def relative(case: pp.Case, on: Crossing) -> dict[str, float]:
+    """Return the exact derivative of a boundary by each input times the input, kt."""
+    scan = f"{on.airspeed - 40:g}:{on.airspeed + 40:g}:8ktas"
+    found = case.sensitivity(mode=on.mode, airspeed=scan)
+    return dict(zip(found.input.values.tolist(), (found.relative.values / KNOT).tolist(), strict=True))
+
+
+def slope_parts(own: Mapping[str, float], airspeed: float) -> dict[str, float]:
+    """Return the parts of the slope of a boundary over the rotor speed, kt/rpm.
+
+    If every input with a time in its units followed the rotor speed, the boundary would be proportional to the rotor
+    speed; an input that stays as it is takes its own share from that. The parts add up to the slope.
+    """
+    parts = {"everything in proportion to the rotor speed": airspeed / _AT}
+    for name, powers in _TIMED.items():
+        parts[f"but for the {name}"] = -sum(power * own[path] for path, power in powers.items()) / _AT
+    return parts
+
+
+def print_what_sets(console: Console, on: tuple[Crossing, ...]) -> None:
+    """Print the parts of slopes, of 20 % less stiffness and of the loss of the downstop at 458 rpm."""
+    case = CONFIGURATIONS[_ON].case()
+    own = [relative(case, one) for one in on]
+    table = Table("kt/rpm", *SYMMETRIES, title="what sets the slopes at 458 rpm (exact derivatives)")
+    parts = [slope_parts(one, crossing.airspeed) for one, crossing in zip(own, on, strict=True)]
+    for name in parts[0]:
+        table.add_row(name, *(f"{one[name]:+.3f}" for one in parts))
+    table.add_row("sum", *(f"{sum(one.values()):+.3f}" for one in parts))
+    table.add_row(
+        "derivative by the rotor speed", *(f"{one['operation.rotor_speed'] / _AT:+.3f}" for one in own)
+    )
+    console.print(table)
+    table = Table("kt", *SYMMETRIES, title="what sets the loss with 20 % less stiffness, to first order")
+    for name, path in _SPRINGS_OF_AIRFRAME.items():
+        table.add_row(name, *(f"{np.log(0.8) * one[path]:+.1f}" for one in own))
+    console.print(table)
+    table = Table("kt", *SYMMETRIES, title="what sets the loss off the downstop")
+    for name, differences in _off_by_parts(on).items():
+        table.add_row(name, *(written(one, "+.1f") for one in differences))
+    console.print(table)
+
+
+def _off_by_parts(on: tuple[Crossing, ...]) -> dict[str, list[float]]:
+    """Return the change of each boundary at 458 rpm with one spring of the pylon, and both, off the downstop."""
+    deck = CONFIGURATIONS[_ON].deck
+    soft = {
+        spring: pp.load_case(deck).given[f"support.{spring}_off"].si
+        for spring in ("downstop_stiffness", "spindle_yaw_stiffness")
+    }
+    pitch, yaw = ({f"support.{spring}_on": value} for spring, value in soft.items())
+    named = {
+        "pitch spring as off the downstop": pitch,
+        "yaw spring as off the downstop": yaw,
+        "both": pitch | yaw,
+    }
+    return {name: _changed(pp.load_case(deck).vary(values), on) for name, values in named.items()}
+
+
+def _changed(case: pp.Case, on: tuple[Crossing, ...]) -> list[float]:
+    found = boundaries(case, [_AT])
+    crossings = (
+        first_crossings(found, one, CONFIGURATIONS[_OFF].band(one))[0] for one in SYMMETRIES.values()
+    )
+    return [one.airspeed - before.airspeed for one, before in zip(crossings, on, strict=True)]
+
+
+# Effects of inputs ----------------------------------------------------------------------------------------------------
+
+
+def print_effects(console: Console) -> tuple[Crossing, ...]:
+    """Print what each input does, one at a time, and return the boundaries of the deck as it is at 458 rpm."""
+    rpm = ", ".join(f"{one:g}" for one in RPM_OF_SLOPES)
+    table = Table(
+        *(
+            "one input at a time, on the downstop at 458 rpm, KTAS",
+            "symmetric",
+            "",
+            "antisymmetric",
+            "",
+            "Hz, name",
+        ),
+        *("slope sym.", "anti.", "-20 % sym.", "anti.", "off sym.", "anti."),
+        title=f"effect of each input; slopes, kt/rpm, over {rpm} rpm; kt",
+    )
+    table.add_row(
+        "Bell (NASA TM X-62,407)", "400", "", "465", "", "", "-0.23", "-0.11", "-34", "-10", "-19", "-39"
+    )
+    table.add_row("Acree, Peyran and Johnson 1999", "", "", f"{ACREE}", *[""] * 7)
+    first: Effect | None = None
+    for name, change in changes():
+        found = effect(change)
+        first = first or found
+        table.add_row(name, *(_effect_cells(found, first) if not found.reason else ("refused", *[""] * 10)))
+        if found.reason:
+            console.print(f"{name}: refused. {found.reason}", highlight=False)
+    console.print(table)
+    return first.at_458 if first else ()
+
+
+def _effect_cells(found: Effect, first: Effect) -> Iterable[str]:
+    for one, before in zip(found.at_458, first.at_458, strict=True):
+        yield written(one.airspeed, ".0f")
+        yield written(one.airspeed - before.airspeed, "+.0f") if found is not first else ""
+    antisymmetric = found.at_458[1]
+    yield (
+        f"{antisymmetric.frequency:.1f} {antisymmetric.mode.removeprefix('antisymmetric ')}"
+        if antisymmetric.mode
+        else ""
+    )
+    for layout, pair in (("+.2f", found.slope), ("+.0f", found.softer), ("+.0f", found.off)):
+        yield from (written(value, layout) for value in pair)
+
+
+def main() -> None:
+    """Print all tables, or those of the points of a file."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument(
+        "--points", default=PUBLISHED, help="CSV file of points, by default the 40 published ones"
+    )
+    asked = parser.parse_args()
+    console = Console(width=170)
+    found = beside(read(asked.points))
+    console.print(BANDS)
+    print_points(console, found)
+    print_summary(console, found)
+    print_changes(console, found)
+    if asked.points == PUBLISHED:
+        print_what_sets(console, print_effects(console))
+        console.print(WHAT_SETS)
+
+
+if __name__ == "__main__":
+    main()
