@@ -70,6 +70,17 @@ def test_boundaries_have_speed_frequency_mode_and_mechanism(boundaries):
     assert positions == sorted(positions) and all(340 <= p <= 400 for p in positions)
 
 
+def test_the_flutter_speed_stands_below_the_doubts():
+    shown = run("flutter", "xv15-bell-frequencies", "--scan", "230:400:34kt").stdout
+    assert "? Doubtful" in shown
+    assert shown.splitlines()[-1].startswith("Flutter speed 244.1")
+
+
+def test_options_that_are_tables_have_units():
+    shown = " ".join(run("flutter", "xv15-bell-frequencies", "--scan", "230:260:10kt").stdout.split())
+    assert "at 0.3491 and 0.8727 rad, at rotor speed 47.96 rad/s" in shown
+
+
 def test_the_margin_is_that_of_the_airspeed_given(boundaries):
     at = boundaries["at"]
     assert at["airspeed (m/s)"] == pytest.approx(350 * KT)

@@ -117,6 +117,12 @@ def test_points_on_a_boundary_over_altitude(points):
     np.testing.assert_allclose(lines["chord"].get_ydata(), chord)
 
 
+def test_points_at_the_ends_of_an_axis_stand_within(sweep, points):
+    ax = plots.plot_damping(sweep, points=points("airspeed [ktas], damping [%]\n200, 20\n300, -5\n"))
+    assert ax.get_xlim()[0] < 200 < 300 < ax.get_xlim()[1]
+    assert ax.get_ylim()[0] < -5 < 20 < ax.get_ylim()[1]
+
+
 def test_a_label_is_written_as_it_is(sweep, points):
     """No formula, no hidden label, no character that a terminal or a font cannot show."""
     read = points("airspeed [ktas], damping [%], label\n220, 2, $\\frac$\n230, 3, _own\n240, 3, a\x1bb\n")

@@ -238,3 +238,42 @@ def test_what_a_case_rests_on_stands_beneath_and_takes_nothing_from_the_plot(cas
     below = min(ax.get_tightbbox().y0, ax.xaxis.label.get_window_extent().y0)
     assert text.get_window_extent().y0 >= 0 and text.get_window_extent().y1 <= below
     assert text.get_window_extent().x1 <= figure.bbox.x1
+
+
+@pytest.fixture(scope="module")
+def of_aircraft():
+    return pp.load_case("xv15-aircraft").sweep("150:400:125kt")
+
+
+def overlaps(boxes):
+    """Return how many neighbours among the boxes of texts overlap, from the lowest to the highest."""
+    boxes = sorted(boxes, key=lambda box: box.y0)
+    return sum(low.y1 > high.y0 + 1 for low, high in pairwise(boxes))
+
+
+def test_the_names_of_an_aircrafts_modes_have_room(of_aircraft):
+    figure = plots.plot_sweep(of_aircraft, rotor_speed=458 * RPM, title="XV-15 aircraft")
+    figure.canvas.draw()
+    above, below = figure.axes
+    for ax in (above, below):
+        names = [text for text in ax.texts if text.get_text().startswith(("symmetric", "antisymmetric"))]
+        boxes = [text.get_window_extent() for text in names]
+        assert len(names) >= 12 and not overlaps(boxes)
+        assert max(box.x1 for box in boxes) <= figure.bbox.width
+        assert max(box.y1 for box in boxes) <= ax.bbox.y1 + 8
+        assert "24 other modes are not drawn" in ax.get_title(loc="left")
+    notes = above.get_window_extent().y1, above._left_title.get_window_extent().y1
+    assert figure._suptitle.get_window_extent().y0 >= max(notes)
+
+
+def test_symmetric_and_antisymmetric_modes_of_one_motion_have_one_colour(of_aircraft):
+    axes = plots.plot_root_locus(of_aircraft), plots.plot_damping(of_aircraft)
+    for ax in axes:
+        chord = [line_of(ax, f"{half} chord") for half in ("symmetric", "antisymmetric")]
+        assert chord[0].get_color() == chord[1].get_color()
+        assert chord[0].get_linestyle() == "-" and chord[1].get_linestyle() == "--"
+        drawn = {line.get_label() for line in ax.lines}
+        assert "symmetric coning" not in drawn and "antisymmetric torsion" in drawn
+    support = of_aircraft.isel(mode=slice(18))
+    styles = [(style.color, style.linestyle) for style in mode_styles(support)]
+    assert len(set(styles)) == len(styles)

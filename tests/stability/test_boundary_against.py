@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 import proprotor as pp
 from proprotor.commands.main import main
-from proprotor.tables.boundary_table import boundary_records, of_mode, only_first
+from proprotor.tables.boundary_table import boundary_records, of_mode, only_first, without_doubtful
 
 KNOT = 1852 / 3600
 SPEEDS = "240:400:20ktas"
@@ -83,9 +83,10 @@ def test_what_has_no_boundary_says_why():
     found = CASE.boundary_against({"operation.rotor_speed": "430:550:120 rpm"}, "240:280:20ktas")
     assert found.sizes["branch"] == 0 and np.isnan(found["first"].values).all()
     assert found.note.values.tolist() == ["no mode becomes unstable up to 280 KTAS"] * 2
-    assert only_first(found).sizes["branch"] == 0
+    assert only_first(found).sizes["branch"] == 0 and without_doubtful(found)[0].sizes["branch"] == 0
     fast = CASE.boundary_against({"operation.rotor_speed": "430:550:120 rpm"}, "700:740:20ktas")
     assert all("Mach" in reason for reason in fast.reason.values.tolist())
+    assert all("from 700 KTAS on" in reason for reason in fast.reason.values.tolist())
     assert fast.note.values.tolist() == ["no airspeed could be analysed"] * 2
     early = CASE.boundary_against({"operation.rotor_speed": "550:560:10 rpm"}, "370:390:10ktas")
     assert all(
@@ -164,3 +165,47 @@ def test_an_altitude_takes_the_place_of_a_density():
 def test_commands_that_cannot_be(more, message):
     result = run("boundary", "xv15-uncoupled", *more)
     assert result.exit_code == 2 and message in result.output, result.output
+
+
+def test_branches_that_are_doubtful_throughout_are_left_out(found):
+    doubtful = found.copy(deep=True)
+    doubtful["warning"] = found.warning.astype(object)
+    doubtful.warning[:, :] = "no air"
+    kept, left_out = without_doubtful(doubtful)
+    assert left_out
+    first = set(filter(None, found.first_branch.values.tolist()))
+    highest = np.nanmax(kept.airspeed.values, axis=1)
+    for label in found.branch.values.tolist():
+        speed = found.airspeed.sel(branch=label).values
+        above = (np.isnan(speed) | (speed >= highest)).all()
+        assert (label in left_out) == (above and label not in first), label
+    assert sorted([*kept.branch.values.tolist(), *left_out]) == sorted(found.branch.values.tolist())
+    place = found.branch.values.tolist().index(left_out[0])
+    doubtful.warning[int(np.isfinite(found.airspeed.values[:, place]).argmax()), place] = ""
+    assert left_out[0] in without_doubtful(doubtful)[0].branch.values
+
+
+def test_the_command_shows_doubtful_branches_on_request(tmp_path):
+    """At 600 rpm the tip of the blades is beyond Mach .85 well below the boundaries of rotor modes."""
+    given = (
+        "boundary",
+        "xv15-uncoupled",
+        "--against",
+        "rotor_speed=560:600:40 rpm",
+        "--scan",
+        "300:480:30kt",
+    )
+    short, whole = run(*given), run(*given, "--all-boundaries")
+    assert "doubtful throughout (--all-boundaries)" in short.stdout
+    assert len(short.stdout.splitlines()) < len(whole.stdout.splitlines())
+    file = tmp_path / "rows.csv"
+    assert run(*given, "--csv", str(file)).exit_code == 0
+    rows = [line for line in file.read_text().splitlines() if line[:3] in ("560", "600")]
+    assert len(rows) == sum(line[:4] in ("560 ", "600 ") for line in whole.stdout.splitlines())
+
+
+def test_an_altitude_in_place_of_the_density_is_not_told_as_a_single_altitude():
+    found = run(
+        "boundary", "xv15-uncoupled", "--against", "altitude=0:9000:9000 ft", "--scan", "360:420:20kt"
+    )
+    assert found.exit_code == 0 and "altitude = 0" not in found.stdout

@@ -89,3 +89,10 @@ def test_the_verdict_says_where_a_mode_is_unstable():
 def test_the_heading_of_a_table_is_title_and_rotor_speed():
     case = SimpleNamespace(title="", name="mine", operation=SimpleNamespace(rotor_speed=20 * np.pi))
     assert heading(case) == "mine, 600 rpm"
+
+
+def test_the_names_of_an_aircrafts_modes_break_between_words():
+    names = ["symmetric pylon yaw", "antisymmetric beam"]
+    sweep = swept(ROOTS, ["", ""]).assign_coords(mode=names)
+    lines = [line.plain for line in SweepTable(sweep, 40.0).lines(80, all_modes=True)]
+    assert [line.split() for line in lines[:2]] == [["symmetric", "antisymmetric"], ["pylon", "yaw", "beam"]]

@@ -19,6 +19,7 @@ from proprotor.tables.boundary_table import (
     input_of,
     of_mode,
     only_first,
+    without_doubtful,
 )
 from proprotor.tables.csv_text import csv_of
 from proprotor.tables.points import Quantity
@@ -42,6 +43,11 @@ _OPERATION = "operation."
 @click.option("--mode", help="Show the boundaries of this mode alone.")
 @click.option("--first", is_flag=True, help="Show the first instability alone, whatever mode it is.")
 @click.option(
+    "--all-boundaries",
+    is_flag=True,
+    help="Show boundaries above the others as well that are doubtful at every value of the input.",
+)
+@click.option(
     "--speed-unit",
     type=click.Choice(("ktas", "keas")),
     help="Airspeed of the plot; by default that of --scan, KTAS without it.",
@@ -59,15 +65,18 @@ def boundary(
     scan: str | None,
     mode: str | None,
     first: bool,
+    all_boundaries: bool,
     speed_unit: str | None,
     level: float,
     points: str | None,
 ) -> None:
     """Find the airspeeds at which modes become unstable, or stable again, at each value of an input.
 
-    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. Each boundary is exact to rounding.
-    Boundaries at neighbouring values are one branch if the same root becomes unstable. A deck that gives the air by
-    density and speed of sound is taken to an altitude in the standard atmosphere by --against altitude=...
+    CASE is a bundled case or a TOML file; `proprotor describe` lists the inputs. Each boundary is exact to
+    rounding. Boundaries at neighbouring values are one branch if the same root becomes unstable. A branch that is
+    doubtful at every value, and nowhere below another that is shown, is in files alone, or shown with
+    --all-boundaries. A deck that gives the air by density and speed of sound is taken to an altitude in the standard
+    atmosphere by --against altitude=...
 
     \b
     Examples:
@@ -85,19 +94,21 @@ def boundary(
     )
     with waiting("Looking for boundaries"):
         found = case.boundary_against({path: given}, _scan_of(case, scan), level=level, **request.options)
-    shown = only_first(found) if first else of_mode(found, mode) if mode else found
-    records = boundary_records(shown, unit)
+    chosen = only_first(found) if first else of_mode(found, mode) if mode else found
+    shown, left_out = (chosen, []) if first or mode or all_boundaries else without_doubtful(found)
+    records = boundary_records(chosen, unit)
     shown_in = speed_unit or ("keas" if scan and is_equivalent(scan) else "ktas")
 
     def draw() -> Any:
         from proprotor.plots import plot_boundary_against, rests_on  # here, so that --help answers without it
 
         ax = plot_boundary_against(shown, unit=unit, speed_unit=shown_in, points=measured)
-        return rests_on(ax, case, f"{case.title or case.name}.")
+        more = ["Boundaries that are doubtful throughout are not drawn."] if left_out else []
+        return rests_on(ax, case, f"{case.title or case.name}.", *more)
 
     outputs.write(
         document=lambda: output.about(case, request) | _document(found, records, level),
-        table=lambda: _print(case, shown, records, unit),
+        table=lambda: _print(case, shown, left_out, unit),
         csv=lambda: csv_of(records, list(records[0]), found.attrs),
         plot=draw,
     )
@@ -120,7 +131,8 @@ def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str
     if whole == "operation.altitude" and whole not in known:
         at = f"0 {arguments.unit_of(given)}"
         values_in_si(given, "m", whole)  # raises an error that names the input
-        request = request._replace(settings={**request.settings, whole: at})
+        own = {"case.title": case.title or case.name, whole: at}  # the title must not tell one altitude
+        request = request._replace(settings={**request.settings, **own})
         case = request.load()
         known = design_inputs(case)
     found = whole if whole in known else path
@@ -150,13 +162,15 @@ def _document(found: Dataset, records: Sequence[dict[str, Any]], level: float) -
     }
 
 
-def _print(case: Case, shown: Dataset, records: Sequence[dict[str, Any]], unit: str) -> None:
+def _print(case: Case, shown: Dataset, left_out: Sequence[str], unit: str) -> None:
     output.print_head(case, shown.attrs)
-    path = input_of(shown)
+    path, records = input_of(shown), boundary_records(shown, unit)
     out = output.console()
     out.print(f"Boundaries against {path}" + (f" ({unit})" if unit else "") + ":")
     columns = (unit or "value", KTAS, KEAS, "Hz", "/rev", "mode", "kind", "")
     output.print_table(columns, map(boundary_cells, records), text=columns[5:])
+    if left_out:
+        out.print(f"Not shown, doubtful throughout (--all-boundaries): {'; '.join(left_out)}.")
     failures = dict.fromkeys(reason for reason in shown.reason.values.tolist() if reason)
     for reason in failures:
         values = [r for r in records if r["failure"] == reason]

@@ -116,6 +116,6 @@ def _print(
     if records:
         columns = (unit, "Hz", "/rev", "mode", "kind", "", "mechanism")
         output.print_table(columns, (boundary_row(record, factor) for record in records), text=columns[3:])
+    output.print_doubts(found.doubts, unit, factor)
     for line in verdict(found, at, unit, factor):
         output.console().print(line, style="bold")
-    output.print_doubts(found.doubts, unit, factor)

@@ -14,6 +14,17 @@ from proprotor.rotor.generated import EQUATION_SETS, EquationSet
 from proprotor.rotor.options import Options
 
 _LISTED = 24  # largest array that is written out; a larger one is replaced by its fingerprint
+_UNITS = {  # of numbers in the options of a record
+    "at_rotor_speed": "rad/s",
+    "drive_inertia": "kg m²",
+    "drive_damping": "N m s/rad",
+    "shaft_stiffness": "N m/rad",
+    "mast_stiffness": "N m/rad",
+    "engine_inertia": "kg m²",
+    "engine_damping": "N m s/rad",
+    "interconnect_stiffness": "N m/rad",
+}
+_ABSCISSAE = {"collective": "rad", "airspeed": "m/s"}  # of a table of blade frequencies
 
 
 def in_force(options: Options) -> dict[str, Any]:
@@ -65,7 +76,11 @@ def option_text(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, Mapping):
-        return options_text({name: part for name, part in value.items() if part})
+        units = _UNITS | {"at": _ABSCISSAE.get(str(value.get("against")), "")}
+        parts = {
+            name: f"{option_text(part)} {units.get(name, '')}".strip() for name, part in value.items() if part
+        }
+        return options_text(parts)
     if isinstance(value, list | tuple):
-        return " and ".join(map(str, value)) or "nothing"
-    return f"{value:g}" if isinstance(value, float) else str(value)
+        return " and ".join(map(option_text, value)) or "nothing"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

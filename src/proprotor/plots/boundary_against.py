@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from proprotor.model.doubts import doubts_along, footnotes
-from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
+from proprotor.plots.canvas import axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, axis_of, written
 from proprotor.plots.points import draw_points
@@ -22,6 +22,8 @@ from proprotor.units import KEAS, KNOT, SEA_LEVEL_DENSITY, airspeed_unit, speed_
 _MARKERS = "s^DvP<>h"
 _ENDS = ", stable again"
 _ROOM = 0.06  # of the axis, below and above what is drawn
+_MARGIN = 0.015  # of the axis, left and right of what is drawn
+_LETTER = 0.55  # mean width of a letter, of its size
 
 
 def plot_boundary_against(
@@ -72,7 +74,9 @@ def plot_boundary_against(
     lines = _draw(ax, found, line, speeds)
     top = found.searched.sel(end="high").values / factor
     ax.plot(line.values, top, color=GREY, linewidth=1.2, linestyle=":", zorder=1.5)
-    ax.set_xlim(line.values[0], line.values[-1])
+    room = _MARGIN * (line.values[-1] - line.values[0])  # for whole markers at the ends
+    if room:
+        ax.set_xlim(line.values[0] - room, line.values[-1] + room)
     _set_limits(ax, speeds, top, limits)
     ax.set_xlabel(line.label)
     shown = airspeed_unit(speed_unit)
@@ -152,6 +156,10 @@ def _write(ax: Axes, drawn: Line2D, place: int, text: str) -> None:
     above = drawn.get_marker() not in ("", "None")
     left, right = np.array(ax.get_xlim()) @ [[0.85, 0.15], [0.15, 0.85]]
     rightwards = x[place] < left or (falls == above and x[place] < right)
+    width = (_LETTER * LABEL_SIZE * len(text) + 4) / points_per_pixel(ax) / ax.bbox.width
+    at_left = float(ax.transLimits.transform((x[place], y[place]))[0])
+    if not rightwards and at_left < width < 1 - at_left:
+        rightwards = True
     offset: dict[str, Any] = {"xytext": (4 if rightwards else -4, 5 if above else -5)}
     offset |= {"ha": "left" if rightwards else "right", "va": "bottom" if above else "top"}
     at = (float(x[place]), float(y[place]))

@@ -18,6 +18,8 @@ from proprotor.tables.points import DAMPING, Points, Quantity
 from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
 from proprotor.typing import Array, Axes, Dataset, Figure
 
+_TITLE, _NOTE = 0.42, 0.16  # inches above the axes: for a title, and for each line of a note
+
 
 def plot_frequency(
     sweep: Dataset,
@@ -188,7 +190,10 @@ def plot_sweep(
     _draw_frequency(above, sweep, line, rotor_speed, None, points, needed=False)
     _draw_damping(below, sweep, line, damping_limits, points, needed=False)
     above.set_xlabel("")
-    figure.suptitle(title, x=0.09, ha="left", fontsize=11, parse_math=False)
+    height, notes = figure.get_size_inches()[1], above.get_title(loc="left")
+    lines = notes.count("\n") + 1 if notes else 0
+    figure.subplots_adjust(top=min(figure.subplotpars.top, 1 - (_TITLE + _NOTE * lines) / height))
+    figure.suptitle(title, x=0.09, y=1 - 0.15 / height, ha="left", va="top", fontsize=11, parse_math=False)
     return figure
 
 
@@ -213,7 +218,7 @@ def _draw(
     limits: tuple[float, float | None],
     measured: _Measured,
 ) -> None:
-    """Draw values (points, modes) of all modes within limits, points of a file, and the names of the lines."""
+    """Draw values (points, modes) of the modes within limits, points of a file, and the names of the lines."""
     lines = draw_modes(ax, sweep, values, line)
     ax.margins(x=0)
     ax.set_ylim(*limits)

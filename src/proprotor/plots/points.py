@@ -125,8 +125,7 @@ def _lengths(column: Column, own: Array) -> Array:
 
 
 def _widened(limits: tuple[float, float], column: Column, there: Array) -> tuple[float, float]:
-    """Return limits of an axis that hold all points, with a little room."""
-    low, high = column.low[there], column.high[there]
+    """Return limits of an axis that hold all points, with room for whole markers."""
     room = 0.03 * abs(limits[1] - limits[0])
-    least = min([limits[0], *(low[low < limits[0]] - room).tolist()])
-    return least, max([limits[1], *(high[high > limits[1]] + room).tolist()])
+    low, high = column.low[there] - room, column.high[there] + room
+    return min([limits[0], *low.tolist()]), max([limits[1], *high.tolist()])

@@ -9,10 +9,11 @@ import numpy as np
 from proprotor.plots.canvas import Limits, along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
+from proprotor.plots.mode_lines import modes_drawn
 from proprotor.plots.points import draw_points
-from proprotor.plots.style import LABEL_SIZE, UNSTABLE, broad_modes, mode_styles, white_box
+from proprotor.plots.style import LABEL_SIZE, UNSTABLE, mode_styles, white_box
 from proprotor.tables.points import FREQUENCY, GROWTH, Points, Quantity
-from proprotor.tables.sweep_summary import growth_rate, leaps
+from proprotor.tables.sweep_summary import broad_modes, growth_rate, leaps
 from proprotor.typing import Array, Axes, Dataset, Line2D
 
 _RATIOS = (0.01, 0.02, 0.05, 0.10, 0.20, 0.50)
@@ -67,6 +68,7 @@ def plot_root_locus(
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, size=(8, 7), labels_beside=True)
+    sweep = sweep.isel(mode=modes_drawn(ax, sweep))
     per = 1.0 if rotor_speed is None else float(rotor_speed)
     real, imaginary = growth_rate(sweep) / per, np.abs(sweep.eigenvalue.values.imag) / per
     imaginary = np.where(np.isnan(real), np.nan, imaginary)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import cycle
 from typing import Any, NamedTuple
 
-from proprotor.tables.sweep_summary import growth_rate, support_coordinates
+from proprotor.tables.sweep_summary import broad_modes
 from proprotor.typing import Dataset
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish; without the yellow, which is too pale on white.
@@ -16,6 +16,7 @@ UNSTABLE = "#FBE9DF"
 GREY = "0.35"
 LABEL_SIZE = 8  # points
 _DASHES = ("-", "--", ":")
+_SYMMETRIC, _ANTISYMMETRIC = ("-", "-."), ("--", ":")  # dashes of the modes of an aircraft
 _MARKERS = "s^DvP<>"  # on broad lines, because their colours alone do not differ on a grey print
 
 # Hatches of bars by the status of a number; the bar of a number that was read in a source has no hatch.
@@ -36,27 +37,35 @@ class ModeStyle(NamedTuple):
     marker: str
 
 
-def broad_modes(sweep: Dataset) -> set[str]:
-    """Return the modes that have broad lines: modes of the support, and modes that are unstable at some point."""
-    grows = (growth_rate(sweep) > 0).any(axis=0)
-    return {*support_coordinates(sweep), *sweep.mode.values[grows].tolist()}
-
-
 def mode_styles(sweep: Dataset) -> list[ModeStyle]:
-    """Return a style for each mode of a sweep, in the order of the modes; no two share both colour and dashes.
+    """Return a style for each mode of a sweep, in the order of the modes.
 
-    The same mode looks the same in every plot of a sweep. Modes of the support and unstable modes have broad lines with
-    markers.
+    No two of as many modes as a plot draws share both colour and dashes. The same mode looks the same in every plot of
+    a sweep. Modes of the support and unstable modes have broad lines with markers. Of an aircraft the symmetric and the
+    antisymmetric mode of one motion share their colour; the antisymmetric one is broken.
     """
     broad = broad_modes(sweep)
-    markers = cycle(_MARKERS)
+    modes = sweep.mode.values.tolist()
+    motions = list(dict.fromkeys(map(_motion, modes)))
+    markers = dict(zip([motion for motion in motions if motion in set(map(_motion, broad))], cycle(_MARKERS)))
     single = "o" if len(sweep.reason) == 1 else ""
     return [
         ModeStyle(
-            color=COLOURS[place % len(COLOURS)],
-            linestyle=_DASHES[place // len(COLOURS) % len(_DASHES)],
+            color=COLOURS[motions.index(_motion(mode)) % len(COLOURS)],
+            linestyle=_dashes(mode, motions.index(_motion(mode)) // len(COLOURS)),
             linewidth=2.4 if mode in broad else 1.2,
-            marker=next(markers) if mode in broad else single,
+            marker=markers[_motion(mode)] if mode in broad else single,
         )
-        for place, mode in enumerate(sweep.mode.values.tolist())
+        for mode in modes
     ]
+
+
+def _motion(mode: str) -> str:
+    """Return what moves in a mode, of an aircraft without the symmetry."""
+    return mode.removeprefix("anti").removeprefix("symmetric ")
+
+
+def _dashes(mode: str, turn: int) -> str:
+    """Return the dashes of a mode, of the colours' first turn or a later one."""
+    own = {"symmetric": _SYMMETRIC, "antisymmetric": _ANTISYMMETRIC}.get(mode.partition(" ")[0], _DASHES)
+    return own[turn % len(own)]

@@ -263,7 +263,7 @@ def _reason(search: Search, lines: _Lines, line: int) -> str:
     places = np.flatnonzero((lines.line == line) & ~search.scanned.works)
     if not len(places):
         return ""
-    where = f"{len(places)} airspeeds from {lines.position[places[0]]:.4g} m/s on"
+    where = f"{len(places)} airspeeds from {lines.position[places[0]] / KNOT:.4g} {KTAS} on"
     return f"{where}: {search.scanned.reason[places[0]]}"
 
 

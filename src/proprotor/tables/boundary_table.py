@@ -73,6 +73,27 @@ def only_first(found: Dataset) -> Dataset:
     return kept.assign(onset=("branch", np.array([True]), found.onset.attrs)).assign_attrs(found.attrs)
 
 
+def without_doubtful(found: Dataset) -> tuple[Dataset, list[str]]:
+    """Return the boundaries without the branches of which every boundary is doubtful, and the labels of these.
+
+    Nothing is left out below a boundary that stays: a branch stays that is the lowest or the first instability at any
+    value of the input, or has a lower airspeed than a branch that stays.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Of `Case.boundary_against`.
+    """
+    speed = np.nan_to_num(found.airspeed.values, nan=np.inf)
+    lowest = speed == speed.min(axis=1, initial=np.inf, keepdims=True)
+    sure = (np.isfinite(speed) & (lowest | (found.warning.values == ""))).any(axis=0)
+    shown, before = sure | np.isin(found.branch.values, found.first_branch.values), np.zeros_like(sure)
+    while not np.array_equal(shown, before):
+        highest = np.where(np.isfinite(speed) & shown, speed, 0).max(axis=1, initial=0, keepdims=True)
+        before, shown = shown, shown | (speed < highest).any(axis=0)
+    return found.isel(branch=np.flatnonzero(shown)), found.branch.values[~shown].tolist()
+
+
 def boundary_records(found: Dataset, unit: str) -> list[dict[str, Any]]:
     """Return a record for each boundary, by the input and the airspeed; one without airspeed where there is none.
 

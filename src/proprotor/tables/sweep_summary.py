@@ -117,3 +117,20 @@ def support_share(sweep: Dataset) -> Array:
     """Return the largest participation of the support in each mode (mode,) along the sweep, 0 to 1."""
     share = sweep.participation.sel(dof=support_coordinates(sweep)).sum("dof").values
     return np.asarray(np.nanmax(share, axis=0, initial=0))
+
+
+def broad_modes(sweep: Dataset) -> set[str]:
+    """Return the modes that have broad lines: modes of the support, and modes that are unstable at some point."""
+    grows = (growth_rate(sweep) > 0).any(axis=0)
+    return {*support_coordinates(sweep), *sweep.mode.values[grows].tolist()}
+
+
+def modes_of_interest(sweep: Dataset, count: int) -> list[int]:
+    """Return the places of at most `count` modes, in the order of the sweep.
+
+    Unstable modes come first, then the support's, then other modes that move the support most.
+    """
+    stable = ~(growth_rate(sweep) > 0).any(axis=0)
+    of_rotor = ~np.isin(sweep.mode.values, support_coordinates(sweep))
+    by_interest = np.lexsort([-support_share(sweep), of_rotor, stable])
+    return sorted(by_interest[:count].tolist())

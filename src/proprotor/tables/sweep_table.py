@@ -18,11 +18,11 @@ from proprotor.stability.mode_names import DOUBTFUL
 from proprotor.tables.csv_text import csv_of
 from proprotor.tables.sweep_summary import (
     UnstableRange,
+    broad_modes,
     damped_frequency,
     damping_percent,
     growth_rate,
-    support_coordinates,
-    support_share,
+    modes_of_interest,
     unstable_ranges,
 )
 from proprotor.typing import Array, Dataset
@@ -135,15 +135,13 @@ class SweepTable:
         """Return unstable modes, the support's modes and other modes that move it most, in the order of the sweep."""
         if self.failed.all():
             return []
-        unstable = self.unstable.any(axis=0)
-        of_support = np.isin(self.sweep.mode.values, support_coordinates(self.sweep))
-        by_interest = np.lexsort([-support_share(self.sweep), ~of_support, ~unstable])
-        return sorted(by_interest[: max(count, np.sum(unstable | of_support))].tolist())
+        broad = np.isin(self.sweep.mode.values, list(broad_modes(self.sweep)))
+        return modes_of_interest(self.sweep, max(count, int(broad.sum())))
 
     def _table(self, modes: Sequence[int]) -> Iterator[Text]:
         from rich.text import Text
 
-        names = [textwrap.wrap(str(self.sweep.mode.values[i]), _MODE_WIDTH - 2) for i in modes]
+        names = [textwrap.wrap(str(self.sweep.mode.values[i]), _MODE_WIDTH - 1) for i in modes]
         for row in range(max(map(len, names), default=0)):
             cells = (name[row] if row < len(name) else "" for name in names)
             line = "".join(f"{cell:>{_MODE_WIDTH - 1}} " for cell in cells)
