@@ -28,6 +28,7 @@ ROOMS = (
 # The one import of a room further down, deferred: a model's method that gives its modes.
 EXCEPTION = ("model", "stability", "LinearModel.modes")
 MOST_MODULES = 6  # beside the rooms
+INTERFACE = ("__init__", "interface")  # the package's own two modules, which are no room
 
 
 class Import(NamedTuple):
@@ -45,19 +46,19 @@ class Import(NamedTuple):
 
     @property
     def origin(self) -> str:
-        """The room of the importing file; empty for the package's own ``__init__``."""
+        """The room of the importing file; empty for the package's own modules."""
         return room_of(self.file)
 
     @property
     def target(self) -> str:
-        """The room of the imported module."""
-        return self.module.partition(".")[0]
+        """The room of the imported module; empty for the package's own modules."""
+        return room_of(self.module.partition(".")[0])
 
 
 def room_of(file: str) -> str:
     """Return the room of a file by its path below the package."""
     first = Path(file).parts[0].removesuffix(".py")
-    return "" if first == "__init__" else first
+    return "" if first in INTERFACE else first
 
 
 @cache
@@ -191,7 +192,7 @@ def looks_public() -> list[str]:
 
 def beside_rooms() -> list[str]:
     """Return what is wrong with the modules beside the rooms: unknown ones, or too many."""
-    alone = sorted(path.stem for path in SOURCE.glob("*.py") if path.stem != "__init__")
+    alone = sorted(path.stem for path in SOURCE.glob("*.py") if path.stem not in INTERFACE)
     found = [
         f"{name}.py: stands beside the rooms, and is none of {ROOMS}" for name in alone if name not in ROOMS
     ]

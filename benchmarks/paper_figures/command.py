@@ -12,7 +12,7 @@ from benchmarks.paper_figures.analyses import Analyses
 from benchmarks.paper_figures.catalogue import NUMBERS, check_number, make_figure
 from benchmarks.paper_figures.content import csv_of
 from benchmarks.paper_figures.drawing import save
-from proprotor.commands.arguments import EXIT_CODES
+from proprotor.commands.exit_codes import EXIT_CODES
 from proprotor.commands.main import errors_as_messages
 from proprotor.commands.output import check_writable, write
 from proprotor.errors import InputError

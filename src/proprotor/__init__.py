@@ -1,7 +1,8 @@
 """Whirl-flutter stability of gimballed tiltrotors, with equations derived from first principles.
 
-`import proprotor as pp` offers the names in ``__all__``. Data flow down this list of rooms, and a room imports only the
-rooms above it. docs/architecture.md describes the rooms, and the docstring of each room is its map.
+`import proprotor as pp` offers the names in ``__all__``, which `proprotor.interface` imports. Data flow down this list
+of rooms, and a room imports only the rooms above it. docs/architecture.md describes the rooms, and the docstring of
+each room is its map.
 
     errors typing needs units datum files   the ground: messages, types, packages and memory, SI, numbers, files
     rotor       a rotor trimmed in its air: section loads, operation, options, the trim
@@ -17,68 +18,39 @@ rooms above it. docs/architecture.md describes the rooms, and the docstring of e
     commands    the command line
 """
 
-from proprotor.case import Case, list_cases, load_case
-from proprotor.deck.vary import design_inputs
-from proprotor.errors import InputError
-from proprotor.exchange.matlab import save_matlab
-from proprotor.exchange.netcdf import load_results, save_results
-from proprotor.model.linear_model import LinearModel
-from proprotor.model.mount import mount
-from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
-from proprotor.model.rotor_model import rotor_model
-from proprotor.model.several_rotors import mount_rotors
-from proprotor.model.structural_damping import neutral_damping
-from proprotor.rotor.airfoil import Airfoil
-from proprotor.rotor.airfoil_table import AirfoilTable
-from proprotor.rotor.atmosphere import standard_air
-from proprotor.rotor.blade_frequencies import BladeFrequencies
-from proprotor.rotor.drive_train import DriveTrain
-from proprotor.rotor.generated import EquationSet
-from proprotor.rotor.operation import Operation
-from proprotor.rotor.rotor import Rotor
-from proprotor.stability.branches import by_branch
-from proprotor.stability.frequency_response import frequency_response
-from proprotor.study import sampling
-from proprotor.study.study import study
-from proprotor.study.uncertainty import distribution, share_below, sobol_indices
-from proprotor.support.beam_wing import Pylon, Wing, beam_wing
-from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
+from __future__ import annotations
 
-__all__ = [
-    "Airfoil",
-    "AirfoilTable",
-    "BladeFrequencies",
-    "Case",
-    "DriveTrain",
-    "EquationSet",
-    "InputError",
-    "LinearModel",
-    "NormalModes",
-    "Operation",
-    "Pylon",
-    "Rotor",
-    "WhirlDerivatives",
-    "Wing",
-    "beam_wing",
-    "by_branch",
-    "design_inputs",
-    "distribution",
-    "frequency_response",
-    "list_cases",
-    "load_case",
-    "load_results",
-    "mount",
-    "mount_rotors",
-    "neutral_damping",
-    "rigid_propeller",
-    "rigid_support",
-    "rotor_model",
-    "sampling",
-    "save_matlab",
-    "save_results",
-    "share_below",
-    "sobol_indices",
-    "standard_air",
-    "study",
-    "two_axis_pivot",
-]
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from proprotor.interface import *  # noqa: F403
+    from proprotor.interface import __all__ as __all__
+
+
+class _Package(ModuleType):
+    """The package; `import proprotor` imports no more than this file, so that `proprotor --help` answers at once."""
+
+    def __getattr__(self, name: str) -> Any:
+        special = name.startswith("__") and name != "__all__"  # Python asks for many of these
+        interface = {} if special else vars(import_module("proprotor.interface"))
+        if name not in interface:
+            raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
+        return interface[name]
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self.__all__})
+
+    @property
+    def study(self) -> Any:
+        """The function, although a room has the same name."""
+        return self.__getattr__("study")
+
+    @study.setter
+    def study(self, room: ModuleType) -> None:
+        """Leave the function where the import system sets the room."""
+
+
+sys.modules[__name__].__class__ = _Package

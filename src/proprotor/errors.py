@@ -7,19 +7,22 @@ choices that messages have in common, and the way in which a text is shown on a 
 from __future__ import annotations
 
 import difflib
+import math
+import operator
 import unicodedata
 from collections.abc import Collection, Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 _WIDEST_VALUE = 60  # characters of a value worth repeating in a message
 # Unicode categories that are never shown: controls, formats (some reverse the direction of text), halves of characters,
 # characters without a known shape, ends of lines.
 _NEVER = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 _SIGNS = {
-    "not negative": (np.less, "must not be negative"),
-    "above zero": (np.less_equal, "must be above zero"),
+    "not negative": (operator.lt, "must not be negative"),
+    "above zero": (operator.le, "must be above zero"),
 }
 
 
@@ -78,6 +81,8 @@ def check_number(field: str, value: object) -> None:
     InputError
         For text, None and the like.
     """
+    import numpy as np  # here, as below, so that messages need no NumPy: `proprotor --help` answers without
+
     if getattr(np.asarray(value), "dtype", np.dtype(object)).kind not in "biufc":
         raise InputError(field, value, "must be a number in SI units")
 
@@ -98,6 +103,10 @@ def check_finite(field: str, value: Any, sign: str = "") -> None:
     InputError
         With the first rule that the value breaks.
     """
+    if isinstance(value, float) and math.isfinite(value) and not (sign and _SIGNS[sign][0](value, 0)):
+        return  # most numbers, without NumPy's way around
+    import numpy as np
+
     check_number(field, value)
     if not np.all(np.isfinite(value)):
         raise InputError(field, value, "must be finite")
@@ -112,6 +121,8 @@ def nowhere_negative(matrix: np.ndarray[Any, Any]) -> bool:
 
     The matrices are scaled to a unit diagonal, so that kg and kg m² in one matrix do not set the tolerance.
     """
+    import numpy as np
+
     diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
     if (diagonal < 0).any():
         return False

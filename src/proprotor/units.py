@@ -1,8 +1,9 @@
 """Physical units: text such as ``"12.5 ft"``, quantities and labelled arrays become SI numbers.
 
-The registry holds the units listed below and no others. An angle is a dimension of its own here, which
+The units listed below are known and no others. An angle is a dimension of its own here, which
 pint's usual registry does not do: a stiffness that has lost its "per degree", or 3.2 Hz taken
-for 3.2 rad/s, is then an error and not a factor of 57 or of 6.
+for 3.2 rad/s, is then an error and not a factor of 57 or of 6. Text is read without pint, whose import takes longer
+than many an analysis.
 
 Single quantities come first, then lists and ranges of a quantity, then airspeeds, which every analysis takes as a
 number in m/s, a quantity or text such as ``"50:400:5ktas"``. Numbers, m/s and knots (kt, ktas) are true airspeeds; an
@@ -113,6 +114,13 @@ _UNIT_TOKEN = re.compile(
 )
 
 
+# A number or a name, with its power: a factor of a product, also in the definitions.
+_FACTOR = re.compile(
+    r"(?P<number>[0-9][0-9.e]*)|(?P<name>[A-Za-z_][A-Za-z0-9_]*|%)(?:\s*(?:\*\*|\^)\s*(?P<power>-?[0-9]))?"
+)
+_Unit = tuple[float, dict[str, int]] | None  # so many times a product of other units; None for a base unit
+
+
 @cache
 def unit_registry() -> pint.UnitRegistry[Any]:
     """Return the registry of the units that a deck may use, a `pint.UnitRegistry` made on first use."""
@@ -152,12 +160,13 @@ def factor_to_si(text: object, written_unit: str, unit: str) -> float:
     InputError
         With an empty field name, when the unit is unknown or of another dimension.
     """
-    import pint
-
-    try:
-        return float(unit_registry().Quantity(1.0, _parse_unit(text, written_unit)).to(unit).magnitude)
-    except pint.DimensionalityError:
-        raise InputError("", text, _dimension_rule(written_unit, unit)) from None
+    powers = _parse_unit(text, written_unit)
+    for name, power in _parse_unit(unit, unit).items():
+        powers[name] = powers.get(name, 0) - power
+    factor, dimension = _in_base_units(powers)
+    if any(dimension.values()):
+        raise InputError("", text, _dimension_rule(written_unit, unit))
+    return factor
 
 
 def has_own_unit(value: Any) -> bool:
@@ -411,25 +420,108 @@ def _split(text: str | float) -> tuple[float, str]:
         return math.inf, ""
 
 
-def _parse_unit(text: object, unit: str) -> pint.Unit:
-    """Return a unit of the registry, or refuse a unit that is unknown or not written as a product of names."""
-    import pint
-
+def _parse_unit(text: object, unit: str) -> dict[str, int]:
+    """Return the power of each name in a unit, or refuse a unit that is unknown or no product of names."""
     product = f"1{unit}" if unit.startswith("/") else unit  # "5.7/rad"
     product = re.sub(r"(?<=[A-Za-z0-9])[-·](?=[A-Za-z])", "*", product)  # in-lbf, as reports write it
-    if len(unit) <= _LONGEST and not _UNIT_TOKEN.sub("", product).strip():
-        try:
-            return unit_registry().parse_units(product)
-        except pint.UndefinedUnitError as error:
-            name = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
-            if name.lower() in _INDICATED:
-                rule = f"must be ktas or keas; {name} is none of the units here"
+    if len(unit) > _LONGEST or _UNIT_TOKEN.sub("", product).strip() or not _is_product(product):
+        raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')
+    powers: dict[str, int] = {}
+    for written, power in _read_product(product)[1].items():
+        name = _known_unit(written)
+        if name is None:
+            raise InputError("", text, _unknown_unit(written))
+        powers[name] = powers.get(name, 0) + power
+    return powers
+
+
+def _unknown_unit(name: str) -> str:
+    """Return the rule that an unknown unit breaks."""
+    if name.lower() in _INDICATED:
+        return f"must be ktas or keas; {name} is none of the units here"
+    return f"has an {unknown_name(name, _unit_names(), 'unit')}"
+
+
+def _is_product(text: str) -> bool:
+    """Return whether a text is empty or a product of names, each sign between two factors, parentheses in pairs."""
+    shape = re.sub(r"\s", "", _FACTOR.sub("x", text))
+    while shape != (shape := re.sub(r"\(x(?:[*/]?x)*\)", "x", shape)):
+        pass
+    return re.fullmatch(r"(?:x(?:[*/]?x)*)?", shape) is not None
+
+
+def _read_product(text: str) -> tuple[float, dict[str, int]]:
+    """Return the product of the numbers in a product, and the power of each name."""
+    scale, powers = 1.0, dict[str, int]()
+    outside, sign = [1], 1  # +1 to multiply by and -1 to divide by: a parenthesis, the next factor
+    for match in re.finditer(rf"{_FACTOR.pattern}|[*/()]", text):
+        if match[0] in ("*", "/"):
+            sign = 1 if match[0] == "*" else -1
+            continue
+        if match[0] == "(":
+            outside.append(outside[-1] * sign)
+        elif match[0] == ")":
+            outside.pop()
+        elif match["name"]:
+            power = outside[-1] * sign * int(match["power"] or 1)
+            powers[match["name"]] = powers.get(match["name"], 0) + power
+        else:
+            scale *= float(match["number"]) ** (outside[-1] * sign)
+        sign = 1
+    return scale, powers
+
+
+@cache
+def _definitions() -> tuple[dict[str, _Unit], dict[str, str], dict[str, float]]:
+    """Return all units by name, the name of each alias, and the factor of each prefix."""
+    units, names, prefixes = dict[str, _Unit](), dict[str, str](), dict[str, float]()
+    for line in filter(None, (line.partition("#")[0].strip() for line in _DEFINITIONS.splitlines())):
+        name, meant, *aliases = line.split(" = ")
+        if name.endswith("-"):
+            prefixes |= {prefix.rstrip("-"): float(meant) for prefix in (name, *aliases)}
+            continue
+        units[name] = None if meant.startswith("[") else _read_product(meant)
+        names |= dict.fromkeys((name, *aliases), name)
+    del names["_"]
+    return units, names, prefixes
+
+
+def _known_unit(written: str) -> str | None:
+    """Return the name of a unit, which may have a prefix and the s of a plural; None for an unknown unit."""
+    units, names, prefixes = _definitions()
+    if written in names:
+        return names[written]
+    for stem in dict.fromkeys((written, written.removesuffix("s"))):
+        if len(stem) > 1 and stem in names:
+            return names[stem]
+        for prefix, scale in prefixes.items():
+            rest = stem.removeprefix(prefix)
+            if rest != stem and rest in names and (stem == written or len(rest) > 1):
+                name = f"{prefix}{names[rest]}"
+                units[name] = scale, {names[rest]: 1}
+                return name
+    return None
+
+
+def _in_base_units(powers: dict[str, int]) -> tuple[float, dict[str, int]]:
+    """Return the factor of a product of units in base units, and the power of each base unit."""
+    units, _, _ = _definitions()
+    scales: dict[float, int] = {}
+    base: dict[str, int] = {}
+
+    def collect(powers: dict[str, int], times: int) -> None:
+        for name, power in powers.items():
+            unit = units[_known_unit(name) or name]
+            if unit is None:
+                base[name] = base.get(name, 0) + power * times
             else:
-                rule = f"has an {unknown_name(name, _unit_names(), 'unit')}"
-            raise InputError("", text, rule) from None
-        except Exception:  # a third-party parser may raise anything: the text is wrong
-            pass
-    raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')
+                scales[unit[0]] = scales.get(unit[0], 0) + power * times
+                collect(unit[1], power * times)
+
+    collect(powers, 1)
+    # Equal scales cancel, and what remains is multiplied before it is divided: 1 m is exactly 1 m.
+    ordered = sorted(scales.items(), key=lambda one: one[1] < 0)
+    return math.prod((scale**power for scale, power in ordered), start=1.0), base
 
 
 def _unit_names() -> list[str]:

@@ -5,6 +5,7 @@ one message says what to install or what to reduce.
 """
 
 import ast
+import importlib.util
 import json
 import re
 import subprocess
@@ -202,6 +203,55 @@ def test_results_are_kept_in_files_without_any_extra(tmp_path):
     command = [sys.executable, "-c", BASE_INSTALL, tmp_path, ",".join(sorted(hidden))]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "complex128", done.stderr
+
+
+# What a command imports ---------------------------------------------------------------------------
+
+NO_COMMAND = {
+    "dask",
+    "pint",
+    "scipy.optimize",
+    "scipy.linalg",
+    "matplotlib",
+    "bokeh",
+    "netCDF4",
+    "SALib",
+    "IPython",
+}
+NO_TABLE = {*NO_COMMAND, "scipy", "xarray", "pandas"}
+IMPORTED = {
+    ("--help",): {*NO_TABLE, "numpy", "rich", "pydantic", "proprotor.case", "proprotor_equations"},
+    ("cases",): {*NO_TABLE, "rich", "pydantic", "proprotor.study", "proprotor.exchange"},
+    ("flutter", "xv15-uncoupled"): {*NO_TABLE, "proprotor.study", "proprotor.exchange"},
+    ("sweep", "xv15-uncoupled", "--speed", "100:120:10kt"): {*NO_COMMAND, "scipy"},
+}
+A_COMMAND = """
+import sys
+from proprotor.commands.main import main
+
+try:
+    main()
+finally:
+    print("imported", *(name for name, module in sys.modules.items() if module is not None))
+"""
+
+
+@pytest.mark.parametrize("words", IMPORTED, ids=" ".join)
+def test_a_command_imports_what_it_needs_and_nothing_slow_beside(words):
+    """A package that is installed, and that somebody's import would bring along."""
+    assert all(map(importlib.util.find_spec, IMPORTED[words]))
+    done = subprocess.run([sys.executable, "-c", A_COMMAND, *words], capture_output=True, text=True)
+    shown, _, imported = done.stdout.rpartition("imported ")
+    assert shown and done.returncode == 0, done.stderr
+    assert IMPORTED[words] & {*imported.split()} == set()
+
+
+def test_a_command_in_a_session_of_python_leaves_its_packages_alone():
+    code = "from proprotor.commands.main import main; main(['cases'], standalone_mode=False)"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}; import dask, pint"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
 
 
 # Places to write to -------------------------------------------------------------------------------

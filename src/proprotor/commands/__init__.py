@@ -4,6 +4,7 @@ In come arguments and options; out go tables, JSON, CSV and figures. The command
 and show its result; they compute nothing themselves.
 
     main        the command `proprotor`: the list of commands, and the messages with which an error ends a command
+    exit_codes  what the exit code of a command means
     arguments   arguments and options that several commands share; `Request`, the case and options a user asks for
     output      tables, JSON, files and figures; `Outputs`, the files a user asks for
     terminal    the console on which commands print
@@ -14,7 +15,22 @@ and show its result; they compute nothing themselves.
     report explore                                  a page on a case, as a file and with sliders
 
 This room may import all others, and no room imports this one. Packages that are slow to import (rich, pydantic,
-matplotlib, bokeh) wait until a command needs them, so that ``--help`` and completion answer at once.
+matplotlib, bokeh) wait until a command needs them, and a command waits until it is called, so that ``--help`` answers
+at once.
 """
 
-__all__ = ["main"]
+__all__ = [
+    "attribution",
+    "boundary",
+    "cases",
+    "describe",
+    "explore",
+    "flutter",
+    "main",
+    "new",
+    "report",
+    "sensitivity",
+    "stability_map",
+    "study",
+    "sweep",
+]

@@ -18,6 +18,7 @@ from click.shell_completion import CompletionItem
 from click.types import StringParamType
 
 from proprotor.case import Case, list_cases, load_case
+from proprotor.commands.exit_codes import EXIT_CODES
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
@@ -26,13 +27,6 @@ from proprotor.units import airspeed_unit, speeds, to_si
 
 Command = Callable[..., Any]
 Option = Callable[[Command], Command]  # a decorator
-
-EXIT_CODES = """\b
-Exit codes:
-  0  done; unstable modes and single speeds that fail are results
-  1  no speed could be analysed, or an output could not be written
-  2  an input cannot be used: the message says which and why
-  130  interrupted (Ctrl-C)"""
 
 # Quantities that a file of `--points` may have, in any unit.
 FREQUENCY = Quantity("frequency", "rad/s", 1.0, {"per rev": 1.0})

@@ -17,7 +17,7 @@ from proprotor.typing import Dataset
 _COLUMNS = ("origin", "growth (1/s)", "frequency (rad/s)", "damping (% of critical)", "warning")
 
 
-@arguments.command(short_help="Show what drives and what damps a mode, by physical origin.")
+@arguments.command()
 @arguments.case_argument
 @click.option(
     "--speed", required=True, metavar="SPEED", help='Airspeed: "300 ktas" (kt is the same) or "300 keas".'

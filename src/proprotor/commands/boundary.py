@@ -30,7 +30,7 @@ _EXAMPLE = '"operation.rotor_speed=300:610:20 rpm"'
 _OPERATION = "operation."
 
 
-@arguments.command(short_help="Follow the boundaries over altitude, rotor speed or another input.")
+@arguments.command()
 @arguments.case_argument
 @click.option(
     "--against",

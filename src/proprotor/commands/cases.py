@@ -14,7 +14,7 @@ from proprotor.errors import InputError
 from proprotor.model.provenance import doubtful_inputs, reservations
 
 
-@arguments.command(short_help="List the bundled cases, or show one case.")
+@arguments.command()
 @click.argument("name", required=False, type=arguments.CaseName(), metavar="[CASE]")
 @arguments.set_option
 @output.json_option

@@ -17,7 +17,7 @@ _COLUMNS = ("field", "SI unit", "range", "meaning")
 _MOST_IN_FULL = 3  # up to so many fields are printed in full, more fields as a table
 
 
-@arguments.command(short_help="Show the fields of a deck: meaning, unit, range, default.")
+@arguments.command()
 @click.argument("field", required=False, type=arguments.Field(), metavar="[FIELD]")
 @click.option("--schema", is_flag=True, help="Print the JSON schema, with which editors check a deck.")
 @click.option("--markdown", is_flag=True, help="Print all fields as a page in Markdown (docs/decks.md).")

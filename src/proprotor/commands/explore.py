@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _POINTS = 60  # airspeeds by default
 
 
-@arguments.command(short_help="Move sliders on the inputs, and see the modes follow.")
+@arguments.command()
 @arguments.case_argument
 @arguments.range_option(
     'Airspeeds to draw: "100:400:5kt"; by default 60 airspeeds from 0.2 to 1.2 of the tip speed.'

@@ -27,7 +27,7 @@ from proprotor.tables.csv_text import csv_of
 from proprotor.units import KNOT, airspeed_unit, speed_factor, speeds
 
 
-@arguments.command(short_help="Find flutter and divergence boundaries, and the margin.")
+@arguments.command()
 @arguments.case_argument
 @arguments.scan_option
 @click.option(

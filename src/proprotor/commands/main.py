@@ -7,27 +7,34 @@ import errno
 import io
 import os
 import sys
+from collections import UserDict
 from collections.abc import Iterator
+from importlib import import_module
 from typing import IO, Any
 
 import click
 
-from proprotor.commands.arguments import EXIT_CODES
-from proprotor.commands.attribution import attribution
-from proprotor.commands.boundary import boundary
-from proprotor.commands.cases import cases
-from proprotor.commands.describe import describe
-from proprotor.commands.explore import explore
-from proprotor.commands.flutter import flutter
-from proprotor.commands.new import new
-from proprotor.commands.report import report
-from proprotor.commands.sensitivity import sensitivity
-from proprotor.commands.stability_map import stability_map
-from proprotor.commands.study import study
-from proprotor.commands.sweep import sweep
+from proprotor.commands.exit_codes import EXIT_CODES
 from proprotor.errors import InputError
 
-# pint, pydantic, xarray, rich, bokeh and matplotlib are slow to import: functions import them when they need them.
+# The commands in the order in which a newcomer meets them. A command is imported when it is called, and NumPy and the
+# engine with it; functions import xarray, pydantic, rich, bokeh and matplotlib, which are slower still.
+_SUMMARIES = {
+    "cases": "List the bundled cases, or show one case.",
+    "new": "Write a commented deck that runs as it is.",
+    "describe": "Show the fields of a deck: meaning, unit, range, default.",
+    "sweep": "Show frequency and damping of each mode along airspeeds.",
+    "flutter": "Find flutter and divergence boundaries, and the margin.",
+    "boundary": "Follow the boundaries over altitude, rotor speed or another input.",
+    "map": "Show where in the plane of two inputs a case is stable.",
+    "sensitivity": "Show how each input moves the flutter speed or a damping.",
+    "attribution": "Show what drives and what damps a mode, by physical origin.",
+    "report": "Write all results on a case as one page, HTML or PDF.",
+    "explore": "Move sliders on the inputs, and see the modes follow.",
+    "study": "Analyse many designs: grids, lists and samples.",
+}
+_MODULES = {"map": "stability_map"}  # whose name is not that of the command
+_NOT_NEEDED = ("dask", "pint")  # xarray imports them where they are installed, for longer than a sweep takes
 
 
 class _UnusableInput(click.ClickException):
@@ -58,8 +65,24 @@ def errors_as_messages() -> Iterator[None]:
         raise click.ClickException(f"{where}: {error.strerror or error}") from None
 
 
+class _Imported(UserDict[str, Any]):
+    """The commands by name, each imported when it is asked for."""
+
+    def __getitem__(self, name: str) -> click.Command:
+        summary = self.data[name]
+        module = _MODULES.get(name, name)
+        command: click.Command = getattr(import_module(f"proprotor.commands.{module}"), module)
+        command.short_help = summary
+        return command
+
+
 class _Commands(click.Group):
     """Commands in the order in which a newcomer meets them; an error is one message, without a traceback."""
+
+    def __call__(self, *args: Any, **more: Any) -> Any:
+        if not args:  # the words of the shell: this process runs one command and nothing else
+            _leave_out(_NOT_NEEDED)
+        return super().__call__(*args, **more)
 
     def main(self, *args: Any, **more: Any) -> Any:
         _write_any_character()
@@ -68,9 +91,19 @@ class _Commands(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self.commands)
 
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(_SUMMARIES.items()))
+
     def invoke(self, ctx: click.Context) -> Any:
         with errors_as_messages():
             return super().invoke(ctx)
+
+
+def _leave_out(packages: tuple[str, ...]) -> None:
+    """Let packages count as not installed for the rest of the process."""
+    for package in packages:
+        sys.modules.setdefault(package, None)  # type: ignore[arg-type]
 
 
 def _let_go_of_standard_output() -> None:
@@ -88,7 +121,12 @@ def _write_any_character() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-@click.group(cls=_Commands, epilog=EXIT_CODES, context_settings={"max_content_width": 100})
+@click.group(
+    cls=_Commands,
+    commands=_Imported(_SUMMARIES),
+    epilog=EXIT_CODES,
+    context_settings={"max_content_width": 100},
+)
 @click.version_option(package_name="proprotor")
 def main() -> None:
     """Whirl-flutter stability of gimballed tiltrotors.
@@ -112,8 +150,3 @@ def main() -> None:
     To have the shell complete commands and fields, in bash (likewise in zsh and fish):
       eval "$(_PROPROTOR_COMPLETE=bash_source proprotor)"
     """
-
-
-_ANALYSES = (sweep, flutter, boundary, stability_map, sensitivity, attribution, report, explore, study)
-for _command in (cases, new, describe, *_ANALYSES):
-    main.add_command(_command)

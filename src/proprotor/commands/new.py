@@ -12,7 +12,7 @@ from proprotor.deck.file import list_cases, read_tables
 from proprotor.errors import InputError
 
 
-@arguments.command(short_help="Write a commented deck that runs as it is.")
+@arguments.command()
 @click.argument("file", metavar="FILE")
 @click.option(
     "--from",

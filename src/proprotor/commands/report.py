@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _SUFFIXES = (".html", ".pdf")
 
 
-@arguments.command(short_help="Write all results on a case as one page, HTML or PDF.")
+@arguments.command()
 @arguments.case_argument
 @arguments.range_option(
     'Airspeeds to analyse: "50:400:5kt"; by default 0.2 to 1.2 of the tip speed, in knots.'

@@ -23,7 +23,7 @@ from proprotor.typing import Dataset
 from proprotor.units import KNOT, KTAS, speeds
 
 
-@arguments.command(short_help="Show how each input moves the flutter speed or a damping.")
+@arguments.command()
 @arguments.case_argument
 @click.option(
     "--of",

@@ -38,7 +38,7 @@ def _axis_option(name: str, meaning: str) -> arguments.Option:
     return click.option(name, required=True, type=values, metavar="INPUT=RANGE", help=meaning)
 
 
-@arguments.command("map", short_help="Show where in the plane of two inputs a case is stable.")
+@arguments.command("map")
 @arguments.case_argument
 @_axis_option(
     "--x", f'Input on the axis across, by deck path, and its values: {_EXAMPLE} or "airspeed=100:400:10kt".'

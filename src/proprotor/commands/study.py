@@ -26,7 +26,7 @@ _OF_DECK = " of deck"
 _REASONS = 5  # most frequent reasons of failures that are printed
 
 
-@arguments.command(short_help="Analyse many designs: grids, lists and samples.")
+@arguments.command()
 @arguments.case_argument
 @click.option(
     "--vary",

@@ -109,13 +109,13 @@ class Configuration:
         """
         own = self.model_options(options)
         rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **own)
+        if rotor_alone.origin is not None:
+            rotor_alone = replace(rotor_alone, origin=rotor_alone.origin._replace(case=self))
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
         if isinstance(support, Airframe):
-            model = self._pair(rotor_alone, support, airspeed, options)
-        else:
-            self._check_one_rotor(own)
-            model = mount(rotor_alone, support)
-        return model if model.origin is None else replace(model, origin=model.origin._replace(case=self))
+            return self._pair(rotor_alone, support, airspeed, options)
+        self._check_one_rotor(own)
+        return mount(rotor_alone, support)
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Return options of the model, completed with the blade frequencies and the drive train of the case.

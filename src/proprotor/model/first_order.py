@@ -16,7 +16,7 @@ import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.model.linear_model import LinearModel
-from proprotor.model.massless import massless, massless_coordinates
+from proprotor.model.massless import massless_coordinates
 from proprotor.typing import Array
 
 StateBlocks = tuple[
@@ -53,10 +53,12 @@ def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
     n = len(model.dofs)
     held = held_coordinates(model)
-    acceleration = -np.linalg.solve(model.M, np.concatenate([model.K[..., held], model.C], axis=-1))
+    inverse = np.linalg.inv(model.M)
+    np.negative(inverse, out=inverse)
     matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
     matrix[..., np.arange(len(held)), len(held) + np.array(held, dtype=int)] = 1
-    matrix[..., len(held) :, :] = acceleration
+    matrix[..., len(held) :, : len(held)] = (inverse @ model.K).take(held, -1)
+    np.matmul(inverse, model.C, out=matrix[..., len(held) :, len(held) :])
     for state, free in lacking_states(model):
         matrix[free, state, :] = np.nan
         matrix[free, :, state] = np.nan
@@ -79,7 +81,7 @@ def have_modes(model: LinearModel) -> Array:
     InputError
         For a rotor alone of which no point is left.
     """
-    good, singular = np.asarray(np.isfinite(model.M).all(axis=(-2, -1))), massless(model.M)
+    good, singular = np.asarray(np.isfinite(np.real(model.M)).all(axis=(-2, -1))), model.massless
     if model.hub is None and singular.any() and not (good & ~singular).any():
         names = massless_coordinates(model.M[singular][0], model.dofs)
         rule = "give the mass matrix no inverse: mount the rotor on a support, or hold some of them with submodel"
@@ -116,8 +118,10 @@ def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]
 def lack_azimuths(model: LinearModel) -> Array:
     """Return which azimuths points (..., azimuths) lack among their states though other points of the batch do not."""
     holds = model.azimuths_held
-    works = np.asarray(np.isfinite(model.K).all(axis=(-2, -1)))[..., None]
-    return np.asarray(_anywhere(holds) & ~holds & works)
+    lacks = np.asarray(_anywhere(holds) & ~holds)
+    if lacks.any():
+        lacks &= np.asarray(np.isfinite(model.K).all(axis=(-2, -1)))[..., None]
+    return lacks
 
 
 def _anywhere(holds: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from proprotor_equations import FIXED_GUSTS
 
 from proprotor.model import stamp
 from proprotor.model.doubts import reasons_for_doubt
+from proprotor.model.massless import massless
 from proprotor.model.stamp import Origin
 from proprotor.rotor.motions import HALVES, ROTOR_SPEED, in_half
 from proprotor.rotor.trim import Trim
@@ -123,7 +125,12 @@ class LinearModel:
         places = {half: [k for k, own in enumerate(self.symmetry) if own == half] for half in HALVES}
         return [own for own in places.values() if own]
 
-    @property
+    @cached_property
+    def massless(self) -> Array:
+        """Points (...) whose mass matrix, scaled to be dimensionless, has no inverse; False at failed points."""
+        return massless(self.M)
+
+    @cached_property
     def azimuths(self) -> tuple[str, ...]:
         """Coordinates that are displacements only where a shaft holds them; what holds one holds those before it too.
 
@@ -132,7 +139,7 @@ class LinearModel:
         names = [in_half(half, ROTOR_SPEED) for half in reversed(HALVES)] if self.symmetry else [ROTOR_SPEED]
         return tuple(name for name in names if name in self.dofs)
 
-    @property
+    @cached_property
     def azimuths_held(self) -> Array:
         """Points (..., azimuths) at which a shaft makes an azimuth a displacement, in rad.
 
@@ -192,7 +199,7 @@ class LinearModel:
         LinearModel
         """
         places = [self.dofs.index(name) for name in dofs]
-        parts = {name: getattr(self, name)[..., places, :][..., places] for name in "MCK"}
+        parts = {name: getattr(self, name).take(places, -1).take(places, -2) for name in "MCK"}
         inputs = None if self.B is None else self.B[..., places, :]
         hub, left = (None if motion is None else motion[..., places] for motion in (self.hub, self.left_hub))
         whole = self.shapes is not None and places[: self.shapes.shape[-1]] == [*range(self.shapes.shape[-1])]

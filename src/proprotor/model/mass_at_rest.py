@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES, inertia, multiblade, pitch
 
@@ -12,6 +14,9 @@ from proprotor.rotor.rotor import Rotor
 from proprotor.rotor.trim import UNKNOWNS
 from proprotor.typing import Array
 
+_FOUND: WeakKeyDictionary[Rotor, Array] = (
+    WeakKeyDictionary()
+)  # an analysis asks at each of its batches of airspeeds
 MASS_AT_REST = (*HUB, "gimbal_1c", "gimbal_1s")  # coordinates of a rotor at rest with locked blades
 
 
@@ -25,8 +30,15 @@ def mass_at_rest(rotor: Rotor) -> Array:
     Returns
     -------
     array (..., 8, 8)
-        On the coordinates `MASS_AT_REST`, in kg, kg m and kg m².
+        On the coordinates `MASS_AT_REST`, in kg, kg m and kg m²; not to be written to.
     """
+    if rotor not in _FOUND:
+        _FOUND[rotor] = _mass_at_rest(rotor)
+        _FOUND[rotor].flags.writeable = False
+    return _FOUND[rotor]
+
+
+def _mass_at_rest(rotor: Rotor) -> Array:
     quantities = of_rotor(rotor) | dict.fromkeys(UNKNOWNS, 0.0)
     quantities |= evaluate(inertia.trim_integrals, quantities)._asdict()
     blade = evaluate(inertia.mass, quantities) + evaluate(pitch.mass, quantities)

@@ -7,11 +7,14 @@ motion has no eigenvalue.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from proprotor.model.linear_model import LinearModel
 from proprotor.typing import Array
+
+if TYPE_CHECKING:
+    from proprotor.model.linear_model import LinearModel
 
 _CLEARLY_MASS = 1e-6  # pivot of a mass matrix scaled to a unit diagonal, above which an inverse exists
 _NO_INERTIA = 1e13  # condition number of the scaled matrix, above which the matrix has no inverse
@@ -20,9 +23,9 @@ _TAKES_PART = 0.01  # component of a unit vector
 
 def massless(mass: Array) -> Array:
     """Return which mass matrices of a batch (..., n, n) have no inverse, (...); False at failed points."""
-    found = np.zeros(mass.shape[:-2], dtype=bool)
+    mass, found = np.real(mass), np.zeros(mass.shape[:-2], dtype=bool)
     good = np.isfinite(mass).all(axis=(-2, -1))
-    numbers = np.real(mass[good])
+    numbers = mass.reshape(-1, *mass.shape[-2:]) if good.all() else mass[good]
     if not _clearly_positive(numbers):
         found[good] = np.linalg.cond(_scaled(numbers)) > _NO_INERTIA
     return found
@@ -38,7 +41,7 @@ def massless_coordinates(mass: Array, dofs: tuple[str, ...]) -> list[str]:
 
 def with_reasons(model: LinearModel) -> LinearModel:
     """Return the model with each singular point marked as failed, with its reason; the matrices are kept."""
-    singular = massless(model.M)
+    singular = model.massless
     if not singular.any():
         return model
     reason = np.array(model.trim.reason, dtype=object)

@@ -36,12 +36,17 @@ def batch_shape(
     inputs += [getattr(operation, name) for name in _AIR]
     inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())
     inputs += [] if drive_train is None else list(vars(drive_train).values())
-    return np.broadcast_shapes(np.shape(airspeed), *(np.shape(value) for value in inputs))
+    return np.broadcast_shapes(*{np.shape(value) for value in (airspeed, *inputs) if _may_vary(value)})
+
+
+def _may_vary(value: Any) -> bool:
+    """Return whether a value may be an array, before NumPy is asked, which takes longer than the answer is worth."""
+    return not isinstance(value, float | int)
 
 
 def flat(value: Any, shape: tuple[int, ...]) -> Any:
     """Return an array spread over a batch and flattened, (points,); a plain number as it is."""
-    return np.broadcast_to(value, shape).reshape(-1) if np.ndim(value) else value
+    return np.broadcast_to(value, shape).reshape(-1) if _may_vary(value) and np.ndim(value) else value
 
 
 def model_quantities(

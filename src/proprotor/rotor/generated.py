@@ -45,6 +45,15 @@ def keywords(function: Callable[..., Any]) -> Mapping[str, bool]:
     return {p.name: p.default is not p.empty for p in parameters if p.kind is p.KEYWORD_ONLY}
 
 
+@cache
+def _names(function: Callable[..., Any]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the names of the quantities that a generated function needs, and of those that may be left out."""
+    found = keywords(function).items()
+    return tuple(name for name, optional in found if not optional), tuple(
+        name for name, optional in found if optional
+    )
+
+
 def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matrices: Any) -> Any:
     """Return the result of a generated function, whose keyword arguments are looked up among quantities by name.
 
@@ -55,10 +64,11 @@ def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matri
     KeyError
         When a quantity that the function needs is missing.
     """
-    names = (name for name, optional in keywords(function).items() if name in quantities or not optional)
+    needed, optional = _names(function)
     try:
-        given = {name: quantities[name] for name in names}
+        given = {name: quantities[name] for name in needed}
     except KeyError as missing:
         name = f"{function.__module__}.{function.__name__}"
         raise KeyError(f"{name} takes {missing}, which nothing gives; a field of Rotor does") from None
+    given |= {name: quantities[name] for name in optional if name in quantities}
     return function(*matrices, **given)

@@ -127,6 +127,7 @@ def check_support_names(field: str, names: Sequence[str]) -> None:
     check_distinct(field, tuple(names))
 
 
+@lru_cache(maxsize=16)  # of the supports of an analysis, which mounts many batches
 def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
     """Refuse coordinates of a model whose modes would have the same name.
 

@@ -44,7 +44,6 @@ def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum
     The eigenvalue of a state that a point does not have is NaN, and stands last. States are the states of the batch, or
     with `held`, places of coordinates whose displacement is a state, of another batch with the same coordinates.
     """
-    model = _real(model)
     held = held_coordinates(model) if held is None else held
     states = len(held) + len(model.dofs)
     parts = [(points, with_azimuths(_by_block(part), part, states)) for points, part in _alike(model)]
@@ -62,7 +61,7 @@ def eigenvalues(model: LinearModel) -> Array:
     held, shape = held_coordinates(model), model.M.shape[:-2]
     values = np.full((*shape, len(held) + len(model.dofs)), complex(np.nan, np.nan))
     places = blocks(model, held)
-    for points, part in _alike(_real(model)):
+    for points, part in _alike(model):
         for (_, columns), own in zip(places, part.blocks, strict=True):
             found = np.linalg.eigvals(first_order(_of_block(part, own)))
             found = np.where(_pairs_of_noise(found), 0, found)
@@ -71,8 +70,9 @@ def eigenvalues(model: LinearModel) -> Array:
 
 
 def _alike(model: LinearModel) -> Iterator[tuple[Array | EllipsisType, LinearModel]]:
-    """Yield points that have modes, in parts with the same states: places of the points, and their model."""
+    """Yield points that have modes, in parts with the same states: places of the points, and their real model."""
     good, lacks = have_modes(model), lack_azimuths(model).sum(axis=-1)
+    model = _real(model)
     if good.all() and not lacks.any():
         yield ..., model
         return
@@ -169,6 +169,8 @@ def _pairs_of_noise(values: Array) -> Array:
 
 def _real(model: LinearModel) -> LinearModel:
     """Return the model with the real parts of its matrices."""
+    if not any(map(np.iscomplexobj, (model.M, model.C, model.K))):
+        return model
     return replace(model, M=model.M.real, C=model.C.real, K=model.K.real)
 
 

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor import units
 from proprotor.case import Case
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked
 from proprotor.model.stamp import density_of
@@ -27,6 +26,7 @@ from proprotor.tables.sweep_summary import (
     unstable_ranges,
 )
 from proprotor.typing import Array, Dataset
+from proprotor.units import KTAS, airspeed_unit, speed_factor
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -65,15 +65,15 @@ class SweepTable:
 
     sweep: Dataset
     rotor_speed: float
-    unit: str = units.KTAS
+    unit: str = KTAS
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "unit", units.airspeed_unit(self.unit))
+        object.__setattr__(self, "unit", airspeed_unit(self.unit))
 
     @cached_property
     def factor(self) -> float:
         """The unit of airspeeds in m/s, true."""
-        return float(units.speed_factor(self.unit, density_of(self.sweep.attrs), field="unit"))
+        return float(speed_factor(self.unit, density_of(self.sweep.attrs), field="unit"))
 
     @cached_property
     def airspeed(self) -> Array:

@@ -1,0 +1,67 @@
+"""The names that `import proprotor as pp` offers; the package imports this module where a name is first used."""
+
+from proprotor.case import Case, list_cases, load_case
+from proprotor.deck.vary import design_inputs
+from proprotor.errors import InputError
+from proprotor.exchange.matlab import save_matlab
+from proprotor.exchange.netcdf import load_results, save_results
+from proprotor.model.linear_model import LinearModel
+from proprotor.model.mount import mount
+from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
+from proprotor.model.rotor_model import rotor_model
+from proprotor.model.several_rotors import mount_rotors
+from proprotor.model.structural_damping import neutral_damping
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.airfoil_table import AirfoilTable
+from proprotor.rotor.atmosphere import standard_air
+from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.generated import EquationSet
+from proprotor.rotor.operation import Operation
+from proprotor.rotor.rotor import Rotor
+from proprotor.stability.branches import by_branch
+from proprotor.stability.frequency_response import frequency_response
+from proprotor.study import sampling
+from proprotor.study.study import study
+from proprotor.study.uncertainty import distribution, share_below, sobol_indices
+from proprotor.support.beam_wing import Pylon, Wing, beam_wing
+from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
+
+__all__ = [
+    "Airfoil",
+    "AirfoilTable",
+    "BladeFrequencies",
+    "Case",
+    "DriveTrain",
+    "EquationSet",
+    "InputError",
+    "LinearModel",
+    "NormalModes",
+    "Operation",
+    "Pylon",
+    "Rotor",
+    "WhirlDerivatives",
+    "Wing",
+    "beam_wing",
+    "by_branch",
+    "design_inputs",
+    "distribution",
+    "frequency_response",
+    "list_cases",
+    "load_case",
+    "load_results",
+    "mount",
+    "mount_rotors",
+    "neutral_damping",
+    "rigid_propeller",
+    "rigid_support",
+    "rotor_model",
+    "sampling",
+    "save_matlab",
+    "save_results",
+    "share_below",
+    "sobol_indices",
+    "standard_air",
+    "study",
+    "two_axis_pivot",
+]
