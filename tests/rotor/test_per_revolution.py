@@ -59,7 +59,8 @@ def roots(case):
 
 def test_these_are_all_the_fields_that_take_a_frequency():
     fields = {field.path for field in deck_fields() if field.form == "frequency"}
-    assert fields == {"rotor.flap_frequency", "rotor.lag_frequency", "support.modes[NAME].frequency"}
+    of_wing = {f"support.{kind}_frequency" for kind in ("beam", "chord", "torsion")}
+    assert fields == {"rotor.flap_frequency", "rotor.lag_frequency", "support.modes[NAME].frequency"} | of_wing
 
 
 def test_a_frequency_is_per_revolution_of_its_file(deck):
@@ -70,6 +71,14 @@ def test_a_set_rotor_speed_leaves_frequencies_their_hertz(deck):
     case = pp.load_case(deck, {SPEED: "500 rpm"})
     assert float(case.operation.rotor_speed) == pytest.approx(FASTER)
     assert hertz(case) == expected()
+
+
+def test_a_set_rotor_speed_leaves_the_frequencies_of_a_wing_their_hertz():
+    deck, faster = pp.load_case("xv15"), pp.load_case("xv15", {SPEED: "500 rpm"})
+    for kind, per_rev in {"beam": 0.42, "chord": 0.70, "torsion": 1.30}.items():
+        path, factor = f"support.{kind}_frequency", f"support.{kind}_stiffness_factor"
+        assert faster.given[path].si == deck.given[path].si == pytest.approx(per_rev * OWN)
+        assert faster.sources[factor].si == deck.sources[factor].si
 
 
 def test_set_vary_variant_study_and_map_have_one_answer(deck, tmp_path):

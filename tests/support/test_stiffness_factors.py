@@ -8,6 +8,7 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 import proprotor as pp
+from proprotor.deck import build_support
 from proprotor.errors import InputError
 from proprotor.model.first_order import state_matrix
 from proprotor.support.beam_wing import beam_structure, beam_wing
@@ -238,3 +239,19 @@ def test_a_beam_mode_as_built_pitches_as_trials_of_the_geometry_say():
     assert 0.06 < beam[4] / beam[0] < 0.12
     assert 0.6 < torsion[0] / torsion[4] < 0.9
     assert pp.load_case("xv15-uncoupled").support.hub[4, 0] == 0
+
+
+def test_factors_that_stay_are_those_of_the_same_numbers_alone():
+    """A search asks for the same wings in other company; complex numbers, and neighbours in rounding, are others."""
+    case = pp.load_case("xv15")
+    path, factor = "support.nacelle_mass", "support.torsion_stiffness_factor"
+    mass = case.given[path].si
+    near, step = np.nextafter(mass, np.inf), mass + 1e-20j
+    apart = {value: case.vary({path: value}).sources[factor].si for value in (mass, near, 1.1 * mass, step)}
+    build_support._FACTORS.clear()
+    for company in ([mass, 1.1 * mass], [1.1 * mass, near, mass], [near, near]):
+        found = case.vary({path: np.array(company)}).sources[factor].si
+        np.testing.assert_array_equal(found, [apart[value] for value in company])
+    derivative = case.vary({path: np.array([step, step])}).sources[factor].si.imag
+    assert (derivative == apart[step].imag).all() and (derivative != 0).all()
+    assert not np.iscomplexobj(case.vary({path: np.array([mass])}).sources[factor].si)

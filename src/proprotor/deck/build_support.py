@@ -12,6 +12,7 @@ from proprotor.datum import Datum
 from proprotor.deck.build_aircraft import build_aircraft
 from proprotor.deck.each_design import at_each_point, different_designs, must_be_real, si_values
 from proprotor.errors import InputError
+from proprotor.files.fingerprint import fingerprint
 from proprotor.model.rotor_share import rotor_share
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, on_coordinates
 from proprotor.support.matrix_files import read_matrix_market, read_npz
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from proprotor.deck import support_sections
 
 _AT_HUB = "mass at the hub {} {}"
+_FACTORS: dict[tuple[str | bytes, ...], Array] = {}  # stiffness factors of the wings that were fitted last
+_MOST_FACTORS = 100_000
 
 
 def build_support(
@@ -163,14 +166,35 @@ def _fitted_factor(
 
 
 def _fitted(given: Mapping[str, Any], downstop: bool, kinds: Sequence[str]) -> dict[str, Array]:
-    """Return the stiffness factors (designs,) of beam wings by kind."""
+    """Return the stiffness factors (designs,) of beam wings by kind.
+
+    A search builds its designs anew at each step, and a fit takes longer than all else: factors that were found stay.
+    """
+    varied = {name: value for name, value in given.items() if isinstance(value, np.ndarray) and value.ndim}
+    same = fingerprint((downstop, kinds, {name: given[name] for name in given.keys() - varied.keys()}))
+    table = np.stack(list(varied.values()), axis=-1)
+    keys = [(same, *varied, row.tobytes()) for row in table]
+    known = {key: _FACTORS[key] for key in keys if key in _FACTORS}
+    if new := [place for place, key in enumerate(keys) if key not in known]:
+        wings = {name: value[new] for name, value in varied.items()}
+        factors = _newly_fitted(dict(given) | wings, downstop, kinds)
+        known.update(zip([keys[place] for place in new], factors, strict=True))
+        if len(_FACTORS) > _MOST_FACTORS:
+            _FACTORS.clear()
+        _FACTORS.update(known)
+    found = np.stack([known[key] for key in keys])
+    return {kind: found[..., place] for place, kind in enumerate(kinds)}
+
+
+def _newly_fitted(given: Mapping[str, Any], downstop: bool, kinds: Sequence[str]) -> Array:
+    """Return the stiffness factors (designs, kinds) of beam wings."""
     frequency = {kind: given[f"{kind}_frequency"] for kind in kinds}
     found = stiffness_factors(*_wing_and_pylon(given, downstop), _at_hub(given), frequency)
     for kind, reasons in found.reasons.items():
         for value, reason in zip(np.broadcast_to(frequency[kind], reasons.shape), reasons, strict=True):
             if reason:
                 raise InputError(f"{kind}_frequency", float(np.real(value)), reason)
-    return found.factors
+    return np.stack([found.factors[kind] for kind in kinds], axis=-1)
 
 
 def _different_wings(given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], Array]:
