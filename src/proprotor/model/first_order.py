@@ -53,12 +53,10 @@ def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
     n = len(model.dofs)
     held = held_coordinates(model)
-    inverse = np.linalg.inv(model.M)
-    np.negative(inverse, out=inverse)
+    acceleration = np.linalg.solve(model.M, np.concatenate([model.K.take(held, -1), model.C], axis=-1))
     matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
     matrix[..., np.arange(len(held)), len(held) + np.array(held, dtype=int)] = 1
-    matrix[..., len(held) :, : len(held)] = (inverse @ model.K).take(held, -1)
-    np.matmul(inverse, model.C, out=matrix[..., len(held) :, len(held) :])
+    np.negative(acceleration, out=matrix[..., len(held) :, :])
     for state, free in lacking_states(model):
         matrix[free, state, :] = np.nan
         matrix[free, :, state] = np.nan
