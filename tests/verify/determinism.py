@@ -48,7 +48,7 @@ _DERIVE = (
     "import json, sys; from derive import emit; json.dump(emit.derive_files(lambda line: None), sys.stdout)"
 )
 _MATRIX = re.compile(r"^    (\w+) : .*\(\.\.\., (segments, )?(\d+), (\d+)\)", re.MULTILINE)
-_GROUP = re.compile(r"^    (\w+) : (\d+) numbers", re.MULTILINE)  # of a fused function
+_GROUP = re.compile(r"^    (\w+) : \[SI\] (\d+) numbers", re.MULTILINE)  # of a fused function
 _WAVES = {"cos": np.cos, "sin": np.sin}
 
 Files = dict[str, str]
