@@ -105,7 +105,8 @@ def failed_where(reasons: Array | None, model: LinearModel) -> LinearModel:
     if reasons is None:
         return model
     reasons = np.broadcast_to(reasons, model.M.shape[:-2])
-    refused = reasons != ""
+    if not (refused := reasons != "").any():
+        return model
     reason = np.where(refused, reasons, model.trim.reason)
     trim = replace(model.trim, reason=reason, converged=model.trim.converged & ~refused)
     matrices: dict[str, Any] = {

@@ -101,7 +101,7 @@ def mount_pair(
         halves_couple=left is not None or _couples(airframe, additions),
     )
     _check_rates(coupled)
-    coupled = failed_where(airframe.refusal, with_reasons(_without_failed(coupled)))
+    coupled = failed_where(airframe.refusal, with_reasons(failed_where(coupled.trim.reason, coupled)))
     return refused_where(refusal, coupled, airframe)
 
 
@@ -324,17 +324,6 @@ def _trim(right: LinearModel, left: LinearModel, interconnect: ArrayLike) -> Tri
     reason = np.where((reason == "") & _one_shaft(right, left, interconnect), _ONE_SHAFT, reason)
     warning = _both_texts(trim.warning, left.trim.warning, "left rotor: ")
     return replace(trim, reason=reason, warning=warning, converged=np.asarray(reason == ""))
-
-
-def _without_failed(model: LinearModel) -> LinearModel:
-    """Return the model with NaN in the matrices of failed points."""
-    failed = np.asarray(model.trim.reason != "")
-    if not failed.any():
-        return model
-    matrices: dict[str, Any] = {
-        name: np.where(failed[..., None, None], np.nan, matrix) for name, matrix in model.matrices.items()
-    }
-    return replace(model, **matrices)
 
 
 def _first_text(own: Array, other: Array, before: str) -> Array:
