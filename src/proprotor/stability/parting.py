@@ -15,7 +15,14 @@ import numpy as np
 from proprotor.stability.cubic import band, bend, hermite, hermite_extrema, hermite_slope
 from proprotor.stability.matching import POOR
 from proprotor.stability.points import Points
-from proprotor.stability.root_pairs import PairsWithin, by_derivatives, joining_roots, keep_off, may_meet, ways
+from proprotor.stability.root_pairs import (
+    PairsWithin,
+    by_derivatives,
+    joining_roots,
+    keep_off,
+    may_meet,
+    ways,
+)
 from proprotor.stability.steps import Steps
 from proprotor.typing import Array
 

@@ -22,7 +22,9 @@ from proprotor.typing import Array
 
 _APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
 _MEETING = 0.5  # of the distance at the farther end: roots that are nearer than this at one end may meet too
-_WITHIN_REACH = 3.0  # ways of two roots: if shorter ones lead each to the end of the other, they may have passed
+_WITHIN_REACH = (
+    3.0  # ways of two roots: if shorter ones lead each to the end of the other, they may have passed
+)
 _OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord: its least error
 _INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
 MANY, _FEW = 6, 4  # points of a scan through which polynomials go
