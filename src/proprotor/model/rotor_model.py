@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,10 +13,11 @@ from proprotor_equations import rotor as whole_rotor
 from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
+from proprotor.model.kept import kept
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
-from proprotor.model.quantities import batch_shape, couplings, flat, model_quantities
+from proprotor.model.quantities import batch_shape, couplings, flat, model_quantities, shape_of
 from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
@@ -37,6 +38,9 @@ from proprotor.rotor.trim import Trim, trim_target
 from proprotor.rotor.trim_solver import Settled, solve_trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
+
+if TYPE_CHECKING:
+    from proprotor.model.configuration import Configuration
 
 _PITCH = [place for place, coordinate in enumerate(FIXED) if coordinate.angle == "pitch"]
 _KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}
@@ -64,6 +68,17 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     InputError
         For an unknown option, a rotor that the options do not allow, or too many points for the memory.
     """
+    return model_of(rotor, operation, airspeed, options)
+
+
+def model_of(
+    rotor: Rotor,
+    operation: Operation,
+    airspeed: Any,
+    options: Mapping[str, Any],
+    case: Configuration | None = None,
+) -> LinearModel:
+    """Return the rotor alone as `rotor_model` does, with the case to which the rotor belongs, if there is one."""
     choice = parse_options(options)
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed, operation.density)
@@ -71,10 +86,10 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     points = int(np.prod(shape, dtype=int))
     _check_memory(rotor, choice, points)
     quantities = model_quantities(rotor, operation, choice, speed, shape)
-    sections = BladeSections.of(rotor, shape)
-    few = sections if rotor.has_effective_sections else BladeSections.of(rotor, shape, few=True)
+    sections, few = _sections(rotor, shape)
     target = trim_target(rotor, operation)
-    target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
+    if shape:
+        target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
     settled = solve_trim(sections, few, quantities, choice, target, points)
     reactionless = _reactionless(rotor, choice)
     coordinates = (*FIXED, *(reactionless_coordinates(reactionless) if reactionless else ()))
@@ -85,16 +100,32 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     model = LinearModel(
         **matrices,
         dofs=tuple(coordinate.name for coordinate in coordinates),
-        trim=Trim(**{e.name: getattr(settled.trim, e.name).reshape(shape) for e in fields(Trim)}),
+        trim=Trim(**{name: value.reshape(shape) for name, value in vars(settled.trim).items()}),
         airspeed=np.broadcast_to(speed, shape),
         mass_at_rest=mass_at_rest(rotor),
-        origin=Origin(choice),
+        origin=Origin(choice, case),
     )
     if choice.drive_train is not None and choice.drive_train.mast_stiffness is not None:
         model = with_mast(model, choice.drive_train)
         coordinates = (*coordinates, Coordinate(MAST_TWIST, MAST_TWIST, 0, "", "rad"))
     free = _free_coordinates(choice, coordinates)
     return model if free == model.dofs else model.submodel(free)
+
+
+def _sections(rotor: Rotor, shape: tuple[int, ...]) -> tuple[BladeSections, BladeSections]:
+    """Return the sections at all stations of a blade and at a few; one object where all stations are few."""
+    return _sections_at(rotor, shape) if shape_of(rotor) else _own_sections(rotor)
+
+
+@kept
+def _own_sections(rotor: Rotor) -> tuple[BladeSections, BladeSections]:
+    """Return the sections of a single design, which all points of a batch share."""
+    return _sections_at(rotor, ())
+
+
+def _sections_at(rotor: Rotor, shape: tuple[int, ...]) -> tuple[BladeSections, BladeSections]:
+    sections = BladeSections.of(rotor, shape)
+    return sections, sections if rotor.has_effective_sections else BladeSections.of(rotor, shape, few=True)
 
 
 def _check_pitch(rotor: Rotor, options: Options) -> None:
@@ -108,9 +139,9 @@ def _check_pitch(rotor: Rotor, options: Options) -> None:
 
 def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
     """Refuse a batch, or blades whose motions are all kept, that do not fit into memory."""
-    own = len(FIXED_COORDINATES)
-    count = own + 3 * (float(np.max(rotor.n_blades)) - 3) * options.reactionless
-    if count > own:
+    count = float(len(FIXED_COORDINATES))
+    if options.reactionless:
+        count += 3 * (float(np.max(rotor.n_blades)) - 3)
         check_memory("n_blades", rotor.n_blades, _BYTES_PER_ENTRY * count**2, "the matrices")
     size = points * (_BYTES_PER_POINT + _BYTES_PER_ENTRY * count**2)
     check_memory("airspeed", f"{points} points", size, "their matrices", "take fewer points at once")
