@@ -126,6 +126,11 @@ class LinearModel:
         return [own for own in places.values() if own]
 
     @cached_property
+    def finite(self) -> Array:
+        """Points (...) with a mass matrix; failed points have NaN in its place."""
+        return np.asarray(np.isfinite(self.M).all(axis=(-2, -1)))
+
+    @cached_property
     def massless(self) -> Array:
         """Points (...) whose mass matrix, scaled to be dimensionless, has no inverse; False at failed points."""
         return massless(self.M)
@@ -146,7 +151,7 @@ class LinearModel:
         Without a shaft only the rate of an azimuth counts.
         """
         places = [self.dofs.index(name) for name in self.azimuths]
-        return np.asarray(np.nan_to_num(np.real(self.K[..., places, places])) > 0)
+        return np.asarray(np.real(self.K[..., places, places]) > 0)
 
     @property
     def shaft_holds_azimuth(self) -> Array:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from proprotor.model.few_at_once import few_at_once
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
@@ -24,10 +25,12 @@ _TAKES_PART = 0.01  # component of a unit vector
 def massless(mass: Array) -> Array:
     """Return which mass matrices of a batch (..., n, n) have no inverse, (...); False at failed points."""
     mass, found = np.real(mass), np.zeros(mass.shape[:-2], dtype=bool)
-    good = np.isfinite(mass).all(axis=(-2, -1))
-    numbers = mass.reshape(-1, *mass.shape[-2:]) if good.all() else mass[good]
-    if not _clearly_positive(numbers):
-        found[good] = np.linalg.cond(_scaled(numbers)) > _NO_INERTIA
+    for rows in few_at_once(found.shape):
+        some, finite = mass[rows], np.isfinite(mass[rows]).all(axis=(-2, -1))
+        if not finite.all():
+            some = some[finite]
+        if not _clearly_positive(some):
+            found[rows][finite] = (np.linalg.cond(_scaled(some)) > _NO_INERTIA).ravel()
     return found
 
 
