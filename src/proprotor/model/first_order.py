@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.few_at_once import at_rows, few_at_once
+from proprotor.model.batches import at_rows, few_at_once
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import massless_coordinates
 from proprotor.typing import Array

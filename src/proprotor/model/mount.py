@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.few_at_once import at_rows, few_at_once
+from proprotor.model.batches import at_rows, few_at_once, joint_shape
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.model.rotor_share import refuse, without_rotors
@@ -57,7 +57,7 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     mass, refusal = without_rotors(support, [(support.hub, rotor_alone.mass_at_rest)])
     additions = {"M": mass, "C": support.damping, "K": support.stiffness}
     parts = (rotor_alone.M, support.hub, *additions.values())
-    shape = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in parts))
+    shape = joint_shape(*(matrix.shape[:-2] for matrix in parts))
     rotor_alone = broadcast(rotor_alone, shape)
     matrices: dict[str, Any] = {
         name: _on_support(getattr(rotor_alone, name), support.hub, addition)

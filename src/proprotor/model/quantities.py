@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from proprotor_equations import pitch
 
+from proprotor.model.batches import joint_shape
 from proprotor.model.kept import kept
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.drive_train import DriveTrain
@@ -32,8 +33,7 @@ def batch_shape(
     inputs = [airspeed, *(getattr(operation, name) for name in _AIR)]
     inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())
     inputs += [] if drive_train is None else list(vars(drive_train).values())
-    shapes = {shape_of(rotor), *(np.shape(value) for value in inputs if _may_vary(value))}
-    return () if shapes == {()} else np.broadcast_shapes(*shapes)
+    return joint_shape(shape_of(rotor), *(np.shape(value) for value in inputs if _may_vary(value)))
 
 
 @kept
@@ -44,7 +44,7 @@ def shape_of(rotor: Rotor) -> tuple[int, ...]:
     inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)] + leading
     if isinstance(rotor.airfoil, Airfoil):
         inputs += [getattr(rotor.airfoil, entry.name) for entry in fields(rotor.airfoil)]
-    return np.broadcast_shapes(*{np.shape(value) for value in inputs if _may_vary(value)})
+    return joint_shape((), *(np.shape(value) for value in inputs if _may_vary(value)))
 
 
 def _may_vary(value: Any) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -83,7 +84,7 @@ def model_of(
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed, operation.density)
     shape = batch_shape(rotor, operation, speed, choice.drive_train)
-    points = int(np.prod(shape, dtype=int))
+    points = prod(shape)
     _check_memory(rotor, choice, points)
     quantities = model_quantities(rotor, operation, choice, speed, shape)
     sections, few = _sections(rotor, shape)
@@ -101,7 +102,7 @@ def model_of(
         **matrices,
         dofs=tuple(coordinate.name for coordinate in coordinates),
         trim=Trim(**{name: value.reshape(shape) for name, value in vars(settled.trim).items()}),
-        airspeed=np.broadcast_to(speed, shape),
+        airspeed=speed if speed.shape == shape else np.broadcast_to(speed, shape),
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
     )
@@ -130,11 +131,21 @@ def _sections_at(rotor: Rotor, shape: tuple[int, ...]) -> tuple[BladeSections, B
 
 def _check_pitch(rotor: Rotor, options: Options) -> None:
     """Refuse a rotor whose pitch inertia or control stiffness is zero where the options need it."""
-    if options.pitch_is_free and np.any(np.asarray(rotor.pitch_inertia) <= 0):
-        raise InputError("pitch_inertia", rotor.pitch_inertia, 'must be above zero with pitch="dynamic"')
-    if options.pitch == "coupling" and np.any(np.asarray(rotor.control_stiffness) <= 0):
-        rule = 'must be above zero with pitch="coupling"'
-        raise InputError("control_stiffness", rotor.control_stiffness, rule)
+    needed = {"pitch_inertia": options.pitch_is_free, "control_stiffness": options.pitch == "coupling"}
+    for name in _absent(rotor):
+        if needed[name]:
+            rule = f'must be above zero with pitch="{options.pitch}"'
+            raise InputError(name, getattr(rotor, name), rule)
+
+
+@kept
+def _absent(rotor: Rotor) -> list[str]:
+    """Return which of pitch inertia and control stiffness a rotor, or one of many designs, lacks."""
+    return [
+        name
+        for name in ("pitch_inertia", "control_stiffness")
+        if np.any(np.asarray(getattr(rotor, name)) <= 0)
+    ]
 
 
 def _check_memory(rotor: Rotor, options: Options, points: int) -> None:

@@ -1,4 +1,4 @@
-"""Take the points of a batch a few at a time, so that what is computed on the way stays in the cache of a core."""
+"""Shapes of batches, and their points a few at a time: what is computed on the way stays in the cache of a core."""
 
 from __future__ import annotations
 
@@ -6,10 +6,18 @@ from collections.abc import Iterator
 from math import prod
 from types import EllipsisType
 
+import numpy as np
+
 from proprotor.typing import Array
 
 Rows = slice | EllipsisType
 _FEW = 256  # points: what a state matrix takes on the way is then half of a megabyte
+
+
+def joint_shape(*shapes: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the shape of arrays that are broadcast together; what is the same for all arrays needs no NumPy."""
+    first, *others = {*shapes}
+    return np.broadcast_shapes(first, *others) if others else first
 
 
 def few_at_once(shape: tuple[int, ...]) -> Iterator[Rows]:
