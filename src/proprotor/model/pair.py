@@ -151,6 +151,7 @@ def rotors_on(
         rigid_body=airframe.rigid_body,
         symmetry=(*airframe.symmetry, *(half for half in halves for _ in own)),
         inputs=tuple(in_half(half, name) for half in halves for name in INPUTS),
+        apart=_apart(right.apart, halves, together=left is not None),
     )
 
 
@@ -163,6 +164,16 @@ def _names(airframe: Airframe, rotor: LinearModel) -> tuple[str, ...]:
     """Return the names of the coordinates of an airframe with two rotors."""
     own = rotor.dofs[len(HUB) :]
     return (*airframe.names, *(in_half(half, name) for half in _halves_in(airframe) for name in own))
+
+
+def _apart(
+    groups: tuple[tuple[str, ...], ...], halves: list[str], together: bool
+) -> tuple[tuple[str, ...], ...]:
+    """Return groups of coordinates of a rotor in the halves of the motion, which couple where the rotors differ."""
+    parts = [halves] if together else [[half] for half in halves]
+    return tuple(
+        tuple(in_half(half, name) for half in part for name in group) for part in parts for group in groups
+    )
 
 
 def halves_of(model: LinearModel) -> list[_Half]:

@@ -23,7 +23,7 @@ from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.motions import MAST_TWIST, ROTOR_SPEED, reactionless_coordinates, reactionless_harmonics
+from proprotor.rotor.motions import MAST_TWIST, ROTOR_SPEED, reactionless_groups, reactionless_harmonics
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -93,7 +93,8 @@ def model_of(
         target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
     settled = solve_trim(sections, few, quantities, choice, target, points)
     reactionless = _reactionless(rotor, choice)
-    coordinates = (*FIXED, *(reactionless_coordinates(reactionless) if reactionless else ()))
+    apart = reactionless_groups(reactionless) if reactionless else []
+    coordinates = (*FIXED, *(coordinate for group in apart for coordinate in group))
     found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
     matrices: dict[str, Any] = {
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in found.items()
@@ -105,6 +106,7 @@ def model_of(
         airspeed=speed if speed.shape == shape else np.broadcast_to(speed, shape),
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
+        apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
     )
     if choice.drive_train is not None and choice.drive_train.mast_stiffness is not None:
         model = with_mast(model, choice.drive_train)
@@ -186,7 +188,7 @@ def _matrices(
     found: dict[str, Array] = {}
     if len(rows):
         quantities = settled.quantities | couplings(options, settled.quantities)
-        segments = _segments(sections.take(rows), quantities, settled.segments, options)
+        segments = _segments(sections, rows, quantities, settled.segments, options)
         given = segments | quantities | {"equations": options.equation_set}
         served = fused.serves(options.equation_set)
         if reactionless is not None or not served:
@@ -227,7 +229,7 @@ def _at_all_points(matrix: Array | None, points: int, rows: Array, shape: tuple[
 def _reactionless_blocks(
     given: Mapping[str, Any], blade: tuple[Array, ...], n_blades: int
 ) -> Iterator[dict[str, Array]]:
-    """Yield M, C, K of each group of `reactionless_coordinates`, in their order; the groups do not couple."""
+    """Yield M, C, K of each of the `reactionless_groups`."""
     groups = [("reactionless", {"harmonic": n}) for n in reactionless_harmonics(n_blades)]
     groups += [("differential", {})] * (n_blades % 2 == 0)
     for prefix, more in groups:
@@ -256,7 +258,11 @@ def _with_reactionless(
 
 
 def _segments(
-    sections: BladeSections, quantities: Mapping[str, Any], at_trim: Mapping[str, Any], options: Options
+    sections: BladeSections,
+    rows: Array,
+    quantities: Mapping[str, Any],
+    at_trim: Mapping[str, Any],
+    options: Options,
 ) -> dict[str, Any]:
     """Return on which side of the hinges each segment is, and the radial moments of each segment's loads."""
     if options.airloads == "none":
@@ -264,6 +270,7 @@ def _segments(
     equations = options.equation_set.airloads
     if equations is airloads and options.airloads == "full":
         return dict(at_trim)
+    sections = sections.take(rows)
     segments = segment_quantities(sections, quantities, equations)
     return segments | airload_moments(sections, segments, options)
 
