@@ -10,7 +10,7 @@ import numpy as np
 
 from proprotor.typing import Array
 
-Rows = slice | EllipsisType
+_Rows = slice | EllipsisType
 _FEW = 256  # points: what a state matrix takes on the way is then half of a megabyte
 
 
@@ -20,7 +20,7 @@ def joint_shape(*shapes: tuple[int, ...]) -> tuple[int, ...]:
     return np.broadcast_shapes(first, *others) if others else first
 
 
-def few_at_once(shape: tuple[int, ...]) -> Iterator[Rows]:
+def few_at_once(shape: tuple[int, ...]) -> Iterator[_Rows]:
     """Yield slices of the first axis of a batch, a few points each; all of a small batch as ..., also of one point."""
     count = prod(shape)
     if count <= _FEW:
@@ -31,7 +31,7 @@ def few_at_once(shape: tuple[int, ...]) -> Iterator[Rows]:
         yield slice(start, start + step)
 
 
-def at_rows(matrices: Array, rows: Rows, shape: tuple[int, ...]) -> Array:
+def at_rows(matrices: Array, rows: _Rows, shape: tuple[int, ...]) -> Array:
     """Return matrices (..., n, m) at some rows of a batch; what all points have in common is returned as it is."""
     varies = matrices.ndim == len(shape) + 2 and matrices.shape[0] == shape[0] if shape else False
     return matrices[rows] if varies else matrices

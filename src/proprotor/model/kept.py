@@ -10,33 +10,39 @@ from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 from weakref import ref
 
+import numpy as np
+
 _Given = ParamSpec("_Given")
 _Result = TypeVar("_Result")
+_BY_VALUE = (str, tuple)
 
 
 def kept(function: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
     """Return a function that is evaluated once for the same objects; its results are not to be written to.
 
-    Objects are the same by identity. With the first of its objects a result is forgotten, so that nothing is kept that
-    could be asked for no more.
+    Texts and tuples are the same by value, all others by identity. With the first of its objects a result is forgotten,
+    so that nothing is kept that could be asked for no more. Nothing is kept for an array that can be written to, or for
+    an object given by name.
 
     Parameters
     ----------
     function : callable
-        Takes objects that never change and that weak references can point to, such as records and arrays. The result
-        must not hold one of these objects, which would then live for ever. Objects given by name are not looked up.
+        Takes records that never change, arrays, texts and tuples of texts. The result must not hold one of these
+        records or arrays, which would then live for ever.
     """
-    found: dict[tuple[int, ...], tuple[tuple[ref[Any], ...], _Result]] = {}
+    found: dict[tuple[Any, ...], tuple[list[ref[Any]], _Result]] = {}
 
     @wraps(function)
-    def once(*objects: _Given.args, **named: _Given.kwargs) -> _Result:
+    def once(*given: _Given.args, **named: _Given.kwargs) -> _Result:
         if named:
-            return function(*objects, **named)
-        key = tuple(map(id, objects))
+            return function(*given, **named)
+        key = tuple(one if isinstance(one, _BY_VALUE) else id(one) for one in given)
         if (known := found.get(key)) is not None:
             return known[1]
-        result = function(*objects, **named)
-        found[key] = tuple(ref(one, lambda _: found.pop(key, None)) for one in objects), result
+        result = function(*given, **named)
+        objects = [one for one in given if not isinstance(one, _BY_VALUE)]
+        if not any(isinstance(one, np.ndarray) and one.flags.writeable for one in objects):
+            found[key] = [ref(one, lambda _: found.pop(key, None)) for one in objects], result
         return result
 
     return once

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
+from proprotor.model.kept import kept
 from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.model.mount import at_points, broadcast, check_hub, failed_where, refused_where, with_warning
@@ -318,11 +319,20 @@ def shares(
 
     The left rotor is alike by default.
     """
-    if left is None:
-        hubs = [(airframe.hub + sign * airframe.left_hub) / 2 for sign in (1, -1)]
-        return [(hub, right) for hub in hubs]
-    half = np.sqrt(0.5)
-    return [(half * airframe.hub, right), (half * airframe.left_hub, left)]
+    hubs = _hubs(airframe.hub, airframe.left_hub, "alike" if left is None else "different")
+    return list(zip(hubs, (right, right if left is None else left), strict=True))
+
+
+@kept
+def _hubs(hub: Array, left_hub: Array, sides: str) -> tuple[Array, Array]:
+    """Return the hub motions of half an airframe: of both halves of the motion, or of both of its different sides."""
+    if sides == "alike":
+        hubs = (hub + left_hub) / 2, (hub - left_hub) / 2
+    else:
+        hubs = np.sqrt(0.5) * hub, np.sqrt(0.5) * left_hub
+    for motion in hubs:
+        motion.flags.writeable = False
+    return hubs
 
 
 # Trim -----------------------------------------------------------------------------------------------------------------

@@ -74,7 +74,7 @@ def model_quantities(
 
 @kept
 def _numbers_of(rotor: Rotor) -> dict[str, Any]:
-    """Return the rotor's own numbers, with springs of which none is so soft that a series of springs divides by zero."""
+    """Return the rotor's own numbers; no spring is so soft that two springs in series would divide by zero."""
     given = of_rotor(rotor)
     softest = _SOFTEST_SPRING * np.maximum(np.maximum(rotor.flap_stiffness, rotor.lag_stiffness), 1.0)
     given |= {name: np.maximum(given[name], softest) for name in ("flap_stiffness", "lag_stiffness")}
