@@ -7,11 +7,11 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from proprotor_equations import flap_lag_springs, inertia
+from proprotor_equations import flap_lag_springs
 from proprotor_equations import trim as equations
 
 from proprotor.rotor.blade_frequencies import BladeFrequencies
-from proprotor.rotor.fused import effective_stiffness
+from proprotor.rotor.fused import effective_stiffness, trim_integrals
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options
@@ -128,7 +128,7 @@ def with_trim(quantities: Mapping[str, Any], options: Options, state: Mapping[st
     found = dict(quantities) | dict(state)
     found["pitch"] = state["collective"] + state["elastic_pitch"]
     found["structural_pitch"] = found["pitch"] + quantities["structural_pitch_offset"]
-    found |= evaluate(inertia.trim_integrals, found)._asdict()
+    found |= trim_integrals(found)
     return found | _springs(options, found)
 
 

@@ -86,7 +86,7 @@ def solve_trim(
         Number of points.
     """
     free = _free_unknowns(options, target.finds_collective)
-    balance = Balance(sections, quantities, options, target, free)
+    balance = Balance(sections, quantities, options, target, free, points)
     numbers = (*quantities.values(), target.collective, target.load)
     with np.errstate(all="ignore"):
         if sections.is_complex or any(map(np.iscomplexobj, numbers)):

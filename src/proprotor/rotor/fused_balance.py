@@ -1,0 +1,238 @@
+"""Balance of one blade at many points by the fused functions: loads of the sections, their work, and the slopes.
+
+The functions hold a straight lift line with the Prandtl-Glauert factor. Stations are the first axis of all arrays and
+points the last, so that the points of a block lie side by side in the cache.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from proprotor_equations.fused import trim as plans
+
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.fused import Layout, pool_of, values_of
+from proprotor.rotor.generated import evaluate
+from proprotor.rotor.quadrature import POWERS
+from proprotor.rotor.section_loads import LOAD_MOMENTS, BladeSections, mark_doubts
+from proprotor.typing import Array
+
+Quantities = Mapping[str, Any]
+
+_LOADS = plans.SECTION_LOADS[:-2]  # the last two results say if the loads are in doubt
+_MOMENTS = tuple(f"{load}_{power}" for load in _LOADS for power in range(POWERS))
+# A product of matrices has the same bits in each column if the number of columns is a multiple of this: no kernel of
+# BLAS then has columns left over, which it would add up in another order.
+_COLUMNS = 48
+_PITCH_TWICE = [0, 1, 2, 2]  # the collective moves the blade as the elastic pitch does
+
+
+class Balanced(NamedTuple):
+    """Balance of a blade at n points.
+
+    residual, slopes : array (n, 5), (n, 5, 4)
+        Without airloads; columns as the unknowns of the trim.
+    work, work_slopes : array (n, 5), (n, 5, 4)
+        Virtual work of the airloads, and minus its change with the unknowns.
+    segments : dict
+        Sides of the hinges, and radial moments of the section loads (n, segments) by name and power of r.
+    """
+
+    residual: Array
+    slopes: Array
+    work: Array
+    work_slopes: Array
+    segments: dict[str, Any]
+
+
+def serves_sections(sections: BladeSections) -> bool:
+    """Return whether the fused functions hold the airfoil of these sections."""
+    return type(sections.airfoil) is Airfoil
+
+
+def balanced(
+    sections: BladeSections,
+    quantities: Quantities,
+    compressibility: bool,
+    doubts: dict[str, Array] | None = None,
+) -> Balanced:
+    """Return the balance of a blade at trim states.
+
+    Parameters
+    ----------
+    sections : BladeSections
+    quantities : mapping
+        Numbers or arrays (n,) of the blade at trim by name.
+    compressibility : bool
+    doubts : dict, optional
+        Filled with the reasons to doubt the airfoil's coefficients outboard, masks (n,) by reason.
+    """
+    points = len(quantities["coning"])
+    sides = {name: side[:, None] for name, side in sections.sides.items()}
+    line = dict(zip(plans.LINE, evaluate(plans.line, {**quantities, **sides}, np.cos, np.sin), strict=True))
+    air = _air(sections, line, quantities, compressibility)
+    moments = _load_moments(sections, air, quantities["radius"], points, doubts)
+    named = dict.fromkeys(LOAD_MOMENTS, 0.0)
+    named |= zip(_MOMENTS, moments.reshape(-1, *moments.shape[2:]), strict=True)
+    shape = moments.shape[2:]
+    work = _matrices("work", evaluate(plans.work, {**quantities, **line, **sides, **named}), shape)
+    structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
+    segments = sections.sides | {name: part.T if np.ndim(part) else part for name, part in named.items()}
+    return Balanced(
+        structure["residual"][..., 0],
+        structure["slopes"],
+        work["work"][..., 0],
+        work["work_slopes"][..., _PITCH_TWICE],
+        segments,
+    )
+
+
+@cache
+def _layouts() -> dict[str, Layout]:
+    return {"work": Layout.of(plans.WORK), "balance": Layout.of(plans.BALANCE)}
+
+
+def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> dict[str, Array]:
+    """Return the matrices (n, rows, columns) of a plan from results of a shape (n,), or (segments, n) to be summed."""
+    layout = _layouts()[plan]
+    kind = np.result_type(float, *(np.asarray(result).dtype for result in results))
+    pool = np.empty((len(results), *shape), dtype=kind)
+    for place, result in enumerate(results):
+        pool[place] = result
+    total = pool if len(shape) == 1 else np.add.reduce(pool, axis=1)
+    whole = pool_of(values_of(total, layout), shape[-1:], kind)
+    return {name: np.take(whole, places, axis=1) for name, places in layout.places.items()}
+
+
+# Loads along the blade
+
+
+def _air(
+    sections: BladeSections, line: Quantities, quantities: Quantities, compressibility: bool
+) -> dict[str, Any]:
+    """Return what the sections meet, by name: of each segment, of each point, or of all points alike."""
+    sound = quantities["speed_of_sound"] if compressibility else np.inf
+    airfoil = vars(cast(Airfoil, sections.airfoil))
+    names = ("ut_0", "ut_1", "up_0", "up_1", "ur_0", "spin")
+    return {
+        **{name: line[name] for name in names},
+        **{name: quantities[name] for name in ("density", "section_damping", "pitch")},
+        "speed_of_sound": sound,
+        "lift_slope": airfoil["lift_slope"],
+        "zero_lift_angle": airfoil["zero_lift_angle"],
+        "drag_coefficient": airfoil["drag"],
+        "moment_coefficient": airfoil["moment"],
+    }
+
+
+def _load_moments(
+    sections: BladeSections,
+    air: Quantities,
+    radius: Any,
+    points: int,
+    doubts: dict[str, Array] | None,
+) -> Array:
+    """Return the radial moments (loads, powers, segments, n) of the section loads, a block of points at a time."""
+    kind = np.result_type(float, *(np.asarray(value).dtype for value in air.values()))
+    shape = len(_LOADS), POWERS, len(sections.quadrature.beyond_lag_hinge), points
+    moments = np.empty(shape, dtype=kind)
+    for rows, here in sections.blocks(points):
+        count = len(range(points)[rows]) if isinstance(rows, slice) else len(rows)
+        shared = here.quadrature.counts.ndim == 1
+        width = -(-count // _COLUMNS) * _COLUMNS if shared else count
+        met = {name: _columns(value, rows, width) for name, value in air.items()}
+        loads = _loads_at_stations(here, met, count, width, kind)
+        if doubts is not None:
+            of_stations = loads[-2, :, :count].T, loads[-1, :, :count].T
+            own = radius[rows] if np.ndim(radius) and len(radius) > 1 else radius
+            mark_doubts(doubts, here, own, of_stations, rows, points)
+        of_loads = loads[: len(_LOADS)]
+        found = _by_product(here, of_loads) if shared else _point_by_point(here, of_loads)
+        moments[..., rows] = found[..., :count]
+    return moments
+
+
+def _columns(value: Any, rows: Array | slice, width: int) -> Any:
+    """Return a quantity (..., n) at some points, with copies of the first of them up to a width."""
+    if np.ndim(value) == 0 or value.shape[-1] == 1:
+        return value
+    some = value[..., rows]
+    return _widened(some, width)
+
+
+def _widened(some: Array, width: int) -> Array:
+    """Return an array (..., count) with copies of its first column up to a width."""
+    count = some.shape[-1]
+    if count == width:
+        return some
+    wide = np.empty((*some.shape[:-1], width), dtype=some.dtype)
+    wide[..., :count], wide[..., count:] = some, some[..., :1]
+    return wide
+
+
+def _loads_at_stations(
+    sections: BladeSections, air: dict[str, Any], count: int, width: int, kind: np.dtype[Any]
+) -> Array:
+    """Return the results (results, stations, width) of the plan `section_loads`."""
+    r = _stations_first(sections.quadrature.stations, width)
+    given = dict(air)
+    shape = len(r), width
+    slices = sections.quadrature.slices
+    for name, motion in (("tangential_velocity", "ut"), ("axial_velocity", "up")):
+        given[name] = _along(air[f"{motion}_0"], slices, shape, kind, air[f"{motion}_1"], r)
+    for name, motion in (("radial_velocity", "ur_0"), ("section_spin", "spin")):
+        given[name] = _along(air[motion], slices, shape, kind)
+    along = sections.along.each(lambda part: _stations_first(part, width))
+    given["section_pitch"] = air["pitch"] + along.twist
+    given |= {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
+    loads = np.empty((len(plans.SECTION_LOADS), *shape), dtype=kind)
+    evaluate(plans.section_loads, given, np.sqrt, np.arctan, loads)
+    return loads
+
+
+def _stations_first(value: Array, width: int) -> Array:
+    """Return a quantity (stations,) or (n, stations) as an array (stations, 1) or (stations, width)."""
+    return value[:, None] if value.ndim == 1 else _widened(np.ascontiguousarray(value.T), width)
+
+
+def _along(
+    at_axis: Array,
+    slices: list[slice],
+    shape: tuple[int, int],
+    kind: np.dtype[Any],
+    per_radius: Array | None = None,
+    r: Array | None = None,
+) -> Array:
+    """Return a quantity (stations, width) that is linear in r along each segment, or constant."""
+    found = np.empty(shape, dtype=kind)
+    for segment, own in enumerate(slices):
+        if per_radius is None or r is None:
+            found[own] = at_axis[segment]
+        else:
+            np.multiply(per_radius[segment], r[own], out=found[own])
+            found[own] += at_axis[segment]
+    return found
+
+
+def _by_product(sections: BladeSections, loads: Array) -> Array:
+    """Return the moments (loads, powers, segments, width) by a product with the weights that all points share."""
+    weights, slices = sections.quadrature.weights, sections.quadrature.slices
+    whole = np.zeros((POWERS, len(slices), len(weights)), dtype=weights.dtype)
+    for segment, own in enumerate(slices):
+        whole[:, segment, own] = weights[own].T
+    found = whole.reshape(-1, len(weights)) @ loads
+    return np.asarray(found.reshape(len(loads), POWERS, len(slices), -1))
+
+
+def _point_by_point(sections: BladeSections, loads: Array) -> Array:
+    """Return the moments (loads, powers, segments, n) by the weights of each point."""
+    quadrature = sections.quadrature
+    found = np.empty((len(loads), POWERS, len(quadrature.slices), loads.shape[-1]), dtype=loads.dtype)
+    for power in range(POWERS):
+        weighted = loads * np.ascontiguousarray(quadrature.weights[..., power].T)
+        for segment, own in enumerate(quadrature.slices):
+            found[:, power, segment] = np.add.reduce(weighted[:, own], axis=1)
+    return found
