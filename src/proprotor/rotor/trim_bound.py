@@ -52,7 +52,7 @@ def contraction(
     between : Slopes, optional
         Slopes half-way, for section models whose slopes may change between the ends in other ways.
     enough : float
-        Radius above which slopes by angles are tried as well as slopes by moments.
+        Radius that needs no sharper bound: above it, slopes by moments are tried as well as slopes by angles.
     """
 
     def radius(rows: Array, *slopes: Slopes) -> Array:
@@ -61,10 +61,10 @@ def contraction(
         middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
         again = np.tile(np.arange(n), windows)  # all windows at once
         moved = _moved(half[again], middles.ravel(), *(part.of(again) for part in slopes))
-        return np.asarray(_radius(moved).reshape(windows, n).max(axis=0))
+        return np.asarray(_radius(moved, enough).reshape(windows, n).max(axis=0))
 
     slopes = (before, after) if between is None else (before, after, between)
-    return _by_moments_or_angles(sprung, radius, *slopes, enough=enough)
+    return _by_angles_or_moments(sprung, radius, *slopes, enough=enough)
 
 
 def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
@@ -72,9 +72,9 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
 
     def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
         """Return the radius of the relative difference of the slopes."""
-        return _radius(np.abs(solve(expected.full, found.full - expected.full)))
+        return _radius(np.abs(solve(expected.full, found.full - expected.full)), CONTRACTION)
 
-    return _by_moments_or_angles(sprung, radius, found, expected) <= CONTRACTION
+    return _by_angles_or_moments(sprung, radius, found, expected) <= CONTRACTION
 
 
 def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
@@ -97,15 +97,16 @@ def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state:
     return found
 
 
-def _by_moments_or_angles(
+def _by_angles_or_moments(
     sprung: Array, radius: Callable[..., Array], *slopes: Slopes, enough: float = CONTRACTION
 ) -> Array:
-    """Return the spectral radius (n,) with slopes by moments or, where smaller and needed, with slopes by angles."""
+    """Return the spectral radius (n,) with slopes by angles or, where smaller and needed, with slopes by moments."""
     rows = np.arange(len(slopes[0].full))
-    found = radius(rows, *(part.by_moments(sprung) for part in slopes))
+    found = radius(rows, *slopes)
     rows = np.flatnonzero(~(found <= enough))
     if len(rows):
-        found[rows] = np.fmin(found[rows], radius(rows, *(part.of(rows) for part in slopes)))
+        by_moments = (part.of(rows).by_moments(sprung) for part in slopes)
+        found[rows] = np.fmin(found[rows], radius(rows, *by_moments))
     return found
 
 
@@ -120,12 +121,16 @@ def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: 
     return np.asarray(in_share + _REACH * np.maximum.reduce(in_place))
 
 
-def _radius(matrix: Array) -> Array:
+def _radius(matrix: Array, enough: float) -> Array:
     """Return a bound (n,) of the spectral radius of matrices (n, k, k) without negative entries.
 
-    The bound is that of Collatz and Wielandt, after some steps of power iteration.
+    The bound is that of Collatz and Wielandt, which steps of power iteration make sharper until all bounds are enough.
     """
     weight = np.ones((*matrix.shape[:2], 1))
-    for _ in range(_POWER_STEPS):
-        weight = matrix @ weight + _FLOOR * weight
-    return np.asarray((matrix @ weight / weight)[..., 0].max(axis=1, initial=0.0))
+    for step in range(_POWER_STEPS + 1):
+        moved = matrix @ weight
+        bound = (moved / weight)[..., 0].max(axis=1, initial=0.0)
+        if step == _POWER_STEPS or (bound <= enough).all():
+            break
+        weight = moved + _FLOOR * weight
+    return np.asarray(bound)
