@@ -75,7 +75,7 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     few = sections if rotor.has_effective_sections else BladeSections.of(rotor, shape, few=True)
     target = trim_target(rotor, operation)
     target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
-    settled = solve_trim(sections, few, quantities, choice, target, points)
+    settled = solve_trim(sections, few, quantities, choice, target, points, one=shape == ())
     reactionless = _reactionless(rotor, choice)
     coordinates = (*FIXED, *(reactionless_coordinates(reactionless) if reactionless else ()))
     found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())

@@ -218,7 +218,7 @@ def pool_of(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) 
 
 def _one_point(quantities: Quantities, segments: Quantities | None) -> Matrices:
     """Return the matrices of one point by plain numbers, with an axis of one point."""
-    blade = {name: _number(value) for name, value in quantities.items()}
+    blade = {name: plain_number(value) for name, value in quantities.items()}
     found = _matrices(np.array([evaluate(plans.in_vacuum, blade, _cos, _sin)]), _layouts()["in_vacuum"])
     if segments is None:
         return found
@@ -240,7 +240,7 @@ def _sin(angle: complex) -> Any:
     return np.sin(angle).item()
 
 
-def _number(value: Any) -> Any:
+def plain_number(value: Any) -> Any:
     """Return an array of one number, or a number of NumPy, as a plain number."""
     return value.item() if isinstance(value, np.ndarray | np.generic) else value
 
@@ -249,7 +249,7 @@ def _one_by_one(segments: Quantities) -> list[dict[str, Any]]:
     """Return the quantities of each segment as plain numbers."""
     count = np.size(segments["beyond_flap_hinge"])
     lists = [
-        np.ravel(value).tolist() if np.ndim(value) else [_number(value)] * count
+        np.ravel(value).tolist() if np.ndim(value) else [plain_number(value)] * count
         for value in segments.values()
     ]
     return [dict(zip(segments, numbers, strict=True)) for numbers in zip(*lists, strict=True)]

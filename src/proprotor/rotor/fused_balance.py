@@ -22,12 +22,21 @@ from proprotor.typing import Array
 
 Quantities = Mapping[str, Any]
 
-_LOADS = plans.SECTION_LOADS[:-2]  # the last two results say if the loads are in doubt
-_MOMENTS = tuple(f"{load}_{power}" for load in _LOADS for power in range(POWERS))
+LOADS = plans.SECTION_LOADS[:-2]  # the last two results say if the loads are in doubt
+MOMENTS = tuple(f"{load}_{power}" for load in LOADS for power in range(POWERS))
 # A product of matrices has the same bits in each column if the number of columns is a multiple of this: no kernel of
 # BLAS then has columns left over, which it would add up in another order.
 _COLUMNS = 48
-_PITCH_TWICE = [0, 1, 2, 2]  # the collective moves the blade as the elastic pitch does
+PITCH_TWICE = [0, 1, 2, 2]  # the collective moves the blade as the elastic pitch does
+
+
+# Fields of the airfoil, and their names in the plan `section_loads`.
+OF_AIRFOIL = {
+    "lift_slope": "lift_slope",
+    "zero_lift_angle": "zero_lift_angle",
+    "drag": "drag_coefficient",
+    "moment": "moment_coefficient",
+}
 
 
 class Balanced(NamedTuple):
@@ -76,7 +85,7 @@ def balanced(
     air = _air(sections, line, quantities, compressibility)
     moments = _load_moments(sections, air, quantities["radius"], points, doubts)
     named = dict.fromkeys(LOAD_MOMENTS, 0.0)
-    named |= zip(_MOMENTS, moments.reshape(-1, *moments.shape[2:]), strict=True)
+    named |= zip(MOMENTS, moments.reshape(-1, *moments.shape[2:]), strict=True)
     shape = moments.shape[2:]
     work = _matrices("work", evaluate(plans.work, {**quantities, **line, **sides, **named}), shape)
     structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
@@ -85,7 +94,7 @@ def balanced(
         structure["residual"][..., 0],
         structure["slopes"],
         work["work"][..., 0],
-        work["work_slopes"][..., _PITCH_TWICE],
+        work["work_slopes"][..., PITCH_TWICE],
         segments,
     )
 
@@ -120,11 +129,8 @@ def _air(
     return {
         **{name: line[name] for name in names},
         **{name: quantities[name] for name in ("density", "section_damping", "pitch")},
+        **{name: airfoil[field] for field, name in OF_AIRFOIL.items()},
         "speed_of_sound": sound,
-        "lift_slope": airfoil["lift_slope"],
-        "zero_lift_angle": airfoil["zero_lift_angle"],
-        "drag_coefficient": airfoil["drag"],
-        "moment_coefficient": airfoil["moment"],
     }
 
 
@@ -137,7 +143,7 @@ def _load_moments(
 ) -> Array:
     """Return the radial moments (loads, powers, segments, n) of the section loads, a block of points at a time."""
     kind = np.result_type(float, *(np.asarray(value).dtype for value in air.values()))
-    shape = len(_LOADS), POWERS, len(sections.quadrature.beyond_lag_hinge), points
+    shape = len(LOADS), POWERS, len(sections.quadrature.beyond_lag_hinge), points
     moments = np.empty(shape, dtype=kind)
     for rows, here in sections.blocks(points):
         count = len(range(points)[rows]) if isinstance(rows, slice) else len(rows)
@@ -149,7 +155,7 @@ def _load_moments(
             of_stations = loads[-2, :, :count].T, loads[-1, :, :count].T
             own = radius[rows] if np.ndim(radius) and len(radius) > 1 else radius
             mark_doubts(doubts, here, own, of_stations, rows, points)
-        of_loads = loads[: len(_LOADS)]
+        of_loads = loads[: len(LOADS)]
         found = _by_product(here, of_loads) if shared else _point_by_point(here, of_loads)
         moments[..., rows] = found[..., :count]
     return moments

@@ -21,7 +21,7 @@ from proprotor.typing import Array
 # In the order of the columns of `equations.jacobian`.
 UNKNOWNS = ("coning", "lag", "elastic_pitch", "collective")
 TORQUE, THRUST = equations.AZIMUTH, equations.HUB_K  # rows of a blade's balance
-_FLAP_LAG = tuple(f"flap_lag_stiffness{derivative}" for derivative in ("", "_slope", "_curvature"))
+FLAP_LAG = tuple(f"flap_lag_stiffness{derivative}" for derivative in ("", "_slope", "_curvature"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +137,7 @@ def _springs(options: Options, quantities: dict[str, Any]) -> dict[str, Any]:
     if options.frequencies is not None:
         return _springs_of_frequencies(options.frequencies, quantities)
     springs = effective_stiffness(quantities)
-    return springs | dict.fromkeys(_FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
+    return springs | dict.fromkeys(FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
 
 
 def _springs_of_frequencies(frequencies: BladeFrequencies, quantities: dict[str, Any]) -> dict[str, Any]:

@@ -21,8 +21,13 @@ from proprotor.rotor.section_loads import BladeSections, load_moments, segment_q
 from proprotor.rotor.trim import UNKNOWNS, Target, take, with_trim
 from proprotor.typing import Array
 
-_LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
+LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
 _COMPLEX_STEP = 1e-30
+# rad, the last step: the error of the loads. Convergence is quadratic, so the trim itself is exact to rounding.
+_CONVERGED = 1e-13
+# rad, a step that is no smaller than half of the step before: rounding limits convergence, as for a spring a hundred
+# million times as stiff as everything else that holds the blade.
+_STALLED = 1e-9
 
 State = dict[str, Array]  # the unknowns by name, (points,)
 
@@ -252,7 +257,12 @@ def solve(slopes: Array, right: Array) -> Array:
 def newton_step(slopes: Array, residual: Array) -> Array:
     """Return the step (n, k) to subtract from the unknowns; NaN if the slopes have no inverse."""
     step = solve(slopes, residual[..., None])[..., 0]
-    return step if np.iscomplexobj(step) else np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
+    return step if np.iscomplexobj(step) else np.clip(step, -LARGEST_STEP, LARGEST_STEP)
+
+
+def is_last(size: Any, before: Any) -> Any:
+    """Return whether a step, a number or an array (n,), is the last, by its size and the size of the step before."""
+    return (size <= _CONVERGED) | ((size <= _STALLED) & (size >= before / 2))
 
 
 def copy_state(state: State, rows: Array, onto: State) -> None:
