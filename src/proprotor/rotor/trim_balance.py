@@ -52,8 +52,8 @@ class Slopes(NamedTuple):
         self.full[rows], self.airloads[rows] = slopes
 
     def at(self, share: Array) -> Array:
-        """Return the slopes (n, k, k) at a share (n,) of the loads."""
-        return np.asarray(self.full - (1 - share[:, None, None]) * self.airloads)
+        """Return the slopes (..., n, k, k) at a share (..., n) of the loads."""
+        return np.asarray(self.full - (1 - share[..., None, None]) * self.airloads)
 
     def by_moments(self, sprung: Array) -> Slopes:
         """Return the slopes per unit of the moments that springs and centrifugal force set against flap and lag.
@@ -244,11 +244,11 @@ class Balance:
 
 
 def solve(slopes: Array, right: Array) -> Array:
-    """Return slopes⁻¹ right, (n, k, m); NaN at the points whose slopes have no inverse."""
+    """Return slopes⁻¹ right, (..., k, m); NaN at the points whose slopes have no inverse."""
     try:
         return np.linalg.solve(slopes, right)
     except np.linalg.LinAlgError:  # raised for all points if the slopes of one are singular
-        good = np.isfinite(slopes).all(axis=(1, 2)) & (np.abs(np.linalg.det(slopes)) > 0)
+        good = np.isfinite(slopes).all(axis=(-2, -1)) & (np.abs(np.linalg.det(slopes)) > 0)
         found = np.full(right.shape, np.nan, dtype=np.result_type(slopes, right))
         found[good] = np.linalg.solve(slopes[good], right[good])
         return found

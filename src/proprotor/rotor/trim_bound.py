@@ -10,6 +10,7 @@ between the ends, and the radius may be one half at most.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -22,8 +23,9 @@ from proprotor.typing import Array
 CONTRACTION = 0.5  # largest spectral radius of N
 # Change of slopes within reach of the path, in multiples of the change between the ends of a step.
 _REACH = 2.0
-_WINDOWS = (1, 4, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
-_POWER_STEPS, _FLOOR = 8, 1e-9
+_WINDOWS = (3, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
+_POWER_STEPS = (2, 2, 4)  # after which the bound is looked at
+_FLOOR = 1e-9
 
 
 def contraction(
@@ -57,11 +59,9 @@ def contraction(
 
     def radius(rows: Array, *slopes: Slopes) -> Array:
         """Return the largest radius among all windows."""
-        n, half = len(rows), (to - share)[rows] / (2 * windows)
+        half = (to - share)[rows] / (2 * windows)
         middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
-        again = np.tile(np.arange(n), windows)  # all windows at once
-        moved = _moved(half[again], middles.ravel(), *(part.of(again) for part in slopes))
-        return np.asarray(_radius(moved, enough).reshape(windows, n).max(axis=0))
+        return np.asarray(_radius(_moved(half, middles, *slopes), enough).max(axis=0))
 
     slopes = (before, after) if between is None else (before, after, between)
     return _by_angles_or_moments(sprung, radius, *slopes, enough=enough)
@@ -111,26 +111,30 @@ def _by_angles_or_moments(
 
 
 def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
-    """Return N (n, k, k) of a window in λ, given by its half length and its middle."""
+    """Return N (windows, n, k, k) of windows in λ, given by half lengths (n,) and middles (windows, n)."""
     mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
-    change = Slopes(*((b - a) / 2 for a, b in zip(before, after, strict=True)))
-    aside = (Slopes(*(a - b for a, b in zip(part, mean, strict=True))) for part in between)
-    parts = [half[:, None, None] * mean.airloads, *(part.at(middle) for part in (change, *aside))]
-    moved = np.abs(solve(mean.at(middle), np.concatenate(parts, axis=-1)))
-    in_share, *in_place = np.split(moved, len(parts), axis=-1)
-    return np.asarray(in_share + _REACH * np.maximum.reduce(in_place))
+    aside = (Slopes(*(a - b for a, b in zip(part, mean, strict=True))) for part in (after, *between))
+    slopes, size = mean.at(middle), mean.full.shape[-1]
+    right = np.empty((*slopes.shape[:-1], (2 + len(between)) * size))
+    right[..., :size] = half[:, None, None] * mean.airloads
+    for place, part in enumerate(aside, start=1):
+        right[..., place * size : (place + 1) * size] = part.at(middle)
+    moved = np.abs(solve(slopes, right))
+    in_share, *in_place = (moved[..., place : place + size] for place in range(0, moved.shape[-1], size))
+    farthest = functools.reduce(np.maximum, in_place)
+    return np.asarray(in_share + _REACH * farthest)
 
 
 def _radius(matrix: Array, enough: float) -> Array:
-    """Return a bound (n,) of the spectral radius of matrices (n, k, k) without negative entries.
+    """Return a bound (...) of the spectral radius of matrices (..., k, k) without negative entries.
 
     The bound is that of Collatz and Wielandt, which steps of power iteration make sharper until all bounds are enough.
     """
-    weight = np.ones((*matrix.shape[:2], 1))
-    for step in range(_POWER_STEPS + 1):
-        moved = matrix @ weight
-        bound = (moved / weight)[..., 0].max(axis=1, initial=0.0)
-        if step == _POWER_STEPS or (bound <= enough).all():
+    weight = np.ones((*matrix.shape[:-1], 1))
+    for steps in _POWER_STEPS:
+        for _ in range(steps):
+            weight = matrix @ weight + _FLOOR * weight
+        bound = np.asarray((matrix @ weight / weight)[..., 0].max(axis=-1, initial=0.0))
+        if (bound <= enough).all():
             break
-        weight = moved + _FLOOR * weight
-    return np.asarray(bound)
+    return bound

@@ -32,6 +32,7 @@ from proprotor.typing import Array
 
 _ITERATIONS = 40
 _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below the error of these stations
+_REAL = np.dtype(float)
 _ROUNDING = 1e-14  # rad, of the step that would follow
 
 
@@ -89,7 +90,7 @@ def solve_trim(
     balance = Balance(sections, quantities, options, target, free, points)
     numbers = (*quantities.values(), target.collective, target.load)
     with np.errstate(all="ignore"):
-        if sections.is_complex or any(map(np.iscomplexobj, numbers)):
+        if sections.is_complex or any(map(_is_complex, numbers)):
             return _complex_trim(balance, few, points)
         if one and free and balance.fused and few is sections:
             found = trim_of_one(balance)
@@ -312,6 +313,11 @@ def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
         step, _ = _newton(balance, state, rows)
         balance.take_step(state, rows, step)
     return _settle(balance, state, state, trim.reason, trim.iterations)
+
+
+def _is_complex(value: Any) -> bool:
+    """Return whether a number or an array is complex."""
+    return isinstance(value, complex) or getattr(value, "dtype", _REAL).kind == "c"
 
 
 def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:
