@@ -10,7 +10,7 @@ infinite.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import sympy as sp
 
@@ -68,29 +68,38 @@ def _without_other_names(steps: Steps) -> list[tuple[sp.Symbol, sp.Expr]]:
 
 
 def _steps_of_section() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Return the steps to the loads of a section; powers of the chord have effective values of their own."""
-    lift_at_rest = sp.Symbol("lift_at_rest", real=True)  # without compressibility
-    factor, by_mach = section.prandtl_glauert_factor, section.prandtl_glauert_slope
-    moment = _COEFFICIENT["moment", ""]
-    gone = dict.fromkeys(
-        (_COEFFICIENT["drag", "alpha"], _COEFFICIENT["drag", "mach"], _COEFFICIENT["moment", "alpha"]), 0
-    )
-    of_lift = {_DAMPING: _DAMPING * square_ratio}
-    of_moment = {
-        moment: factor * moment * square_ratio,
-        _COEFFICIENT["moment", "mach"]: by_mach * moment * square_ratio,
-        _DAMPING: _DAMPING * cube_ratio,
+    """Return the steps to the loads of a section; powers of the chord have effective values of their own.
+
+    The derivative g' of the Prandtl-Glauert factor comes as the Mach number times g'/g, which is g² - 1.
+    """
+    lift, moment, growth = (sp.Symbol(name, real=True) for name in ("straight_lift", "own_moment", "growth"))
+    factor, mach = section.prandtl_glauert_factor, section.mach
+    given = {
+        _COEFFICIENT["lift", ""]: lift,
+        _COEFFICIENT["lift", "alpha"]: factor * lift_slope.lift_slope,
+        _COEFFICIENT["lift", "mach"]: growth * lift / mach,
+        _COEFFICIENT["moment", ""]: moment,
+        _COEFFICIENT["moment", "mach"]: growth * moment / mach,
     }
+    given |= {_COEFFICIENT[at]: 0 for at in (("drag", "alpha"), ("drag", "mach"), ("moment", "alpha"))}
+    by_mach = {section.FORCE_COEFFICIENT[force, "mach"] for force in ("chordwise", "normal")}
+    forces = _replaced(section.forces(), given | {_DAMPING: _DAMPING * square_ratio})
     return [
-        *_replaced(section.air_at_section(), of_lift),
-        *section.prandtl_glauert(),
-        (lift_at_rest, lift_slope.lift_slope * (section.lift_incidence - zero_lift_angle)),
-        (_COEFFICIENT["lift", ""], factor * lift_at_rest),
-        (_COEFFICIENT["lift", "alpha"], factor * lift_slope.lift_slope),
-        (_COEFFICIENT["lift", "mach"], by_mach * lift_at_rest),
-        *_replaced(section.forces(), gone | of_lift),
-        *_replaced(section.pitching_moment()[2:], gone | of_moment),  # without the two pressures again
+        *_replaced(section.air_at_section(), {_DAMPING: _DAMPING * square_ratio}),
+        section.prandtl_glauert()[0],
+        (growth, factor**2 - 1),
+        (lift, factor * lift_slope.lift_slope * (section.lift_incidence - zero_lift_angle)),
+        (moment, factor * _COEFFICIENT["moment", ""] * square_ratio),
+        *_put_in(by_mach, forces),
+        *_replaced(section.pitching_moment()[2:], given | {_DAMPING: _DAMPING * cube_ratio}),
     ]
+
+
+def _put_in(names: set[sp.Symbol], steps: Iterable[tuple[sp.Symbol, sp.Expr]]) -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Put some steps into those that need them."""
+    steps = list(steps)
+    given = {symbol: value for symbol, value in steps if symbol in names}
+    return [step for step in _replaced(steps, given) if step[0] not in given]
 
 
 def _replaced(steps: Steps, new: dict[sp.Symbol, sp.Expr]) -> Iterator[tuple[sp.Symbol, sp.Expr]]:

@@ -26,10 +26,12 @@ LOADS = plans.SECTION_LOADS[:-2]  # the last two results say if the loads are in
 MOMENTS = tuple(f"{load}_{power}" for load in LOADS for power in range(POWERS))
 # A product of matrices has the same bits in each column if the number of columns is a multiple of this: no kernel of
 # BLAS then has columns left over, which it would add up in another order.
-_COLUMNS = 48
+_COLUMNS = 16
+_OF_SEGMENTS = ("ut_0", "ut_1", "up_0", "up_1", "ur_0", "spin")
 PITCH_TWICE = [0, 1, 2, 2]  # the collective moves the blade as the elastic pitch does
 
 
+_NO_LOADS = dict.fromkeys(LOAD_MOMENTS, 0.0)
 # Fields of the airfoil, and their names in the plan `section_loads`.
 OF_AIRFOIL = {
     "lift_slope": "lift_slope",
@@ -39,6 +41,20 @@ OF_AIRFOIL = {
 }
 
 
+class Room:
+    """Memory for the loads at the stations, the same for every block of points: new memory costs more than the loads."""
+
+    def __init__(self) -> None:
+        self._numbers = np.empty(0)
+
+    def array(self, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
+        """Return an array whose numbers stay until the next call."""
+        size = int(np.prod(shape))
+        if self._numbers.size < size or self._numbers.dtype != kind:
+            self._numbers = np.empty(size, dtype=kind)
+        return self._numbers[:size].reshape(shape)
+
+
 class Balanced(NamedTuple):
     """Balance of a blade at n points.
 
@@ -46,15 +62,15 @@ class Balanced(NamedTuple):
         Without airloads; columns as the unknowns of the trim.
     work, work_slopes : array (n, 5), (n, 5, 4)
         Virtual work of the airloads, and minus its change with the unknowns.
-    segments : dict
-        Sides of the hinges, and radial moments of the section loads (n, segments) by name and power of r.
+    moments : array (loads, powers of r, segments, n)
+        Radial moments of the section loads.
     """
 
     residual: Array
     slopes: Array
     work: Array
     work_slopes: Array
-    segments: dict[str, Any]
+    moments: Array
 
 
 def serves_sections(sections: BladeSections) -> bool:
@@ -66,6 +82,7 @@ def balanced(
     sections: BladeSections,
     quantities: Quantities,
     compressibility: bool,
+    room: Room,
     doubts: dict[str, Array] | None = None,
 ) -> Balanced:
     """Return the balance of a blade at trim states.
@@ -76,27 +93,28 @@ def balanced(
     quantities : mapping
         Numbers or arrays (n,) of the blade at trim by name.
     compressibility : bool
+    room : Room
     doubts : dict, optional
         Filled with the reasons to doubt the airfoil's coefficients outboard, masks (n,) by reason.
     """
     points = len(quantities["coning"])
-    sides = {name: side[:, None] for name, side in sections.sides.items()}
-    line = dict(zip(plans.LINE, evaluate(plans.line, {**quantities, **sides}, np.cos, np.sin), strict=True))
-    air = _air(sections, line, quantities, compressibility)
-    moments = _load_moments(sections, air, quantities["radius"], points, doubts)
-    named = dict.fromkeys(LOAD_MOMENTS, 0.0)
-    named |= zip(MOMENTS, moments.reshape(-1, *moments.shape[2:]), strict=True)
+    blade = dict(quantities) | {name: side[:, None] for name, side in sections.sides.items()}
+    blade |= zip(plans.LINE, evaluate(plans.line, blade, np.cos, np.sin), strict=True)
+    air = _air(sections, blade, compressibility)
+    moments = _load_moments(sections, air, quantities["radius"], room, points, doubts)
     shape = moments.shape[2:]
-    work = _matrices("work", evaluate(plans.work, {**quantities, **line, **sides, **named}), shape)
     structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
-    segments = sections.sides | {name: part.T if np.ndim(part) else part for name, part in named.items()}
-    return Balanced(
-        structure["residual"][..., 0],
-        structure["slopes"],
-        work["work"][..., 0],
-        work["work_slopes"][..., PITCH_TWICE],
-        segments,
-    )
+    blade |= _NO_LOADS
+    blade |= zip(MOMENTS, moments.reshape(-1, *shape), strict=True)
+    work = _matrices("work", evaluate(plans.work, blade), shape)
+    slopes = work["work_slopes"][..., PITCH_TWICE]
+    return Balanced(structure["residual"][..., 0], structure["slopes"], work["work"][..., 0], slopes, moments)
+
+
+def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
+    """Return sides of the hinges (segments,) and radial moments (n, segments) by name and power of r."""
+    named = zip(MOMENTS, moments.reshape(-1, *moments.shape[2:]).swapaxes(1, 2), strict=True)
+    return _NO_LOADS | sections.sides | dict(named)
 
 
 @cache
@@ -107,7 +125,7 @@ def _layouts() -> dict[str, Layout]:
 def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> dict[str, Array]:
     """Return the matrices (n, rows, columns) of a plan from results of a shape (n,), or (segments, n) to be summed."""
     layout = _layouts()[plan]
-    kind = np.result_type(float, *(np.asarray(result).dtype for result in results))
+    kind = np.result_type(float, *(result.dtype for result in results if isinstance(result, np.ndarray)))
     pool = np.empty((len(results), *shape), dtype=kind)
     for place, result in enumerate(results):
         pool[place] = result
@@ -119,25 +137,20 @@ def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> di
 # Loads along the blade
 
 
-def _air(
-    sections: BladeSections, line: Quantities, quantities: Quantities, compressibility: bool
-) -> dict[str, Any]:
-    """Return what the sections meet, by name: of each segment, of each point, or of all points alike."""
-    sound = quantities["speed_of_sound"] if compressibility else np.inf
+def _air(sections: BladeSections, blade: Quantities, compressibility: bool) -> dict[str, Any]:
+    """Return what the sections meet, by name: arrays (segments, n) and (n,), or numbers that all points share."""
     airfoil = vars(cast(Airfoil, sections.airfoil))
-    names = ("ut_0", "ut_1", "up_0", "up_1", "ur_0", "spin")
-    return {
-        **{name: line[name] for name in names},
-        **{name: quantities[name] for name in ("density", "section_damping", "pitch")},
-        **{name: airfoil[field] for field, name in OF_AIRFOIL.items()},
-        "speed_of_sound": sound,
-    }
+    found = {name: np.ravel(airfoil[field]) for field, name in OF_AIRFOIL.items()}
+    names = (*_OF_SEGMENTS, "density", "section_damping", "pitch", "speed_of_sound")
+    found |= {name: blade[name] for name in names}
+    return found if compressibility else found | {"speed_of_sound": np.inf}
 
 
 def _load_moments(
     sections: BladeSections,
     air: Quantities,
     radius: Any,
+    room: Room,
     points: int,
     doubts: dict[str, Array] | None,
 ) -> Array:
@@ -150,7 +163,7 @@ def _load_moments(
         shared = here.quadrature.counts.ndim == 1
         width = -(-count // _COLUMNS) * _COLUMNS if shared else count
         met = {name: _columns(value, rows, width) for name, value in air.items()}
-        loads = _loads_at_stations(here, met, count, width, kind)
+        loads = _loads_at_stations(here, met, width, room, kind)
         if doubts is not None:
             of_stations = loads[-2, :, :count].T, loads[-1, :, :count].T
             own = radius[rows] if np.ndim(radius) and len(radius) > 1 else radius
@@ -180,7 +193,7 @@ def _widened(some: Array, width: int) -> Array:
 
 
 def _loads_at_stations(
-    sections: BladeSections, air: dict[str, Any], count: int, width: int, kind: np.dtype[Any]
+    sections: BladeSections, air: dict[str, Any], width: int, room: Room, kind: np.dtype[Any]
 ) -> Array:
     """Return the results (results, stations, width) of the plan `section_loads`."""
     r = _stations_first(sections.quadrature.stations, width)
@@ -194,7 +207,7 @@ def _loads_at_stations(
     along = sections.along.each(lambda part: _stations_first(part, width))
     given["section_pitch"] = air["pitch"] + along.twist
     given |= {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
-    loads = np.empty((len(plans.SECTION_LOADS), *shape), dtype=kind)
+    loads = room.array((len(plans.SECTION_LOADS), *shape), kind)
     evaluate(plans.section_loads, given, np.sqrt, np.arctan, loads)
     return loads
 

@@ -6,15 +6,15 @@ The share multiplies precone, and the airloads in the rows of flap, lag and pitc
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 from proprotor_equations import airloads
 from proprotor_equations import trim as equations
 
-from proprotor.rotor.fused_balance import balanced, serves_sections
+from proprotor.rotor.fused_balance import Room, balanced, segments_of, serves_sections
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections, load_moments, segment_quantities
@@ -77,8 +77,10 @@ class Linear(NamedTuple):
     slopes : Slopes
     work, work_slopes : array (n, 5), (n, 5, k)
         Virtual work of the airloads on all rows, and minus its change with the free unknowns.
-    quantities, segments : dict
-        Quantities of the whole blade, and of each segment with the radial moments of the section loads.
+    quantities : dict
+        Quantities of the whole blade.
+    along : callable
+        Returns the quantities of each segment with the radial moments of the section loads.
     """
 
     residual: Array
@@ -86,7 +88,7 @@ class Linear(NamedTuple):
     work: Array
     work_slopes: Array
     quantities: dict[str, Any]
-    segments: dict[str, Any]
+    along: Callable[[], dict[str, Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +101,7 @@ class Balance:
     target: Target
     free: list[int]
     points: int
+    room: Room = field(default_factory=Room)
 
     @functools.cached_property
     def fused(self) -> bool:
@@ -138,20 +141,22 @@ class Balance:
         quantities = self._at(state, rows, share)
         if self.fused:
             sections = self._sections(rows)
-            found = balanced(sections, quantities, self.options.compressibility, doubts)
-            residual, structure, work, of_airloads, segments = found
+            found = balanced(sections, quantities, self.options.compressibility, self.room, doubts)
+            residual, structure, work, of_airloads, moments = found
             residual -= work
+            along = functools.partial(segments_of, moments, sections)
         else:
             segments = self._loads(quantities, rows, doubts=doubts)
             work = self._work(segments)
             residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
             structure, of_airloads = self._slopes(state, rows, quantities, segments)
+            along = functools.partial(dict, segments)
         whole = (structure + of_airloads)[..., self.free]
         of_airloads = of_airloads[..., self.free]
         blade = of_airloads[:, self.rows] * self.hinged[:, None]
         slopes = Slopes(whole[:, self.rows], blade)
         residual = self._to_target(residual, rows)
-        return Linear(residual[:, self.rows], slopes, work, of_airloads, quantities, segments)
+        return Linear(residual[:, self.rows], slopes, work, of_airloads, quantities, along)
 
     def left(self, state: State, rows: Array, share: float | None = None) -> Array:
         """Return the residual (n, k) with all of the airloads, without slopes."""

@@ -275,7 +275,7 @@ def _settle(
     loads = last.work * np.asarray(quantities["n_blades"])[..., None]
     trim.torque[rows], trim.thrust[rows] = loads[:, TORQUE], loads[:, THRUST]
     warning[rows] = warnings(balance, here, loads[:, THRUST], last.doubts)
-    return Settled(trim, rows, quantities, here.segments)
+    return Settled(trim, rows, quantities, here.along())
 
 
 def _settled(balance: Balance, found: Found) -> Settled:
