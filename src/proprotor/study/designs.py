@@ -79,11 +79,17 @@ class Plan:
         Returns the designs, from the inputs that were read and the numbers of the deck by path.
     read : callable
         Returns an input in SI, from its label, the value or distribution of the user, and the number of the deck.
+    method : str
+        "grid", "points", "latin hypercube", "sobol" or "saltelli".
+    settings : mapping
+        What else the function that makes the plan was given, such as size and seed.
     """
 
     inputs: Mapping[Any, Any]
     lay_out: Callable[[dict[Any, Any], Mapping[str, Datum]], Designs]
     read: Callable[[str, Any, Datum], Any]
+    method: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)
 
     def resolve(self, known: Mapping[str, Datum]) -> Designs:
         """Return the designs in SI.
