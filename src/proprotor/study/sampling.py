@@ -145,7 +145,7 @@ def saltelli(inputs: Mapping[Any, Any], size: int, seed: int = 0, second_order: 
     return _sampled("saltelli", inputs, size, seed, _draw_saltelli, second_order=second_order)
 
 
-def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
+def as_plan(inputs: Any) -> Plan:
     """Return a plan as it is, and a mapping as a `grid`.
 
     Parameters

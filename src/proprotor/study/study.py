@@ -18,6 +18,7 @@ from proprotor.study.designs import Plan
 from proprotor.study.division import Block, blocks_of, check_needs, points_at_once
 from proprotor.study.progress import progress_bar
 from proprotor.study.request import Request, requested
+from proprotor.study.study_file import repeated
 from proprotor.study.variables import DEFAULT_QUANTITIES, POINT, VARIABLE, blank
 from proprotor.typing import Array, Dataset
 
@@ -28,8 +29,8 @@ _SMALL = 4000  # points that are analysed before worker processes have started
 
 
 def study(
-    case: Case,
-    inputs: Plan | Mapping[str, Any],
+    case: Case | Dataset | str | os.PathLike[str],
+    inputs: Plan | Mapping[str, Any] | Dataset | str | os.PathLike[str] | None = None,
     airspeed: Any = None,
     quantities: str | Sequence[str] = DEFAULT_QUANTITIES,
     *,
@@ -43,10 +44,13 @@ def study(
 ) -> Dataset:
     """Return the stability and trim of many designs.
 
+    ``study(file)`` and ``study(results)`` repeat a study, from a file (`proprotor.save_study`) or from its results;
+    ``study(case, file)`` repeats a study of a case that was not loaded from a deck.
+
     Parameters
     ----------
-    case : Case
-    inputs : mapping or plan
+    case : Case; or xarray.Dataset or path, to repeat a study
+    inputs : mapping or plan; or xarray.Dataset or path, to repeat a study
         How inputs vary, by deck path (`proprotor.design_inputs`): a mapping of lists is a grid of all combinations;
         lists point by point, Latin hypercube, Sobol and Saltelli samples are plans of `proprotor.sampling`. Values are
         in SI, pint quantities or text with a unit. ``"airspeed"`` may be among the inputs.
@@ -82,8 +86,16 @@ def study(
     ------
     InputError
         For an unknown input, quantity or option, a value with a wrong unit, a checkpoint of another study or of other
-        code, a cluster that runs other code, or results, batches or workers that do not fit into memory.
+        code, a cluster that runs other code, or results, batches or workers that do not fit into memory; for a study to
+        repeat that was not written out, or whose deck has changed.
     """
+    given = {"airspeed": airspeed, "tolerance": tolerance} | options
+    given |= {} if quantities is DEFAULT_QUANTITIES else {"quantities": quantities}
+    again = repeated(case, inputs, given)
+    if again is not None:
+        run: dict[str, Any] = {"workers": workers, "client": client, "checkpoint": checkpoint}
+        return study(**again, **run, progress=progress, batch=batch)
+    assert isinstance(case, Case)
     # Results that are kept, or come from other computers, must all be of one code.
     code = "" if checkpoint is None and client is None else code_fingerprint()
     request = requested(case, inputs, airspeed, quantities, tolerance, options, code)
