@@ -31,7 +31,6 @@ from pathlib import Path
 from typing import Any
 
 from proprotor.case import Case, list_cases, load_case
-from proprotor.deck.template import toml
 from proprotor.errors import InputError, check_known
 from proprotor.files.output import check_place, write_whole
 from proprotor.files.text import read_text
@@ -182,6 +181,8 @@ def save_study(
 
 
 def _entry(name: str, value: Any) -> str:
+    from proprotor.deck.template import toml  # here, because pydantic takes long to import
+
     quoted = name if name.replace("_", "").isalnum() and name.isascii() else toml(name)
     return f"{quoted} = {toml(value)}"
 
