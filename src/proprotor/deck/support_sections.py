@@ -377,8 +377,8 @@ class NastranSection(Section):
     grid: fields.Size = needed("The grid point at the hub.")
     subcase: fields.Size = optional("Subcase, needed for a file with several.")
     generalized_mass: fields.Positives = optional(
-        "Generalised mass of every mode, in units of the run, or of each of the lowest modes in a list whose last value "
-        "holds for all above. Needed for a file without eigenvalue table (LAMA), and for no other."
+        "Generalised mass of every mode, in units of the run, or of each of the lowest modes in a list whose last "
+        "value holds for all above. Needed for a file without eigenvalue table (LAMA), and for no other."
     )
     coordinates: fields.File = optional(
         "For an .op4 file: the file of bulk data beside it (.pch or .asm), whose entry EXTRN names the coordinates."
