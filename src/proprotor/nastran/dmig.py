@@ -7,6 +7,7 @@ for a component of a grid point, and 5001 for a scalar point.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from decimal import Decimal
 from typing import NamedTuple
 
 import numpy as np
@@ -83,14 +84,15 @@ def write_dmig(name: str, matrix: Array, coordinates: Sequence[Coordinate]) -> I
 
 
 def _field(value: float) -> str:
-    """Return a number in 16 characters, with as many digits as fit."""
-    digits = 13
-    while True:
-        mantissa, _, exponent = f"{value:.{digits}E}".partition("E")
-        text = f"{mantissa}D{int(exponent)}"
+    """Return a number in 16 characters with as many digits as fit; below 1 without the zero before the point."""
+    exponent = int(f"{value:E}".partition("E")[2])
+    exponent += exponent < 0
+    mantissa = Decimal(value).scaleb(-exponent)
+    for digits in range(_LARGE, 0, -1):
+        text = f"{mantissa:.{digits}f}D{exponent}".replace("0.", ".", 1 if abs(mantissa) < 1 else 0)
         if len(text) <= _LARGE:
             return f"{text:>{_LARGE}}"
-        digits -= 1
+    raise ValueError(value)
 
 
 def _form(fields: Sequence[str]) -> int:

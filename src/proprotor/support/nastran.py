@@ -221,8 +221,14 @@ def _kept(found: _Modes, modes: int | None, file: Any) -> _Modes:
     return kept
 
 
-def _components(hub: Mapping[str, str] | None) -> list[tuple[str, float, str]]:
-    """Return component, sign and axis of the hub for each of x … αz."""
+def hub_components(hub: Mapping[str, str] | None) -> list[tuple[str, float, str]]:
+    """Return component, sign and axis of the hub for each of x … αz; see `nastran_modes`.
+
+    Raises
+    ------
+    InputError
+        For an axis or a component that is missing or unknown.
+    """
     hub = AIRCRAFT_AXES if hub is None else hub
     found = []
     for axis, name, sign in signed_names(hub, "motions"):
@@ -234,7 +240,7 @@ def _components(hub: Mapping[str, str] | None) -> list[tuple[str, float, str]]:
 
 def _turned(motion: Array, hub: Mapping[str, str] | None) -> Array:
     """Return the rows x … αz from the rows T1 … R3."""
-    return np.array([sign * motion[COMPONENTS.index(name)] for name, sign, _ in _components(hub)])
+    return np.array([sign * motion[COMPONENTS.index(name)] for name, sign, _ in hub_components(hub)])
 
 
 def _reduced(path: Path, kind: str, coordinates: str | os.PathLike[str] | None) -> ReducedStructure:
@@ -261,7 +267,7 @@ def _of_matrices(
 ) -> NormalModes:
     """Return a reduced structure as a support; structural damping of its elements is left out, and said so."""
     signs = {1.0: "", -1.0: "-"}
-    at_hub = {axis: f"{signs[sign]}{grid}.{name}" for name, sign, axis in _components(hub)}
+    at_hub = {axis: f"{signs[sign]}{grid}.{name}" for name, sign, axis in hub_components(hub)}
     if missing := [name for name in at_hub.values() if name.lstrip("-") not in structure.names]:
         rule = f"has no coordinate {missing[0].lstrip('-')} in the matrices: the hub's grid point must be kept (ASET)"
         raise InputError("grid", grid, rule)
