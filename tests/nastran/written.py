@@ -6,7 +6,7 @@ those in public files; the years after 2021 of MSC, and those of Simcenter and A
 """
 
 import struct
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -379,7 +379,7 @@ def save_op4(path, matrices, form="text", layout="dense", order="<", width=4):
         rows, columns = matrix.shape
         kind = 4 if np.iscomplexobj(matrix) else 2
         head = (columns, -rows if layout == "bigmat" else rows, 6 if rows == columns else 2, kind)
-        parts.append((name, head, [_column(matrix[:, k], k, layout, width) for k in range(columns)]))
+        parts.append((name, head, [_column(matrix[:, k].copy(), k, layout, width) for k in range(columns)]))
     if form == "text":
         path.write_text("".join(_op4_text(*part) for part in parts), encoding="utf-8")
     else:
@@ -441,6 +441,11 @@ def _op4_binary(name, head, columns, order, width):
     return b"".join([*parts, record(last)])
 
 
-def with_points(run, points):
-    """The same run with other grid points."""
-    return replace(run, points=points)
+def run_of(mass, stiffness, hub, length=1.0, mass_unit=1.0, **other):
+    """The run of a structure (SI) in units of its own, normalised to the mass, in axes X aft, Y to the right, Z up."""
+    from scipy.linalg import eigh
+
+    values, shapes = eigh(stiffness, mass)
+    up, outboard, forward, *turns = hub @ shapes * np.sqrt(mass_unit * length**2)
+    motion = np.array([-forward / length, outboard / length, up / length, -turns[2], turns[1], turns[0]])
+    return Run(values, np.ones(len(values)), motion, **other)
