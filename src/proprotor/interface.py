@@ -3,6 +3,7 @@
 from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
+from proprotor.exchange.dmig import save_dmig
 from proprotor.exchange.matlab import save_matlab
 from proprotor.exchange.netcdf import load_results, save_results
 from proprotor.model.linear_model import LinearModel
@@ -58,6 +59,7 @@ __all__ = [
     "rigid_support",
     "rotor_model",
     "sampling",
+    "save_dmig",
     "save_matlab",
     "save_results",
     "save_study",
