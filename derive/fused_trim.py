@@ -95,7 +95,9 @@ def _steps_of_section() -> list[tuple[sp.Symbol, sp.Expr]]:
     ]
 
 
-def _put_in(names: set[sp.Symbol], steps: Iterable[tuple[sp.Symbol, sp.Expr]]) -> list[tuple[sp.Symbol, sp.Expr]]:
+def _put_in(
+    names: set[sp.Symbol], steps: Iterable[tuple[sp.Symbol, sp.Expr]]
+) -> list[tuple[sp.Symbol, sp.Expr]]:
     """Put some steps into those that need them."""
     steps = list(steps)
     given = {symbol: value for symbol, value in steps if symbol in names}

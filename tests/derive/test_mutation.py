@@ -52,12 +52,11 @@ OPTIONS = (
 
 
 # What the model does not call: tests/derive/test_equations_alone.py compares the first with the model, and the model
-# takes the last two from the fused functions.
+# takes the last from the fused functions.
 FOR_USE_ALONE = {
     ("rotor", "matrices"),
     ("coordinates", "transform"),
     ("flap_lag_springs", "effective_stiffness"),
-    ("inertia", "trim_integrals"),
 }
 
 

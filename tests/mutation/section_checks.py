@@ -105,7 +105,10 @@ def _loads_by_plan() -> Check:
     expected = {name: load for name, load in found.items() if name in plans.SECTION_LOADS}
     size = _sizes(air, expected) | dict.fromkeys(("lift_incidence", "mach"), 1.0)
     speed, _, alpha = inflow(air)
-    expected |= {"lift_incidence": alpha + powers[0] * turn_incidence(air), "mach": speed / air.speed_of_sound}
+    expected |= {
+        "lift_incidence": alpha + powers[0] * turn_incidence(air),
+        "mach": speed / air.speed_of_sound,
+    }
     quantities = _quantities(air) | {
         "lift_slope": airfoil.lift_slope,
         "zero_lift_angle": airfoil.zero_lift_angle,
