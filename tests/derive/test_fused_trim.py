@@ -12,7 +12,7 @@ import pytest
 import proprotor as pp
 from proprotor.rotor import balance_of_one, trim_balance, trim_solver
 from proprotor.rotor.trim import UNKNOWNS
-from tests.rotor.test_trim import OPERATION, ROTOR, STATION, TABLES, alone, assert_rounding_of, rotor
+from tests.rotor.test_trim import OPERATION, TABLES, alone, assert_rounding_of, rotor
 
 ROUNDING = 1e-13
 POINTS = 7

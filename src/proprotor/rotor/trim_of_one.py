@@ -94,8 +94,8 @@ def _is_end_of_path(balance: Balance, passed: list[Here], start: Numbers, state:
     first, last = (
         Slopes(np.array([here.full]), np.array([here.airloads])) for here in (passed[0], passed[-1])
     )
-    ends = ({name: np.array([value]) for name, value in end.items()} for end in (start, state))
-    return bool(at_end(balance, first, last, *ends, np.zeros(1, dtype=int)).all())
+    before, after = ({name: np.array([value]) for name, value in end.items()} for end in (start, state))
+    return bool(at_end(balance, first, last, before, after, np.zeros(1, dtype=int)).all())
 
 
 def _is_without_doubt(one: BalanceOfOne, found: Found) -> bool:
