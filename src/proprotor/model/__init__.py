@@ -11,6 +11,7 @@ configuration, and the stamp that every result has.
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
     mass_at_rest         the rotor's mass matrix at rest with locked blades
     rotor_share          the rotor's share, taken off a support whose masses include the rotor
+    unit_doubts          doubts about the units of a structure from a file
     mount                one rotor on a support
     pair                 two mirrored rotors on an airframe, in symmetric and antisymmetric coordinates
     mast                 a mast that twists between a rotor and its engine
@@ -70,6 +71,7 @@ __all__ = [
     "stamp",
     "state_space",
     "structural_damping",
+    "unit_doubts",
     "with_mast",
     "with_reasons",
 ]

@@ -91,7 +91,7 @@ def model_of(
     target = trim_target(rotor, operation)
     if shape:
         target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
-    settled = solve_trim(sections, few, quantities, choice, target, points)
+    settled = solve_trim(sections, few, quantities, choice, target, points, one=shape == ())
     reactionless = _reactionless(rotor, choice)
     apart = reactionless_groups(reactionless) if reactionless else []
     coordinates = (*FIXED, *(coordinate for group in apart for coordinate in group))
