@@ -82,9 +82,9 @@ def known_trim() -> Iterator[None]:
     """Find a trim once and give it again and again."""
     genuine, found = rotor_model.solve_trim, []
 
-    def again(*given: object) -> object:
+    def again(*given: object, **named: object) -> object:
         if not found:
-            found.append(genuine(*given))
+            found.append(genuine(*given, **named))
         return found[0]
 
     with mock.patch.object(rotor_model, "solve_trim", again):
