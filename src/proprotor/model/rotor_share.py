@@ -115,7 +115,7 @@ def without_rotors(
 @kept
 def _without(
     held: tuple[str, ...], names: tuple[str, ...], whole: Array, *rotors: Array
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array | None]:
     """Return mass and refusal as `without_rotors` does, the same at every airspeed.
 
     Parameters
