@@ -13,7 +13,7 @@ Modes of one point, or of a batch of points
 
 Modes along a line of points
     parameter_lines         lines of airspeeds or of another input, and the approach from the anchor
-    matching                which mode at one point is which at the next
+    matching, assignment    which mode at one point is which at the next; the assignment with the largest sum
     following               branches: roots followed along a line, steps divided where needed
     branches                labels of branches
     sweep                   the dataset of a line: modes by name, with the branch of each

@@ -32,7 +32,8 @@ import numpy as np
 from proprotor.model.first_order import blocks, held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import HUB, Motion, motions, name_list
-from proprotor.stability.matching import Modes, best_assignment
+from proprotor.stability.assignment import best_assignment
+from proprotor.stability.matching import Modes
 from proprotor.stability.modes import coordinate_motion
 from proprotor.typing import Array
 
