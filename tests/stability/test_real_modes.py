@@ -7,7 +7,7 @@ from proprotor.stability.real_modes import RealModes, by_pairs, closeness, liken
 
 
 def spectra(seed, states, count):
-    """Eigenvalues and vectors of matrices that differ a little from one to the next, in parts of one number of pairs."""
+    """Eigenvalues and vectors of random matrices, each a little different, in parts of one number of pairs."""
     rng = np.random.default_rng(seed)
     matrices = rng.normal(size=(states, states)) + 0.05 * rng.normal(size=(count, states, states))
     values, right = (part.astype(complex) for part in np.linalg.eig(matrices))
