@@ -61,17 +61,20 @@ def test_a_result_knows_what_it_is_and_keeps_knowing_it_in_a_file(results, kind,
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_plot_that_it_offers_can_be_drawn(results, kind):
     accessor = results[kind].proprotor
-    own = {"participation": ["beam"], "attribution": ["beam"]}
+    own = {"plot_participation": ["beam"], "plot_attribution": ["beam"]}
     for name in accessor.plots:
-        drawn = accessor.plot(name, *own.get(name, []))
-        assert isinstance(drawn, Axes | Figure)
+        assert name in dir(accessor)
+        assert isinstance(getattr(accessor, name)(*own.get(name, [])), Axes | Figure)
     pyplot.close("all")
     assert accessor.plots or kind == "distribution"
     if kind == "sweep":
         assert isinstance(accessor.plot(), Figure)
+        assert accessor.plot_damping(unit="m/s").get_xlabel() != accessor.plot_damping().get_xlabel()
         pyplot.close("all")
-        with pytest.raises(pp.InputError, match="did you mean damping"):
-            accessor.plot("dampin")
+        with pytest.raises(AttributeError, match="did you mean plot_damping"):
+            accessor.plot_dampin()
+        with pytest.raises(AttributeError):
+            accessor.save()
     if not accessor.plots:
         with pytest.raises(pp.InputError, match="has no plot of its own"):
             accessor.plot()
@@ -107,8 +110,7 @@ def test_what_has_no_table_or_no_rotor_speed_is_told_and_nothing_is_written(resu
 
 def test_a_sweep_over_the_rotor_speed_has_a_campbell_diagram_and_no_table():
     found = CASE.sweep("200 kt", {"operation.rotor_speed": "400:500:50 rpm"})
-    assert "campbell" in found.proprotor.plots
-    assert isinstance(found.proprotor.plot("campbell", n_blades=3), Axes)
+    assert isinstance(found.proprotor.plot_campbell(n_blades=3), Axes)
     pyplot.close("all")
     with pytest.raises(pp.InputError, match="a sweep over airspeeds"):
         found.proprotor.records(rotor_speed=40.0)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from typing import Any
 
-from proprotor.errors import InputError, check_known
+from proprotor.errors import InputError, unknown_name
 from proprotor.exchange.netcdf import save_results
 from proprotor.files.json_text import json_text
 from proprotor.files.output import check_place, write_whole
@@ -21,16 +22,19 @@ from proprotor.typing import Axes, Dataset, Figure
 
 # Kinds of results: a variable or an attribute that no other kind has, and the plots, the usual one first.
 _KINDS = {
-    "study": ("study", ("distribution",)),
-    "indices": ("first_half_interval", ("sobol",)),
+    "study": ("study", ("plot_distribution",)),
+    "indices": ("first_half_interval", ("plot_sobol",)),
     "distribution": ("at_least", ()),
-    "sensitivity": ("derivative", ("sensitivity",)),
-    "attribution": ("contribution", ("attribution",)),
-    "stability map": ("boundary_eigenvalue", ("stability_map",)),
-    "boundaries": ("first_branch", ("boundary_against",)),
+    "sensitivity": ("derivative", ("plot_sensitivity",)),
+    "attribution": ("contribution", ("plot_attribution",)),
+    "stability map": ("boundary_eigenvalue", ("plot_stability_map",)),
+    "boundaries": ("first_branch", ("plot_boundary_against",)),
     "sweep": (
         "tracking_quality",
-        ("sweep", "frequency", "damping", "root_locus", "campbell", "participation"),
+        (
+            *("plot_sweep", "plot_frequency", "plot_damping", "plot_root_locus"),
+            *("plot_participation", "plot_campbell"),
+        ),
     ),
 }
 _ROTOR_SPEED = "operation.rotor_speed"  # over which a Campbell diagram is drawn
@@ -38,6 +42,8 @@ _ROTOR_SPEED = "operation.rotor_speed"  # over which a Campbell diagram is drawn
 
 class Results:
     """Pictures, tables and files of a result of this package: ``results.proprotor.plot()``.
+
+    The plots of `plots` are methods, each with the arguments of the function of that name in `proprotor.plots`.
 
     Parameters
     ----------
@@ -49,8 +55,8 @@ class Results:
 
     def __repr__(self) -> str:
         """Return the kind of the result, and what it offers."""
-        plots = ", ".join(map(repr, self.plots)) or "none"
-        return f"{self.kind}: plots {plots}. {stamp.line(self._results.attrs)}".rstrip()
+        plots = ", ".join(self.plots) or "no plot"
+        return f"{self.kind}: {plots}. {stamp.line(self._results.attrs)}".rstrip()
 
     @property
     def kind(self) -> str:
@@ -65,7 +71,7 @@ class Results:
         """The names of the plots that the result offers, the usual one first."""
         found = _KINDS[self.kind][1] if self.kind in _KINDS else ()
         over_rotor_speed = _ROTOR_SPEED in self._results.dims
-        return tuple(name for name in found if name != "campbell" or over_rotor_speed)
+        return tuple(name for name in found if name != "plot_campbell" or over_rotor_speed)
 
     @property
     def doubts(self) -> list[str]:
@@ -77,15 +83,19 @@ class Results:
         own = str(self._results.attrs.get("doubts", ""))
         return [*reasons_for_doubt(texts), *filter(None, [own])]
 
-    def plot(self, what: str = "", *given: Any, **options: Any) -> Axes | Figure:
-        """Draw the result with a plot of `proprotor.plots`.
+    def __getattr__(self, name: str) -> Callable[..., Axes | Figure]:
+        """Return a plot of `proprotor.plots`, such as `plot_damping`, that takes its further arguments."""
+        if not name.startswith("plot_"):
+            raise AttributeError(name)
+        if name not in self.plots:
+            raise AttributeError(unknown_name(name, self.plots, f"plot of a result of the kind {self.kind}"))
+        return partial(getattr(import_module("proprotor.plots"), name), self._results)
 
-        Parameters
-        ----------
-        what : str
-            One of `plots`, the usual one by default: "damping" is `proprotor.plots.plot_damping`.
-        *given, **options
-            Further arguments of that plot.
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.plots]
+
+    def plot(self) -> Axes | Figure:
+        """Draw the usual plot of the result, the first of `plots`.
 
         Returns
         -------
@@ -94,14 +104,12 @@ class Results:
         Raises
         ------
         InputError
-            For a plot that the result has not, and as that plot.
+            For a result without a plot, and as that plot.
         """
         if not self.plots:
             raise InputError("results", self.kind, "has no plot of its own")
-        name = what or self.plots[0]
-        check_known("what", name, self.plots, f"plot of a {self.kind}")
-        draw: Callable[..., Axes | Figure] = getattr(import_module("proprotor.plots"), f"plot_{name}")
-        return draw(self._results, *given, **options)
+        drawn: Axes | Figure = getattr(self, self.plots[0])()
+        return drawn
 
     def records(self, *, rotor_speed: float | None = None, unit: str = "") -> list[dict[str, Any]]:
         """Return the result as a table: a record for each row, with units in the names.
@@ -136,15 +144,19 @@ class Results:
             )
         return list(SweepTable(self._results, rotor_speed, unit or "ktas").records())
 
-    def to_csv(self, path: str | os.PathLike[str], **options: Any) -> None:
+    def to_csv(
+        self, path: str | os.PathLike[str], *, rotor_speed: float | None = None, unit: str = ""
+    ) -> None:
         """Write `records` as CSV, below comments on the case and its options (pandas: ``comment="#"``).
 
         Parameters
         ----------
         path : str or path
             Ends in ``.csv``. A file that exists is replaced.
-        **options
-            As `records` takes them.
+        rotor_speed : float, optional
+            rad/s, as for `records`.
+        unit : str
+            As for `records`.
 
         Raises
         ------
@@ -154,19 +166,23 @@ class Results:
             When the file cannot be written.
         """
         check_place(path, ".csv")
-        records = self.records(**options)
+        records = self.records(rotor_speed=rotor_speed, unit=unit)
         content = csv_of(records, list(records[0]) if records else [], self._results.attrs)
         write_whole(path, lambda file: file.write(content))
 
-    def to_json(self, path: str | os.PathLike[str], **options: Any) -> None:
+    def to_json(
+        self, path: str | os.PathLike[str], *, rotor_speed: float | None = None, unit: str = ""
+    ) -> None:
         """Write the case, the options and `records` as JSON; of a study also its summary and what was asked.
 
         Parameters
         ----------
         path : str or path
             Ends in ``.json``. A file that exists is replaced.
-        **options
-            As `records` takes them.
+        rotor_speed : float, optional
+            rad/s, as for `records`.
+        unit : str
+            As for `records`.
 
         Raises
         ------
@@ -179,7 +195,10 @@ class Results:
         if self.kind == "study":
             document = StudyTable(self._results).document()
         else:
-            document = {**stamp.of(self._results.attrs), "records": self.records(**options)}
+            document = {
+                **stamp.of(self._results.attrs),
+                "records": self.records(rotor_speed=rotor_speed, unit=unit),
+            }
         write_whole(path, lambda file: file.write(f"{json_text(document)}\n".encode()))
 
     def to_netcdf(self, path: str | os.PathLike[str]) -> None:
