@@ -14,6 +14,7 @@ from typing import Any
 from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
+from proprotor.exchange.dmig import save_dmig
 from proprotor.exchange.matlab import save_matlab
 from proprotor.exchange.netcdf import load_results, save_results
 from proprotor.model.linear_model import LinearModel
@@ -69,6 +70,7 @@ __all__ = [
     "rigid_support",
     "rotor_model",
     "sampling",
+    "save_dmig",
     "save_matlab",
     "save_results",
     "save_study",
