@@ -30,6 +30,7 @@ Boundaries: where damping passes a level
     boundary, boundaries    records of boundaries; the search along a line of a case
     kinds                   divergence, instability of the rigid body, flutter
     flutter                 the flutter point: the lowest onset
+    in_notebook             boundaries as HTML, for notebooks
     flutter_messages        records and sentences for people
     map, boundary_lines     the plane of two inputs; its boundary by mode
     boundary_against        boundaries against one input, such as altitude or rotor speed
