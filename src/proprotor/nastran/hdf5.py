@@ -38,7 +38,9 @@ def read_hdf5(path: Path, grid: int) -> Found:
             if _RESULTS not in file:
                 raise FileFault(f"has no results of MSC Nastran: there is no group {_RESULTS}")
             return _read(file[_RESULTS], grid)
-    except (OSError, RuntimeError, KeyError) as error:
+    except FileFault:
+        raise
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError) as error:  # of a damaged file
         raise FileFault(f"is damaged, or has other tables than MSC Nastran writes ({error})") from None
 
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_finite, unknown_name
 from proprotor.nastran.found import COMPONENTS, FileFault, Found
 from proprotor.nastran.kinds_of_file import DMIG, OP4, kind_of, read_modes
 from proprotor.nastran.reduced import ReducedStructure, reduced_from_dmig, reduced_from_op4
@@ -104,27 +104,18 @@ def nastran_modes(
         When the file is missing, cut off, damaged or of another kind, or has no such grid point, subcase or tables, and
         for input that does not go with this kind of file.
     """
+    check_finite("length_unit", length_unit, "above zero")
+    check_finite("mass_unit", mass_unit, "above zero")
     path = Path(file)
     kind = _unless_faulty(path, kind_of)
+    how: dict[str, Any] = {"includes_rotor": includes_rotor, "shaft": shaft}
     if kind in (DMIG, OP4):
-        for field, value in (("subcase", subcase), ("generalized_mass", generalized_mass)):
-            if value is not None:
-                raise InputError(field, value, "must not be given with matrices, which have no modes")
+        _refuse_beside_matrices(subcase=subcase, generalized_mass=generalized_mass)
         if carries != "one rotor":
             raise InputError("carries", carries, "must be one rotor with matrices")
-        structure = _reduced(path, kind, coordinates)
-        return _of_matrices(
-            structure,
-            grid,
-            hub,
-            names,
-            modes=modes,
-            damping_ratio=damping_ratio,
-            includes_rotor=includes_rotor,
-            shaft=shaft,
-            length_unit=length_unit,
-            mass_unit=mass_unit,
-        )
+        how |= {"modes": modes, "damping_ratio": damping_ratio}
+        how |= {"length_unit": length_unit, "mass_unit": mass_unit}
+        return _of_matrices(_reduced(path, kind, coordinates), grid, hub, names, **how)
     if coordinates is not None:
         raise InputError("coordinates", str(coordinates), "must be given with an .op4 file only")
     read = _unless_faulty(path, read_modes, kind, grid)
@@ -138,10 +129,16 @@ def nastran_modes(
         frequency=found.frequency,
         damping_ratio=per_mode(damping_ratio, len(found.numbers)),
         hub=motion,
-        includes_rotor=includes_rotor,
-        shaft=shaft,
         carries=carries,
+        **how,
     )
+
+
+def _refuse_beside_matrices(**given: Any) -> None:
+    """Refuse input that is about modes."""
+    for field, value in given.items():
+        if value is not None:
+            raise InputError(field, value, "must not be given with matrices, which have no modes")
 
 
 def _unless_faulty(path: Path, read: Callable[..., _Result], *arguments: Any) -> _Result:
