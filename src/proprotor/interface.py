@@ -24,6 +24,7 @@ from proprotor.stability.branches import by_branch
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.study import sampling
 from proprotor.study.study import study
+from proprotor.study.study_file import save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
 from proprotor.support.beam_wing import Pylon, Wing, beam_wing
 from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
@@ -61,6 +62,7 @@ __all__ = [
     "save_dmig",
     "save_matlab",
     "save_results",
+    "save_study",
     "share_below",
     "sobol_indices",
     "standard_air",

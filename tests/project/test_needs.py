@@ -31,7 +31,7 @@ from proprotor.plots.mode_motion import mode_motion
 from proprotor.stability.frequency_response import frequency_response
 
 ROOT = Path(pp.__file__).parent
-PROJECT = tomllib.loads((ROOT.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))
 PRECONE = "rotor.precone"
 CASE = pp.load_case("xv15-uncoupled")
 MODEL = CASE.linearize(100.0)

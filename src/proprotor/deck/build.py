@@ -51,7 +51,7 @@ def load(
         from proprotor.deck.settings import with_settings
 
         tables = with_settings(tables, settings)
-    deck = validate(tables)
+    deck = validate(tables).with_origin(os.fspath(name_or_path), settings or {})
     return assemble(deck, numbers_of(deck), kind=kind)
 
 
