@@ -157,6 +157,6 @@ def test_models_that_are_no_rotor_at_one_airspeed(case, model, tmp_path):
     with pytest.raises(InputError, match=r"must end in \.bdf"):
         write(model, tmp_path / "rotor.txt")
     failed = case.linearize(2000.0)
-    with pytest.raises(InputError, match=r"^model = failed: "):
+    with pytest.raises(InputError, match=r"^airspeed = 2000 m/s: "):
         write(failed, tmp_path / "rotor.bdf")
     assert not list(tmp_path.iterdir())

@@ -89,7 +89,7 @@ def _check(rotor: LinearModel, grid: int, first_extra_point: int) -> None:
     if rotor.M.ndim > 2:
         raise InputError("model", f"{rotor.M.shape[:-2]} points", "must be at one airspeed")
     if reason := str(rotor.trim.reason):
-        raise InputError("model", "failed", reason)
+        raise InputError("airspeed", f"{float(rotor.airspeed):.6g} m/s", reason)
     last = first_extra_point + len(rotor.dofs) - len(HUB) - 1
     for name, point in (("grid", grid), ("first_extra_point", first_extra_point)):
         if not 1 <= point <= _LARGEST_POINT or last > _LARGEST_POINT:
