@@ -116,7 +116,7 @@ def _machinery(deck: Deck, numbers: Mapping[str, Datum]) -> _Machinery:
     with _errors_as_written("operation", numbers):
         operation, air = _operation(deck, numbers)
     with _errors_as_written("rotor.airfoil", numbers):
-        airfoil = _airfoil(_values(numbers, "rotor.airfoil"))
+        airfoil = _airfoil(_values(numbers, "rotor.airfoil"), deck.rotor.airfoil.table_name)
     with _errors_as_written("rotor", numbers):
         given = {"airfoil": airfoil, "propeller_moment": deck.rotor.propeller_moment}
         rotor, derived = _rotor(_values(numbers, "rotor") | given, operation.density)
@@ -206,8 +206,10 @@ def _operation(deck: Deck, numbers: Mapping[str, Datum]) -> tuple[Operation, dic
     return operation, {f"operation.{name}": number for name, number in air.items()}
 
 
-def _airfoil(given: dict[str, Any]) -> SectionModel:
-    return AirfoilTable.from_c81(given["table"]) if "table" in given else Airfoil(**given)
+def _airfoil(given: dict[str, Any], table_name: str | None) -> SectionModel:
+    if "table" not in given:
+        return Airfoil(**given)
+    return AirfoilTable.from_c81(given["table"], table_name, given.get("table_reynolds"))
 
 
 def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datum]]:
