@@ -206,10 +206,10 @@ def _operation(deck: Deck, numbers: Mapping[str, Datum]) -> tuple[Operation, dic
     return operation, {f"operation.{name}": number for name, number in air.items()}
 
 
-def _airfoil(given: dict[str, Any], table_name: str | None) -> SectionModel:
+def _airfoil(given: dict[str, Any], table_name: str) -> SectionModel:
     if "table" not in given:
         return Airfoil(**given)
-    return AirfoilTable.from_c81(given["table"], table_name, given.get("table_reynolds"))
+    return AirfoilTable.from_c81(given["table"], table_name or None, given.get("table_reynolds"))
 
 
 def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datum]]:

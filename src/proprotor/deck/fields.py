@@ -152,6 +152,7 @@ RotorSpeed = Annotated[Datum, Reading("number", "rad/s", POSITIVE)]
 Density = Annotated[Datum | None, Reading("number", "kg/m**3", NOT_NEGATIVE)]
 Speed = Annotated[Datum | None, Reading("number", "m/s", POSITIVE)]
 DampingRatio = Annotated[Datum | None, Reading("number", "", BELOW_CRITICAL)]
+DampingRatios = Annotated[Datum | None, Reading("curve", "", BELOW_CRITICAL)]  # one, or a list by mode
 PositiveFrequency = Annotated[Datum | None, Reading("frequency", "rad/s", POSITIVE)]
 Frequency = Annotated[Datum | None, Reading("frequency", "rad/s", NOT_NEGATIVE)]
 Count = Annotated[Datum | None, Reading("count", least=3)]

@@ -104,7 +104,7 @@ class AirfoilSection(Section):
     drag: fields.NotNegative = optional("Drag coefficient.")
     moment: fields.Number = optional("Moment coefficient about the reference line, nose up.")
     table: fields.File = optional("A C81 file; its name starts from the deck's folder.")
-    table_name: str | None = optional("Title of the table in a file of several; the first if left out.")
+    table_name: str = optional("Title of the table in a file of several; the first if left out.", "")
     table_reynolds: fields.Size = optional(
         "Reynolds number of the table, in a file with tables of one airfoil at several."
     )
@@ -115,8 +115,8 @@ class AirfoilSection(Section):
         numbers = [name for name in type(self).model_fields if name in self.model_fields_set - of_table]
         if self.table is not None and numbers:
             raise InputError("table", self.table.written, f"must not be given with {', '.join(numbers)}")
-        for name in ("table_name", "table_reynolds"):
-            if self.table is None and getattr(self, name) is not None:
+        for name in sorted(of_table & self.model_fields_set):
+            if self.table is None:
                 raise InputError(name, None, "must be given with table")
         if self.table is None and "lift_slope" not in numbers:
             raise InputError("lift_slope", None, "is missing; give lift_slope or table")

@@ -15,11 +15,14 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     aircraft_airloads  airloads of a free aircraft: wing strips and tails
     wing_aerodynamics  airloads of the wing itself, by strips
     nastran            modes from a Nastran run
+    universal_modes    modes from a universal file
+    universal_file     datasets of such a file
     matrix_files       matrices of any finite-element code
     matrix_market      files of such matrices in the Matrix Market format
 
 All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam`, `beam_wing`, `free_airframe`,
-`matrix_files`, `nastran`, `stiffness_factors` and `wing_aerodynamics` belong to the face.
+`matrix_files`, `nastran`, `stiffness_factors`, `universal_modes` and
+`wing_aerodynamics` belong to the face.
 """
 
 from proprotor.support.airframe import SYMMETRIES, Airframe
@@ -54,5 +57,6 @@ __all__ = [
     "rigid_support",
     "stiffness_factors",
     "two_axis_pivot",
+    "universal_modes",
     "wing_aerodynamics",
 ]
