@@ -211,11 +211,15 @@ def test_descriptions_have_what_the_reader_enforces():
     (lock,) = find_fields("lock_number")
     assert lock.instead_of == ("chord",) and lock.required
     (drag,) = find_fields("rotor.airfoil.drag")
-    assert drag.instead_of == ("table",) and not drag.required and drag.default == "0"
+    assert (
+        drag.instead_of == ("table", "table_name", "table_reynolds")
+        and not drag.required
+        and drag.default == "0"
+    )
     (blades,) = find_fields("rotor.n_blades")
     assert blades.range == "3 or more"
     assert {f.kind for f in find_fields("support.kind")} == {
-        "normal-modes", "beam-wing", "aircraft", "matrices", "nastran", "pivot", "rigid"}  # fmt: skip
+        "normal-modes", "beam-wing", "aircraft", "matrices", "nastran", "universal", "pivot", "rigid"}  # fmt: skip
     assert {f.path for f in find_fields("pivot")} >= {"support.distance", "support.pitch_damping"}
 
 

@@ -15,6 +15,7 @@ from proprotor.errors import InputError
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model.rotor_share import rotor_share
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, on_coordinates
+from proprotor.support.matlab_file import read_matlab
 from proprotor.support.matrix_files import read_matrix_market, read_npz
 from proprotor.support.nastran import nastran_modes
 from proprotor.support.normal_modes import HUB_AXES, NormalModes, rigid_support, two_axis_pivot
@@ -107,6 +108,8 @@ def _from_files(
     read: Callable[..., NormalModes] = nastran_modes
     if section.kind == "matrices":
         read = read_matrix_market if section.file is None else read_npz
+        if str(given.get("file", "")).lower().endswith(".mat"):
+            read = read_matlab
     return _with_assumed_airloads(read(**given, hub=section.hub), section, numbers)
 
 

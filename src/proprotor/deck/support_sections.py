@@ -20,10 +20,10 @@
     `proprotor.support.aircraft_structure`, `free_airframe` and `aircraft_airloads`. A table ``[left]`` at the top of
     the deck has what differs on the left side.
 ``kind = "matrices"``
-    file, an .npz file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names: see
-    `proprotor.support.matrix_files`. A table hub, or for modal coordinates the motion of the hub (the array hub of the
-    .npz file, or hub_motion) and carries, one rotor or two. includes_rotor, shaft, rotor_mass, modes, damping_ratio,
-    length_unit, mass_unit.
+    file, an .npz or .mat file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names:
+    see `proprotor.support.matrix_files` and `matlab_file`. A table hub, or for modal coordinates the motion of the hub
+    (the array hub of the .npz file, or hub_motion) and carries, one rotor or two. includes_rotor, shaft, rotor_mass,
+    modes, damping_ratio, length_unit, mass_unit.
 ``kind = "nastran"``
     file, an .op2 file, and grid: see `proprotor.support.nastran`. subcase, a table hub, includes_rotor, shaft, modes,
     damping_ratio, length_unit, mass_unit; carries, one rotor or two.
@@ -327,7 +327,8 @@ class MatricesSection(Section):
 
     kind: Literal["matrices"] = needed("Matrices from files.")
     file: fields.File = optional(
-        "An .npz file with mass, stiffness, dofs and perhaps damping; hub for modal coordinates."
+        "An .npz file with mass, stiffness, dofs and perhaps damping, hub for modal coordinates; or a .mat file of "
+        "MATLAB with M, K, dofs and perhaps C, Phi."
     )
     mass: fields.File = optional("Matrix Market file of the mass.")
     stiffness: fields.File = optional("Matrix Market file of the stiffness.")

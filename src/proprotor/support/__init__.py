@@ -18,10 +18,11 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     universal_modes    modes from a universal file
     universal_file     datasets of such a file
     matrix_files       matrices of any finite-element code
+    matlab_file        such matrices in a file of MATLAB
     matrix_market      files of such matrices in the Matrix Market format
 
 All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam`, `beam_wing`, `free_airframe`,
-`matrix_files`, `nastran`, `stiffness_factors`, `universal_modes` and
+`matlab_file`, `matrix_files`, `nastran`, `stiffness_factors`, `universal_modes` and
 `wing_aerodynamics` belong to the face.
 """
 
@@ -52,6 +53,7 @@ __all__ = [
     "beam_wing",
     "free_airframe",
     "lowest_modes",
+    "matlab_file",
     "matrix_files",
     "nastran",
     "rigid_support",
