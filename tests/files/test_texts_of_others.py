@@ -76,6 +76,7 @@ OPENED = {
     "study/study.py": "the folder of a study",
     "report/typeset.py": "the layout of reports",
     "commands/report.py": "bytes for a fingerprint",
+    "support/matlab_file.py": "a binary file",
     "commands/main.py": "the null device",
     "commands/explore.py": "a browser",
 }

@@ -34,7 +34,7 @@ from proprotor.support.normal_modes import (
 from proprotor.typing import Array
 
 _LARGEST = 500_000_000  # bytes of a file, unpacked
-_LARGEST_UNIT = 1e12  # m or kg
+LARGEST_UNIT = 1e12  # m or kg
 _LARGEST_ENTRY = 1e100  # beyond this value products overflow
 _SYMMETRY = 1e-6  # files may have few digits
 _KEYS = ("mass", "stiffness", "damping", "dofs", "hub")
@@ -171,8 +171,8 @@ def support_from_matrices(
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _checked(name, part, len(names)) for name, part in given.items() if part is not None}
     for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
-        if not 1 / _LARGEST_UNIT <= unit <= _LARGEST_UNIT:
-            rule = f"must be above zero, from {1 / _LARGEST_UNIT:g} to {_LARGEST_UNIT:g}"
+        if not 1 / LARGEST_UNIT <= unit <= LARGEST_UNIT:
+            rule = f"must be above zero, from {1 / LARGEST_UNIT:g} to {LARGEST_UNIT:g}"
             raise InputError(name, unit, rule)
     # A translation counts lengths in the file's unit, a rotation radians: all entries then have the unit of energy.
     motion = _motion(names, hub)

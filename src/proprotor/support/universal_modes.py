@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, unknown_name
 from proprotor.files.text import read_text
+from proprotor.support.matrix_files import LARGEST_UNIT
 from proprotor.support.modal_reduction import per_mode
 from proprotor.support.normal_modes import TRANSLATION, NormalModes, signed_names
 from proprotor.support.universal_file import Mode, UniversalFault, UniversalFile, universal_file
@@ -104,15 +105,15 @@ def _units(found: UniversalFile, length_unit: float | None, mass_unit: float | N
     """Return m and kg per unit of the file: as given, or by the factors from SI in the file."""
     if found.factors is not None:
         length, force = found.factors
-        if not (length > 0 and force > 0):
+        if not min(length, force) > 1 / LARGEST_UNIT:
             raise InputError("file", None, "must have factors of units above zero in dataset 164")
         length_unit = 1 / length if length_unit is None else length_unit
         mass_unit = length / force if mass_unit is None else mass_unit
     for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
         if unit is None:
             raise InputError(name, None, "must be given: the file has no units (dataset 164)")
-        if not (np.isfinite(unit) and unit > 0):
-            raise InputError(name, unit, "must be above zero")
+        if not 1 / LARGEST_UNIT <= unit <= LARGEST_UNIT:
+            raise InputError(name, unit, f"must be above zero, from {1 / LARGEST_UNIT:g} to {LARGEST_UNIT:g}")
     assert length_unit is not None and mass_unit is not None
     return length_unit, mass_unit
 
