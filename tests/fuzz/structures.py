@@ -38,10 +38,8 @@ def _universal() -> str:
     at = np.array(_NODES[101])
     shape = []
     for name, place in _NODES.items():
-        shape += [
-            f"{name:10d}",
-            _row(*([0, 0, 1] + np.cross([0, 0.4, 0], np.array(place) - at)), 0.0, 0.4, 0.0),
-        ]
+        moved = np.cross([0, 0.4, 0], np.array(place) - at) + np.array([0, 0, 1])
+        shape += [f"{name:10d}", _row(*moved, 0.0, 0.4, 0.0)]
     texts = ["NONE"] * 5
     kinds = "".join(f"{number:10d}" for number in (1, 2, 3, 8, 2, 6))
     mode = "".join(f"{number:10d}" for number in (2, 4, 1, 1))
