@@ -77,6 +77,9 @@ OPENED = {
     "report/typeset.py": "the layout of reports",
     "commands/report.py": "bytes for a fingerprint",
     "support/matlab_file.py": "a binary file",
+    "nastran/kinds_of_file.py": "the first bytes of a file",
+    "nastran/op2.py": "a binary file",
+    "nastran/op4.py": "a binary file",
     "commands/main.py": "the null device",
     "commands/explore.py": "a browser",
 }

@@ -110,6 +110,8 @@ def _from_files(
         read = read_matrix_market if section.file is None else read_npz
         if str(given.get("file", "")).lower().endswith(".mat"):
             read = read_matlab
+    else:
+        given["names"] = section.names
     return _with_assumed_airloads(read(**given, hub=section.hub), section, numbers)
 
 
