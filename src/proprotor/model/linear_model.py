@@ -117,6 +117,12 @@ class LinearModel:
         lines += [f"  {len(at)} of {converged.size} doubtful: {text}" for text, at in doubts.items()]
         return "\n".join(lines)
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from proprotor.model.in_notebook import model_html  # here, because most uses need no HTML
+
+        return model_html(self)
+
     @property
     def matrices(self) -> dict[str, Array]:
         """M, C, K and, for a model with inputs, B, by name; SI."""
