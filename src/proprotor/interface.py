@@ -27,6 +27,7 @@ from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet
 from proprotor.rotor.operation import Operation
@@ -79,6 +80,7 @@ __all__ = [
     "standard_air",
     "study",
     "two_axis_pivot",
+    "write_c81",
 ]
 
 

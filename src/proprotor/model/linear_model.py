@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
+_AZIMUTHS = tuple(in_half(half, ROTOR_SPEED) for half in reversed(HALVES))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -154,7 +155,7 @@ class LinearModel:
 
         An interconnect shaft between two rotors holds the antisymmetric azimuth alone.
         """
-        names = [in_half(half, ROTOR_SPEED) for half in reversed(HALVES)] if self.symmetry else [ROTOR_SPEED]
+        names = _AZIMUTHS if self.symmetry else (ROTOR_SPEED,)
         return tuple(name for name in names if name in self.dofs)
 
     @cached_property
