@@ -15,7 +15,7 @@ Modes of one point, or of a batch of points
 
 Modes along a line of points
     parameter_lines         lines of airspeeds or of another input, and the approach from the anchor
-    matching                which mode at one point is which at the next
+    matching, assignment    which mode at one point is which at the next; the assignment with the largest sum
     following               branches: roots followed along a line, steps divided where needed
     branches                labels of branches
     names_and_steps         names of the modes of many lines, and the steps along each
@@ -30,6 +30,7 @@ Boundaries: where damping passes a level
     boundary, boundaries    records of boundaries; the search along a line of a case
     kinds                   divergence, instability of the rigid body, flutter
     flutter                 the flutter point: the lowest onset
+    in_notebook             boundaries as HTML, for notebooks
     flutter_messages        records and sentences for people
     map, boundary_lines     the plane of two inputs; its boundary by mode
     boundary_against        boundaries against one input, such as altitude or rotor speed

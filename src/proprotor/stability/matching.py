@@ -8,7 +8,7 @@ l the rows of the inverse of the matrix of right vectors r. They are the mass-we
 that has not changed and 0 for any other, whatever units coordinates have and however vectors are scaled. The distance
 of the eigenvalues, as a part of the largest, is subtracted. The assignment with the largest sum of S_ij - d_ij is the
 step. Where the best candidates of all states are different, they are the assignment: no permutation exceeds the sum of
-the largest entries of the rows. Elsewhere `scipy.optimize.linear_sum_assignment` finds it.
+the largest entries of the rows. Elsewhere `proprotor.stability.assignment` finds it.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from proprotor.model.first_order import StateBlocks
+from proprotor.stability.assignment import best_assignment
 from proprotor.stability.real_modes import COUPLED, RealModes, closeness, inverse, likeness, quality
 from proprotor.typing import Array
 
@@ -282,13 +283,6 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     index = np.zeros(mixing.shape)
     index[counts] = np.nan_to_num(mixing[counts] * closeness(apart[counts], later[counts]))
     return successor, np.clip(np.minimum(own, 1) - np.maximum(index.max(axis=0), index.max(axis=1)), 0, 1)
-
-
-def best_assignment(gain: Array) -> Array:
-    """Return the column of each row in the assignment of columns to rows with the largest sum."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
-    return np.asarray(linear_sum_assignment(gain, maximize=True)[1])
 
 
 def _as_slice(points: Array) -> slice | Array:

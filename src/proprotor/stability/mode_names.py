@@ -33,7 +33,8 @@ import numpy as np
 from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import HUB, motions, name_list
-from proprotor.stability.matching import Modes, best_assignment
+from proprotor.stability.assignment import best_assignment
+from proprotor.stability.matching import Modes
 from proprotor.stability.modes import coordinate_motion
 from proprotor.stability.participation import participation, whirling
 from proprotor.stability.real_modes import by_pairs, mode_of_states, places_of, upper_places
