@@ -28,11 +28,14 @@ Loads and trim:
     effective_sections   chord and twist from tables as polynomials between the stations
     section_loads        section loads gathered into radial moments
     trim                 the trim, and the target that closes it
+    fused_balance        the balance of one blade by the fused functions, for batches
+    balance_of_one       the same for one point, by plain numbers
     trim_balance         the balance of one blade and its slopes
     trim_start           first guess and undeflected blade
     trim_bound           a bound that shows which equilibrium belongs to the undeflected blade
     trim_path            the path from the undeflected blade to the trim
     trim_reasons         reasons and warnings
+    trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
 
 All public names of the modules `fused`, `generated`, `motions`, `options` and `section_loads` belong to the face.
