@@ -8,7 +8,9 @@ What a rotor is:
     rotor                a proprotor: geometry, mass, springs, chord and twist
     airfoil              section coefficients; the linear airfoil
     airfoil_table        an airfoil from tables
-    c81                  files of such tables in the C81 format
+    c81                  files of such tables in the C81 format, in the dialects of many programs
+    c81_layouts          the rows of such files, in columns or separated
+    c81_writer           writing such files
     coefficient_surface  the smooth surface through a table
     drive_train          engine and shaft
     blade_frequencies    frequencies given in tables, in place of springs
@@ -43,6 +45,7 @@ from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, 
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import Air, standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
@@ -76,4 +79,5 @@ __all__ = [
     "standard_air",
     "trim_target",
     "with_trim",
+    "write_c81",
 ]
