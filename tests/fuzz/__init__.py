@@ -27,6 +27,6 @@ running code of the input
 
 `test_fuzz` does each of these deeds and sees it caught.
 
-`mutation` has the ways to spoil a text or bytes; `decks`, `supports`, `structures`, `airfoils` and `nastran` make the files of an
-input and use them; `watch` sees what happens meanwhile; `campaign` judges.
+`mutation` has the ways to spoil a text or bytes; `decks`, `supports`, `structures`, `airfoils` and `nastran` make the
+files of an input and use them; `watch` sees what happens meanwhile; `campaign` judges.
 """
