@@ -41,7 +41,9 @@ station_angle = s.quantity(
     "station_angle", r"\Theta", "rad", "angle of the section's axes from the disk, nose up"
 )
 station_mass = s.quantity("station_mass", "m", "kg/m", "mass per length at a station")
-station_tension = s.quantity("station_tension", r"\mathcal{T}", "N", "centrifugal force of all that is outboard")
+station_tension = s.quantity(
+    "station_tension", r"\mathcal{T}", "N", "centrifugal force of all that is outboard"
+)
 inner_radius = s.quantity("inner_radius", "r_0", "m", "inner end of the element from the centre of rotation")
 outer_tension = s.quantity("outer_tension", r"\mathcal{T}_1", "N", "tension at the outer end of the element")
 
@@ -118,9 +120,7 @@ def twist_stiffness(row: str, column: str) -> sp.Expr:
 
     Half of it, times the motions of the ends twice, is the torque per length that opposes a turn of the section.
     """
-    return sp.factor_terms(
-        sp.diff(strain_energy(), _COORDINATE[row], _COORDINATE[column], station_angle)
-    )
+    return sp.factor_terms(sp.diff(strain_energy(), _COORDINATE[row], _COORDINATE[column], station_angle))
 
 
 def tension() -> list[tuple[sp.Symbol, sp.Expr]]:
