@@ -22,7 +22,7 @@ from proprotor.rotor.rotor import Rotor
 from proprotor.typing import Array, Numbers
 
 GOOD = 0.05  # largest difference of a judged quantity for which a hinged blade is a good model
-_NO_AIR = {"density": 1e-9, "speed_of_sound": 340.0}
+_NO_AIR: dict[str, Any] = {"density": 1e-9, "speed_of_sound": 340.0}
 _COLLECTIVE = ("flap_0", "lag_0")
 _CYCLIC = ("gimbal_1c", "gimbal_1s", "flap_1c", "flap_1s", "lag_1c", "lag_1s")
 _PLANES = {"flap": element.OUT_OF_PLANE, "lag": element.IN_PLANE}
