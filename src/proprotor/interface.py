@@ -3,6 +3,7 @@
 from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
+from proprotor.exchange.dmig import save_dmig
 from proprotor.exchange.matlab import save_matlab
 from proprotor.exchange.netcdf import load_results, save_results
 from proprotor.model.linear_model import LinearModel
@@ -23,6 +24,7 @@ from proprotor.stability.branches import by_branch
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.study import sampling
 from proprotor.study.study import study
+from proprotor.study.study_file import save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
 from proprotor.support.beam_wing import Pylon, Wing, beam_wing
 from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
@@ -57,8 +59,10 @@ __all__ = [
     "rigid_support",
     "rotor_model",
     "sampling",
+    "save_dmig",
     "save_matlab",
     "save_results",
+    "save_study",
     "share_below",
     "sobol_indices",
     "standard_air",

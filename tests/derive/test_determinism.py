@@ -1,5 +1,6 @@
 """The comparison of generated equations between versions finds what differs. `make verify-versions` uses it."""
 
+import inspect
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,25 @@ def test_a_part_in_a_million_million_is_found(accepted, path, old, new):
     _, worst, where = determinism.compared(accepted, other)
     assert where.startswith((path.removesuffix(".py"), "rotor."))  # which calls the function that is changed
     assert worst > 5 * determinism.TOLERANCE
+
+
+def test_shapes_are_read_from_a_docstring_with_its_indentation_and_without():
+    """The compiler takes the indentation away from Python 3.13 on."""
+    text = """Return a matrix.
+
+    Parameters
+    ----------
+    mass : array (..., 3, 5)
+    section : array (..., segments, 2, 4)
+    group : [SI] 7 numbers
+    """
+
+    def function(mass, section, group): ...
+
+    shapes = []
+    for function.__doc__ in (text, inspect.cleandoc(text)):
+        shapes.append([values.shape for values in determinism.random_arguments(function, 0).values()])
+    assert shapes == [[(3, 5), (2, 2, 4), (7,)]] * 2
 
 
 def test_a_machine_without_a_second_python_is_told_so_in_one_line(accepted, tmp_path, monkeypatch, capsys):

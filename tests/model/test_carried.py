@@ -72,7 +72,7 @@ RESULTS = {
     "stability_map": lambda case, **o: stability_map(case, MAP, **o),
     "study": lambda case, **o: pp.study(
         case,
-        sampling.points({"rotor.precone": [0.02, 0.03]}),
+        sampling.points({"rotor.precone": [0.02, 0.03]}, drawn=True),
         SPEEDS,
         ["eigenvalue", "flutter"],
         workers=1,

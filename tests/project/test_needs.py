@@ -24,14 +24,14 @@ from proprotor import needs
 from proprotor.case import Case
 from proprotor.commands.main import main
 from proprotor.errors import InputError
+from proprotor.nastran.hdf5 import read_hdf5
 from proprotor.needs import check_memory, free_memory
 from proprotor.plots.animation import animate_mode
 from proprotor.plots.mode_motion import mode_motion
 from proprotor.stability.frequency_response import frequency_response
-from proprotor.support import nastran
 
 ROOT = Path(pp.__file__).parent
-PROJECT = tomllib.loads((ROOT.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))
 PRECONE = "rotor.precone"
 CASE = pp.load_case("xv15-uncoupled")
 MODEL = CASE.linearize(100.0)
@@ -95,7 +95,7 @@ NEEDS = {
         "explore",
         lambda folder: command("explore", "xv15-uncoupled", "--no-browser"),
     ),
-    "an .op2 file": ("pyNastran", "nastran", lambda folder: nastran._read(Path(__file__))),
+    "Nastran's HDF5 file": ("h5py", "nastran", lambda folder: read_hdf5(Path(__file__), grid=1)),
 }
 
 

@@ -47,8 +47,8 @@ _KEPT = (".pyenv/versions/3.*/bin/python", ".local/share/uv/python/cpython-3.*/b
 _DERIVE = (
     "import json, sys; from derive import emit; json.dump(emit.derive_files(lambda line: None), sys.stdout)"
 )
-_MATRIX = re.compile(r"^    (\w+) : .*\(\.\.\., (segments, )?(\d+), (\d+)\)", re.MULTILINE)
-_GROUP = re.compile(r"^    (\w+) : \[SI\] (\d+) numbers", re.MULTILINE)  # of a fused function
+_MATRIX = re.compile(r"^(\w+) : .*\(\.\.\., (segments, )?(\d+), (\d+)\)", re.MULTILINE)
+_GROUP = re.compile(r"^(\w+) : \[SI\] (\d+) numbers", re.MULTILINE)  # of a fused function
 _WAVES = {"cos": np.cos, "sin": np.sin}
 
 Files = dict[str, str]
@@ -227,11 +227,12 @@ def _functions(package: str, path: str) -> dict[str, Callable]:
 
 def random_arguments(function, seed: int) -> dict[str, np.ndarray]:
     """Numbers of order one for each argument, the same for a name wherever it stands; matrices as documented."""
+    text = inspect.getdoc(function) or ""  # without its indentation, which __doc__ has before Python 3.13 alone
     shapes: dict[str, tuple[int, ...]] = {
         name: ((2,) if segments else ()) + (int(n), int(m))
-        for name, segments, n, m in _MATRIX.findall(function.__doc__)
+        for name, segments, n, m in _MATRIX.findall(text)
     }
-    shapes |= {name: (int(count),) for name, count in _GROUP.findall(function.__doc__)}
+    shapes |= {name: (int(count),) for name, count in _GROUP.findall(text)}
     found = {}
     for name in inspect.signature(function).parameters:
         if name == "equations" or name in _WAVES:  # the modules of its own package, and what is no number

@@ -22,6 +22,7 @@ from proprotor.model.configuration import Configuration
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.rotor_share import rotor_share, settled, spring_warnings
 from proprotor.model.side import Side
+from proprotor.model.unit_doubts import unit_warnings
 from proprotor.rotor.airfoil import Airfoil, SectionModel
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from proprotor.deck.sections import Deck
 
 C = TypeVar("C", bound=Configuration)
+_FROM_FILES = ("matrices", "nastran")  # kinds of supports whose units no file tells
 
 
 def load(
@@ -49,7 +51,7 @@ def load(
         from proprotor.deck.settings import with_settings
 
         tables = with_settings(tables, settings)
-    deck = validate(tables)
+    deck = validate(tables).with_origin(os.fspath(name_or_path), settings or {})
     return assemble(deck, numbers_of(deck), kind=kind)
 
 
@@ -81,6 +83,8 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         support = settled(built, at_rest)
         as_given = _with_rotor(support, numbers, at_rest) if fitted else support
         doubts = spring_warnings(as_given, at_rest, rotor.gimbal_stiffness)
+        if deck.support.kind in _FROM_FILES:
+            doubts += unit_warnings(support, at_rest)
         if deck.support.kind == "aircraft":
             derived |= fuselage_of(deck.support, numbers)
     return kind(

@@ -106,6 +106,8 @@ def _from_files(
     read: Callable[..., NormalModes] = nastran_modes
     if section.kind == "matrices":
         read = read_matrix_market if section.file is None else read_npz
+    else:
+        given["names"] = section.names
     return _with_assumed_airloads(read(**given, hub=section.hub), section, numbers)
 
 

@@ -57,7 +57,7 @@ also refers to the deck's own rotor speed. `proprotor.units` lists the units.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import Field, PlainValidator, PrivateAttr, model_validator
@@ -321,6 +321,18 @@ class Deck(Section):
     left: LeftSection | None = optional("What differs on the left side of an aircraft; nothing if left out.")
 
     _left_side: Deck | None = PrivateAttr(default=None)
+    _origin: tuple[str, dict[str, str]] = PrivateAttr(default=("", {}))
+
+    @property
+    def origin(self) -> tuple[str, dict[str, str]]:
+        """The bundled name or the path that the deck was read from, and the fields that were set, as text."""
+        return self._origin
+
+    def with_origin(self, name: str, settings: Mapping[str, str]) -> Deck:
+        """Return the deck with the name or path that it was read from, and the fields that were set."""
+        whole = self.model_copy()
+        whole._origin = (name, dict(settings))
+        return whole
 
     @property
     def left_side(self) -> Deck | None:

@@ -25,8 +25,8 @@
     .npz file, or hub_motion) and carries, one rotor or two. includes_rotor, shaft, rotor_mass, modes, damping_ratio,
     length_unit, mass_unit.
 ``kind = "nastran"``
-    file, an .op2 file, and grid: see `proprotor.support.nastran`. subcase, a table hub, includes_rotor, shaft, modes,
-    damping_ratio, length_unit, mass_unit; carries, one rotor or two.
+    file, of a Nastran run, and grid: see `proprotor.support.nastran`. subcase, generalized_mass, coordinates, a table
+    hub, names, includes_rotor, shaft, modes, damping_ratio, length_unit, mass_unit; carries, one rotor or two.
 ``kind = "pivot"``
     distance from pivot to hub; pitch_inertia, yaw_inertia, pitch_stiffness, yaw_stiffness, pitch_damping,
     yaw_damping; includes_rotor, shaft.
@@ -370,21 +370,34 @@ class MatricesSection(Section):
 
 
 class NastranSection(Section):
-    """Real modes and generalised masses of a Nastran run at a grid point."""
+    """Real modes of a Nastran run at a grid point, or the matrices of a reduced structure."""
 
-    kind: Literal["nastran"] = needed("An .op2 file.")
-    file: fields.File = needed("The .op2 file.")
+    kind: Literal["nastran"] = needed("A file of a Nastran run.")
+    file: fields.File = needed("Real modes: .op2, .h5, .pch or .f06. Matrices of EXTSEOUT: .pch or .op4.")
     grid: fields.Size = needed("The grid point at the hub.")
     subcase: fields.Size = optional("Subcase, needed for a file with several.")
+    generalized_mass: fields.Positives = optional(
+        "Generalised mass of every mode, in units of the run, or of each of the lowest modes in a list whose last "
+        "value holds for all above. Needed for a file without eigenvalue table (LAMA), and for no other."
+    )
+    coordinates: fields.File = optional(
+        "For an .op4 file: the file of bulk data beside it (.pch or .asm), whose entry EXTRN names the coordinates."
+    )
     hub: dict[str, str] | None = optional(
         'One of T1 to R3 for each of x, y, z, alpha_x, alpha_y, alpha_z, with "-" in front if it has the opposite '
         "direction; aircraft axes if left out."
+    )
+    names: Annotated[list[fields.Name], Field(min_length=1)] | None = optional(
+        "Names of the modes; mode_1 and so on, by the numbers of the run, if left out."
     )
     includes_rotor: fields.IncludesRotor = needed(_HELD)
     shaft: fields.Shaft = optional(_SHAFT)
     carries: fields.Carries = optional(f"{_CARRIES} One rotor if left out.")
     modes: fields.Size = optional("Number of lowest modes to keep; all if left out.")
-    damping_ratio: fields.DampingRatio = optional("Damping ratio of every mode; 0 if left out.")
+    damping_ratio: fields.DampingRatios = optional(
+        "Damping ratio of every mode, or of each of the lowest modes in a list whose last value holds for all above; 0 "
+        "if left out."
+    )
     length_unit: fields.PositiveLength = optional("Unit of length of the run; 1 m if left out.")
     mass_unit: fields.Mass = optional("Unit of mass of the run; 1 kg if left out.")
     wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")

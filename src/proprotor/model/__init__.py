@@ -4,11 +4,14 @@ In come a rotor, its operation and its support (`rotor`, `support`); out go line
 configuration, and the stamp that every result has.
 
     linear_model         the record LinearModel: M q̈ + C q̇ + K q = B u about a trim, over a batch of points
+    kept                 results that are kept as long as the objects live from which they were made
+    batches              shapes of batches, and their points a few at a time
     quantities           the numbers of rotor, operation and options by the names of the derivation
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
     mass_at_rest         the rotor's mass matrix at rest with locked blades
     rotor_share          the rotor's share, taken off a support whose masses include the rotor
+    unit_doubts          doubts about the units of a structure from a file
     mount                one rotor on a support
     pair                 two mirrored rotors on an airframe, in symmetric and antisymmetric coordinates
     mast                 a mast that twists between a rotor and its engine
@@ -68,6 +71,7 @@ __all__ = [
     "stamp",
     "state_space",
     "structural_damping",
+    "unit_doubts",
     "with_mast",
     "with_reasons",
 ]

@@ -66,6 +66,9 @@ class LinearModel:
     halves_couple : bool
         Whether symmetric coordinates couple with antisymmetric ones; if not, the terms between them are exactly zero,
         and each half is a problem of its own.
+    apart : tuple of tuple of str
+        Groups of coordinates that couple with no other coordinate, such as reactionless motions of one harmonic: the
+        terms between them and others are exactly zero, and each group is a problem of its own.
     left : LinearModel, optional
         Of two rotors that differ: the left rotor alone, in its mirrored axes.
     left_hub : array (..., 6, n), optional
@@ -91,6 +94,7 @@ class LinearModel:
     rigid_body: tuple[str, ...] = ()
     symmetry: tuple[str, ...] = ()
     halves_couple: bool = True
+    apart: tuple[tuple[str, ...], ...] = ()
     left: LinearModel | None = None
     left_hub: Array | None = None
     inputs: tuple[str, ...] = INPUTS
@@ -119,11 +123,19 @@ class LinearModel:
 
     @property
     def blocks(self) -> list[list[int]]:
-        """Places of the coordinates, in groups of which no two couple."""
+        """Places of the coordinates, in groups of which no two couple: those of `apart` behind the others."""
+        groups = [[self.dofs.index(name) for name in group] for group in self.apart]
+        apart = {place for group in groups for place in group}
+        others = [place for place in range(len(self.dofs)) if place not in apart]
         if self.halves_couple or not self.symmetry:
-            return [list(range(len(self.dofs)))]
-        places = {half: [k for k, own in enumerate(self.symmetry) if own == half] for half in HALVES}
-        return [own for own in places.values() if own]
+            return [group for group in (others, *groups) if group]
+        halves = [[place for place in others if self.symmetry[place] == half] for half in HALVES]
+        return [group for group in (*halves, *groups) if group]
+
+    @cached_property
+    def finite(self) -> Array:
+        """Points (...) with a mass matrix; failed points have NaN in its place."""
+        return np.asarray(np.isfinite(self.M).all(axis=(-2, -1)))
 
     @cached_property
     def massless(self) -> Array:
@@ -146,7 +158,7 @@ class LinearModel:
         Without a shaft only the rate of an azimuth counts.
         """
         places = [self.dofs.index(name) for name in self.azimuths]
-        return np.asarray(np.nan_to_num(np.real(self.K[..., places, places])) > 0)
+        return np.asarray(np.real(self.K.diagonal(0, -2, -1)[..., places]) > 0)
 
     @property
     def shaft_holds_azimuth(self) -> Array:
@@ -205,7 +217,9 @@ class LinearModel:
         whole = self.shapes is not None and places[: self.shapes.shape[-1]] == [*range(self.shapes.shape[-1])]
         shapes = self.shapes if whole else None
         rates, rigid = (tuple(name for name in own if name in dofs) for own in (self.rates, self.rigid_body))
+        apart = (tuple(name for name in group if name in dofs) for group in self.apart)
         more: dict[str, Any] = {"rates": rates, "rigid_body": rigid, "left_hub": left}
+        more["apart"] = tuple(group for group in apart if group)
         if self.symmetry:
             more["symmetry"] = tuple(self.symmetry[place] for place in places)
         return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts, **more)

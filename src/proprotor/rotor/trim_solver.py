@@ -12,6 +12,7 @@ Points whose path is lost in the first stage are followed on all stations.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -21,20 +22,17 @@ import numpy as np
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections
 from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim
-from proprotor.rotor.trim_balance import Balance, Linear, Slopes, State, copy_state, newton_step
+from proprotor.rotor.trim_balance import Balance, Linear, Slopes, State, copy_state, is_last, newton_step
 from proprotor.rotor.trim_bound import at_end, near_each_other
+from proprotor.rotor.trim_of_one import Found, trim_of_one
 from proprotor.rotor.trim_path import Path, follow
 from proprotor.rotor.trim_reasons import LOST, before_trim, beyond_reach, not_found, path_ended, warnings
 from proprotor.rotor.trim_start import first_guess, held
 from proprotor.typing import Array
 
 _ITERATIONS = 40
-# rad, the last step: the error of the loads. Convergence is quadratic, so the trim itself is exact to rounding.
-_CONVERGED = 1e-13
-# rad, a step that is no smaller than half of the step before: rounding limits convergence, as for a spring a hundred
-# million times as stiff as everything else that holds the blade.
-_STALLED = 1e-9
 _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below the error of these stations
+_REAL = np.dtype(float)
 _ROUNDING = 1e-14  # rad, of the step that would follow
 
 
@@ -69,6 +67,7 @@ def solve_trim(
     options: Options,
     target: Target,
     points: int,
+    one: bool = False,
 ) -> Settled:
     """Return the trim of all points.
 
@@ -84,13 +83,19 @@ def solve_trim(
         The condition that closes the trim.
     points : int
         Number of points.
+    one : bool
+        Compute the only point with plain numbers where this is possible.
     """
     free = _free_unknowns(options, target.finds_collective)
-    balance = Balance(sections, quantities, options, target, free)
+    balance = Balance(sections, quantities, options, target, free, points)
     numbers = (*quantities.values(), target.collective, target.load)
     with np.errstate(all="ignore"):
-        if sections.is_complex or any(map(np.iscomplexobj, numbers)):
+        if sections.is_complex or any(map(_is_complex, numbers)):
             return _complex_trim(balance, few, points)
+        if one and free and balance.fused and few is sections:
+            found = trim_of_one(balance)
+            if found is not None:
+                return _settled(balance, found)
         search = _Search.of(balance, points)
         if free:
             search.come_near(balance if few is sections else replace(balance, sections=few))
@@ -155,7 +160,7 @@ class _Search:
             size = np.abs(step).max(axis=1)
             arrived = size <= _NEAR
             if few is self.balance:
-                arrived &= _small(size, before[active]) | (_next(size, before[active]) <= _ROUNDING)
+                arrived &= is_last(size, before[active]) | (_next(size, before[active]) <= _ROUNDING)
             before[active] = size
             near.append(active[arrived])
             active = active[~arrived & ~np.isnan(size)]
@@ -204,7 +209,7 @@ class _Search:
             step, here = _newton(self.balance, self.state, active, doubts)
             found.put(active, here.slopes)
             size = np.abs(step).max(axis=1)
-            small = _small(size, size_before[active])
+            small = is_last(size, size_before[active])
             size_before[active] = size
             if count == 0 and small.all():
                 self.last = _Loads(_after(here, step), here, doubts)
@@ -223,11 +228,6 @@ def _newton(
     """Return Newton's step (n, k) at all of the loads, and the balance before the step."""
     here = balance.near(state, rows, doubts=doubts)
     return newton_step(here.slopes.full, here.residual), here
-
-
-def _small(size: Array, before: Array) -> Array:
-    """Return whether a step (n,) is the last, by its size and the size of the step before."""
-    return np.asarray((size <= _CONVERGED) | ((size <= _STALLED) & (size >= before / 2)))
 
 
 def _next(size: Array, before: Array) -> Array:
@@ -275,7 +275,25 @@ def _settle(
     loads = last.work * np.asarray(quantities["n_blades"])[..., None]
     trim.torque[rows], trim.thrust[rows] = loads[:, TORQUE], loads[:, THRUST]
     warning[rows] = warnings(balance, here, loads[:, THRUST], last.doubts)
-    return Settled(trim, rows, quantities, here.segments)
+    return Settled(trim, rows, quantities, here.along())
+
+
+def _settled(balance: Balance, found: Found) -> Settled:
+    """Return a trim by plain numbers as the trim of a batch of one."""
+    here, blades = found.here, found.here.quantities["n_blades"]
+    slopes = (here.work_slopes[row] for row in (THRUST, TORQUE))
+    moved = (sum(map(operator.mul, row, found.step)) for row in slopes)
+    values = {name: np.array([value]) for name, value in found.state.items()}
+    trim = Trim(
+        **values,
+        thrust=np.array([blades * (here.work[THRUST] + next(moved))]),
+        torque=np.array([blades * (here.work[TORQUE] + next(moved))]),
+        converged=np.array([True]),
+        reason=np.array([""], dtype=object),
+        warning=np.array([""], dtype=object),
+        iterations=np.array([found.iterations]),
+    )
+    return Settled(trim, np.zeros(1, dtype=int), here.quantities, here.segments(balance.sections.sides))
 
 
 def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
@@ -295,6 +313,11 @@ def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
         step, _ = _newton(balance, state, rows)
         balance.take_step(state, rows, step)
     return _settle(balance, state, state, trim.reason, trim.iterations)
+
+
+def _is_complex(value: Any) -> bool:
+    """Return whether a number or an array is complex."""
+    return isinstance(value, complex) or getattr(value, "dtype", _REAL).kind == "c"
 
 
 def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:

@@ -2,7 +2,7 @@
 
 In: a beam wing, a whole aircraft, or modes or matrices of any finite-element code. Out: `NormalModes`, on which `model`
 mounts rotors.
-This room imports `errors`, `typing`, `needs`, `files` and, for the names of coordinates, `rotor`.
+This room imports `errors`, `typing`, `needs`, `files`, `nastran` and, for the names of coordinates, `rotor`.
 
     normal_modes       coordinates of a support; two-axis pivot; rigid support
     airframe           coordinates of an airframe that carries two rotors
@@ -14,7 +14,7 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     free_airframe      rigid motions and elastic modes of a free aircraft
     aircraft_airloads  airloads of a free aircraft: wing strips and tails
     wing_aerodynamics  airloads of the wing itself, by strips
-    nastran            modes from a Nastran run
+    nastran            modes or a reduced structure from a Nastran run
     matrix_files       matrices of any finite-element code
     matrix_market      files of such matrices in the Matrix Market format
 
