@@ -106,8 +106,8 @@ def hinged_blade(stations: BladeStations, rotor_speed: float, pitch: Array) -> H
     numbers |= _springs(np.linalg.inv(springs), pitch, _share_of_blade(blade, deflection, pitch))
     turn, total = _turns(blade, deflection, pitch)
     _, slope = spring_matrix(numbers, pitch)
-    numbers["control_stiffness"] = _nearest(slope, turn)
-    stiffness = _pitch_stiffness(blade, _nearest(total, turn), pitch)
+    numbers["control_stiffness"] = _nearest(blade, slope, turn)
+    stiffness = _pitch_stiffness(blade, _nearest(blade, total, turn), pitch)
     return HingedBlade(numbers, stiffness, pitch, rotor_speed, deflection)
 
 
@@ -256,12 +256,16 @@ def _pitch_stiffness(blade: ElasticBlade, flap_lag: float, pitch: Array) -> Pitc
 
 def _ratio(blade: ElasticBlade, torque: Array) -> float:
     turn, total = blade.turned_by(torque, REFERENCE * blade.stations.tip)
-    return _nearest(total, turn)
+    return _nearest(blade, total, turn)
 
 
-def _nearest(total: Array, turn: Array) -> float:
-    """Return the stiffness whose turns are nearest to those of torques, large torques before small ones."""
-    return float((np.asarray(total) ** 2).sum() / (np.asarray(total) * turn).sum())
+def _nearest(blade: ElasticBlade, total: Array, turn: Array) -> float:
+    """Return the stiffness whose turns are nearest to those of torques, large torques before small ones.
+
+    Without a torque it is that of the control system.
+    """
+    work = float((np.asarray(total) * turn).sum())
+    return float((np.asarray(total) ** 2).sum()) / work if work else float(blade.stations.control_stiffness)
 
 
 def spring_matrix(numbers: dict[str, Any], pitch: Array) -> tuple[Array, Array]:
