@@ -16,6 +16,7 @@ from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet
 from proprotor.rotor.operation import Operation
@@ -33,6 +34,7 @@ __all__ = [
     "Airfoil",
     "AirfoilTable",
     "BladeFrequencies",
+    "BladeStations",
     "Case",
     "DriveTrain",
     "EquationSet",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import click
+import numpy as np
 
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
@@ -81,7 +82,7 @@ def blade(
 
     output.check_writable("--deck", deck)
     speed = _positive("--rotor-speed", rotor_speed, "rad/s")
-    pitch = values_in_si(collective, "rad", "--collective")
+    pitch = np.atleast_1d(values_in_si(collective, "rad", "--collective"))
     if len(set(pitch.tolist())) < 3:
         raise InputError("--collective", collective, 'must have at least 3 values, such as "15:50:5 deg"')
     held = {
@@ -97,7 +98,7 @@ def blade(
         output.write("--deck", deck, deck_lines(found, stations).encode())
 
     def draw() -> Any:
-        from proprotor.plots.blade_frequencies import plot_blade_frequencies
+        from proprotor.plots import plot_blade_frequencies
 
         return plot_blade_frequencies(table, found, [speed * part for part in _FAN])
 

@@ -163,9 +163,7 @@ class BalanceOfOne:
         """Return residual and slopes from the results of the plans."""
         rows, free, hinged = self.balance.rows, self.balance.free, self.balance.hinged.tolist()
         done = [_entry(work, numbers[0]) for numbers in plans.WORK["work"]]
-        slopes = [
-            [_entry(work, numbers[PITCH_TWICE[j]]) for j in free] for numbers in plans.WORK["work_slopes"]
-        ]
+        slopes = [[_entry(work, numbers[PITCH_TWICE[j]]) for j in free] for numbers in plans.WORK["work_slopes"]]
         residual = [_entry(structure, plans.BALANCE["residual"][row][0]) - done[row] for row in rows]
         if self.balance.target.finds_collective:
             residual[-1] += self.load

@@ -22,7 +22,6 @@ from proprotor.typing import Array
 PER_NODE = 4
 _POINTS = 6  # exact for mass, tension and two cubics; the twist within an element needs the rest
 _HELD = slice(0, PER_NODE)  # motions of the first station
-HOLDS = ("clamped", "gimballed")
 
 
 class RotatingModes(NamedTuple):

@@ -82,9 +82,7 @@ def _of_undeflected(one: BalanceOfOne, here: Here) -> list[float]:
 
 def _is_end_of_path(balance: Balance, passed: list[Here], start: Numbers, state: Numbers) -> bool:
     """Return whether the bound shows that the trim is connected with the undeflected blade."""
-    first, last = (
-        Slopes(np.array([here.full]), np.array([here.airloads])) for here in (passed[0], passed[-1])
-    )
+    first, last = (Slopes(np.array([here.full]), np.array([here.airloads])) for here in (passed[0], passed[-1]))
     ends = ({name: np.array([value]) for name, value in end.items()} for end in (start, state))
     return bool(at_end(balance, first, last, *ends, np.zeros(1, dtype=int)).all())
 
