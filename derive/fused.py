@@ -95,7 +95,8 @@ def _motions() -> tuple[Matrix, dict[str, dict[str, Combination]]]:
     columns = Columns(names(SEGMENT_MOTIONS))
     prefixes = {"rate_motion": "rate_", "gust_motion": "gust_", "displacement_motion": "change_"}
     found = {
-        name: columns.combinations(of_catalogue("airloads", name), prefix) for name, prefix in prefixes.items()
+        name: columns.combinations(of_catalogue("airloads", name), prefix)
+        for name, prefix in prefixes.items()
     }
     return columns.matrix, found
 
@@ -200,7 +201,9 @@ def _fixed_frame(blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
             matrices[line.result] = Matrix(left.rows, left.columns + right.columns, both)
             continue
         functions = [term.function for term in line.terms if isinstance(term, Call)]
-        total = _sum(entries_of(function) for function in functions if function.blade_matrices or not of_blades)
+        total = _sum(
+            entries_of(function) for function in functions if function.blade_matrices or not of_blades
+        )
         total = {place: value.xreplace(entries) for place, value in total.items()}
         matrices[line.result] = Matrix(first.function.rows, first.function.columns, total)
     return {name: matrices[name] for name in assembly.results}

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import sympy as sp
 
-from derive import airloads, lift_slope, section
+from derive import lift_slope, section
 from derive import symbols as s
 from derive.coordinates import SEGMENT_LOADS, SEGMENT_MOTIONS, names
 from derive.fused import FusedFunction, arguments, entries_of, named_values, of_catalogue
@@ -46,7 +46,7 @@ def line() -> FusedFunction:
 
 
 def section_loads() -> FusedFunction:
-    """Loads of a section with a straight lift line per unit span, their derivatives, and what says if they are in doubt."""
+    """Loads of a section with a straight lift line per unit span, their derivatives, and two numbers for doubts."""
     steps = _without_other_names(_steps_of_section())
     known = {symbol for symbol, _ in steps}
     wanted = [symbol.name for symbol in section.SECTION_LOADS.values() if symbol in known]
@@ -95,7 +95,9 @@ def _steps_of_section() -> list[tuple[sp.Symbol, sp.Expr]]:
     ]
 
 
-def _put_in(names: set[sp.Symbol], steps: Iterable[tuple[sp.Symbol, sp.Expr]]) -> list[tuple[sp.Symbol, sp.Expr]]:
+def _put_in(
+    names: set[sp.Symbol], steps: Iterable[tuple[sp.Symbol, sp.Expr]]
+) -> list[tuple[sp.Symbol, sp.Expr]]:
     """Put some steps into those that need them."""
     steps = list(steps)
     given = {symbol: value for symbol, value in steps if symbol in names}

@@ -44,6 +44,7 @@ NOT_RUN = {
     "source ": "the shell that a reader works in",
     "derive/ ──▶": "a drawing",
     "--- a/": "a change of the derivation, which tests/derive/test_add_a_term.py makes in a copy",
+    "SOL 1": "a run of Nastran; tests/exchange/test_dmig_file.py puts the rotor's file on a structure",
     "radius = {": "a line of a deck; tests/deck/test_deck.py reads such",
     "from distributed import Client": "needs a cluster at that address; tests/study/test_study_distributed.py has one",
 }

@@ -1,4 +1,15 @@
-"""The names that `import proprotor as pp` offers; the package imports this module where a name is first used."""
+"""The names that `import proprotor as pp` offers; the package imports this module where a name is first used.
+
+Datasets get the accessor ``.proprotor`` (`proprotor.plots.accessor`) once xarray is imported, by whomever: xarray takes
+longer to import than many an analysis.
+"""
+
+import sys
+from importlib import import_module, util
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
 
 from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
@@ -17,6 +28,7 @@ from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.blade_stations import BladeStations
+from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet
 from proprotor.rotor.operation import Operation
@@ -70,4 +82,36 @@ __all__ = [
     "standard_air",
     "study",
     "two_axis_pivot",
+    "write_c81",
 ]
+
+
+def _register_accessor() -> None:
+    import_module("proprotor.plots.accessor").register()
+
+
+class _AtImportOfXarray(MetaPathFinder):
+    """Registers the accessor at the end of the import of xarray, and finds no module itself."""
+
+    asked = False
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        if name != "xarray" or self.asked:
+            return None
+        self.asked = True  # whoever finds xarray comes after this finder
+        spec = util.find_spec(name)
+        if spec is not None and spec.loader is not None:
+            execute = spec.loader.exec_module
+
+            def execute_and_register(module: ModuleType) -> None:
+                execute(module)
+                _register_accessor()
+
+            spec.loader.exec_module = execute_and_register  # type: ignore[method-assign]
+        return spec
+
+
+if "xarray" in sys.modules:
+    _register_accessor()
+else:
+    sys.meta_path.insert(0, _AtImportOfXarray())

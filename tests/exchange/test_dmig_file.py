@@ -134,7 +134,7 @@ def test_a_rotor_alone_and_other_axes(model, tmp_path):
         ({"first_extra_point": 99_999_999}, "grid = 1101: must be a number of a point"),
         ({"first_extra_point": 1100}, "grid = 1101: must not be one of the extra points, 1100 to 1111"),
         ({"length_unit": 0.0}, "length_unit = 0.0: must be above zero"),
-        ({"mass_unit": float("nan")}, "mass_unit = nan: must be above zero"),
+        ({"mass_unit": float("nan")}, "mass_unit = nan: must be finite"),
         ({"hub": {"x": "T1"}}, "hub.y: is missing"),
         (
             {"hub": dict.fromkeys(("x", "y", "z", "alpha_x", "alpha_y", "alpha_z"), "T1")},
@@ -157,6 +157,6 @@ def test_models_that_are_no_rotor_at_one_airspeed(case, model, tmp_path):
     with pytest.raises(InputError, match=r"must end in \.bdf"):
         write(model, tmp_path / "rotor.txt")
     failed = case.linearize(2000.0)
-    with pytest.raises(InputError, match=r"^model = failed: "):
+    with pytest.raises(InputError, match=r"^airspeed = 2000 m/s: "):
         write(failed, tmp_path / "rotor.bdf")
     assert not list(tmp_path.iterdir())

@@ -97,10 +97,10 @@ def test_singular_and_failed_points_are_found_among_many():
 def test_a_rotor_without_what_its_options_need_is_refused_each_time(case):
     rotor = replace(case.rotor, pitch_inertia=np.array([0.0, 1.0]))
     for _ in range(2):
-        with pytest.raises(InputError, match='pitch_inertia = .*must be above zero with pitch="dynamic"'):
+        with pytest.raises(InputError, match=r'pitch_inertia = .*must be above zero with pitch="dynamic"'):
             pp.rotor_model(rotor, case.operation, 100.0)
         with pytest.raises(
-            InputError, match='control_stiffness = .*must be above zero with pitch="coupling"'
+            InputError, match=r'control_stiffness = .*must be above zero with pitch="coupling"'
         ):
             pp.rotor_model(
                 replace(case.rotor, control_stiffness=0.0), case.operation, 100.0, pitch="coupling"

@@ -1,11 +1,14 @@
 """Binary files of results, with the oddities that programs, versions and parameters bring, each by name."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import proprotor as pp
 from proprotor.errors import InputError
 from proprotor.support.nastran import nastran_modes
-from tests.nastran.written import HUB, LABELS, OTHER, Op2, Run
+from tests.nastran.written import HUB, LABELS, OTHER, Op2, Run, run_of
 
 SINGLE = 1e-6  # words of 4 bytes hold single precision
 VECTORS = {"x": "T1", "y": "T2", "z": "T3", "alpha_x": "R1", "alpha_y": "R2", "alpha_z": "R3"}
@@ -216,3 +219,42 @@ def test_what_is_missing_is_named(tmp_path):
     assert refusal(tmp_path / "none.op2").endswith("no such file")
     assert "has no real eigenvectors" in refusal(Op2().lama(given).save(tmp_path / "b.op2"))
     assert refusal(path, coordinates="a.pch").startswith("coordinates = a.pch: must be given with an .op4")
+
+
+@pytest.mark.parametrize("width", [4, 8])
+@pytest.mark.parametrize("wide", [False, True])
+@pytest.mark.parametrize("name", ["GEOM1", "GEOM1S"])
+def test_an_output_system_of_the_grid_point_is_doubted_unless_axes_are_named(tmp_path, name, wide, width):
+    """A motion in local axes looks like any other motion."""
+    given = run()
+    systems = {OTHER: 3, HUB: 5, 2000: 0}
+    file = Op2(width=width).points(systems, name, wide).lama(given).vectors(given)
+    path = file.save(tmp_path / "a.op2")
+    assert "grid point 1101 has the output coordinate system 5" in str(read(path, hub=None).warning)
+    assert read(path).warning is None  # axes are named
+    basic = (
+        Op2(width=width)
+        .points(systems, name, wide)
+        .lama(given)
+        .vectors(given, "BOUGV1")
+        .save(tmp_path / "b.op2")
+    )
+    assert read(basic, hub=None).warning is None
+    none = (
+        Op2(width=width)
+        .points(systems | {HUB: 0}, name, wide)
+        .lama(given)
+        .vectors(given)
+        .save(tmp_path / "c.op2")
+    )
+    assert read(none, hub=None).warning is None
+
+
+def test_the_doubt_of_axes_stands_at_every_result(tmp_path):
+    case = pp.load_case("xv15-uncoupled")
+    support = case.support
+    given = run_of(support.mass, support.stiffness, support.hub)
+    path = Op2(width=8).points({HUB: 5}).lama(given).vectors(given).save(tmp_path / "a.op2")
+    read_in = read(path, hub=None, includes_rotor=support.includes_rotor)
+    found = replace(case, support=read_in).sweep([100.0, 150.0])
+    assert all("output coordinate system 5" in str(text) for text in found.warning.values.ravel())

@@ -52,6 +52,12 @@ def test_hdf5_of_buckling_of_complex_modes_and_of_another_program(tmp_path):
     assert "is damaged" in refusal(tmp_path / "e.h5")
 
 
+def test_hdf5_tells_the_output_system_of_the_grid_point(tmp_path):
+    path = save_hdf5(tmp_path / "a.h5", [run()], systems={OTHER: 3, HUB: 5})
+    assert "grid point 1101 has the output coordinate system 5" in str(read(path, hub=None).warning)
+    assert read(save_hdf5(tmp_path / "b.h5", [run()], systems={OTHER: 3, HUB: 0}), hub=None).warning is None
+
+
 def test_without_h5py_the_extra_is_named(tmp_path, monkeypatch):
     path = save_hdf5(tmp_path / "a.h5", [run()])
     monkeypatch.setitem(sys.modules, "h5py", None)

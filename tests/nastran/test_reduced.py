@@ -130,6 +130,15 @@ def test_structural_damping_of_the_elements_is_left_out_and_said_so(in_the_run, 
     assert read(none, hub=AXES, modes=6).warning is None
 
 
+@pytest.mark.parametrize(
+    "entry", [f"GRID,{HUB},,1.,2.,3.,5", f"GRID   *{HUB:16d}{'':16}1.              2.\n*       3.{5:30d}"]
+)
+def test_the_output_system_of_the_grid_point_is_in_the_bulk_data(in_the_run, tmp_path, entry):
+    path = save_dmig(tmp_path / "a.pch", *in_the_run, before=entry)
+    assert "grid point 1101 has the output coordinate system 5" in str(read(path, hub=None, modes=6).warning)
+    assert read(path, hub=AXES, modes=6).warning is None
+
+
 def test_viscous_damping_is_read(in_the_run, tmp_path):
     matrices, coordinates = in_the_run
     path = save_dmig(tmp_path / "a.pch", matrices | {"BAAX": 0.02 * matrices["MAAX"]}, coordinates)
@@ -189,10 +198,11 @@ def test_entries_that_are_damaged(text, message):
         read_dmig(text.splitlines())
 
 
-def test_complex_and_rectangular_entries_are_passed_over():
+def test_complex_and_rectangular_entries_are_passed_over(tmp_path):
     text = "DMIG,QHH,0,1,3,0\nDMIG,QHH,1,1,,1,1,1.0,2.0\nDMIG,P,0,9,1,0,,,1\nDMIG,P,1,,,1,1,1.0\n"
     text += "DMIG,M1,0,6,1,0\nDMIG,M1,1,1,,1,1,2.5-1\n+,2,,1.D1\nDMIG,K1,0,6,1,0\nDMIG,K1,2,,,2,,3.0\n"
-    found = reduced_from_dmig(text.splitlines())
+    (tmp_path / "a.bdf").write_text(text)
+    found = reduced_from_dmig(tmp_path / "a.bdf")
     assert found.names == ("1.T1", "2")
     np.testing.assert_array_equal(found.mass, [[0.25, 10.0], [10.0, 0.0]])
     np.testing.assert_array_equal(found.stiffness, [[0.0, 0.0], [0.0, 3.0]])

@@ -157,6 +157,18 @@ class Op2:
             records += [[codes], [b"".join(rows)]]
         return self.block(name, records)
 
+    def points(self, systems, name="GEOM1", wide=False):
+        """Entries GRID by number, with their output coordinate systems; coordinates of double precision if wide."""
+        words = self.words(4501, 45, 1120001 if wide else 1)
+        for point, system in systems.items():
+            place = (
+                struct.pack(f"{self.order}3d", 1.0, 2.0, 3.0)
+                if wide and self.width == 4
+                else self.words(1.0, 2.0, 3.0)
+            )
+            words += self.words(point, 0) + place + self.words(system, 0, 0)
+        return self.block(name, [[self.words(2101, 21, 8)], [words]])
+
     def other_blocks(self):
         """A matrix in columns, stresses in an unknown layout, and geometry in an old one: nothing that is needed."""
         column = [self.data(self.words(1)), self.record(self.words(1, 1.0, 2.0))]
@@ -188,7 +200,7 @@ def _pieces(content, count, width):
 # HDF5 ---------------------------------------------------------------------------------------------
 
 
-def save_hdf5(path, runs, complex_too=False, eigenvalues=True, approach=2):
+def save_hdf5(path, runs, complex_too=False, eigenvalues=True, approach=2, systems=None):
     """An HDF5 file of MSC Nastran, with the group INDEX left out, which no reader needs."""
     import h5py
 
@@ -241,6 +253,17 @@ def save_hdf5(path, runs, complex_too=False, eigenvalues=True, approach=2):
         file["NASTRAN/RESULT/NODAL/EIGENVECTOR"] = np.array(vectors, dtype=vector_type)
         if eigenvalues:
             file["NASTRAN/RESULT/SUMMARY/EIGENVALUE"] = np.array(table, dtype=table_type)
+        if systems:
+            grid = [
+                ("ID", "<i8"),
+                ("CP", "<i8"),
+                ("X", "<f8", (3,)),
+                ("CD", "<i8"),
+                ("PS", "<i8"),
+                ("SEID", "<i8"),
+            ]
+            rows = [(point, 0, (1.0, 2.0, 3.0), system, 0, 0) for point, system in systems.items()]
+            file["NASTRAN/INPUT/NODE/GRID"] = np.array(rows, dtype=grid)
         if complex_too:
             file["NASTRAN/RESULT/NODAL/EIGENVECTOR_CPLX"] = np.zeros(3)
     return path

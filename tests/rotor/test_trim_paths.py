@@ -153,7 +153,8 @@ def test_a_failed_or_doubtful_point_is_alone_what_it_is_in_company(compared):
         ).trim
         assert single.reason == trim.reason[place] and single.warning == trim.warning[place]
         assert single.iterations == trim.iterations[place]
-        assert np.array_equal(states(single), states(trim)[place], equal_nan=True)
+        # To rounding: the sum over stations that all points share has another order than that over a blade's own.
+        np.testing.assert_allclose(states(single), states(trim)[place], rtol=0, atol=1e-13)
 
 
 # Warnings -----------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from benchmarks.tracking import values_of
 from proprotor.rotor.motions import motions, name_list
 from proprotor.stability.following import follow
 from proprotor.stability.matching import POOR, match_modes
-from proprotor.stability.mode_names import _assign_names
+from proprotor.stability.mode_names import _assign_names, _groups
 from proprotor.stability.modes import decomposition
 from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.stability.sweep import sweep, sweep_case
@@ -259,8 +259,9 @@ def test_a_pair_has_one_name_though_its_halves_would_go_apart():
     """Two real roots that want different names must not tear a pair between them."""
     values = np.array([-1 + 2j, -1 - 2j, -3.0, -4.0])
     shares = np.array([[0.55, 0.55, 0.9, 0.1], [0.45, 0.45, 0.1, 0.9]])
-    (names,) = _assign_names(("a", "b"), [0, 1], shares[None], values[None])
-    assert names.tolist() == [0, 0, 1, 1]
+    groups, modes = _groups(("a", "b"), ((0, 1),), (0, 1)), [0, 2, 3]
+    names = _assign_names(groups, values[None], np.array([modes]), shares[:, modes, None])
+    assert names[:, 0].tolist() == [0, 1, 1]
 
 
 @pytest.mark.parametrize("name", ["xv15-uncoupled", "xv15-mass-distribution"])

@@ -293,7 +293,8 @@ def _print_flutter(results: Dataset, found: Mapping[str, Any]) -> None:
         low, high = (found[f"{end} flutter speed (m/s)"] / KNOT for end in ("lowest", "highest"))
         doubts = found["flutter speeds doubtful"]
         range_ = f"{marked(f'{low:.2f}', doubts)} to {marked(f'{high:.2f}', doubts)} {KTAS}"
-        out.print(f"{found['flutter speeds found']} flutter speeds, {range_}")
+        count = f"{found['flutter speeds found']} of {results.flutter_speed.size}"
+        out.print(f"flutter speeds of {count} designs, {range_}")
     else:
         out.print("no flutter speed was found")
     for text, count in list(found["notes"].items())[:_REASONS]:

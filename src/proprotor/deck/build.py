@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from proprotor.deck.sections import Deck
 
 C = TypeVar("C", bound=Configuration)
-_FROM_FILES = ("matrices", "nastran")  # kinds of supports whose units no file tells
+_FROM_FILES = ("matrices", "nastran", "universal")  # kinds of supports whose units no file tells
 
 
 def load(
@@ -120,7 +120,7 @@ def _machinery(deck: Deck, numbers: Mapping[str, Datum]) -> _Machinery:
     with _errors_as_written("operation", numbers):
         operation, air = _operation(deck, numbers)
     with _errors_as_written("rotor.airfoil", numbers):
-        airfoil = _airfoil(_values(numbers, "rotor.airfoil"))
+        airfoil = _airfoil(_values(numbers, "rotor.airfoil"), deck.rotor.airfoil.table_name)
     with _errors_as_written("rotor", numbers):
         given = {"airfoil": airfoil, "propeller_moment": deck.rotor.propeller_moment}
         rotor, derived = _rotor(_values(numbers, "rotor") | given, operation.density)
@@ -210,8 +210,10 @@ def _operation(deck: Deck, numbers: Mapping[str, Datum]) -> tuple[Operation, dic
     return operation, {f"operation.{name}": number for name, number in air.items()}
 
 
-def _airfoil(given: dict[str, Any]) -> SectionModel:
-    return AirfoilTable.from_c81(given["table"]) if "table" in given else Airfoil(**given)
+def _airfoil(given: dict[str, Any], table_name: str) -> SectionModel:
+    if "table" not in given:
+        return Airfoil(**given)
+    return AirfoilTable.from_c81(given["table"], table_name or None, given.get("table_reynolds"))
 
 
 def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datum]]:

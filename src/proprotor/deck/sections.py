@@ -91,19 +91,33 @@ class AirfoilSection(Section):
     """Sections of the blade: a straight lift line with constant drag and moment, or a table."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = AIRFOIL_ALTERNATIVES
-    may_lack: ClassVar[tuple[str, ...]] = ("zero_lift_angle", "drag", "moment")
+    may_lack: ClassVar[tuple[str, ...]] = (
+        "zero_lift_angle",
+        "drag",
+        "moment",
+        "table_name",
+        "table_reynolds",
+    )
 
     lift_slope: fields.Slope = optional("Slope of the lift coefficient with the angle of attack.")
     zero_lift_angle: fields.Angle = optional("Angle of attack without lift.")
     drag: fields.NotNegative = optional("Drag coefficient.")
     moment: fields.Number = optional("Moment coefficient about the reference line, nose up.")
     table: fields.File = optional("A C81 file; its name starts from the deck's folder.")
+    table_name: str = optional("Title of the table in a file of several; the first if left out.", "")
+    table_reynolds: fields.Size = optional(
+        "Reynolds number of the table, in a file with tables of one airfoil at several."
+    )
 
     @model_validator(mode="after")
     def _numbers_or_a_table(self) -> AirfoilSection:
-        numbers = [name for name in type(self).model_fields if name in self.model_fields_set - {"table"}]
+        of_table = {"table", "table_name", "table_reynolds"}
+        numbers = [name for name in type(self).model_fields if name in self.model_fields_set - of_table]
         if self.table is not None and numbers:
             raise InputError("table", self.table.written, f"must not be given with {', '.join(numbers)}")
+        for name in sorted(of_table & self.model_fields_set):
+            if self.table is None:
+                raise InputError(name, None, "must be given with table")
         if self.table is None and "lift_slope" not in numbers:
             raise InputError("lift_slope", None, "is missing; give lift_slope or table")
         return self

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from proprotor.errors import InputError
+from proprotor.errors import InputError, check_finite
 from proprotor.files.output import check_place, write_whole
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.mount import check_hub
@@ -71,9 +71,8 @@ def save_dmig(
     check_place(path, _ENDING)
     rotor = model if model.rotor is None else model.rotor
     _check(rotor, grid, first_extra_point)
-    for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
-        if not 0 < unit < np.inf:
-            raise InputError(name, unit, "must be above zero")
+    check_finite("length_unit", length_unit, "above zero")
+    check_finite("mass_unit", mass_unit, "above zero")
     coordinates, units = _coordinates(rotor, grid, first_extra_point, hub, length_unit)
     energy = mass_unit * length_unit**2
     matrices = {own: units[:, None] * getattr(rotor, name) * units / energy for name, own in MATRICES.items()}
@@ -90,7 +89,7 @@ def _check(rotor: LinearModel, grid: int, first_extra_point: int) -> None:
     if rotor.M.ndim > 2:
         raise InputError("model", f"{rotor.M.shape[:-2]} points", "must be at one airspeed")
     if reason := str(rotor.trim.reason):
-        raise InputError("model", "failed", reason)
+        raise InputError("airspeed", f"{float(rotor.airspeed):.6g} m/s", reason)
     last = first_extra_point + len(rotor.dofs) - len(HUB) - 1
     for name, point in (("grid", grid), ("first_extra_point", first_extra_point)):
         if not 1 <= point <= _LARGEST_POINT or last > _LARGEST_POINT:

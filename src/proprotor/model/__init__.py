@@ -28,6 +28,8 @@ configuration, and the stamp that every result has.
     options_in_force     the options of a model as plain data and in words
     deck_fingerprint     a short text that identifies a deck
     stamp                the case, options and sources that a result carries
+    html                 pieces of HTML for notebooks
+    in_notebook          a case and a model as HTML
     options_of_result    options taken back from a result
 
 The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor` and `support`. One
@@ -56,6 +58,7 @@ __all__ = [
     "deck_fingerprint",
     "doubts",
     "first_order",
+    "html",
     "in_closed_form",
     "mass_at_rest",
     "mount",

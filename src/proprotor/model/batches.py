@@ -33,5 +33,7 @@ def few_at_once(shape: tuple[int, ...]) -> Iterator[_Rows]:
 
 def at_rows(matrices: Array, rows: _Rows, shape: tuple[int, ...]) -> Array:
     """Return matrices (..., n, m) at some rows of a batch; what all points have in common is returned as it is."""
+    if rows is ...:
+        return matrices
     varies = matrices.ndim == len(shape) + 2 and matrices.shape[:1] == shape[:1]
     return matrices[rows] if varies else matrices

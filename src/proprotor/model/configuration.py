@@ -86,6 +86,12 @@ class Configuration:
         ]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from proprotor.model.in_notebook import case_html  # here, because most uses need no HTML
+
+        return case_html(self)
+
     def linearize(self, airspeed: Any, **options: Any) -> LinearModel:
         """Return the equations of motion of the rotor on its support.
 

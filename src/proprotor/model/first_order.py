@@ -144,7 +144,7 @@ def _anywhere(holds: Array) -> Array:
 
 def lacking_states(model: LinearModel) -> Iterator[tuple[int, Array]]:
     """Yield the place of each azimuth among the states that some points lack, with these points (...)."""
-    if not (lacks := lack_azimuths(model)).any():
+    if model.azimuths_held.ndim == 1 or not (lacks := lack_azimuths(model)).any():
         return
     held = held_coordinates(model)
     for name, free in zip(model.azimuths, np.moveaxis(lacks, -1, 0), strict=True):

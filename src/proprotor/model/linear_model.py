@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
+_AZIMUTHS = tuple(in_half(half, ROTOR_SPEED) for half in reversed(HALVES))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -116,6 +117,12 @@ class LinearModel:
         lines += [f"  {len(at)} of {converged.size} doubtful: {text}" for text, at in doubts.items()]
         return "\n".join(lines)
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from proprotor.model.in_notebook import model_html  # here, because most uses need no HTML
+
+        return model_html(self)
+
     @property
     def matrices(self) -> dict[str, Array]:
         """M, C, K and, for a model with inputs, B, by name; SI."""
@@ -148,7 +155,7 @@ class LinearModel:
 
         An interconnect shaft between two rotors holds the antisymmetric azimuth alone.
         """
-        names = [in_half(half, ROTOR_SPEED) for half in reversed(HALVES)] if self.symmetry else [ROTOR_SPEED]
+        names = _AZIMUTHS if self.symmetry else (ROTOR_SPEED,)
         return tuple(name for name in names if name in self.dofs)
 
     @cached_property

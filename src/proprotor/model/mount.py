@@ -86,7 +86,7 @@ def check_hub(field: str, model: LinearModel) -> None:
         raise InputError(field, ", ".join(model.dofs), f"must begin with {', '.join(HUB)}")
 
 
-def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> LinearModel:
+def refused_where(refusal: Array | None, model: LinearModel, support: NormalModes) -> LinearModel:
     """Return the model with NaN and the reason at each point whose support has no mass without its rotors.
 
     Raises
@@ -95,7 +95,7 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
         When one refusal holds for all points.
     """
     refuse(refusal, support)
-    if not (refused := refusal != "").any():
+    if refusal is None or not (refused := refusal != "").any():
         return model
     field = str(InputError("support.includes_rotor", support.includes_rotor, ""))
     return failed_where(np.where(refused, field + refusal, ""), model)

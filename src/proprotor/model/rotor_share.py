@@ -77,7 +77,9 @@ def _released(mass: Array, free: list[int]) -> Array:
     return np.asarray(at_hub - np.swapaxes(coupling, -1, -2) @ np.linalg.solve(own, coupling))
 
 
-def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | None]]) -> tuple[Array, Array]:
+def without_rotors(
+    support: NormalModes, rotors: Iterable[tuple[Array, Array | None]]
+) -> tuple[Array, Array | None]:
     """Take the shares of the rotors off the mass of a support.
 
     Parameters
@@ -90,8 +92,8 @@ def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | N
     -------
     mass : array (..., n, n)
         The mass of the support without the rotors, SI.
-    refusal : array (...) of str
-        The reason for which the remainder is no valid mass; "" for a valid one.
+    refusal : array (...) of str, or None
+        The reason for which the remainder is no valid mass, "" for a valid one; None where all are valid.
 
     Raises
     ------
@@ -105,7 +107,7 @@ def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | N
             raise InputError("mass_at_rest", None, rule)
         given += [hub, at_rest]
     if not given:
-        return support.mass, np.full(support.mass.shape[:-2], "", dtype=object)
+        return support.mass, None
     held = (*(_how_held(support, at_rest) for at_rest in given[1::2]), support.shaft)
     return _without(held, tuple(support.names), support.mass, *given)
 
@@ -113,7 +115,7 @@ def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | N
 @kept
 def _without(
     held: tuple[str, ...], names: tuple[str, ...], whole: Array, *rotors: Array
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array | None]:
     """Return mass and refusal as `without_rotors` does, the same at every airspeed.
 
     Parameters
@@ -131,11 +133,11 @@ def _without(
     mass = whole
     for way, hub, at_rest in zip(ways, rotors[::2], rotors[1::2], strict=True):
         mass = mass - np.swapaxes(hub, -1, -2) @ rotor_share(at_rest, way, shaft) @ hub
-    refusal = np.full(mass.shape[:-2], "", dtype=object)
-    if not _all_positive(mass, whole):
-        given = np.broadcast_to(np.real(whole), mass.shape)
-        for place in np.ndindex(refusal.shape):
-            refusal[place] = _refusal(np.real(mass[place]), given[place], names, ways[-1])
+    if _all_positive(mass, whole):
+        return mass, None
+    given, refusal = np.broadcast_to(np.real(whole), mass.shape), np.full(mass.shape[:-2], "", dtype=object)
+    for place in np.ndindex(refusal.shape):
+        refusal[place] = _refusal(np.real(mass[place]), given[place], names, ways[-1])
     return mass, refusal
 
 
@@ -156,9 +158,9 @@ def settled(support: NormalModes, mass_at_rest: Array) -> NormalModes:
     return replace(support, includes_rotor=_how_held(support, mass_at_rest))
 
 
-def refuse(refusal: Array, support: NormalModes) -> None:
+def refuse(refusal: Array | None, support: NormalModes) -> None:
     """Raise an error if a single design is refused; of many designs, each fails alone."""
-    if not refusal.ndim and (reason := str(refusal[()])):
+    if refusal is not None and not refusal.ndim and (reason := str(refusal[()])):
         raise InputError("support.includes_rotor", support.includes_rotor, reason)
 
 

@@ -33,7 +33,7 @@ def unit_warnings(support: NormalModes, mass_at_rest: Array) -> tuple[str, ...]:
         `proprotor.model.mass_at_rest.mass_at_rest` of the rotor.
     """
     mass, refusal = without_rotors(support, [(support.hub, mass_at_rest)])
-    if mass.ndim > 2 or np.ndim(mass_at_rest) > 2 or refusal[()]:
+    if mass.ndim > 2 or np.ndim(mass_at_rest) > 2 or (refusal is not None and refusal[()]):
         return ()
     hub = np.real(support.hub)
     mobility = hub @ np.linalg.pinv(np.real(mass), hermitian=True) @ hub.T

@@ -23,6 +23,7 @@ _DOUBLE = 2
 _PASSED_OVER = 0  # in place of a form
 _HEADING = "0"
 _LARGE = 16  # characters of a field
+_LARGEST = 5_000  # coordinates
 
 Coordinate = tuple[int, int]  # point, and component 1 … 6, or 0 of a scalar point
 
@@ -35,7 +36,15 @@ class NamedMatrices(NamedTuple):
 
 
 def coordinate_name(point: int, component: int) -> str:
-    """Return the name of a component of a grid point (1 … 6), or of a scalar point (0)."""
+    """Return the name of a component of a grid point (1 … 6), or of a scalar point (0).
+
+    Raises
+    ------
+    FileFault
+        For another component.
+    """
+    if not _SCALAR <= component <= len(COMPONENTS):
+        raise FileFault(f"is damaged: point {point} has no component {component}")
     return f"{point}.{COMPONENTS[component - 1]}" if component else str(point)
 
 
@@ -115,6 +124,10 @@ def _assembled(
 ) -> NamedMatrices:
     """Return all matrices on all coordinates, in the order of their points."""
     coordinates = sorted({one for given in terms.values() for place in given for one in place})
+    if len(coordinates) > _LARGEST:
+        raise FileFault(
+            f"is too large: its matrices have {len(coordinates)} coordinates, and {_LARGEST} may be"
+        )
     place_of = {one: place for place, one in enumerate(coordinates)}
     matrices = {}
     for name, given in terms.items():

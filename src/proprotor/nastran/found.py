@@ -64,11 +64,24 @@ class EigenvalueTable(NamedTuple):
 
 @dataclass
 class Found:
-    """All sets of real eigenvectors and tables of eigenvalues of a file, and whether it has complex eigenvectors."""
+    """What a file holds on a grid point.
+
+    Attributes
+    ----------
+    sets : list of ModeSet
+        Real eigenvectors.
+    tables : list of EigenvalueTable
+    has_complex : bool
+        Whether the file has complex eigenvectors.
+    output_system : int
+        Number of the output coordinate system of the grid point (field CD of GRID); 0 for the basic one, or if the file
+        does not tell.
+    """
 
     sets: list[ModeSet] = field(default_factory=list)
     tables: list[EigenvalueTable] = field(default_factory=list)
     has_complex: bool = False
+    output_system: int = 0
 
     def add(
         self,

@@ -14,7 +14,7 @@ import numpy as np
 from proprotor.nastran.found import EigenvalueTable, FileFault, Found
 from proprotor.needs import need
 
-_RESULTS = "NASTRAN/RESULT"
+_RESULTS, _POINTS = "NASTRAN/RESULT", "NASTRAN/INPUT/NODE/GRID"
 _MOTION = ("X", "Y", "Z", "RX", "RY", "RZ")
 _APART = ("SE", "AFPM", "TRMC", "DESIGN_CYCLE", "MODULE")  # what tells sets of one subcase apart
 _REAL_MODES = 2  # approach code
@@ -37,8 +37,14 @@ def read_hdf5(path: Path, grid: int) -> Found:
         with h5py.File(path, "r") as file:
             if _RESULTS not in file:
                 raise FileFault(f"has no results of MSC Nastran: there is no group {_RESULTS}")
-            return _read(file[_RESULTS], grid)
-    except (OSError, RuntimeError, KeyError) as error:
+            found = _read(file[_RESULTS], grid)
+            if _POINTS in file:
+                rows = file[_POINTS][...]
+                found.output_system = next(iter(rows["CD"][rows["ID"] == grid].tolist()), 0)
+            return found
+    except FileFault:
+        raise
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError) as error:  # of a damaged file
         raise FileFault(f"is damaged, or has other tables than MSC Nastran writes ({error})") from None
 
 

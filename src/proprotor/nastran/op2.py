@@ -3,8 +3,8 @@
 Eigenvectors stand in the data blocks OUG… and OPHIG, in the output coordinate system of each grid point, and in BOUG…
 and BOPHIG in the basic one; eigenvalues and generalised masses in LAMA. What a record is, its own codes tell rather
 than the name of its block: an approach code (2 for real modes), a table code (7 for eigenvectors) and the number of
-words of a row. Stresses, forces, geometry and matrices are passed over unread, so that nothing in them can spoil the
-modes.
+words of a row. Of the geometry (GEOM1) the entries GRID alone are looked at, for the output coordinate system of the
+grid point; stresses, forces and matrices are passed over unread, so that nothing in them can spoil the modes.
 """
 
 from __future__ import annotations
@@ -20,6 +20,9 @@ from proprotor.typing import Array
 
 _EIGENVECTORS = re.compile(r"B?(OUG|OPHIG|OUXY)[A-Z0-9]*")
 _EIGENVALUES = re.compile(r"LAMA[A-Z0-9]*")
+_GEOMETRY = ("GEOM1", "GEOM1S")
+_GRID, _GRID_WIDE = (4501, 45, 1), (4501, 45, 1120001)  # first words of a record of entries GRID
+_SYSTEM = -3  # place of the output coordinate system among the words of an entry
 _HEADING = 146  # words of the record before each record of results
 _APPROACH, _TABLE, _SUBCASE, _NUMBER, _EIGENVALUE, _ROW = 0, 1, 3, 4, 5, 9  # words of a heading
 _SUBTITLE, _END = 82, 146  # words of subtitle and label
@@ -43,7 +46,9 @@ def read_op2(path: Path, grid: int) -> Found:
     heading = None
     with path.open("rb") as file:
         for record in records(file, path.stat().st_size, _is_wanted):
-            if record.words == _HEADING and heading is None:
+            if record.name in _GEOMETRY:
+                found.output_system = _output_system(record, grid) or found.output_system
+            elif record.words == _HEADING and heading is None:
                 heading = record
             elif heading is not None:
                 _add(found, heading, record, grid)
@@ -52,8 +57,22 @@ def read_op2(path: Path, grid: int) -> Found:
 
 
 def _is_wanted(name: str) -> bool:
-    """Return whether a block can hold eigenvectors or eigenvalues."""
-    return bool(_EIGENVECTORS.fullmatch(name) or _EIGENVALUES.fullmatch(name))
+    """Return whether a block can hold eigenvectors, eigenvalues or grid points."""
+    return name in _GEOMETRY or bool(_EIGENVECTORS.fullmatch(name) or _EIGENVALUES.fullmatch(name))
+
+
+def _output_system(record: Record, grid: int) -> int:
+    """Return the output coordinate system of the grid point; 0 without the grid point in this record.
+
+    An entry has eight words, or eleven of 4 bytes with coordinates of double precision.
+    """
+    words = record.integers()
+    key = tuple(words[:3].tolist())
+    width = 11 if key == _GRID_WIDE and record.width == 4 else 8
+    if key not in (_GRID, _GRID_WIDE) or (len(words) - 3) % width:
+        return 0
+    points = words[3:].reshape(-1, width)
+    return next(iter(points[points[:, 0] == grid, _SYSTEM].tolist()), 0)
 
 
 def _add(found: Found, heading: Record, record: Record, grid: int) -> None:

@@ -74,6 +74,8 @@ def _binary_matrix(file: BinaryIO, order: str, width: int, heading: _Heading) ->
     matrix = _zeros(heading)
     kind = f"{order}{'f8' if heading.kind == 'f8' else f'f{width}'}"
     while (content := _record(file, order)) is not None:
+        if len(content) < 3 * width or len(content) % width:
+            raise FileFault(f"is damaged: a column of the matrix {heading.name} has no place")
         column, row, _ = np.frombuffer(content[: 3 * width], f"{order}i{width}").tolist()
         if column > heading.columns:
             return matrix
@@ -82,6 +84,8 @@ def _binary_matrix(file: BinaryIO, order: str, width: int, heading: _Heading) ->
         words = content[3 * width :]
         strings = [(row, words)] if row else _strings(words, order, width, heading.bigmat)
         for first, entries in strings:
+            if len(entries) % np.dtype(kind).itemsize:
+                raise FileFault(f"is damaged: the matrix {heading.name} has part of an entry")
             _put(matrix, column, first, np.frombuffer(entries, kind))
     raise FileFault(f"ends early, in the matrix {heading.name}: the run or a copy of the file was cut off")
 
@@ -89,8 +93,8 @@ def _binary_matrix(file: BinaryIO, order: str, width: int, heading: _Heading) ->
 def _strings(words: bytes, order: str, width: int, bigmat: bool) -> Iterator[tuple[int, bytes]]:
     """Yield first row and entries of each string of a column without zeros."""
     at = 0
-    while at < len(words):
-        count = 2 if bigmat else 1
+    count = 2 if bigmat else 1
+    while at + count * width <= len(words):
         given = np.frombuffer(words[at : at + count * width], f"{order}i{width}").tolist()
         length, row = _length_and_row(given)
         at += count * width
@@ -127,7 +131,7 @@ def _text(file: BinaryIO) -> Iterator[tuple[str, Array]]:
         elif "." in line and not heading.kind:
             continue
         elif "." in line:
-            entries = [real(text) for text in _ENTRY.findall(line)]
+            entries = _entries(line)
             _put(matrix, column, row, np.array(entries))
             row += len(entries)
         elif len(places := _places(line)) == 3:
@@ -152,6 +156,14 @@ def _places(line: str) -> list[int]:
         raise FileFault(f"is damaged: {line.strip()} must be whole numbers") from None
 
 
+def _entries(line: str) -> list[float]:
+    """Return the entries of a line."""
+    try:
+        return [real(text) for text in _ENTRY.findall(line)]
+    except ValueError:
+        raise FileFault(f"is damaged: {line.strip()} must be numbers") from None
+
+
 def _heading(name: str, columns: int, rows: int, _form: int, kind: int) -> _Heading:
     """Return what a heading tells, without a type for a matrix that is passed over."""
     if columns < 1 or not rows:
@@ -167,6 +179,6 @@ def _zeros(heading: _Heading) -> Array:
 
 def _put(matrix: Array, column: int, row: int, entries: Array) -> None:
     """Put entries into a column from a row on, which counts from 1."""
-    if not (column >= 1 and 1 <= row <= len(matrix) + 1 - len(entries)):
+    if not (1 <= column <= matrix.shape[1] and 1 <= row <= len(matrix) + 1 - len(entries)):
         raise FileFault(f"is damaged: it has entries outside {matrix.shape[0]} x {matrix.shape[1]}")
     matrix[row - 1 : row - 1 + len(entries), column - 1] = entries

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,28 +17,41 @@ from proprotor.typing import Array
 _INITIALS = {"mass": "M", "stiffness": "K", "damping": "B"}
 _STRUCTURAL = "K4"  # structural damping of the elements, which is no stiffness
 _REDUCED = ("AA", "AAX", "XX")  # endings of the matrices of a reduced structure, which go before others
-_GRID = range(1, 7)
+_SYSTEM = 5  # place of the output coordinate system among the fields of GRID
 
 
 class ReducedStructure(NamedTuple):
-    """Mass, stiffness and damping (n, n), damping perhaps None; n names of coordinates; what was left out, or ""."""
+    """Matrices (n, n) of a structure.
+
+    Attributes
+    ----------
+    mass, stiffness, damping : array (n, n)
+        The damping may be None.
+    names : tuple of str
+        Names of the coordinates.
+    left_out : str
+        Names of matrices that are left out.
+    output_systems : mapping of int to int
+        Output coordinate system of each grid point that the bulk data beside the matrices have.
+    """
 
     mass: Array
     stiffness: Array
     damping: Array | None
     names: tuple[str, ...]
     left_out: str
+    output_systems: Mapping[int, int]
 
 
-def reduced_from_dmig(lines: Iterable[str]) -> ReducedStructure:
-    """Return the reduced structure whose matrices are entries DMIG.
+def reduced_from_dmig(path: Path) -> ReducedStructure:
+    """Return the reduced structure whose matrices are entries DMIG of a file.
 
     Raises
     ------
     FileFault
         When the mass or the stiffness is missing, or not one matrix only.
     """
-    return _structure(read_dmig(lines))
+    return _structure(read_dmig(lines_of(path)), path)
 
 
 def reduced_from_op4(path: Path, entries_file: Path) -> ReducedStructure:
@@ -60,7 +74,7 @@ def reduced_from_op4(path: Path, entries_file: Path) -> ReducedStructure:
         raise FileFault(f"needs the names of its rows, and {entries_file.name} has no entry EXTRN")
     n = len(names)
     square = {name: matrix for name, matrix in read_op4(path).items() if matrix.shape == (n, n)}
-    return _structure(NamedMatrices(square, names))
+    return _structure(NamedMatrices(square, names), entries_file)
 
 
 def _external_coordinates(lines: Iterable[str]) -> list[str]:
@@ -76,7 +90,16 @@ def _external_coordinates(lines: Iterable[str]) -> list[str]:
     return names
 
 
-def _structure(found: NamedMatrices) -> ReducedStructure:
+def _output_systems(lines: Iterable[str]) -> dict[int, int]:
+    """Return the output coordinate system of each grid point that entries GRID have."""
+    found = {}
+    for _, fields in entries(lines, ["GRID"]):
+        with suppress(ValueError, IndexError):  # an entry that is not needed
+            found[int(fields[0])] = int(fields[_SYSTEM] or 0)
+    return found
+
+
+def _structure(found: NamedMatrices, bulk_data: Path) -> ReducedStructure:
     """Return mass, stiffness and damping among matrices, by their names."""
     parts = {part: _one(found.matrices, part, initial) for part, initial in _INITIALS.items()}
     mass, stiffness = parts["mass"], parts["stiffness"]
@@ -84,7 +107,8 @@ def _structure(found: NamedMatrices) -> ReducedStructure:
         known = ", ".join(found.matrices) or "no real square matrix"
         raise FileFault(f"must have a mass MAA or MAAX and a stiffness KAA or KAAX: it has {known}")
     used = [name for name in found.matrices if name.startswith(_STRUCTURAL) and found.matrices[name].any()]
-    return ReducedStructure(mass, stiffness, parts["damping"], found.names, ", ".join(used))
+    systems = _output_systems(lines_of(bulk_data))
+    return ReducedStructure(mass, stiffness, parts["damping"], found.names, ", ".join(used), systems)
 
 
 def _one(matrices: Mapping[str, Array], part: str, initial: str) -> Array | None:

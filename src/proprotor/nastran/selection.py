@@ -41,7 +41,7 @@ def chosen_set(found: Found, grid: int, subcase: int | None, file: str) -> ModeS
     having = [one for one in found.sets if one.subcase == wanted and one.has_grid]
     if not having:
         raise InputError("grid", grid, "has no eigenvectors in the file: the hub's grid point is missing")
-    having.sort(key=lambda one: one.table.startswith(_IN_BASIC))
+    having.sort(key=is_in_output_system, reverse=True)
     first, *others = (one for one in having if one.table == having[0].table)
     if not all(_same(first, other) for other in others):
         rule = f"has {len(others) + 1} sets of eigenvectors of the grid point that differ: keep one of them in the file"
@@ -67,6 +67,11 @@ def rows_of(modes: ModeSet, table: EigenvalueTable) -> list[int]:
     """Return the place of each mode in a table."""
     numbers = table.numbers.tolist()
     return [numbers.index(number) for number in modes.numbers]
+
+
+def is_in_output_system(modes: ModeSet) -> bool:
+    """Return whether the motion is in the output coordinate system of the grid point."""
+    return not modes.table.startswith(_IN_BASIC)
 
 
 def _belongs(table: EigenvalueTable, modes: ModeSet) -> bool:

@@ -7,11 +7,12 @@ blade alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
 import numpy as np
+from proprotor_equations import trim as equations
 from proprotor_equations.fused import rotor as springs
 from proprotor_equations.fused import trim as plans
 
@@ -56,11 +57,12 @@ class Here(NamedTuple):
     def segments(self, sides: Mapping[str, Array]) -> Numbers:
         """Return the sides of the segments and the radial moments of their loads, arrays (segments,) by name."""
         own = self.moments.reshape(len(LOADS), -1, POWERS).swapaxes(1, 2).reshape(len(MOMENTS), -1)
-        return _NO_LOADS | sides | dict(zip(MOMENTS, own, strict=True))
+        found: Numbers = {**_NO_LOADS, **sides, **dict(zip(MOMENTS, own, strict=True))}
+        return found
 
 
 @dataclass(frozen=True, eq=False)
-class Stations:
+class _Stations:
     """The stations of the blade, arrays (stations,), with the segment of each and the weights of all segments.
 
     given : chord and airfoil, by the names of the plan `section_loads`.
@@ -76,7 +78,7 @@ class Stations:
     sides: list[Numbers]
 
     @classmethod
-    def of(cls, sections: BladeSections) -> Stations:
+    def of(cls, sections: BladeSections) -> _Stations:
         """Return the stations of sections that have no axis of points."""
         quadrature, along = sections.quadrature, sections.along
         segment = np.repeat(np.arange(len(quadrature.counts)), quadrature.counts)
@@ -90,12 +92,12 @@ class Stations:
         flat = weights.reshape(len(segment), -1)
         return cls(quadrature.stations, segment, along.twist, given, flat, sides)
 
-    def along(self, lines: list[Numbers], quantities: Numbers, sound: float) -> tuple[Array, Array]:
+    def along(self, lines: list[tuple[float, ...]], quantities: Numbers, sound: float) -> tuple[Array, Array]:
         """Return the loads (results, stations), and the moments (loads, powers of all segments).
 
         `lines` has the results of the plan `line` for each segment.
         """
-        ends = np.array([list(line.values())[_LINES:] for line in lines]).T[:, self.segment]
+        ends = np.array(lines)[:, _LINES:].T[:, self.segment]
         ut_0, up_0, radial, ut_1, up_1, spin = ends
         given = self.given | {
             "tangential_velocity": ut_0 + ut_1 * self.radii,
@@ -114,18 +116,31 @@ class Stations:
 
 @dataclass(frozen=True, eq=False)
 class BalanceOfOne:
-    """The balance of the blade of one point: as `Balance`, with the quantities as plain numbers."""
+    """The balance of the blade of one point: as `Balance`, with the quantities as plain numbers.
+
+    rows, free, hinged : as of `Balance`.
+    """
 
     balance: Balance
     quantities: Numbers
-    stations: Stations
+    stations: _Stations
     load: float
+    rows: list[int]
+    free: list[int]
+    hinged: list[bool]
 
     @classmethod
     def of(cls, balance: Balance) -> BalanceOfOne:
         """Return the balance of the only point of a batch."""
         quantities = {name: plain_number(value) for name, value in balance.quantities.items()}
-        return cls(balance, quantities, Stations.of(balance.sections), plain_number(balance.target.load))
+        stations, load = _Stations.of(balance.sections), plain_number(balance.target.load)
+        hinged = balance.hinged.tolist()
+        return cls(balance, quantities, stations, load, balance.rows, balance.free, hinged)
+
+    def precone_load(self) -> list[float]:
+        """Return the part of precone in the residual of the undeflected blade."""
+        loads = evaluate(equations.precone_load, self.quantities)[:, equations.TRIM].tolist()
+        return [loads[row] if hinged else 0.0 for row, hinged in zip(self.rows, self.hinged, strict=True)]
 
     def at(self, state: Numbers, precone: float | None = None) -> Here:
         """Return the balance at a state, with a precone of its own if one is given."""
@@ -134,54 +149,59 @@ class BalanceOfOne:
             here["precone"] = precone
         here["pitch"] = state["collective"] + state["elastic_pitch"]
         here["structural_pitch"] = here["pitch"] + here["structural_pitch_offset"]
-        here |= _named(plans.TRIM_INTEGRALS, evaluate(plans.trim_integrals, here, math.cos, math.sin))
+        found = evaluate(plans.trim_integrals, here, math.cos, math.sin)
+        here.update(zip(plans.TRIM_INTEGRALS, found, strict=True))
         found = evaluate(springs.effective_stiffness, here, math.cos, math.sin)
-        here |= _named(springs.EFFECTIVE_STIFFNESS, found)
+        here.update(zip(springs.EFFECTIVE_STIFFNESS, found, strict=True))
         if self.balance.options.structure == "diagonal":
-            here |= dict.fromkeys(FLAP_LAG, 0.0)
-        lines = [
-            _named(plans.LINE, evaluate(plans.line, here | side, math.cos, math.sin))
-            for side in self.stations.sides
-        ]
+            here.update(dict.fromkeys(FLAP_LAG, 0.0))
+        structure = evaluate(plans.balance, here, math.cos, math.sin)
+        lines = [evaluate(plans.line, here | side, math.cos, math.sin) for side in self.stations.sides]
         sound = here["speed_of_sound"] if self.balance.options.compressibility else math.inf
         loads, moments = self.stations.along(lines, here, sound)
-        work = self._work(here, lines, moments)
-        structure = evaluate(plans.balance, here, math.cos, math.sin)
-        return self._linear(structure, work, here, moments, loads)
+        return self._linear(structure, self._work(here, lines, moments), here, moments, loads)
 
-    def _work(self, here: Numbers, lines: list[Numbers], moments: Array) -> list[float]:
+    def _work(self, here: Numbers, lines: list[tuple[float, ...]], moments: Array) -> list[float]:
         """Return the results of the plan `work`, summed over the segments."""
-        parts = []
+        segment, parts = here | _NO_LOADS, []
         for place, (line, side) in enumerate(zip(lines, self.stations.sides, strict=True)):
             own = moments[:, POWERS * place : POWERS * (place + 1)].ravel().tolist()
-            parts.append(evaluate(plans.work, _NO_LOADS | here | line | side | _named(MOMENTS, own)))
-        return [sum(results) for results in zip(*parts, strict=True)]
+            segment.update(side)
+            segment.update(zip(plans.LINE, line, strict=True))
+            segment.update(zip(MOMENTS, own, strict=True))
+            parts.append(evaluate(plans.work, segment))
+        return parts[0] if len(parts) == 1 else [sum(results) for results in zip(*parts, strict=True)]
 
     def _linear(
-        self, structure: tuple[float, ...], work: list[float], here: Numbers, moments: Array, loads: Array
+        self,
+        structure: tuple[float, ...],
+        work: list[float],
+        here: Numbers,
+        moments: Array,
+        loads: Array,
     ) -> Here:
         """Return residual and slopes from the results of the plans."""
-        rows, free, hinged = self.balance.rows, self.balance.free, self.balance.hinged.tolist()
-        done = [_entry(work, numbers[0]) for numbers in plans.WORK["work"]]
-        slopes = [[_entry(work, numbers[PITCH_TWICE[j]]) for j in free] for numbers in plans.WORK["work_slopes"]]
-        residual = [_entry(structure, plans.BALANCE["residual"][row][0]) - done[row] for row in rows]
+        held, lifted = _signed(structure), _signed(work)
+        done = [lifted[number] for (number,) in plans.WORK["work"]]
+        columns = [PITCH_TWICE[place] for place in self.free]
+        slopes = [[lifted[numbers[place]] for place in columns] for numbers in plans.WORK["work_slopes"]]
+        residual = [held[plans.BALANCE["residual"][row][0]] - done[row] for row in self.rows]
         if self.balance.target.finds_collective:
             residual[-1] += self.load
-        springs = plans.BALANCE["slopes"]
-        full = [[_entry(structure, springs[i][j]) + own for j, own in zip(free, slopes[i])] for i in rows]
-        airloads = [slopes[i] if is_hinged else [0.0] * len(free) for i, is_hinged in zip(rows, hinged)]
+        full = []
+        for row in self.rows:
+            numbers = plans.BALANCE["slopes"][row]
+            own = zip(self.free, slopes[row], strict=True)
+            full.append([held[numbers[place]] + slope for place, slope in own])
+        none = [0.0] * len(self.free)
+        rows = zip(self.rows, self.hinged, strict=True)
+        airloads = [slopes[row] if hinged else none for row, hinged in rows]
         return Here(residual, full, airloads, done, slopes, here, moments, loads)
 
 
-def _named(names: tuple[str, ...], results: Any) -> Numbers:
-    return dict(zip(names, results, strict=True))
-
-
-def _entry(results: Any, number: int) -> float:
-    """Return the entry of a layout: zero, a result counted from 1, or the negative of a result."""
-    if number > 0:
-        return results[number - 1]
-    return -results[-number - 1] if number else 0.0
+def _signed(results: Sequence[float]) -> list[float]:
+    """Return results so that a layout's numbers are their places: zero first, the negatives from the end."""
+    return [0.0, *results, *(-result for result in reversed(results))]
 
 
 def solve(matrix: Rows, right: list[float]) -> list[float] | None:
@@ -189,8 +209,9 @@ def solve(matrix: Rows, right: list[float]) -> list[float] | None:
     rows = [[*row, value] for row, value in zip(matrix, right, strict=True)]
     size = len(rows)
     for column in range(size):
-        pivot = max(range(column, size), key=lambda row: abs(rows[row][column]))
-        rows[column], rows[pivot] = rows[pivot], rows[column]
+        for below in range(column + 1, size):
+            if abs(rows[below][column]) > abs(rows[column][column]):
+                rows[column], rows[below] = rows[below], rows[column]
         upper = rows[column]
         if not abs(upper[column]) > 0:
             return None
@@ -199,9 +220,11 @@ def solve(matrix: Rows, right: list[float]) -> list[float] | None:
             for place in range(column + 1, size + 1):
                 lower[place] -= factor * upper[place]
     found = [0.0] * size
-    for row in range(size - 1, -1, -1):
-        known = sum(rows[row][other] * found[other] for other in range(row + 1, size))
-        found[row] = (rows[row][size] - known) / rows[row][row]
+    for place in range(size - 1, -1, -1):
+        known = rows[place][size]
+        for other in range(place + 1, size):
+            known -= rows[place][other] * found[other]
+        found[place] = known / rows[place][place]
     return found
 
 
@@ -210,7 +233,7 @@ def sums_of_minors(matrix: Rows) -> list[float]:
     size = len(matrix)
     pairs = [(i, j) for i in range(size) for j in range(i)]
     sums = [sum(matrix[i][i] for i in range(size))]
-    sums += [sum(matrix[i][i] * matrix[j][j] - matrix[i][j] * matrix[j][i] for i, j in pairs)]
+    sums.append(sum(matrix[i][i] * matrix[j][j] - matrix[i][j] * matrix[j][i] for i, j in pairs))
     if size == 3:
         (a, b, c), (d, e, f), (g, h, i) = matrix
         sums.append(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g))

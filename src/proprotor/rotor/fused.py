@@ -4,8 +4,8 @@ A fused function is one plan of operations with two renderings. Arrays of a batc
 points, so that all temporaries stay in the cache. Plain numbers of one point go through the same lines of the plan as
 Python floats, or as complex numbers for derivatives by a complex step.
 
-A design has the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and both
-renderings take the sines of NumPy. Complex numbers agree to rounding.
+A trim has matrices of the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and
+both renderings take the sines of NumPy. Complex numbers agree to rounding.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from proprotor.rotor.quadrature import POWERS
 from proprotor.rotor.section_loads import LOAD_MOMENTS, BladeSections, mark_doubts
 from proprotor.typing import Array
 
-Quantities = Mapping[str, Any]
+_Quantities = Mapping[str, Any]
 
 LOADS = plans.SECTION_LOADS[:-2]  # the last two results say if the loads are in doubt
 MOMENTS = tuple(f"{load}_{power}" for load in LOADS for power in range(POWERS))
@@ -42,7 +42,7 @@ OF_AIRFOIL = {
 
 
 class Room:
-    """Memory for the loads at the stations, the same for every block of points: new memory costs more than the loads."""
+    """Memory for the loads at the stations, the same for every block: to get new memory takes longer than the loads."""
 
     def __init__(self) -> None:
         self._numbers = np.empty(0)
@@ -55,7 +55,7 @@ class Room:
         return self._numbers[:size].reshape(shape)
 
 
-class Balanced(NamedTuple):
+class _Balanced(NamedTuple):
     """Balance of a blade at n points.
 
     residual, slopes : array (n, 5), (n, 5, 4)
@@ -80,11 +80,11 @@ def serves_sections(sections: BladeSections) -> bool:
 
 def balanced(
     sections: BladeSections,
-    quantities: Quantities,
+    quantities: _Quantities,
     compressibility: bool,
     room: Room,
     doubts: dict[str, Array] | None = None,
-) -> Balanced:
+) -> _Balanced:
     """Return the balance of a blade at trim states.
 
     Parameters
@@ -108,7 +108,9 @@ def balanced(
     blade |= zip(MOMENTS, moments.reshape(-1, *shape), strict=True)
     work = _matrices("work", evaluate(plans.work, blade), shape)
     slopes = work["work_slopes"][..., PITCH_TWICE]
-    return Balanced(structure["residual"][..., 0], structure["slopes"], work["work"][..., 0], slopes, moments)
+    return _Balanced(
+        structure["residual"][..., 0], structure["slopes"], work["work"][..., 0], slopes, moments
+    )
 
 
 def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
@@ -125,19 +127,19 @@ def _layouts() -> dict[str, Layout]:
 def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> dict[str, Array]:
     """Return the matrices (n, rows, columns) of a plan from results of a shape (n,), or (segments, n) to be summed."""
     layout = _layouts()[plan]
-    kind = np.result_type(float, *(result.dtype for result in results if isinstance(result, np.ndarray)))
+    kind = np.result_type(float, *results)
     pool = np.empty((len(results), *shape), dtype=kind)
     for place, result in enumerate(results):
         pool[place] = result
     total = pool if len(shape) == 1 else np.add.reduce(pool, axis=1)
-    whole = pool_of(values_of(total, layout), shape[-1:], kind)
+    whole = pool_of(values_of(tuple(total), layout), shape[-1:], kind)
     return {name: np.take(whole, places, axis=1) for name, places in layout.places.items()}
 
 
 # Loads along the blade
 
 
-def _air(sections: BladeSections, blade: Quantities, compressibility: bool) -> dict[str, Any]:
+def _air(sections: BladeSections, blade: _Quantities, compressibility: bool) -> dict[str, Any]:
     """Return what the sections meet, by name: arrays (segments, n) and (n,), or numbers that all points share."""
     airfoil = vars(cast(Airfoil, sections.airfoil))
     found = {name: np.ravel(airfoil[field]) for field, name in OF_AIRFOIL.items()}
@@ -148,7 +150,7 @@ def _air(sections: BladeSections, blade: Quantities, compressibility: bool) -> d
 
 def _load_moments(
     sections: BladeSections,
-    air: Quantities,
+    air: _Quantities,
     radius: Any,
     room: Room,
     points: int,

@@ -12,12 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.rotor.balance_of_one import BalanceOfOne, Here, Numbers, Rows, solve, sums_of_minors
+from proprotor.rotor.fused import plain_number
 from proprotor.rotor.section_loads import mark_doubts
 from proprotor.rotor.trim import THRUST, UNKNOWNS
 from proprotor.rotor.trim_balance import LARGEST_STEP, Balance, Slopes, is_last
 from proprotor.rotor.trim_bound import at_end
 from proprotor.rotor.trim_reasons import INDUCED_SHARE, LARGEST_ANGLE
-from proprotor.rotor.trim_start import FARTHEST, first_guess, held
+from proprotor.rotor.trim_start import FARTHEST, is_limp
 from proprotor.typing import Array
 
 _MOST = 12  # steps of a point without reservation
@@ -35,56 +36,66 @@ class Found(NamedTuple):
 
 def trim_of_one(balance: Balance) -> Found | None:
     """Return the trim of the only point; None for a point that takes the search for batches."""
-    if not _may_begin(balance):
-        return None
     one = BalanceOfOne.of(balance)
-    start = {name: float(value[0]) for name, value in first_guess(balance, 1).items()}
+    if not _may_begin(one):
+        return None
+    start = _start(one)
     state, size = dict(start), math.inf
     passed: list[Here] = []
-    for count in range(1, _MOST):
-        here = one.at(state, None if passed else 0.0)
+    while len(passed) < _MOST:
+        here = one.at(state) if passed else _undeflected(one, state)
         passed.append(here)
-        residual = here.residual if count > 1 else _of_undeflected(one, here)
-        step = solve(here.full, residual)
+        step = solve(here.full, here.residual)
         if step is None:
             return None
         step = [min(max(part, -LARGEST_STEP), LARGEST_STEP) for part in step]
         before, size = size, max(map(abs, step))
         state = dict(state)
-        for place, part in zip(balance.free, step, strict=True):
+        for place, part in zip(one.free, step, strict=True):
             state[UNKNOWNS[place]] -= part
-        if count > 1 and is_last(size, before):
-            found = Found(state, here, step, count)
+        if len(passed) > 1 and is_last(size, before):
+            found = Found(state, here, step, len(passed))
             connected = _is_end_of_path(balance, passed, start, state)
             return found if connected and _is_without_doubt(one, found) else None
     return None
 
 
-def _may_begin(balance: Balance) -> bool:
+def _may_begin(one: BalanceOfOne) -> bool:
     """Return whether nothing keeps the point from a trim, as far as the inputs tell."""
-    if not held(balance, 1).all():
+    quantities, options = one.quantities, one.balance.options
+    if "lag" not in options.locked and is_limp(quantities):
         return False
-    quantities, options = balance.quantities, balance.options
-    speed, density, rotor_speed, radius, sound = (
-        float(np.ravel(quantities[name])[0])
-        for name in ("airspeed", "density", "rotor_speed", "radius", "speed_of_sound")
-    )
-    has_air = density > 0 or not balance.target.finds_collective
-    slow = not options.compressibility or math.hypot(rotor_speed * radius, speed) < sound
-    return 0 <= speed < math.inf and has_air and slow
+    speed, tip_speed = quantities["airspeed"], quantities["rotor_speed"] * quantities["radius"]
+    has_air = quantities["density"] > 0 or not one.balance.target.finds_collective
+    slow = not options.compressibility or math.hypot(tip_speed, speed) < quantities["speed_of_sound"]
+    return bool(0 <= speed < math.inf and has_air and slow)
 
 
-def _of_undeflected(one: BalanceOfOne, here: Here) -> list[float]:
-    """Return the residual of the first step, which has precone in the load of the undeflected blade alone."""
-    loads = one.balance.precone_load(np.zeros(1, dtype=int))[0].tolist()
-    return [left + load for left, load in zip(here.residual, loads, strict=True)]
+def _start(one: BalanceOfOne) -> Numbers:
+    """Return the undeflected blade at its collective, or at the direction of the air at 0.75 R."""
+    given = one.balance.target.collective
+    collective = _direction(one.quantities) if given is None else plain_number(given)
+    return dict.fromkeys(UNKNOWNS, 0.0) | {"collective": collective}
+
+
+def _direction(quantities: Numbers) -> float:
+    return math.atan2(quantities["airspeed"], 0.75 * quantities["rotor_speed"] * quantities["radius"])
+
+
+def _undeflected(one: BalanceOfOne, state: Numbers) -> Here:
+    """Return the balance at the start, which has precone in the load of the undeflected blade alone."""
+    here = one.at(state, precone=0.0)
+    residual = [left + load for left, load in zip(here.residual, one.precone_load(), strict=True)]
+    return here._replace(residual=residual)
 
 
 def _is_end_of_path(balance: Balance, passed: list[Here], start: Numbers, state: Numbers) -> bool:
     """Return whether the bound shows that the trim is connected with the undeflected blade."""
-    first, last = (Slopes(np.array([here.full]), np.array([here.airloads])) for here in (passed[0], passed[-1]))
-    ends = ({name: np.array([value]) for name, value in end.items()} for end in (start, state))
-    return bool(at_end(balance, first, last, *ends, np.zeros(1, dtype=int)).all())
+    first, last = (
+        Slopes(np.array([here.full]), np.array([here.airloads])) for here in (passed[0], passed[-1])
+    )
+    before, after = ({name: np.array([value]) for name, value in end.items()} for end in (start, state))
+    return bool(at_end(balance, first, last, before, after, np.zeros(1, dtype=int)).all())
 
 
 def _is_without_doubt(one: BalanceOfOne, found: Found) -> bool:
@@ -92,8 +103,8 @@ def _is_without_doubt(one: BalanceOfOne, found: Found) -> bool:
     state, here, quantities = found.state, found.here, found.here.quantities
     if any(abs(state[name]) > LARGEST_ANGLE for name in _ANGLES):
         return False
-    air = math.atan2(quantities["airspeed"], 0.75 * quantities["rotor_speed"] * quantities["radius"])
-    if one.balance.target.finds_collective and not abs(state["collective"] - air) < FARTHEST:
+    turned = abs(state["collective"] - _direction(quantities))
+    if one.balance.target.finds_collective and not turned < FARTHEST:
         return False
     disk = 2 * quantities["density"] * math.pi * quantities["radius"] ** 2 * quantities["airspeed"] ** 2
     if abs(here.work[THRUST] * quantities["n_blades"]) > INDUCED_SHARE * disk / 2:
@@ -101,7 +112,7 @@ def _is_without_doubt(one: BalanceOfOne, found: Found) -> bool:
     doubts: dict[str, Array] = {}
     alpha, mach = here.loads[-2:]
     mark_doubts(doubts, one.balance.sections, quantities["radius"], (alpha[None], mach[None]), slice(1), 1)
-    return not doubts and not _may_diverge(here.full, one.balance.hinged.tolist())
+    return not doubts and not _may_diverge(here.full, one.hinged)
 
 
 def _may_diverge(slopes: Rows, hinged: list[bool]) -> bool:

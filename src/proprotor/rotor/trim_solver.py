@@ -32,16 +32,46 @@ from proprotor.typing import Array
 
 _ITERATIONS = 40
 _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below the error of these stations
+_SIDES = ("beyond_flap_hinge", "beyond_lag_hinge")  # of all points alike
 _REAL = np.dtype(float)
-_ROUNDING = 1e-14  # rad, of the step that would follow
+_ALMOST = 1e-10  # rad, of the step that would follow: the slopes are those of the trim
 
 
 class _Loads(NamedTuple):
-    """Loads of a step: virtual work (n, 5) after the step, balance before the step, doubts of the airfoil."""
+    """Loads of a step at n points.
+
+    work : virtual work (n, 5) after the step.
+    before : balance before the step.
+    segments : quantities of each segment before the step, with the radial moments of the section loads.
+    doubts : masks (n,) of the airfoil by reason.
+    """
 
     work: Array
     before: Linear
+    segments: dict[str, Any]
     doubts: dict[str, Array]
+
+    @classmethod
+    def of(cls, here: Linear, step: Array, doubts: dict[str, Array]) -> _Loads:
+        """Return the loads of a step from the balance before it."""
+        work = here.work + (here.work_slopes @ step[..., None])[..., 0]
+        return cls(work, here, here.along(), doubts)
+
+    def put(self, places: Array, others: _Loads, inputs: Mapping[str, Any]) -> None:
+        """Set the loads of some of the points to those of a later step; inputs are the same before each step."""
+        self.work[places] = others.work
+        for name in ("residual", "work", "work_slopes"):
+            getattr(self.before, name)[places] = getattr(others.before, name)
+        self.before.slopes.put(places, others.before.slopes)
+        found = {name: value for name, value in others.before.quantities.items() if name not in inputs}
+        for mine, values in ((self.before.quantities, found), (self.segments, others.segments)):
+            for name, value in values.items():
+                own = mine[name]
+                if np.ndim(own) and len(own) == len(self.work) and name not in _SIDES:
+                    own[places] = value
+        for text in {**self.doubts, **others.doubts}:
+            mask = self.doubts.setdefault(text, np.zeros(len(self.work), dtype=bool))
+            mask[places] = others.doubts.get(text, False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,7 +190,7 @@ class _Search:
             size = np.abs(step).max(axis=1)
             arrived = size <= _NEAR
             if few is self.balance:
-                arrived &= is_last(size, before[active]) | (_next(size, before[active]) <= _ROUNDING)
+                arrived &= is_last(size, before[active]) | (_next(size, before[active]) <= _ALMOST)
             before[active] = size
             near.append(active[arrived])
             active = active[~arrived & ~np.isnan(size)]
@@ -201,6 +231,7 @@ class _Search:
         active, done = rows, np.zeros(len(self.reason), dtype=bool)
         size_before = np.full(len(self.reason), np.inf)
         found = Slopes.unknown(len(self.reason), len(self.balance.free))
+        loads = None
         for count in range(_ITERATIONS):
             if not len(active):
                 break
@@ -208,17 +239,23 @@ class _Search:
             copy_state(self.state, active, onto=self.before)
             step, here = _newton(self.balance, self.state, active, doubts)
             found.put(active, here.slopes)
+            if count == 0:
+                loads = _Loads.of(here, step, doubts)
+            elif loads is not None and self.balance.fused:
+                places = np.searchsorted(rows, active)
+                loads.put(places, _Loads.of(here, step, doubts), self.balance.quantities)
+            else:
+                loads = None  # to put loads together would take longer than to compute the loads once more
             size = np.abs(step).max(axis=1)
             small = is_last(size, size_before[active])
             size_before[active] = size
-            if count == 0 and small.all():
-                self.last = _Loads(_after(here, step), here, doubts)
             self.balance.take_step(self.state, active, step)
             self.iterations[active] += 1
             done[active] = small
             active = active[~small & ~np.isnan(size)]
         near = near_each_other(self.balance.sprung, found.of(rows), self.ends.of(rows))
         done[rows] &= ~self.followed[rows] | near
+        self.last = loads if done[rows].all() else None
         return done
 
 
@@ -244,11 +281,6 @@ def _first_step(balance: Balance, state: State, rows: Array) -> tuple[Array, Lin
     return newton_step(here.slopes.full, here.residual + balance.precone_load(rows)), here
 
 
-def _after(here: Linear, step: Array) -> Array:
-    """Return the virtual work (n, 5) of the airloads after a step."""
-    return np.asarray(here.work + (here.work_slopes @ step[..., None])[..., 0])
-
-
 def _settle(
     balance: Balance,
     state: State,
@@ -263,7 +295,7 @@ def _settle(
     if len(rows) and (last is None or (kept != reason).any()):
         doubts: dict[str, Array] = {}
         step, here = _newton(balance, before, rows, doubts)
-        last = _Loads(_after(here, step), here, doubts)
+        last = _Loads.of(here, step, doubts)
     kind = np.result_type(float, *state.values())
     values = {name: np.full(len(kept), np.nan, dtype=kind) for name in (*UNKNOWNS, "thrust", "torque")}
     warning = np.full(len(kept), "", dtype=object)
@@ -275,7 +307,7 @@ def _settle(
     loads = last.work * np.asarray(quantities["n_blades"])[..., None]
     trim.torque[rows], trim.thrust[rows] = loads[:, TORQUE], loads[:, THRUST]
     warning[rows] = warnings(balance, here, loads[:, THRUST], last.doubts)
-    return Settled(trim, rows, quantities, here.along())
+    return Settled(trim, rows, quantities, last.segments)
 
 
 def _settled(balance: Balance, found: Found) -> Settled:

@@ -15,7 +15,7 @@ from proprotor.stability.crossings import Search
 from proprotor.stability.kinds import FLUTTER, kinds
 from proprotor.stability.matching import Modes, Spectrum
 from proprotor.stability.mode_names import moving
-from proprotor.stability.modes import coordinate_shares
+from proprotor.stability.participation import coordinate_shares
 from proprotor.study.censoring import put_limits
 from proprotor.study.variables import ALWAYS, STABLE, UNSTABLE
 from proprotor.typing import Array

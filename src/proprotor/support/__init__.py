@@ -15,11 +15,15 @@ This room imports `errors`, `typing`, `needs`, `files`, `nastran` and, for the n
     aircraft_airloads  airloads of a free aircraft: wing strips and tails
     wing_aerodynamics  airloads of the wing itself, by strips
     nastran            modes or a reduced structure from a Nastran run
+    universal_modes    modes from a universal file
+    universal_file     datasets of such a file
     matrix_files       matrices of any finite-element code
+    matlab_file        such matrices in a file of MATLAB
     matrix_market      files of such matrices in the Matrix Market format
 
 All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam`, `beam_wing`, `free_airframe`,
-`matrix_files`, `nastran`, `stiffness_factors` and `wing_aerodynamics` belong to the face.
+`matlab_file`, `matrix_files`, `nastran`, `stiffness_factors`, `universal_modes` and
+`wing_aerodynamics` belong to the face.
 """
 
 from proprotor.support.airframe import SYMMETRIES, Airframe
@@ -49,10 +53,12 @@ __all__ = [
     "beam_wing",
     "free_airframe",
     "lowest_modes",
+    "matlab_file",
     "matrix_files",
     "nastran",
     "rigid_support",
     "stiffness_factors",
     "two_axis_pivot",
+    "universal_modes",
     "wing_aerodynamics",
 ]

@@ -11,12 +11,11 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, check_finite, unknown_name
 from proprotor.nastran.found import COMPONENTS, FileFault, Found
 from proprotor.nastran.kinds_of_file import DMIG, OP4, kind_of, read_modes
 from proprotor.nastran.reduced import ReducedStructure, reduced_from_dmig, reduced_from_op4
-from proprotor.nastran.selection import chosen_set, rows_of, table_of
-from proprotor.nastran.text_files import lines_of
+from proprotor.nastran.selection import chosen_set, is_in_output_system, rows_of, table_of
 from proprotor.support.matrix_files import support_from_matrices
 from proprotor.support.modal_reduction import per_mode
 from proprotor.support.normal_modes import TRANSLATION, NormalModes, signed_names
@@ -29,12 +28,13 @@ _Result = TypeVar("_Result")
 
 
 class _Modes(NamedTuple):
-    """Modes of a run: numbers (k), ω in rad/s (k), generalised mass (k) and motion T1 … R3 (6, k)."""
+    """Modes of a run: numbers (k), ω in rad/s (k), generalised mass (k), motion T1 … R3 (6, k) and its system."""
 
     numbers: Sequence[int]
     frequency: Array
     generalized_mass: Array
     motion: Array
+    system: int
 
 
 def nastran_modes(
@@ -63,7 +63,8 @@ def nastran_modes(
         superelement (EXTSEOUT): .pch with entries DMIG, or .op4. The content tells the kind.
     grid : int
         The grid point at the hub. Its motion is read in its output coordinate system, except from tables BOUG… and
-        BOPHIG of an .op2 file without others, which are in the basic one.
+        BOPHIG of an .op2 file without others, which are in the basic one. If the file says that this system is not
+        the basic one, and `hub` is not given, the support has a warning.
     includes_rotor, shaft : bool or str, str
         How the run had the rotor on, as for `proprotor.support.normal_modes.NormalModes`: "mass only" for a point mass
         at the hub's grid point (CONM2 without inertias), "rigid" with the rotor's inertias, "gimballed" with a gimbal
@@ -104,27 +105,18 @@ def nastran_modes(
         When the file is missing, cut off, damaged or of another kind, or has no such grid point, subcase or tables, and
         for input that does not go with this kind of file.
     """
+    check_finite("length_unit", length_unit, "above zero")
+    check_finite("mass_unit", mass_unit, "above zero")
     path = Path(file)
     kind = _unless_faulty(path, kind_of)
+    how: dict[str, Any] = {"includes_rotor": includes_rotor, "shaft": shaft}
     if kind in (DMIG, OP4):
-        for field, value in (("subcase", subcase), ("generalized_mass", generalized_mass)):
-            if value is not None:
-                raise InputError(field, value, "must not be given with matrices, which have no modes")
+        _refuse_beside_matrices(subcase=subcase, generalized_mass=generalized_mass)
         if carries != "one rotor":
             raise InputError("carries", carries, "must be one rotor with matrices")
-        structure = _reduced(path, kind, coordinates)
-        return _of_matrices(
-            structure,
-            grid,
-            hub,
-            names,
-            modes=modes,
-            damping_ratio=damping_ratio,
-            includes_rotor=includes_rotor,
-            shaft=shaft,
-            length_unit=length_unit,
-            mass_unit=mass_unit,
-        )
+        how |= {"modes": modes, "damping_ratio": damping_ratio}
+        how |= {"length_unit": length_unit, "mass_unit": mass_unit}
+        return _of_matrices(_reduced(path, kind, coordinates), grid, hub, names, **how)
     if coordinates is not None:
         raise InputError("coordinates", str(coordinates), "must be given with an .op4 file only")
     read = _unless_faulty(path, read_modes, kind, grid)
@@ -132,16 +124,39 @@ def nastran_modes(
     motion = _turned(found.motion, hub)
     # The coordinate of a mode is a number without unit: a translation counts lengths in the run's unit.
     motion[TRANSLATION] *= length_unit
-    return NormalModes.from_frequencies(
+    support = NormalModes.from_frequencies(
         names=tuple(names) if names else [f"mode_{number}" for number in found.numbers],
         generalized_mass=found.generalized_mass * mass_unit * length_unit**2,
         frequency=found.frequency,
         damping_ratio=per_mode(damping_ratio, len(found.numbers)),
         hub=motion,
-        includes_rotor=includes_rotor,
-        shaft=shaft,
         carries=carries,
+        **how,
     )
+    return _with_doubts(support, _doubt_of_axes(grid, found.system, hub))
+
+
+def _doubt_of_axes(grid: int, system: int, hub: Mapping[str, str] | None) -> str:
+    """Return a doubt of axes that nobody named, where the grid point has its own output coordinate system."""
+    if hub is not None or not system:
+        return ""
+    return (
+        f"grid point {grid} has the output coordinate system {system}, and hub does not say which of its axes are the "
+        "rotor's: aircraft axes are taken"
+    )
+
+
+def _with_doubts(support: NormalModes, *doubts: str) -> NormalModes:
+    """Return the support with the doubts that are not empty."""
+    text = "; ".join(filter(None, doubts))
+    return replace(support, warning=np.array(text, dtype=object)) if text else support
+
+
+def _refuse_beside_matrices(**given: Any) -> None:
+    """Refuse input that is about modes."""
+    for field, value in given.items():
+        if value is not None:
+            raise InputError(field, value, "must not be given with matrices, which have no modes")
 
 
 def _unless_faulty(path: Path, read: Callable[..., _Result], *arguments: Any) -> _Result:
@@ -161,6 +176,7 @@ def _modes(
 ) -> _Modes:
     """Return the modes of one subcase, with generalised masses of the file or as given."""
     chosen = chosen_set(found, grid, subcase, str(file))
+    system = found.output_system if is_in_output_system(chosen) else 0
     table = table_of(chosen, found.tables)
     if table is None:
         if generalized_mass is None:
@@ -174,13 +190,13 @@ def _modes(
             rule = "has no frequencies for its eigenvectors: ask Nastran for SORT1, or PARAM,POSTEXT,YES"
             raise InputError("file", str(file), rule)
         masses = _repeated(generalized_mass, len(chosen.numbers))
-        return _Modes(chosen.numbers, _frequency(chosen.eigenvalues, file), masses, chosen.motion)
+        return _Modes(chosen.numbers, _frequency(chosen.eigenvalues, file), masses, chosen.motion, system)
     if generalized_mass is not None:
         rule = "must not be given: the file has a table of generalised masses (LAMA)"
         raise InputError("generalized_mass", generalized_mass, rule)
     rows = rows_of(chosen, table)
     masses = np.asarray(table.generalized_mass, dtype=float)[rows]
-    return _Modes(chosen.numbers, _frequency(table.eigenvalues[rows], file), masses, chosen.motion)
+    return _Modes(chosen.numbers, _frequency(table.eigenvalues[rows], file), masses, chosen.motion, system)
 
 
 def _frequency(eigenvalues: ArrayLike, file: Any) -> Array:
@@ -214,8 +230,9 @@ def _kept(found: _Modes, modes: int | None, file: Any) -> _Modes:
         found.frequency[order],
         found.generalized_mass[order],
         found.motion[:, order],
+        found.system,
     )
-    finite = all(np.isfinite(part).all() for part in kept[1:])
+    finite = all(np.isfinite(part).all() for part in kept[1:4])
     if not (finite and min(kept.generalized_mass) > 0):
         raise InputError("file", str(file), "must hold finite eigenvectors and generalised masses above zero")
     return kept
@@ -248,7 +265,7 @@ def _reduced(path: Path, kind: str, coordinates: str | os.PathLike[str] | None) 
     if kind == DMIG:
         if coordinates is not None:
             raise InputError("coordinates", str(coordinates), "must be given with an .op4 file only")
-        return _unless_faulty(path, lambda path: reduced_from_dmig(lines_of(path)))
+        return _unless_faulty(path, reduced_from_dmig)
     if coordinates is None:
         rule = "is missing: an .op4 file needs the file of bulk data that EXTSEOUT wrote beside it (.pch or .asm)"
         raise InputError("coordinates", None, rule)
@@ -276,7 +293,7 @@ def _of_matrices(
     )
     if names:
         support = replace(support, names=tuple(names))
-    if structure.left_out:
-        text = f"structural damping of the elements ({structure.left_out}) is left out: give damping_ratio"
-        support = replace(support, warning=np.array(text, dtype=object))
-    return support
+    left_out = structure.left_out and (
+        f"structural damping of the elements ({structure.left_out}) is left out: give damping_ratio"
+    )
+    return _with_doubts(support, left_out, _doubt_of_axes(grid, structure.output_systems.get(grid, 0), hub))
