@@ -112,7 +112,7 @@ def spreads(found: HingedBlade) -> dict[str, float]:
 def main() -> None:
     """Calibrate the blade and print what follows."""
     console = Console()
-    fit = least_squares(misfit, np.log([3.5, 20.0, 1.7, 0.16]), diff_step=1e-4)
+    fit = least_squares(misfit, np.log([3.5, 20.0, 1.7, 0.16]), diff_step=1e-4, ftol=1e-7, max_nfev=12)
     factors = np.exp(fit.x)
     names = ("flatwise", "edgewise", "flatwise in the hub", "edgewise in the hub")
     shown = ", ".join(f"{name} {value:.3g}" for name, value in zip(names, factors, strict=True))

@@ -120,7 +120,7 @@ def _place(blade: ElasticBlade, modes: RotatingModes, name: str) -> Array:
     """Return which of the two lowest modes (p,) moves the tip the most in a plane, of its motion in both."""
     at_tip = {plane: np.abs(modes.shape[:, place - 4, :2]) for plane, place in _PLANES.items()}
     flap = np.argmax(at_tip["flap"] / np.hypot(at_tip["flap"], at_tip["lag"]), axis=-1)
-    return flap if name == "flap" else 1 - flap
+    return np.asarray(flap if name == "flap" else 1 - flap)
 
 
 def _in_order(blade: ElasticBlade, modes: RotatingModes, hinged: Array, name: str) -> tuple[Array, Array]:

@@ -44,8 +44,8 @@ Loads and trim:
     trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
 
-All public names of the modules `blade_stations`, `elastic_blade`, `hinged_blade`, `from_stations`, `fused`, `generated`,
-`motions`, `options` and `section_loads` belong to the face.
+All public names of the modules `blade_stations`, `elastic_blade`, `hinged_blade`, `from_stations`, `fused`,
+`generated`, `motions`, `options` and `section_loads` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns

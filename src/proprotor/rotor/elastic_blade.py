@@ -262,4 +262,4 @@ class ElasticBlade:
         whole = np.concatenate([[0.0], np.cumsum(of_element)])
         part = np.clip((radius - nodes[inner]) / step[inner], 0.0, 1.0)
         within = ends[inner][..., None] + (rise[inner] * part)[..., None] * place
-        return whole[inner] + (weight / within).sum(axis=-1) * part * step[inner]
+        return np.asarray(whole[inner] + (weight / within).sum(axis=-1) * part * step[inner])
