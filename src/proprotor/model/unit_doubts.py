@@ -11,12 +11,13 @@ import numpy as np
 
 from proprotor.model.rotor_share import without_rotors
 from proprotor.rotor.motions import HUB
-from proprotor.support.normal_modes import ROTATION, TRANSLATION, NormalModes
+from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array
 
 # Bundled decks have 0.2 to 1.6 times the mass of the rotor, and 0.8 to 3.3 times its radius of gyration.
 _MASS, _LENGTH = (0.02, 50.0), (1 / 12, 12.0)
 _TILT = HUB.index("alpha_x")
+_MOVES, _TURNS = slice(0, 3), slice(3, 6)  # of the hub's coordinates
 
 
 def unit_warnings(support: NormalModes, mass_at_rest: Array) -> tuple[str, ...]:
@@ -37,7 +38,7 @@ def unit_warnings(support: NormalModes, mass_at_rest: Array) -> tuple[str, ...]:
         return ()
     hub = np.real(support.hub)
     mobility = hub @ np.linalg.pinv(np.real(mass), hermitian=True) @ hub.T
-    moves, turns = (mobility[part, part] for part in (TRANSLATION, ROTATION))
+    moves, turns = (mobility[part, part] for part in (_MOVES, _TURNS))
     rotor_mass, inertia = np.real(mass_at_rest[0, 0]), np.real(mass_at_rest[_TILT, _TILT])
     largest, turning = float(np.linalg.eigvalsh(moves)[-1]), float(np.trace(turns))
     if not (largest > 0 and turning > 0 and rotor_mass > 0 and inertia > 0):
