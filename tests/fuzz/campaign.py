@@ -33,7 +33,7 @@ _IMPORTED_LATE = (
     "scipy.sparse.linalg",
     "dask.array",
     "distributed",
-    *(f"encodings.utf_{form}" for form in ("16_le", "16_be", "32_le", "32_be")),  # of files with such a mark
+    *(f"encodings.utf_{width}_{order}" for width in (16, 32) for order in ("le", "be")),
 )  # by functions that a warm-up may not meet
 
 
