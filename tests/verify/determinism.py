@@ -227,10 +227,11 @@ def _functions(package: str, path: str) -> dict[str, Callable]:
 
 def random_arguments(function, seed: int) -> dict[str, np.ndarray]:
     """Numbers of order one for each argument, the same for a name wherever it stands; matrices as documented."""
-    text = inspect.getdoc(function) or ""  # without its indentation, which __doc__ has before Python 3.13 alone
+    text = (
+        inspect.getdoc(function) or ""
+    )  # without its indentation, which __doc__ has before Python 3.13 alone
     shapes: dict[str, tuple[int, ...]] = {
-        name: ((2,) if segments else ()) + (int(n), int(m))
-        for name, segments, n, m in _MATRIX.findall(text)
+        name: ((2,) if segments else ()) + (int(n), int(m)) for name, segments, n, m in _MATRIX.findall(text)
     }
     shapes |= {name: (int(count),) for name, count in _GROUP.findall(text)}
     found = {}
