@@ -79,7 +79,7 @@ audit-vulnerabilities: .venv/installed  ## Look up known vulnerabilities of what
 mutate: .venv/installed  ## Change every term of the equations, one at a time, and tell which change no test sees
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.mutation --processes 2 --report docs/mutation.md
 
-fuzz: .venv/installed  ## Read 100,000 damaged decks, support files and airfoil tables
+fuzz: .venv/installed  ## Read 100,000 damaged decks and files of supports, airfoils and Nastran
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.fuzz --inputs 100000 --processes 2
 
 peers: .venv/installed  ## Compare with Kane's method, lambdify and JAX; writes benchmarks/peers.md

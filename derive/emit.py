@@ -26,7 +26,8 @@ from derive.coordinates import PARTNER, SAME_TURN
 from derive.equations import REDUCED_MODULES, STEPS, consistent_functions, reduced_functions
 from derive.files import write_whole
 from derive.function import Function
-from derive.fused import FusedFunction, fused_functions
+from derive.fused import FusedFunction, functions_of_rotor
+from derive.fused_trim import functions_of_trim
 from derive.plan import print_line
 from derive.published import DROPPED_TERMS
 from derive.rotor import OF_SEGMENTS, OPTIONAL, Assembly, Call
@@ -246,6 +247,8 @@ def _describe_fused(function: FusedFunction) -> dict[str, Any]:
         "name": function.name,
         "summary": function.summary,
         "operations": function.plan.operations,
+        "called": function.called,
+        "into": function.into,
         "groups": [{"name": g.name, "meaning": g.meaning, "members": g.members} for g in function.groups],
         "arguments": [
             {
@@ -256,20 +259,45 @@ def _describe_fused(function: FusedFunction) -> dict[str, Any]:
             }
             for symbol in function.arguments
         ],
-        "lines": [{"name": name, "code": print_line(value)} for name, value in function.plan.lines],
+        "lines": [{"name": name, "code": print_line(value)} for name, value in _lines_of(function)],
         "results": function.plan.results,
         "layouts": list(function.plan.layouts.items()),
     }
 
 
-def render_fused() -> str:
-    """Text of the module of fused functions."""
-    return _rendered(
-        "fused.py.jinja",
-        "fused/rotor.py",
-        title="A whole rotor as plans of few operations",
-        functions=[_describe_fused(function) for function in fused_functions()],
-    )
+def _lines_of(function: FusedFunction) -> Iterator[tuple[str, sp.Expr]]:
+    """Lines of a plan; a result that goes into an array is put there in a line of its own if later lines need it."""
+    results, lines = function.plan.results, function.plan.lines
+    needed = set().union(*(value.free_symbols for _, value in lines))
+    for name, value in lines:
+        place = f"into[{results.index(name)}]" if function.into and name in results else name
+        if place != name and sp.Symbol(name, real=True) in needed:
+            yield name, value
+            yield place, sp.Symbol(name, real=True)
+        else:
+            yield place, value
+
+
+_FUSED = {
+    "rotor": (
+        "A whole rotor as plans of few operations",
+        "`proprotor_equations.rotor`",
+        functions_of_rotor,
+    ),
+    "trim": (
+        "The trim of a blade as plans of few operations",
+        "`proprotor_equations.trim`, `section` and `airloads`",
+        functions_of_trim,
+    ),
+}
+
+
+def render_fused(module: str) -> str:
+    """Text of a module of fused functions."""
+    title, readable, functions = _FUSED[module]
+    described = [_describe_fused(function) for function in functions()]
+    given = {"title": title, "readable": readable, "functions": described}
+    return _rendered("fused.py.jinja", f"fused/{module}.py", **given)
 
 
 def _rendered(template: str, name: str, **given: Any) -> str:
@@ -387,7 +415,8 @@ def render() -> Iterator[tuple[str, str]]:
     for module in REDUCED_MODULES:
         title = f"{STEPS[module].title}, as published"
         yield f"published/{module}.py", render_module(reduced_functions(module), title)
-    yield "fused/rotor.py", render_fused()
+    for module in _FUSED:
+        yield f"fused/{module}.py", render_fused(module)
     yield "fused/__init__.py", _rendered("fused_package.py.jinja", "__init__.py")
     yield "__init__.py", _rendered("package.py.jinja", "__init__.py", modules=list(STEPS))
     terms = [{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()]
@@ -397,7 +426,7 @@ def render() -> Iterator[tuple[str, str]]:
 
 def derive_files(progress: Progress = print) -> dict[str, str]:
     """All generated files, with a progress line per step."""
-    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 4
+    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 5
     start = time.perf_counter()
     for count, (name, text) in enumerate(render(), start=1):
         files[name] = text

@@ -46,22 +46,35 @@ class Group:
     members: tuple[str, ...]
 
 
+_CALLED = {(sp.cos, sp.sin): ("cos", "sin"), (sp.atan,): ("sqrt", "arctan")}
+
+
 @dataclass(frozen=True)
 class FusedFunction:
-    """A plan with its name, summary and arguments, groups of numbers first."""
+    """A plan with its name, summary and arguments, groups of numbers first.
+
+    With `into` the function puts its results into an array that it takes, and otherwise returns them.
+    """
 
     name: str
     summary: str
     plan: Plan
     arguments: list[sp.Symbol]
     groups: tuple[Group, ...] = ()
+    into: bool = False
+
+    @property
+    def called(self) -> tuple[str, ...]:
+        """Functions of one number that the plan calls."""
+        found = [value for _, value in self.plan.lines]
+        return next((names for kinds, names in _CALLED.items() if any(v.has(*kinds) for v in found)), ())
 
 
-def _function(module: str, name: str) -> Function:
+def of_catalogue(module: str, name: str) -> Function:
     return next(function for function in consistent_functions(module) if function.name == name)
 
 
-def _values(function: Function) -> dict[Place, sp.Expr]:
+def entries_of(function: Function) -> dict[Place, sp.Expr]:
     return {place: entry.value for place, entry in function.entries.items()}
 
 
@@ -72,7 +85,7 @@ def _values(function: Function) -> dict[Place, sp.Expr]:
 def _virtual() -> tuple[Matrix, dict[str, Combination]]:
     """W of the independent rows of the work, and every row in these."""
     columns = Columns(names(SEGMENT_LOADS))
-    found = columns.combinations(_function("airloads", "virtual_motion"))
+    found = columns.combinations(of_catalogue("airloads", "virtual_motion"))
     return columns.matrix, found
 
 
@@ -82,7 +95,8 @@ def _motions() -> tuple[Matrix, dict[str, dict[str, Combination]]]:
     columns = Columns(names(SEGMENT_MOTIONS))
     prefixes = {"rate_motion": "rate_", "gust_motion": "gust_", "displacement_motion": "change_"}
     found = {
-        name: columns.combinations(_function("airloads", name), prefix) for name, prefix in prefixes.items()
+        name: columns.combinations(of_catalogue("airloads", name), prefix)
+        for name, prefix in prefixes.items()
     }
     return columns.matrix, found
 
@@ -90,9 +104,9 @@ def _motions() -> tuple[Matrix, dict[str, dict[str, Combination]]]:
 @functools.cache
 def _geometric() -> tuple[Matrix, dict[Place, sp.Expr]]:
     """G of a segment: its different entries as a column, and each entry as one of these with its sign."""
-    function = _function("airloads", "geometric_stiffness")
+    function = of_catalogue("airloads", "geometric_stiffness")
     results = Results()
-    layout = results.layout("geometric", Matrix(function.rows, function.columns, _values(function)))
+    layout = results.layout("geometric", Matrix(function.rows, function.columns, entries_of(function)))
     different = list(results.named)
     entries = {
         (row, column): sp.sign(number) * sp.Symbol(different[abs(number) - 1], real=True)
@@ -115,7 +129,7 @@ def _work(row: str, column: str) -> sp.Symbol:
 def _air(term: Code) -> dict[Place, sp.Expr]:
     """Entries of one of the blade's airload matrices, a product of the arrays of the segments."""
     name = term.removeprefix("air.")
-    product = _function("airloads", {"gusts": "gust_loads"}.get(name, name)).product
+    product = of_catalogue("airloads", {"gusts": "gust_loads"}.get(name, name)).product
     parts = []
     for part in sp.MatAdd.make_args(product):
         factor, matrices = part.as_coeff_matrices()
@@ -148,11 +162,11 @@ def _blade() -> tuple[list[tuple[sp.Symbol, sp.Expr]], Blade, Blade]:
     """
     steps: list[tuple[sp.Symbol, sp.Expr]] = []
     blade, air = {}, {}
-    for line in cast(Assembly, _function("rotor", "blade_matrices")).lines:
+    for line in cast(Assembly, of_catalogue("rotor", "blade_matrices")).lines:
         functions = [term.function for term in line.terms if isinstance(term, Call)]
         plain = [function for function in functions if not isinstance(function, Assembly)]
         steps += [step for function in plain for step in function.steps]
-        blade[line.result] = _sum(_values(function) for function in plain)
+        blade[line.result] = _sum(entries_of(function) for function in plain)
         air[line.result] = _sum(_air(term) for term in line.terms if isinstance(term, Code))
     return steps, blade, air
 
@@ -178,7 +192,7 @@ def _fixed_frame(blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
         for column in (multiblade.GUST_INDEX if name == "gusts" else kin.COORDINATES)
     }
     matrices: dict[str, Matrix] = {}
-    assembly = cast(Assembly, _function("rotor", "fixed_frame"))
+    assembly = cast(Assembly, of_catalogue("rotor", "fixed_frame"))
     for line in assembly.lines:
         first = line.terms[0]
         if isinstance(first, Code):
@@ -187,7 +201,9 @@ def _fixed_frame(blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
             matrices[line.result] = Matrix(left.rows, left.columns + right.columns, both)
             continue
         functions = [term.function for term in line.terms if isinstance(term, Call)]
-        total = _sum(_values(function) for function in functions if function.blade_matrices or not of_blades)
+        total = _sum(
+            entries_of(function) for function in functions if function.blade_matrices or not of_blades
+        )
         total = {place: value.xreplace(entries) for place, value in total.items()}
         matrices[line.result] = Matrix(first.function.rows, first.function.columns, total)
     return {name: matrices[name] for name in assembly.results}
@@ -218,7 +234,7 @@ def of_airloads() -> FusedFunction:
 def segment() -> FusedFunction:
     """Arrays of one segment: W, L and U of the independent motions, and what the rotor needs of G as a column."""
     virtual, motion, geometric = _virtual()[0], _motions()[0], _geometric()[0]
-    derivatives = _values(_function("airloads", "load_derivatives"))
+    derivatives = entries_of(of_catalogue("airloads", "load_derivatives"))
     _, needed = of_airloads().groups  # the rest of G vanishes in the sum over the blades
     entries = {place: value for place, value in geometric.entries.items() if place[0] in needed.members}
     matrices = {
@@ -227,14 +243,14 @@ def segment() -> FusedFunction:
         "motion": motion,
         "geometric_stiffness": Matrix(needed.members, geometric.columns, entries),
     }
-    return _fused("segment", _function("airloads", "segment_geometry").steps, matrices, segment)
+    return _fused("segment", of_catalogue("airloads", "segment_geometry").steps, matrices, segment)
 
 
 def named_values(module: str, name: str) -> FusedFunction:
     """Plan the named values of a function."""
-    function = _function(module, name)
+    function = of_catalogue(module, name)
     made = plan(function.steps, {}, [symbol.name for symbol in function.values])
-    return FusedFunction(name, function.summary, made, _arguments(made, function.steps))
+    return FusedFunction(name, function.summary, made, arguments(made, function.steps))
 
 
 def _fused(
@@ -245,16 +261,16 @@ def _fused(
 ) -> FusedFunction:
     made = plan(steps, matrices)
     summary = (of.__doc__ or "").partition("\n")[0]
-    return FusedFunction(name, summary, made, _arguments(made, steps))
+    return FusedFunction(name, summary, made, arguments(made, steps))
 
 
-def _arguments(made: Plan, steps: Steps) -> list[sp.Symbol]:
+def arguments(made: Plan, steps: Steps) -> list[sp.Symbol]:
     """Return the quantities that a plan needs, in the order of their declaration."""
     needed = set().union(*(value.free_symbols for _, value in made.lines)) - {symbol for symbol, _ in steps}
     return [symbol for symbol in QUANTITIES if symbol in needed]
 
 
-def fused_functions() -> list[FusedFunction]:
+def functions_of_rotor() -> list[FusedFunction]:
     """Return all fused functions of the rotor."""
     return [
         named_values("flap_lag_springs", "effective_stiffness"),

@@ -9,6 +9,7 @@ opposite are computed once; a layout tells which result, with which sign, stands
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -46,10 +47,13 @@ class Plan:
         return int(sum(sp.count_ops(value) for _, value in self.lines))
 
 
-def plan(steps: Steps, matrices: Mapping[str, Matrix], values: Sequence[str] = ()) -> Plan:
+def plan(
+    steps: Steps, matrices: Mapping[str, Matrix], values: Sequence[str] = (), short_lived: bool = False
+) -> Plan:
     """Plan the matrices from their entries; steps are named values that entries and later steps may use.
 
-    The steps that `values` names are results as well, before those of the matrices.
+    The steps that `values` names are results as well, before those of the matrices. With `short_lived` the other steps
+    take registers like temporaries, so that they fill no memory after their last use.
     """
     results = Results()
     layouts = {name: results.layout(name, matrix) for name, matrix in matrices.items()}
@@ -59,7 +63,7 @@ def plan(steps: Steps, matrices: Mapping[str, Matrix], values: Sequence[str] = (
     lines = dict(zip([name for name, _ in named + outcomes], reduced, strict=True))
     made = _with_plain_powers({symbol.name: value for symbol, value in shared} | lines)
     wanted = [*values, *results.named]
-    names = {name for name, _ in named + outcomes}
+    names = set(wanted) if short_lived else {name for name, _ in named + outcomes}
     return Plan(_with_registers(list(_in_order(made, wanted)), made, names), wanted, layouts)
 
 
@@ -142,32 +146,49 @@ def _with_registers(
     """Give each temporary a register; a register is free again after the last use of its temporary."""
     last = {symbol.name: place for place, name in enumerate(order) for symbol in made[name].free_symbols}
     free: list[int] = []
-    registers: dict[sp.Symbol, sp.Symbol] = {}
+    registers: dict[str, sp.Symbol] = {}
     count = itertools.count()
     lines = []
     for place, name in enumerate(order):
-        value = made[name].xreplace(registers)
-        for symbol in sorted(made[name].free_symbols & registers.keys(), key=str):
-            if last[symbol.name] == place:
-                free.append(int(registers[symbol].name[1:]))
+        symbols = made[name].free_symbols
+        value = made[name].xreplace({symbol: registers.get(symbol.name, symbol) for symbol in symbols})
+        for needed in sorted({symbol.name for symbol in symbols} & registers.keys()):
+            if last[needed] == place:
+                free.append(int(registers[needed].name[1:]))
         if name not in names:
             register = free.pop() if free else next(count)
-            registers[sp.Symbol(name)] = sp.Symbol(f"r{register}")
-        lines.append((registers[sp.Symbol(name)].name if name not in names else name, value))
+            registers[name] = sp.Symbol(f"r{register}")
+        lines.append((registers[name].name if name not in names else name, value))
     return lines
 
 
 class PlanPrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no types
     """Python code for numbers as for arrays: a small whole power is a product."""
 
+    def _print_Add(self, expr: sp.Add, order: str | None = None) -> str:
+        """A sum begins with a term without a minus, which would be an operation of its own."""
+        terms = self._as_ordered_terms(expr, order=order)
+        first = next((term for term in terms if not term.could_extract_minus_sign()), terms[0])
+        rest = (self._print(term) for term in terms if term is not first)
+        parts = (f"- {term[1:]}" if term.startswith("-") else f"+ {term}" for term in rest)
+        return " ".join([self._print(first), *parts])
+
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         base, exponent = expr.as_base_exp()
         if base.is_Symbol and exponent in (2, 3):
             return "*".join([self._print(base)] * int(exponent))
+        if abs(exponent) == sp.Rational(1, 2):
+            return f"{'1/' if exponent.is_negative else ''}sqrt({self._print(base)})"
         if exponent != -1:
             raise ValueError(f"cannot print {expr} in a plan")
         printed: str = super()._print_Pow(expr, rational=rational)
         return printed
+
+    def _print_Pi(self, expr: sp.Expr) -> str:
+        return repr(math.pi)
+
+    def _print_atan(self, expr: sp.atan) -> str:
+        return f"arctan({self._print(expr.args[0])})"
 
 
 def print_line(value: sp.Expr) -> str:

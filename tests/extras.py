@@ -29,6 +29,7 @@ PLAIN = {
     "attribution": (CASE, "--mode", "chord", "--speed", "200 kt"),
     "report": (CASE, "--out", "report.html"),
     "study": (CASE, *RANGE, "--speed", "200 kt", "--out", "study.nc"),
+    "export": (CASE, "rotor.mat", "--speed", "200 kt"),
     "explore": ("--help",),
 }
 # Each command as it needs one, and the extra.

@@ -125,7 +125,14 @@ def _with_speeds_of_the_wing(
         speed[place] = _first_onset(design, found.airspeed.values, options, float(speed[place]), least[place])
     of_wing = np.where(np.isfinite(speed), "", STABLE)
     note = note.where(~of_rotor & (note != UNSTABLE), of_wing)
-    return found.assign(flutter_speed=speed.where(~at_start), flutter_note=note.where(~at_start, UNSTABLE))
+    speed, note = speed.where(~at_start), note.where(~at_start, UNSTABLE)
+    lowest, highest = found.airspeed.values[[0, -1]]
+    above, below = found.flutter_speed_above, found.flutter_speed_below
+    limits = {
+        "flutter_speed_above": above.where(note != STABLE, highest).where(np.isnan(speed) & ~at_start),
+        "flutter_speed_below": below.where(~at_start, lowest).where(note == UNSTABLE),
+    }
+    return found.assign(flutter_speed=speed, flutter_note=note, **limits)
 
 
 def _first_onset(

@@ -1,8 +1,20 @@
-"""The names that `import proprotor as pp` offers; the package imports this module where a name is first used."""
+"""The names that `import proprotor as pp` offers; the package imports this module where a name is first used.
+
+Datasets get the accessor ``.proprotor`` (`proprotor.plots.accessor`) once xarray is imported, by whomever: xarray takes
+longer to import than many an analysis.
+"""
+
+import sys
+from importlib import import_module, util
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
 
 from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
+from proprotor.exchange.dmig import save_dmig
 from proprotor.exchange.matlab import save_matlab
 from proprotor.exchange.netcdf import load_results, save_results
 from proprotor.model.linear_model import LinearModel
@@ -15,6 +27,7 @@ from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet
 from proprotor.rotor.operation import Operation
@@ -23,6 +36,7 @@ from proprotor.stability.branches import by_branch
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.study import sampling
 from proprotor.study.study import study
+from proprotor.study.study_file import save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
 from proprotor.support.beam_wing import Pylon, Wing, beam_wing
 from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
@@ -57,11 +71,45 @@ __all__ = [
     "rigid_support",
     "rotor_model",
     "sampling",
+    "save_dmig",
     "save_matlab",
     "save_results",
+    "save_study",
     "share_below",
     "sobol_indices",
     "standard_air",
     "study",
     "two_axis_pivot",
+    "write_c81",
 ]
+
+
+def _register_accessor() -> None:
+    import_module("proprotor.plots.accessor").register()
+
+
+class _AtImportOfXarray(MetaPathFinder):
+    """Registers the accessor at the end of the import of xarray, and finds no module itself."""
+
+    asked = False
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        if name != "xarray" or self.asked:
+            return None
+        self.asked = True  # whoever finds xarray comes after this finder
+        spec = util.find_spec(name)
+        if spec is not None and spec.loader is not None:
+            execute = spec.loader.exec_module
+
+            def execute_and_register(module: ModuleType) -> None:
+                execute(module)
+                _register_accessor()
+
+            spec.loader.exec_module = execute_and_register  # type: ignore[method-assign]
+        return spec
+
+
+if "xarray" in sys.modules:
+    _register_accessor()
+else:
+    sys.meta_path.insert(0, _AtImportOfXarray())

@@ -283,6 +283,8 @@ def in_metres_per_second(airspeed: Any, density: ArrayLike | None = None) -> Arr
     InputError
         When the value is not a speed, or an equivalent airspeed where the density is not known or zero.
     """
+    if isinstance(airspeed, float | int):
+        return np.asarray(airspeed, dtype=float)
     if is_equivalent(airspeed):
         equivalent = _metres_per_second(airspeed, "keas")
         return np.asarray(equivalent * speed_factor(KEAS, density, airspeed))

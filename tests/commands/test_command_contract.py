@@ -36,6 +36,10 @@ SUCCEED = {
     ],
     "attribution": [("xv15-uncoupled", "--speed", "300 kt", *FAST)],
     "study": [STUDY],
+    "export": [
+        ("xv15-uncoupled", "a.bdf", "--speed", "200 kt", "--grid", "1", "--first-extra-point", "11"),
+        ("xv15-uncoupled", "a.mat", "--speed", "200 kt", *FAST),
+    ],
 }
 FAIL = {
     "cases": (("xv16",), "did you mean xv15?"),
@@ -53,6 +57,7 @@ FAIL = {
         ("xv15-uncoupled", "--vary", "rotor.precone", "--speed", "200 kt"),
         "--vary = rotor.precone: must be",
     ),
+    "export": (("xv15-uncoupled", "a.txt", "--speed", "200 kt"), "FILE = a.txt: must end in .bdf"),
 }
 NOTHING_ANALYSED = {
     "sweep": ("xv15-uncoupled", "--speed", "0 kt"),
@@ -72,6 +77,8 @@ OUTPUTS = [
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--csv", "x.csv"),
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--plot", "x.png"),
     ("study", STUDY, "--out", "x.nc"),
+    ("study", STUDY, "--csv", "x.csv"),
+    ("study", STUDY, "--save", "x.toml"),
 ]
 
 

@@ -27,8 +27,11 @@ from proprotor.support.modal_reduction import lowest_modes
 
 CASE = pp.load_case("xv15-uncoupled")
 PRECONE = "rotor.precone"
+NOTHING = ("design", [np.nan, np.nan])
 FLUTTER = xr.Dataset(
-    {"flutter_speed": ("design", [np.nan, np.nan]), "flutter_note": ("design", ["no trim", "no trim"])}
+    dict.fromkeys(("flutter_speed", "flutter_speed_above", "flutter_speed_below"), NOTHING)
+    | {"flutter_note": ("design", ["no trim", "no trim"])},
+    attrs={"sample": "{}"},
 )
 
 

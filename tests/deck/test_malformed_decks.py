@@ -79,7 +79,9 @@ MALFORMED = {
     "a key twice": Malformed(
         variant('[rotor]\nradius = "12 ft"\nradius = "13 ft"'), "deck = deck.toml: is not TOML: "
     ),
-    "another encoding": Malformed(VARIANT.encode("utf-16"), "deck = deck.toml: must be text in UTF-8"),
+    "another encoding": Malformed(
+        VARIANT.encode("utf-16")[:-1], "deck = deck.toml: must be text in UTF-16-LE"
+    ),
     "binary": Malformed(bytes(range(256)) * 8, "deck = deck.toml: must be text in UTF-8"),
     "a terminal sequence in the title": Malformed(
         VARIANT + 'title = "my \\u001b[2J\\u001b[31mFlutter speed 999 kt"\n',

@@ -27,7 +27,7 @@ from derive import emit
 from derive.audit import report
 from proprotor.commands.main import main
 from proprotor.files.output import write_whole
-from proprotor.stability.mode_names import _assign_names
+from proprotor.stability.mode_names import _assign_names, _groups
 from proprotor.study.checkpoint import Checkpoint
 from tests import accept_golden
 from tests.csv_files import without_comments
@@ -337,8 +337,10 @@ def test_a_pair_that_is_likest_a_rate_alone_gets_a_name_for_two():
     """The rotor speed has room for one state: a pair that was given its name was torn for ever."""
     shares = np.array([[0.1, 0.1, 0.9], [0.9, 0.9, 0.1]])  # of x and of azimuth, in a pair and a real root
     with within(5):
-        (names,) = _assign_names(("x", "azimuth"), [0], shares[None], np.array([[-1 + 1j, -1 - 1j, -1 + 0j]]))
-    assert names.tolist() == [0, 0, 1]
+        groups, modes = _groups(("x", "azimuth"), ((0, 1),), (0,)), [0, 2]
+        values = np.array([[-1 + 1j, -1 - 1j, -1 + 0j]])
+        names = _assign_names(groups, values, np.array([modes]), shares[:, modes, None])
+    assert names[:, 0].tolist() == [0, 1]
 
 
 def test_speeds_that_all_fail_have_a_row_each_in_a_file(tmp_path):

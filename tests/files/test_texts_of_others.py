@@ -4,6 +4,7 @@ import codecs
 import json
 import re
 import unicodedata
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,11 +21,13 @@ from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.motions import HUB, SECOND, motions, name_list, reactionless_coordinates
 from proprotor.support.matrix_files import read_matrix_market
 from proprotor.support.matrix_market import read_matrix
+from proprotor.tables.points import read_points
 from tests.commands.test_command_contract import SUCCEED
 
 DECK = 'base = "xv15-uncoupled"\n[case]\nname = "mine"\ntitle = "Mine"\n'
 C81 = "MINE" + " " * 26 + " 1 2 1 2 1 2\n" + (" " * 7 + "   0.00\n" + "  -10.0  0.100\n   10.0  0.200\n") * 3
 STATIONS = "r_over_R,twist [deg]\n0.1,30\n1,-5\n"
+POINTS = "airspeed [ktas],damping [%]\n100,2\n200,1.5\n"
 SPARSE = "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 2.0\n2 2 3.0\n"
 FULL = "%%MatrixMarket matrix array real general\n2 2\n1\n0\n0\n4\n"
 
@@ -33,20 +36,68 @@ READERS = {
     "deck": (DECK, lambda path: pp.load_case(path).title),
     "C81": (C81, lambda path: (AirfoilTable.from_c81(path).name, AirfoilTable.from_c81(path).coefficients)),
     "stations": (STATIONS, lambda path: read_stations(path, "twist", "rad")),
+    "points": (
+        POINTS,
+        lambda path: [column.values.tolist() for column in read_points(path).columns.values()],
+    ),
     "sparse matrix": (SPARSE, lambda path: read_matrix(path).toarray().tolist()),
     "full matrix": (FULL, lambda path: read_matrix(path).tolist()),
 }
 
 
+MARKS = {
+    "utf-8": codecs.BOM_UTF8,  # Notepad
+    "utf-16-le": codecs.BOM_UTF16_LE,  # PowerShell
+    "utf-16-be": codecs.BOM_UTF16_BE,
+    "utf-32-le": codecs.BOM_UTF32_LE,
+    "utf-32-be": codecs.BOM_UTF32_BE,
+}
+
+
+@pytest.mark.parametrize("encoding", MARKS)
 @pytest.mark.parametrize("kind", READERS)
 @pytest.mark.parametrize("line_end", ["\n", "\r\n"])
-def test_a_byte_order_mark_changes_nothing(tmp_path, kind, line_end):
+def test_a_byte_order_mark_changes_nothing(tmp_path, kind, line_end, encoding):
     text, read = READERS[kind]
     plain, marked = tmp_path / "plain.toml", tmp_path / "marked.toml"
-    content = text.replace("\n", line_end).encode()
-    plain.write_bytes(content)
-    marked.write_bytes(codecs.BOM_UTF8 + content)
+    text = text.replace("\n", line_end)
+    plain.write_bytes(text.encode())
+    marked.write_bytes(MARKS[encoding] + text.encode(encoding))
     assert str(read(marked)) == str(read(plain))
+
+
+# What is opened without being a text of a user.
+OPENED = {
+    "files/text.py": "the one place",
+    "files/output.py": "what is written",
+    "files/source_code.py": "this package",
+    "needs.py": "files of the system",
+    "study/checkpoint.py": "what a study wrote",
+    "study/study.py": "the folder of a study",
+    "report/typeset.py": "the layout of reports",
+    "commands/report.py": "bytes for a fingerprint",
+    "support/matlab_file.py": "a binary file",
+    "nastran/kinds_of_file.py": "the first bytes of a file",
+    "nastran/op2.py": "a binary file",
+    "nastran/op4.py": "a binary file",
+    "commands/main.py": "the null device",
+    "commands/explore.py": "a browser",
+}
+
+
+def test_texts_of_users_are_decoded_in_one_place():
+    """A reader that opened a text itself would not know the byte order marks."""
+    opens = re.compile(
+        r"(?<![\w.])open\(|\.(open|read_text|read_bytes)\(|(loadtxt|genfromtxt|fromfile)\((?!io)"
+    )
+    root = Path(pp.__file__).parent
+    found = {
+        path.relative_to(root).as_posix()
+        for path in root.rglob("*.py")
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if opens.search(line) and not line.lstrip().startswith("#")
+    }
+    assert found == OPENED.keys()
 
 
 def test_a_byte_order_mark_before_the_names_of_coordinates(tmp_path):
@@ -58,8 +109,11 @@ def test_a_byte_order_mark_before_the_names_of_coordinates(tmp_path):
     dofs = tmp_path / "dofs.txt"
     dofs.write_bytes(codecs.BOM_UTF8 + "\n".join(names).encode())
     assert list(read_matrix_market(matrix, matrix, dofs=dofs).names) == names
-    dofs.write_bytes(b"\xff\xff")
-    with pytest.raises(pp.InputError, match=r"^dofs = .*: must be text in UTF-8$"):
+    dofs.write_bytes(b"\xff\xff")  # no mark
+    with pytest.raises(
+        pp.InputError,
+        match=r"^dofs = .*: must be text in UTF-8: line 1 is not; save the file in that encoding$",
+    ):
         read_matrix_market(matrix, matrix, dofs=dofs)
 
 

@@ -1,4 +1,4 @@
-"""Damaged, strange and hostile inputs: decks, files of supports, airfoil tables.
+"""Damaged, strange and hostile inputs: decks, files of supports, airfoil tables, files of Nastran.
 
 Whatever a file holds, the package makes a valid object of it or refuses it with an `InputError` of one line for each
 problem. It never does anything else: no other exception, no warning, no hang, nothing written outside the output
@@ -27,6 +27,6 @@ running code of the input
 
 `test_fuzz` does each of these deeds and sees it caught.
 
-`mutation` has the ways to spoil a text or bytes; `decks`, `supports` and `airfoils` make the files of an input and
-use them; `watch` sees what happens meanwhile; `campaign` judges.
+`mutation` has the ways to spoil a text or bytes; `decks`, `supports`, `structures`, `airfoils` and `nastran` make the
+files of an input and use them; `watch` sees what happens meanwhile; `campaign` judges.
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from random import Random
 
@@ -12,13 +13,21 @@ from tests.c81_files import as_c81, made_up_tables
 from tests.fuzz.mutation import NUMBERS, other_lines, other_number, several, spoiled_bytes
 
 SEEDS = tuple(as_c81("made up", **made_up_tables(n_mach)) for n_mach in (1, 3, 11, 21))
+_SEPARATED = SEEDS[1].replace("-", " -").replace("\n  ", "\n ")
+_DIALECTS = (
+    f"# FREE FORMAT\n{_SEPARATED}",
+    f"1 0 0\n0 1\n0.158\nCOMMENT\n200000 0.2\n{SEEDS[1]}",
+    f"{SEEDS[0]}END\n# the second\n{SEEDS[1]}",
+    SEEDS[1].partition("\n")[0]
+    + re.sub(r"(?<=[0-9]) +(?=[-0-9.])", ",", "\n" + _SEPARATED.partition("\n")[2]),
+)
 _ANGLES, _MACH = np.linspace(-4, 4, 9)[:, None], np.linspace(0, 1.2, 5)
 _CELL = 7
 
 
 def make(rng: Random) -> tuple[dict[str, bytes], dict]:
     """The files of an input by name, and how they are used."""
-    text = rng.choice(SEEDS)
+    text = rng.choice((*SEEDS, *_DIALECTS))
     if rng.random() < 0.3:
         content = spoiled_bytes(rng, text.encode(), [seed.encode() for seed in SEEDS])
     else:

@@ -19,11 +19,11 @@ import click
 from rich.cells import cell_len
 
 from proprotor import InputError
-from tests.fuzz import airfoils, decks, supports
+from tests.fuzz import airfoils, decks, nastran, structures, supports
 from tests.fuzz.watch import Breach, TooSlow, watched
 
-KINDS = {"deck": decks, "support": supports, "airfoil": airfoils}
-SHARES = {"deck": 0.3, "support": 0.35, "airfoil": 0.35}
+KINDS = {"deck": decks, "support": supports, "structure": structures, "airfoil": airfoils, "nastran": nastran}
+SHARES = {"deck": 0.25, "support": 0.15, "structure": 0.2, "airfoil": 0.2, "nastran": 0.2}
 _OUTPUT = "out"
 _WARM_UP = (
     150  # inputs of each kind before the watch: modules are imported, units are read, caches are filled
@@ -33,6 +33,7 @@ _IMPORTED_LATE = (
     "scipy.sparse.linalg",
     "dask.array",
     "distributed",
+    *(f"encodings.utf_{width}_{order}" for width in (16, 32) for order in ("le", "be")),
 )  # by functions that a warm-up may not meet
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from proprotor_equations.fused import trim as plans
 
 from tests.mutation import one_blade, paper_blade
 from tests.mutation.comparison import Check, call, matrix_check, values_check
@@ -30,6 +31,8 @@ def checks() -> Iterator[Check]:
         yield from _blade(published)
     yield from _balance()
     yield from _trim()
+    yield _line_by_plan()
+    yield from _balance_by_plan()
 
 
 def _flown(published: bool) -> list[Point]:
@@ -220,3 +223,60 @@ def _trim() -> Iterator[Check]:
             {name: expected[name] for name in products},
             dict.fromkeys(products, _moment_size()),
         )
+
+
+# The same by the plans
+
+
+def _line_by_plan() -> Check:
+    """Geometry of the segments and the air along them."""
+    quantities = _quantities(published=False)
+    geometry = stacked(map(_geometry, _flown(published=False)))
+    rows = ("ut_0", "up_0", "ur_0", "ut_1", "up_1", "ur_1", "spin")
+    velocity = np.moveaxis(np.array([_velocity(p) for p in points()]), -1, 0)
+    known = geometry | dict(zip(rows, velocity, strict=True))
+    expected = {name: known[name] for name in plans.LINE}
+    speed = quantities["airspeed"] + quantities["rotor_speed"]
+    size = {name: speed if name in rows else 1.0 for name in expected}
+
+    def actual() -> dict[str, NDArray]:
+        found = call(("fused.trim", "line"), quantities, np.cos, np.sin)
+        return dict(zip(plans.LINE, found, strict=True))
+
+    return Check(("fused.trim", "line"), "positions of the nonlinear rotor", actual, expected, size)
+
+
+def _filled(layouts: dict[str, list[list[int]]], results: tuple[NDArray, ...]) -> dict[str, NDArray]:
+    """The matrices of a plan: n stands for the n-th result, -n for its negative, 0 for zero."""
+
+    def entry(number: int) -> NDArray:
+        result = results[abs(number) - 1] if number else 0.0
+        return np.sign(number) * np.broadcast_to(result, len(points()))
+
+    return {
+        name: np.moveaxis(np.array([[entry(n) for n in row] for row in rows]), -1, 0)
+        for name, rows in layouts.items()
+    }
+
+
+def _balance_by_plan() -> Iterator[Check]:
+    """Balance without airloads, work of the airloads, and the change of both with the unknowns."""
+    quantities, along = blade_quantities(), _quantities(published=False)
+
+    def balance() -> dict[str, NDArray]:
+        return _filled(plans.BALANCE, call(("fused.trim", "balance"), quantities, np.cos, np.sin))
+
+    def work() -> dict[str, NDArray]:
+        found = call(("fused.trim", "work"), along)
+        return _filled(plans.WORK, tuple(np.sum(part, axis=-1) for part in found))
+
+    still = [replace(p, pitch_flap_coupling=0.0, pitch_lag_coupling=0.0) for p in points()]
+    in_air = [one_blade.steady_rows(functools.partial(one_blade.airload_rows, p), p) for p in still]
+    in_vacuum = [one_blade.steady_rows(one_blade.vacuum_rows, p) for p in points()]
+    for name, pairs, actual in (("balance", in_vacuum, balance), ("work", in_air, work)):
+        rows, slopes = map(np.array, zip(*pairs, strict=True))
+        named = ("residual", "slopes") if name == "balance" else ("work", "work_slopes")
+        numbers = (rows, slopes) if name == "balance" else (-rows, slopes[..., :3])
+        expected = dict(zip(named, (numbers[0][..., None], numbers[1]), strict=True))
+        told = "steady balance of the nonlinear rotor"
+        yield Check(("fused.trim", name), told, actual, expected, dict.fromkeys(named, _moment_size()))

@@ -7,8 +7,10 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 from proprotor_equations import BLADE_COORDINATES
+from proprotor_equations.fused import trim as plans
 
 from proprotor.rotor.fused import effective_stiffness
+from proprotor.rotor.fused import trim_integrals as integrals_by_plan
 from tests.mutation import one_blade, paper_blade
 from tests.mutation.comparison import Check, Names, matrix_check, values_check
 from tests.mutation.inputs import (
@@ -52,6 +54,10 @@ def _mass_integrals() -> Iterator[Check]:
         (("published.inertia", "trim_integrals"), first_order_integrals),
     ):
         yield values_check(sees, "sums over point masses", blade_quantities(), stacked(map(made, points())))
+    sums = stacked(map(trim_integrals, points()))
+    sums = {name: sums[name] for name in plans.TRIM_INTEGRALS}
+    fused = functools.partial(integrals_by_plan, blade_quantities())
+    yield Check(("fused.trim", "trim_integrals"), "sums over point masses", fused, sums, sums)
 
 
 def _inertia() -> Iterator[Check]:

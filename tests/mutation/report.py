@@ -29,7 +29,7 @@ held to comes from elsewhere:
 | coordinates | components along a blade's axes, and waves, as numbers |
 | beam | strain of Hermite cubics and masses beside the axis, as sums over Gauss points |
 | rotor | one blade of the nonlinear rotor in the air, and sums over 3 to 5 such blades, as numbers |
-| fused | the same rotors as rotor and springs; tests/derive/test_fused.py has the readable functions |
+| fused | the same rotors, blades and sections; tests/derive/test_fused.py has the readable functions |
 | published | the same nonlinear rotor without what `derive/published.py` says the paper leaves out, stated once more |
 
 Inputs come from the same sources, with one exception: the arrays of a segment that the airloads are products of (its

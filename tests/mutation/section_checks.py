@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from proprotor_equations.fused import trim as plans
 
-from tests.mutation.comparison import Check, matrix_check, values_check
+from tests.mutation.comparison import Check, call, matrix_check, values_check
 from tests.mutation.sections import (
     POLYNOMIAL,
     STEP,
     Air,
+    StraightAirfoil,
     coefficients_of,
     inflow,
     section_derivatives,
@@ -26,6 +28,7 @@ def checks() -> Iterator[Check]:
     yield from _sections()
     yield from _segment_loads()
     yield _lift_slope()
+    yield _loads_by_plan()
 
 
 def _some_air() -> Air:
@@ -93,6 +96,35 @@ def _sizes(air: Air, names: Iterable[str]) -> dict[str, NDArray]:
     force = 0.5 * air.density * air.chord * speed**2
     per = dict.fromkeys(("ut", "up", "ur"), 1 / speed) | {"spin": air.chord / speed}
     return {name: force * per.get(name.partition("_")[2], 1.0) for name in names}
+
+
+def _loads_by_plan() -> Check:
+    """Loads of a section with a straight lift line, and powers of the chord with values of their own."""
+    air, airfoil, powers = _some_air(), StraightAirfoil(), (1.07, 1.21)
+    found = section_derivatives(airfoil, air, powers=powers)
+    expected = {name: load for name, load in found.items() if name in plans.SECTION_LOADS}
+    size = _sizes(air, expected) | dict.fromkeys(("lift_incidence", "mach"), 1.0)
+    speed, _, alpha = inflow(air)
+    expected |= {
+        "lift_incidence": alpha + powers[0] * turn_incidence(air),
+        "mach": speed / air.speed_of_sound,
+    }
+    quantities = _quantities(air) | {
+        "lift_slope": airfoil.lift_slope,
+        "zero_lift_angle": airfoil.zero_lift_angle,
+        "drag_coefficient": airfoil.drag,
+        "moment_coefficient": airfoil.moment,
+        "square_ratio": powers[0],
+        "cube_ratio": powers[1],
+    }
+
+    def actual() -> dict[str, NDArray]:
+        into = np.empty((len(plans.SECTION_LOADS), _COUNT))
+        call(("fused.trim", "section_loads"), quantities, np.sqrt, np.arctan, into)
+        return dict(zip(plans.SECTION_LOADS, into, strict=True))
+
+    told = "lift, drag and moment of a section, by complex steps"
+    return Check(("fused.trim", "section_loads"), told, actual, expected, size)
 
 
 def _segment_loads() -> Iterator[Check]:

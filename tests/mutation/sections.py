@@ -46,6 +46,21 @@ class PolynomialAirfoil:
 POLYNOMIAL = PolynomialAirfoil()
 
 
+@dataclass(frozen=True)
+class StraightAirfoil:
+    """A straight lift line with the Prandtl-Glauert factor on lift and moment, and a constant drag."""
+
+    lift_slope: float = 5.7
+    zero_lift_angle: float = -0.02
+    drag: float = 0.012
+    moment: float = -0.03
+
+    def coefficients(self, alpha: Any, mach: Any) -> tuple[Any, Any, Any]:
+        factor = 1 / np.sqrt(1 - mach**2)
+        lift = factor * self.lift_slope * (alpha - self.zero_lift_angle)
+        return lift, self.drag + 0 * alpha, factor * self.moment
+
+
 def inflow(air: Air) -> tuple[Any, Any, Any]:
     """Speed in the section's plane, inflow angle and angle of attack."""
     angle = np.arctan(air.axial / air.tangential)
@@ -57,32 +72,44 @@ def turn_incidence(air: Air, damped: float = 1.0) -> Any:
     return damped * air.spin * air.chord / 2 / inflow(air)[0]
 
 
-def section_loads(airfoil: PolynomialAirfoil, air: Air, damped: float = 1.0) -> dict[str, Any]:
+def section_loads(
+    airfoil: PolynomialAirfoil | StraightAirfoil,
+    air: Air,
+    damped: float = 1.0,
+    powers: tuple[float, float] = (1.0, 1.0),
+) -> dict[str, Any]:
     """Force along i', n and d and nose-up moment, per length.
 
     Lift is normal to the air in the section's plane, drag along the air, the part along the span included. Thin
     airfoils resist rotation with π/8 ρ c³ U per rad/s about the quarter chord, and lift by the incidence at 3/4 chord.
+    `powers` are what stands for c² and c³, over the square and the cube of the chord.
     """
+    square, cube = powers
     speed, angle, alpha = inflow(air)
     mach = speed / air.speed_of_sound
     _, drag, moment = airfoil.coefficients(alpha, mach)
-    lift, _, _ = airfoil.coefficients(alpha + turn_incidence(air, damped), mach)
+    lift, _, _ = airfoil.coefficients(alpha + square * turn_incidence(air, damped), mach)
     area = 0.5 * air.density * air.chord
     return {
         "fx": area * speed**2 * (lift * np.sin(angle) + drag * np.cos(angle)),
         "fn": area * speed**2 * (lift * np.cos(angle) - drag * np.sin(angle)),
         "fd": -area * speed * drag * air.radial,
-        "m": area * air.chord * speed**2 * moment
-        - damped * np.pi / 8 * air.density * air.chord**3 * speed * air.spin,
+        "m": area * square * air.chord * speed**2 * moment
+        - damped * np.pi / 8 * air.density * cube * air.chord**3 * speed * air.spin,
     }
 
 
-def section_derivatives(airfoil: PolynomialAirfoil, air: Air, damped: float = 1.0) -> dict[str, NDArray]:
+def section_derivatives(
+    airfoil: PolynomialAirfoil | StraightAirfoil,
+    air: Air,
+    damped: float = 1.0,
+    powers: tuple[float, float] = (1.0, 1.0),
+) -> dict[str, NDArray]:
     """Loads and their derivatives, by the names of the derivation."""
-    found = dict(section_loads(airfoil, air, damped))
+    found = dict(section_loads(airfoil, air, damped, powers))
     for name, argument in DERIVATIVES.items():
         moved = replace(air, **{argument: getattr(air, argument) + 1j * STEP})
-        loads = section_loads(airfoil, moved, damped)
+        loads = section_loads(airfoil, moved, damped, powers)
         found |= {f"{load}_{name}": np.imag(loads[load]) / STEP for load in LOADS}
     return found
 

@@ -43,9 +43,12 @@ def sampled():
     return xarray.Dataset(
         {
             "flutter_speed": ("design", speed, {"units": "m/s"}),
+            "flutter_speed_above": ("design", np.where(note == STABLE, 250.0, np.nan)),
+            "flutter_speed_below": ("design", np.where(note == UNSTABLE, 100.0, np.nan)),
             "flutter_note": ("design", note.astype(str)),
         },
         {"airspeed": [100.0, 250.0]},
+        {"sample": "{}"},
     )
 
 
@@ -187,6 +190,7 @@ def test_a_distribution_shows_shares_and_percentiles_and_counts_the_rest(sampled
     np.testing.assert_allclose(verticals, expected)  # 99.9 % lies among designs above the range
     told = ax.get_title(loc="left")
     assert "199 designs" in told and "1 stable throughout" in told and "1 failed" in told
+    assert "99.9 %: > 486" in told  # 250 m/s, the highest airspeed, in knots
     assert ax.get_xlabel() == "Flutter speed, KTAS" and "%" in ax.get_ylabel()
     assert plots.plot_distribution(sampled, unit="m/s").get_xlabel() == "Flutter speed (m/s, true)"
 

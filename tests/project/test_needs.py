@@ -24,11 +24,11 @@ from proprotor import needs
 from proprotor.case import Case
 from proprotor.commands.main import main
 from proprotor.errors import InputError
+from proprotor.nastran.hdf5 import read_hdf5
 from proprotor.needs import check_memory, free_memory
 from proprotor.plots.animation import animate_mode
 from proprotor.plots.mode_motion import mode_motion
 from proprotor.stability.frequency_response import frequency_response
-from proprotor.support import nastran
 
 ROOT = Path(pp.__file__).parent
 PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))
@@ -95,7 +95,7 @@ NEEDS = {
         "explore",
         lambda folder: command("explore", "xv15-uncoupled", "--no-browser"),
     ),
-    "an .op2 file": ("pyNastran", "nastran", lambda folder: nastran._read(Path(__file__))),
+    "Nastran's HDF5 file": ("h5py", "nastran", lambda folder: read_hdf5(Path(__file__), grid=1)),
 }
 
 
@@ -219,12 +219,11 @@ NO_COMMAND = {
     "IPython",
 }
 NO_TABLE = {*NO_COMMAND, "scipy", "xarray", "pandas"}
-_ASSIGNMENT = {"scipy", "scipy.optimize", "scipy.linalg"}  # where modes at two points are hard to tell apart
 IMPORTED = {
     ("--help",): {*NO_TABLE, "numpy", "rich", "pydantic", "proprotor.case", "proprotor_equations"},
     ("cases",): {*NO_TABLE, "rich", "pydantic", "proprotor.study", "proprotor.exchange"},
-    ("flutter", "xv15-uncoupled"): {*NO_TABLE, "proprotor.study", "proprotor.exchange"} - _ASSIGNMENT,
-    ("sweep", "xv15-uncoupled", "--speed", "100:120:10kt"): NO_COMMAND - _ASSIGNMENT,
+    ("flutter", "xv15-uncoupled"): {*NO_TABLE, "proprotor.study", "proprotor.exchange"},
+    ("sweep", "xv15-uncoupled", "--speed", "100:120:10kt"): {*NO_COMMAND, "scipy"},
 }
 A_COMMAND = """
 import sys

@@ -26,6 +26,7 @@ from proprotor.exchange import netcdf as results_file
 from proprotor.exchange import openmdao
 from proprotor.model import state_space
 from proprotor.plots import animation, mode_motion
+from proprotor.plots.accessor import Results
 from proprotor.rotor.options import Options
 from proprotor.rotor.trim import Trim
 from proprotor.stability import flutter
@@ -55,7 +56,7 @@ MODULES: tuple[ModuleType, ...] = (
     state_space,
 )
 OTHERS = (attribution, vary, mode_damping, modes, Options, sensitivity, stability_map, sweep_case, Trim)
-OTHERS += (Boundary, Crossings, Failed)
+OTHERS += (Boundary, Crossings, Failed, Results)
 OTHERS += tuple(entry for entry in map(vars(sampling).get, sampling.__all__) if inspect.isclass(entry))
 # What says that a number has no dimension, or which it has.
 DIMENSION = re.compile(

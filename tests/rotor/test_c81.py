@@ -33,7 +33,7 @@ def read(tmp_path):
 @pytest.mark.parametrize("n_mach", [1, 2, 9, 10, 18, 19, 99])
 def test_a_file_reads_as_written(read, n_mach):
     tables = made_up_tables(n_mach)
-    title, found = read(as_c81("MADE UP", **tables))
+    title, _, found = read(as_c81("MADE UP", **tables))
     assert title == "MADE UP"
     for name, (alpha, mach, values) in tables.items():
         np.testing.assert_allclose(found[name][0], np.deg2rad(alpha), rtol=1e-15)
@@ -68,7 +68,7 @@ def test_numbers_as_people_write_them(read):
         "  ",
     ]
     text = "\r\n".join(lines)
-    title, tables = read(text)
+    title, _, tables = read(text)
     assert title == "Numbers of many kinds"
     np.testing.assert_allclose(tables["lift"][2], [[-1, -1], [0, 0], [1, 1.2]])
     np.testing.assert_allclose(tables["lift"][0], np.deg2rad([-10, 0, 10]))

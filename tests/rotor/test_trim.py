@@ -52,10 +52,27 @@ def numbers(model):
     }
 
 
+def alone(rotor, operation, airspeed, **options):
+    """One point as a batch of one: a design has the same bits in every batch."""
+    return pp.rotor_model(rotor, operation, np.reshape(airspeed, 1), **options)
+
+
 def assert_same_point(model, place, single):
     """Bit for bit."""
     for name, value in numbers(model).items():
-        assert np.array_equal(value[place], numbers(single)[name]), name
+        assert np.array_equal(value[place], np.reshape(numbers(single)[name], np.shape(value[place]))), name
+
+
+def assert_rounding_of(model, single):
+    """The numbers of one point by plain numbers are those of a batch of one to rounding."""
+    one = single.trim
+    for name in ("converged", "reason", "warning", "iterations"):
+        assert getattr(one, name) == getattr(model.trim, name)[0], name
+    for name in ("collective", "coning", "lag", "elastic_pitch"):
+        assert abs(getattr(one, name) - getattr(model.trim, name)[0]) < 1e-13, name
+    for name in "MCK":
+        row = np.abs(getattr(model, name)[0]).max(axis=-1, keepdims=True)
+        assert (np.abs(getattr(single, name) - getattr(model, name)[0]) <= 1e-12 * row).all(), name
 
 
 # The state ----------------------------------------------------------------------------------------
@@ -208,11 +225,13 @@ def test_a_batch_of_airspeeds_is_its_points_bit_for_bit(options, trim, changes):
     assert grid.M.shape == (3, 4, len(grid.dofs), len(grid.dofs))
     assert grid.trim.converged.shape == (3, 4)
     for place, airspeed in np.ndenumerate(airspeeds):
-        single = pp.rotor_model(given, operation, airspeed, **options)
-        assert single.M.shape == 2 * (len(grid.dofs),)
-        assert single.trim.collective.shape == ()
+        single = alone(given, operation, airspeed, **options)
         assert_same_point(grid, place, single)
         assert_same_point(line, np.ravel_multi_index(place, airspeeds.shape), single)
+        one = pp.rotor_model(given, operation, airspeed, **options)
+        assert one.M.shape == 2 * (len(grid.dofs),)
+        assert one.trim.collective.shape == ()
+        assert_rounding_of(single, one)
 
 
 def test_no_airspeed_at_all_is_an_empty_batch():
@@ -299,8 +318,10 @@ def test_an_array_of_designs_is_its_designs(field, shapes):
     designs, points = np.broadcast_arrays(values, airspeeds)
     assert batch.M.shape[:-2] == designs.shape
     for place in np.ndindex(designs.shape):
-        single = pp.rotor_model(with_values(designs[place].item()), operation, points[place])
+        single = alone(with_values(designs[place].item()), operation, points[place])
         assert_equal_point(batch, place, single)
+        one = pp.rotor_model(with_values(designs[place].item()), operation, points[place])
+        assert_rounding_of(single, one)
 
 
 @pytest.mark.parametrize("field", ["rotor_speed", "density", "speed_of_sound", "collective"])
@@ -314,7 +335,7 @@ def test_an_array_of_operations_is_its_operations_bit_for_bit(field):
 
     batch = pp.rotor_model(rotor(), with_values(values[:, None]), airspeeds)
     for i, j in np.ndindex(2, 3):
-        assert_same_point(batch, (i, j), pp.rotor_model(rotor(), with_values(values[i].item()), airspeeds[j]))
+        assert_same_point(batch, (i, j), alone(rotor(), with_values(values[i].item()), airspeeds[j]))
 
 
 # Points that fail ---------------------------------------------------------------------------------
@@ -344,7 +365,7 @@ def test_a_point_without_trim_says_why_and_leaves_the_others_alone(case):
         assert_failed(model, place, reason)
     for place in (0, 2):
         assert model.trim.reason[place] == ""
-        assert_same_point(model, place, pp.rotor_model(rotor(), OPERATION, model.airspeed[place]))
+        assert_same_point(model, place, alone(rotor(), OPERATION, model.airspeed[place]))
 
 
 @pytest.mark.parametrize("case", FAILED)
@@ -364,7 +385,7 @@ def test_nothing_windmills_in_a_vacuum(density):
     model = pp.rotor_model(rotor(), replace(OPERATION, density=density), airspeeds)
     assert_failed(model, 1, "vacuum")
     for place in np.flatnonzero(np.broadcast_to(density, 3)):
-        assert_same_point(model, place, pp.rotor_model(rotor(), OPERATION, airspeeds[place]))
+        assert_same_point(model, place, alone(rotor(), OPERATION, airspeeds[place]))
 
 
 @pytest.mark.parametrize("airspeed", [0.0, 80.0])
@@ -386,7 +407,7 @@ def test_a_failed_point_leaves_other_designs_alone(field):
     assert batch.trim.converged.tolist() == [True, False, True]
     for place in (0, 2):
         single = replace(rotor(), **{field: values[place].item()})
-        assert_equal_point(batch, place, pp.rotor_model(single, operation, airspeeds[place]))
+        assert_equal_point(batch, place, alone(single, operation, airspeeds[place]))
 
 
 # Inputs that cannot be used -----------------------------------------------------------------------

@@ -148,12 +148,12 @@ def test_a_failed_or_doubtful_point_is_alone_what_it_is_in_company(compared):
                 },
                 trim=target if isinstance(target, str) else {k: float(v[place]) for k, v in target.items()},
             ),
-            float(rotors.airspeed[place]),
+            rotors.airspeed[place : place + 1],
             section_damping=False,
         ).trim
-        assert single.reason == trim.reason[place] and single.warning == trim.warning[place]
-        assert single.iterations == trim.iterations[place]
-        assert np.array_equal(states(single), states(trim)[place], equal_nan=True)
+        assert single.reason[0] == trim.reason[place] and single.warning[0] == trim.warning[place]
+        assert single.iterations[0] == trim.iterations[place]
+        assert np.array_equal(states(single)[0], states(trim)[place], equal_nan=True)
 
 
 # Warnings -----------------------------------------------------------------------------------------

@@ -151,8 +151,9 @@ def test_modes_of_a_batch_are_those_of_its_points():
     assert "not a finite number" in str(modes.reason.values[1, 0])
     for place in ((0, 0), (0, 1), (1, 1)):
         single = tiltrotor().linearize(airspeeds[place]).modes()
-        assert np.array_equal(
-            modes.eigenvalue.values[place][: single.sizes["mode"]], single.eigenvalue.values
+        # One point alone has a rendering of its own, whose matrices agree to 1e-13.
+        np.testing.assert_allclose(
+            modes.eigenvalue.values[place][: single.sizes["mode"]], single.eigenvalue.values, rtol=1e-10
         )
 
 

@@ -5,6 +5,7 @@ Homma, 1990) the variance a²/8 + bπ⁴/5 + b²π⁸/18 + 1/2, of which (1 + b�
 b²π⁸ (1/18 − 1/50) that of x1 with x3.
 """
 
+import json
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,6 +19,7 @@ from proprotor.exchange.netcdf import load_results, save_results
 from proprotor.study.study import study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
 from proprotor.study.variables import STABLE, UNSTABLE
+from proprotor.tables.percentiles import percentile_text
 
 A, B = 7.0, 0.1
 KNOWN = {f"x{place}": SimpleNamespace(si=1.0, unit="") for place in (1, 2, 3)}
@@ -105,12 +107,17 @@ def test_percentiles_of_a_known_distribution():
     assert (found.known, found.above, found.below, found.failed) == (4096, 0, 0, 0)
 
 
-def speeds(values, notes):
+def speeds(values, notes, above=None):
+    """Flutter speeds of a sample between 100 and 200 m/s; `above`, limits of designs that stay stable up to there."""
+    stable, unstable = np.array(notes) == STABLE, np.array(notes) == UNSTABLE
     data = {
         "flutter_speed": ("design", np.array(values, dtype=float), {"units": "m/s"}),
+        "flutter_speed_above": ("design", np.where(stable, 200.0 if above is None else above, np.nan)),
+        "flutter_speed_below": ("design", np.where(unstable, 100.0, np.nan)),
         "flutter_note": ("design", np.array(notes, dtype=object)),
     }
-    return xr.Dataset(data, {"airspeed": ("airspeed", [100.0, 200.0])})
+    drawn = {"sample": json.dumps({"method": "sobol"})}
+    return xr.Dataset(data, {"airspeed": ("airspeed", [100.0, 200.0])}, drawn)
 
 
 def test_designs_beyond_the_airspeeds_count_without_a_number():
@@ -124,10 +131,103 @@ def test_designs_beyond_the_airspeeds_count_without_a_number():
     # In order: -inf, 110, 120, 150, 160, 170, 180, inf, inf; the least that is not below the share of nine.
     assert list(found.value.values) == [-np.inf, 160, 180, np.inf, np.inf]
     assert found.value.attrs["units"] == "m/s"
+    assert list(found.at_least.values) == [-np.inf, 160, 180, 200, 200]
+    assert list(found.at_most.values) == [100, 160, 180, np.inf, np.inf]
     assert share_below(study_found, 155.0) == 4 / 9
+    assert share_below(study_found, 200.0) == 7 / 9 and share_below(study_found, 100.0) == 1 / 9
     for limit in (90.0, 210.0):
         with pytest.raises(InputError, match="airspeeds of the study"):
             share_below(study_found, limit)
+
+
+def test_limits_within_the_values_leave_a_percentile_between_two_bounds():
+    """One design failed from 140 m/s on and was stable below: it may be any of those above 140, and moves the rest.
+
+    In order 110, 120, (140 to inf), 150, 160: the third is 140 if it lies at its limit, and 150 if beyond.
+    """
+    part = f"{STABLE}; 2 airspeeds failed, at 150 m/s: tip Mach"
+    found = speeds(
+        [150, np.nan, 120, 160, 110], ["", part, "", "", ""], [np.nan, 140, np.nan, np.nan, np.nan]
+    )
+    found["flutter_speed_above"][1] = 140.0
+    percent = distribution(found, percentiles=(40, 60, 80, 100))
+    assert list(percent.at_least.values) == [120, 140, 150, 160]
+    assert list(percent.at_most.values) == [120, 150, 160, np.inf]
+    np.testing.assert_array_equal(percent.value, [120, np.nan, np.nan, np.inf])
+    assert [percentile_text(percent, place) for place in range(4)] == [
+        "120.00",
+        "140.00 to 150.00",
+        "150.00 to 160.00",
+        "> 160.00",
+    ]
+    assert share_below(found, 140.0) == 2 / 5
+    with pytest.raises(InputError, match=r"limit = 141.*known, -inf to 140 m/s"):
+        share_below(found, 141.0)
+
+
+def test_a_design_unstable_from_the_start_lies_below_whatever_mode_follows():
+    """Stability is lost below 100 m/s; that a second mode becomes unstable at 180 m/s does not make it better."""
+    found = speeds([180.0, 120.0], [UNSTABLE, ""])
+    percent = distribution(found, percentiles=(50, 100))
+    assert list(percent.value.values) == [-np.inf, 120] and (percent.known, percent.below) == (1, 1)
+    assert share_below(found, 110.0) == 1 / 2
+
+
+def test_designs_that_were_chosen_have_no_percentiles():
+    chosen = speeds([120.0, 150.0], ["", ""]).drop_attrs()
+    for of_sample in (distribution, lambda found: share_below(found, 130.0)):
+        with pytest.raises(InputError, match=r"drawn at random.*a grid has no percentiles"):
+            of_sample(chosen)
+    for plan, drawn in (
+        (sampling.points({"x1": [1.0, 2.0]}), False),
+        (sampling.points({"x1": [1.0, 2.0]}, drawn=True), True),
+        (sampling.latin_hypercube({"x1": (0, 1)}, 2), True),
+        (sampling.grid({"x1": [1.0, 2.0]}), False),
+    ):
+        assert ("sample" in plan.resolve(KNOWN).attributes) == drawn
+
+
+def test_results_of_before_without_limits_are_refused():
+    with pytest.raises(InputError, match="flutter_speed_above and flutter_speed_below: run the study again"):
+        distribution(speeds([120.0], [""]).drop_vars("flutter_speed_above"))
+
+
+def test_a_number_beside_the_flutter_speed_is_known_of_stable_designs_too():
+    """The least damping of a design is a number, whether a mode becomes unstable or not."""
+    found = speeds([120.0, np.nan], ["", STABLE]).assign(flutter_least_damping=("design", [-0.1, 0.2]))
+    percent = distribution(found, "flutter_least_damping", (50, 100))
+    assert list(percent.value.values) == [-0.1, 0.2] and percent.above == 0
+
+
+def test_indices_say_what_became_of_designs_beyond_the_airspeeds(sampled):
+    """Cut off at a limit, the indices are those of the function cut off: here of min(x, 0.9) and x alone matters."""
+    plan = sampling.saltelli(dict.fromkeys(("x1", "x2"), (0, 1)), 256)
+    found = results(plan, lambda x1, x2: 100 * x1 + 100)
+    y, limit = found.y.values, 190.0
+    beyond = y >= limit
+    flutter = speeds(np.where(beyond, np.nan, y), np.where(beyond, STABLE, ""), limit)
+    flutter = flutter.assign_attrs(found.attrs)
+    with pytest.raises(InputError, match='widen the airspeeds, or take beyond="limit"'):
+        sobol_indices(flutter)
+    with pytest.raises(InputError, match='beyond = limits: must be "left out" or "limit"'):
+        sobol_indices(flutter, beyond="limits")
+    cut = sobol_indices(flutter, beyond="limit")
+    other = sobol_indices(found.assign(y=("design", np.minimum(y, limit))), of="y")
+    np.testing.assert_array_equal(cut.total, other.total)
+    assert cut.left_out == 0 and cut.at_limit == beyond.sum()
+    assert cut.attrs["treatment"] == (
+        f"0 of 256 base samples are left out; {beyond.sum()} designs beyond the airspeeds of the study count with "
+        "their limit."
+    )
+    few = speeds(np.where(y > 199.5, np.nan, y), np.where(y > 199.5, STABLE, ""), 199.5)
+    told = sobol_indices(few.assign_attrs(found.attrs)).attrs["treatment"]
+    left_out = int((y.reshape(-1, 4) > 199.5).any(axis=1).sum())
+    assert 0 < left_out < 13
+    assert told == (
+        f"{left_out} of 256 base samples are left out, {left_out} of them for a design beyond the airspeeds of the "
+        "study."
+    )
+    assert sobol_indices(sampled, of="y").attrs["treatment"] == "0 of 2048 base samples are left out."
 
 
 def test_a_distribution_of_nothing_is_told():

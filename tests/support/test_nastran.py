@@ -1,11 +1,5 @@
 """Normal modes from Nastran results: a wing's modes, written as an .op2 file and read back."""
 
-import io
-import sys
-import warnings
-from contextlib import redirect_stdout
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -13,12 +7,12 @@ import proprotor as pp
 from proprotor.errors import InputError
 from proprotor.support.beam_wing import beam_structure, beam_wing
 from proprotor.support.modal_reduction import lowest_modes
-from proprotor.support.nastran import _names_of_older_numpy, _one_subcase, nastran_modes
+from proprotor.support.nastran import nastran_modes
+from tests.nastran.written import HUB, Op2, Run
 from tests.support.test_beam_wing import furthest, on_the_rotor, with_rotor, xv15_wing
 
 SINGLE = 1e-6  # the file holds single precision
 INCH, SLINCH = 0.0254, 4.4482216152605 / 0.0254  # lbf s²/in
-HUB, OTHER = 1101, 7
 
 
 def to_aircraft(hub):
@@ -27,50 +21,15 @@ def to_aircraft(hub):
     return np.array([-forward / INCH, right / INCH, up / INCH, -turns[2], turns[1], turns[0]])
 
 
-def write_op2(path, frequency, generalized_mass, motion, subcases=(1,), eigenvalues=True, title="wing"):
+def write_op2(path, frequency, generalized_mass, motion, subcases=(1,), eigenvalues=True):
     """Modes (6, k) of the grid point HUB, and those of another in which nothing moves."""
-    with _names_of_older_numpy(), warnings.catch_warnings(), redirect_stdout(io.StringIO()):
-        warnings.simplefilter("ignore")
-        from pyNastran.op2.op2 import OP2
-        from pyNastran.op2.tables.lama_eigenvalues.lama_objects import RealEigenvalues
-        from pyNastran.op2.tables.oug.oug_eigenvectors import RealEigenvectorArray
-
-        class Table(RealEigenvalues):
-            """One that the writer does not take for a table of results."""
-
-            @property
-            def table_name_str(self):
-                raise AttributeError
-
-        results = OP2(debug=False)
-        results.is_nx, results.date = True, (1, 1, 2026)
-        count = len(frequency)
-        numbers = list(range(1, count + 1))
-        data = np.zeros((count, 2, 6), dtype="float32")
-        data[:, 1, :] = motion.T
-        squares = (frequency**2).astype("float32")
-        for subcase in subcases:
-            vectors = RealEigenvectorArray.add_modal_case(
-                "OUGV1",
-                np.array([[OTHER, 1], [HUB, 1]], dtype="int32"),
-                data,
-                subcase,
-                numbers,
-                squares,
-                (frequency / 2 / np.pi).astype("float32"),
-            )
-            vectors.table_code, vectors.title = 7, title  # eigenvectors
-            results.eigenvectors[subcase] = vectors
-        if eigenvalues:
-            table = Table(title, "LAMA", count)
-            table.format_code = 1
-            table.mode[:] = table.extraction_order[:] = numbers
-            table.eigenvalues[:], table.radians[:] = squares, frequency
-            table.cycles[:], table.generalized_mass[:] = frequency / 2 / np.pi, generalized_mass
-            table.generalized_stiffness[:] = frequency**2 * generalized_mass
-            results.eigenvalues[title] = table
-        results.write_op2(str(path), skips=["GEOM1", "GEOM2", "GEOM3", "GEOM4", "EPT", "MPT"])
-    return path
+    file = Op2()
+    runs = [Run(frequency**2, np.asarray(generalized_mass), motion, subcase) for subcase in subcases]
+    if eigenvalues and runs:
+        file.lama(runs[0])
+    for run in runs:
+        file.vectors(run)
+    return file.save(path)
 
 
 @pytest.fixture(scope="module")
@@ -194,18 +153,6 @@ def test_a_damaged_file_is_refused_in_one_line(file, tmp_path, share):
         read(tmp_path / "none.op2")
 
 
-def test_without_pynastran_the_extra_is_named(file, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pyNastran", None)
-    with pytest.raises(InputError, match=r'needs pyNastran for .*: pip install "proprotor\[nastran\]"$'):
-        read(file)
-
-
-def test_numpy_is_left_as_it_was(file):
-    before = hasattr(np, "in1d")
-    read(file)
-    assert hasattr(np, "in1d") == before
-
-
 def test_modes_with_the_rotors_mass_on(tmp_path):
     """includes_rotor: the run had the whole rotor as a rigid body, which the rotor model then takes off again."""
     wing, pylon, _ = xv15_wing()
@@ -217,11 +164,3 @@ def test_modes_with_the_rotors_mass_on(tmp_path):
     support = read(path, includes_rotor=True, mass_unit=1 / INCH**2)
     assert support.includes_rotor
     np.testing.assert_allclose(np.diag(support.mass), 1, rtol=SINGLE)
-
-
-def test_complex_eigenvectors_are_refused_and_real_ones_beside_them_kept():
-    complex_ones = SimpleNamespace(isubcase=1, eigrs=[0.1], eigis=[2.0])
-    real_ones = SimpleNamespace(isubcase=2, eigns=[4.0])
-    with pytest.raises(InputError, match="has complex eigenvectors alone"):
-        _one_subcase({1: complex_ones}, None, "wing.op2")
-    assert _one_subcase({1: complex_ones, 2: real_ones}, None, "wing.op2") is real_ones

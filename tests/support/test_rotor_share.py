@@ -334,7 +334,7 @@ def test_a_motion_of_several_coordinates_is_found():
         mass = np.array([[90.0, coupling], [coupling, 90.0]])
         support = pp.NormalModes(("a", "b"), mass, 0 * mass, mass, hub, True)
         left, refusal = without_rotors(support, [(hub, alone.mass_at_rest)])
-        assert bool(refusal[()]) == refused == bool(np.linalg.eigvalsh(left)[0] < 0)
+        assert (refusal is not None) == refused == bool(np.linalg.eigvalsh(left)[0] < 0)
 
 
 def test_all_of_the_mass_may_be_the_rotors(xv15):
@@ -345,7 +345,7 @@ def test_all_of_the_mass_may_be_the_rotors(xv15):
         mass = hub.T @ share @ hub
         support = pp.NormalModes(HUB, mass, 0 * mass, mass, hub, "rigid")
         _, refusal = without_rotors(support, [(hub, mass_at_rest(xv15.rotor))])
-        assert refusal[()] == ""
+        assert refusal is None
         less = replace(support, mass=mass * (1 - 1e-6))
         assert without_rotors(less, [(hub, mass_at_rest(xv15.rotor))])[1][()] != ""
 
@@ -422,7 +422,7 @@ def test_what_is_left_of_a_finite_element_wing_is_the_wing(tmp_path):
         structure.names, loaded, 0 * loaded, structure.stiffness, structure.hub, "mass only"
     )
     left, refusal = without_rotors(support, [(support.hub, mass_at_rest(case.rotor))])
-    assert refusal[()] == ""
+    assert refusal is None
     np.testing.assert_allclose(left, structure.mass, rtol=0, atol=1e-12 * np.abs(loaded).max())
 
 

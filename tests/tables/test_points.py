@@ -86,7 +86,7 @@ HEAD = "rotor_speed [rpm], airspeed [ktas], airspeed_error [ktas]\n"
             "airspeed: must have airspeed_error or airspeed_low and _high, not both",
         ),
         ("a [m], a [m]\n1, 2\n", '"a" is named twice'),
-        (b"\xff\xfe\x00", "must be text in UTF-8"),
+        (b"\xff\xfd\x00", "must be text in UTF-8"),
     ],
 )
 def test_files_that_cannot_be(file, text, message):

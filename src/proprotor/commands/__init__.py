@@ -13,6 +13,7 @@ and show its result; they compute nothing themselves.
     cases new describe                              decks
     sweep flutter stability_map sensitivity attribution study    analyses of a case
     report explore                                  a page on a case, as a file and with sliders
+    export                                          the equations of a case for another program
 
 This room may import all others, and no room imports this one. Packages that are slow to import (rich, pydantic,
 matplotlib, bokeh) wait until a command needs them, and a command waits until it is called, so that ``--help`` answers
@@ -25,6 +26,7 @@ __all__ = [
     "cases",
     "describe",
     "explore",
+    "export",
     "flutter",
     "main",
     "new",

@@ -32,6 +32,7 @@ _SUMMARIES = {
     "report": "Write all results on a case as one page, HTML or PDF.",
     "explore": "Move sliders on the inputs, and see the modes follow.",
     "study": "Analyse many designs: grids, lists and samples.",
+    "export": "Write the equations at an airspeed for Nastran or MATLAB.",
 }
 _MODULES = {"map": "stability_map"}  # whose name is not that of the command
 _NOT_NEEDED = ("dask", "pint")  # xarray imports them where they are installed, for longer than a sweep takes

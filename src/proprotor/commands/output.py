@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -18,6 +17,7 @@ from proprotor.commands.arguments import Command, Option, Request
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.files import output as output_file
+from proprotor.files.json_text import json_text
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK, Doubt, footnotes
 from proprotor.model.provenance import reservations
@@ -119,15 +119,7 @@ def output_options(*, csv: str, plot: str = "") -> Option:
 
 def print_json(document: Any) -> None:
     """Print plain data as JSON; numbers that are not finite become null."""
-    click.echo(json.dumps(_finite(document), indent=1, allow_nan=False))
-
-
-def _finite(data: Any) -> Any:
-    if isinstance(data, Mapping):
-        return {str(key): _finite(value) for key, value in data.items()}
-    if isinstance(data, list | tuple):
-        return [_finite(value) for value in data]
-    return None if isinstance(data, float) and not math.isfinite(data) else data
+    click.echo(json_text(document))
 
 
 def about(case: Case, request: Request) -> dict[str, Any]:

@@ -14,7 +14,9 @@ ALTERNATIVES = (
     (MASS_INTEGRALS, ("mass_distribution",)),
 )
 # Fields of [rotor.airfoil]: one side only.
-AIRFOIL_ALTERNATIVES = ((("lift_slope", "zero_lift_angle", "drag", "moment"), ("table",)),)
+AIRFOIL_ALTERNATIVES = (
+    (("lift_slope", "zero_lift_angle", "drag", "moment"), ("table", "table_name", "table_reynolds")),
+)
 # Fields of [operation]: the air by its properties, or by an altitude in the standard atmosphere.
 AIR_ALTERNATIVES = ((("density", "speed_of_sound"), ("altitude", "temperature_offset")),)
 # Fields of [operation.trim] and of [support]: one side only.

@@ -22,6 +22,7 @@ from proprotor.model.configuration import Configuration
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.rotor_share import rotor_share, settled, spring_warnings
 from proprotor.model.side import Side
+from proprotor.model.unit_doubts import unit_warnings
 from proprotor.rotor.airfoil import Airfoil, SectionModel
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from proprotor.deck.sections import Deck
 
 C = TypeVar("C", bound=Configuration)
+_FROM_FILES = ("matrices", "nastran", "universal")  # kinds of supports whose units no file tells
 
 
 def load(
@@ -49,7 +51,7 @@ def load(
         from proprotor.deck.settings import with_settings
 
         tables = with_settings(tables, settings)
-    deck = validate(tables)
+    deck = validate(tables).with_origin(os.fspath(name_or_path), settings or {})
     return assemble(deck, numbers_of(deck), kind=kind)
 
 
@@ -81,6 +83,8 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         support = settled(built, at_rest)
         as_given = _with_rotor(support, numbers, at_rest) if fitted else support
         doubts = spring_warnings(as_given, at_rest, rotor.gimbal_stiffness)
+        if deck.support.kind in _FROM_FILES:
+            doubts += unit_warnings(support, at_rest)
         if deck.support.kind == "aircraft":
             derived |= fuselage_of(deck.support, numbers)
     return kind(
@@ -116,7 +120,7 @@ def _machinery(deck: Deck, numbers: Mapping[str, Datum]) -> _Machinery:
     with _errors_as_written("operation", numbers):
         operation, air = _operation(deck, numbers)
     with _errors_as_written("rotor.airfoil", numbers):
-        airfoil = _airfoil(_values(numbers, "rotor.airfoil"))
+        airfoil = _airfoil(_values(numbers, "rotor.airfoil"), deck.rotor.airfoil.table_name)
     with _errors_as_written("rotor", numbers):
         given = {"airfoil": airfoil, "propeller_moment": deck.rotor.propeller_moment}
         rotor, derived = _rotor(_values(numbers, "rotor") | given, operation.density)
@@ -206,8 +210,10 @@ def _operation(deck: Deck, numbers: Mapping[str, Datum]) -> tuple[Operation, dic
     return operation, {f"operation.{name}": number for name, number in air.items()}
 
 
-def _airfoil(given: dict[str, Any]) -> SectionModel:
-    return AirfoilTable.from_c81(given["table"]) if "table" in given else Airfoil(**given)
+def _airfoil(given: dict[str, Any], table_name: str) -> SectionModel:
+    if "table" not in given:
+        return Airfoil(**given)
+    return AirfoilTable.from_c81(given["table"], table_name or None, given.get("table_reynolds"))
 
 
 def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datum]]:

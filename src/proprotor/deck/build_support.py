@@ -15,10 +15,12 @@ from proprotor.errors import InputError
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model.rotor_share import rotor_share
 from proprotor.support.beam_wing import Pylon, Wing, beam_structure, on_coordinates
+from proprotor.support.matlab_file import read_matlab
 from proprotor.support.matrix_files import read_matrix_market, read_npz
 from proprotor.support.nastran import nastran_modes
 from proprotor.support.normal_modes import HUB_AXES, NormalModes, rigid_support, two_axis_pivot
 from proprotor.support.stiffness_factors import KINDS, stiffened, stiffness_factors
+from proprotor.support.universal_modes import universal_modes
 from proprotor.support.wing_aerodynamics import (
     Strips,
     WingAerodynamics,
@@ -106,7 +108,20 @@ def _from_files(
     read: Callable[..., NormalModes] = nastran_modes
     if section.kind == "matrices":
         read = read_matrix_market if section.file is None else read_npz
+        if str(given.get("file", "")).lower().endswith(".mat"):
+            read = read_matlab
+    else:
+        given["names"] = section.names
     return _with_assumed_airloads(read(**given, hub=section.hub), section, numbers)
+
+
+def _universal(section: support_sections.UniversalSection, numbers: Mapping[str, Datum]) -> NormalModes:
+    """Return the support in a universal file."""
+    given = si_values(numbers, "support")
+    must_be_real(given)
+    nodes = [int(word) for word in section.rigid_nodes.replace(",", " ").split()]
+    support = universal_modes(**given, rigid_nodes=nodes, hub=section.hub)
+    return _with_assumed_airloads(support, section, numbers)
 
 
 def _beam_wing(
@@ -254,6 +269,7 @@ _BUILDERS: dict[str, Callable[[Any, Mapping[str, Datum]], NormalModes]] = {
     "normal-modes": _normal_modes,
     "matrices": _from_files,
     "nastran": _from_files,
+    "universal": _universal,
     "pivot": _pivot,
     "rigid": lambda section, numbers: rigid_support(),
 }

@@ -57,7 +57,7 @@ also refers to the deck's own rotor speed. `proprotor.units` lists the units.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import Field, PlainValidator, PrivateAttr, model_validator
@@ -91,19 +91,33 @@ class AirfoilSection(Section):
     """Sections of the blade: a straight lift line with constant drag and moment, or a table."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = AIRFOIL_ALTERNATIVES
-    may_lack: ClassVar[tuple[str, ...]] = ("zero_lift_angle", "drag", "moment")
+    may_lack: ClassVar[tuple[str, ...]] = (
+        "zero_lift_angle",
+        "drag",
+        "moment",
+        "table_name",
+        "table_reynolds",
+    )
 
     lift_slope: fields.Slope = optional("Slope of the lift coefficient with the angle of attack.")
     zero_lift_angle: fields.Angle = optional("Angle of attack without lift.")
     drag: fields.NotNegative = optional("Drag coefficient.")
     moment: fields.Number = optional("Moment coefficient about the reference line, nose up.")
     table: fields.File = optional("A C81 file; its name starts from the deck's folder.")
+    table_name: str = optional("Title of the table in a file of several; the first if left out.", "")
+    table_reynolds: fields.Size = optional(
+        "Reynolds number of the table, in a file with tables of one airfoil at several."
+    )
 
     @model_validator(mode="after")
     def _numbers_or_a_table(self) -> AirfoilSection:
-        numbers = [name for name in type(self).model_fields if name in self.model_fields_set - {"table"}]
+        of_table = {"table", "table_name", "table_reynolds"}
+        numbers = [name for name in type(self).model_fields if name in self.model_fields_set - of_table]
         if self.table is not None and numbers:
             raise InputError("table", self.table.written, f"must not be given with {', '.join(numbers)}")
+        for name in sorted(of_table & self.model_fields_set):
+            if self.table is None:
+                raise InputError(name, None, "must be given with table")
         if self.table is None and "lift_slope" not in numbers:
             raise InputError("lift_slope", None, "is missing; give lift_slope or table")
         return self
@@ -321,6 +335,18 @@ class Deck(Section):
     left: LeftSection | None = optional("What differs on the left side of an aircraft; nothing if left out.")
 
     _left_side: Deck | None = PrivateAttr(default=None)
+    _origin: tuple[str, dict[str, str]] = PrivateAttr(default=("", {}))
+
+    @property
+    def origin(self) -> tuple[str, dict[str, str]]:
+        """The bundled name or the path that the deck was read from, and the fields that were set, as text."""
+        return self._origin
+
+    def with_origin(self, name: str, settings: Mapping[str, str]) -> Deck:
+        """Return the deck with the name or path that it was read from, and the fields that were set."""
+        whole = self.model_copy()
+        whole._origin = (name, dict(settings))
+        return whole
 
     @property
     def left_side(self) -> Deck | None:

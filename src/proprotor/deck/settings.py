@@ -130,7 +130,8 @@ def _replaced(tables: Any, place: _Place, value: Any, path: str) -> Any:
     key, further = place[0], place[1:]
     if isinstance(key, _Entry):
         if not isinstance(tables, list):
-            raise InputError(f"{path}[{key}]", None, "is no entry of a list of this deck")
+            there = f"has no {path}" if tables is None else f"has no list at {path}"
+            raise InputError(f"{path}[{key}]", None, f"is no entry of a list of this deck, which {there}")
         position = _position(tables, key, path)
         replaced = _replaced(tables[position], further, value, f"{path}[{key}]")
         return [*tables[:position], replaced, *tables[position + 1 :]]

@@ -20,13 +20,16 @@
     `proprotor.support.aircraft_structure`, `free_airframe` and `aircraft_airloads`. A table ``[left]`` at the top of
     the deck has what differs on the left side.
 ``kind = "matrices"``
-    file, an .npz file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names: see
-    `proprotor.support.matrix_files`. A table hub, or for modal coordinates the motion of the hub (the array hub of the
-    .npz file, or hub_motion) and carries, one rotor or two. includes_rotor, shaft, rotor_mass, modes, damping_ratio,
-    length_unit, mass_unit.
+    file, an .npz or .mat file, or mass, stiffness, dofs and perhaps damping, Matrix Market files and a list of names:
+    see `proprotor.support.matrix_files` and `matlab_file`. A table hub, or for modal coordinates the motion of the hub
+    (the array hub of the .npz file, or hub_motion) and carries, one rotor or two. includes_rotor, shaft, rotor_mass,
+    modes, damping_ratio, length_unit, mass_unit.
 ``kind = "nastran"``
-    file, an .op2 file, and grid: see `proprotor.support.nastran`. subcase, a table hub, includes_rotor, shaft, modes,
-    damping_ratio, length_unit, mass_unit; carries, one rotor or two.
+    file, of a Nastran run, and grid: see `proprotor.support.nastran`. subcase, generalized_mass, coordinates, a table
+    hub, names, includes_rotor, shaft, modes, damping_ratio, length_unit, mass_unit; carries, one rotor or two.
+``kind = "universal"``
+    file, a universal file (.unv, .uff), and node, or rigid_nodes around it: see `proprotor.support.universal_modes`. A
+    table hub, includes_rotor, shaft, modes, damping_ratio, length_unit, mass_unit; carries, one rotor or two.
 ``kind = "pivot"``
     distance from pivot to hub; pitch_inertia, yaw_inertia, pitch_stiffness, yaw_stiffness, pitch_damping,
     yaw_damping; includes_rotor, shaft.
@@ -42,7 +45,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from proprotor.deck import fields
 from proprotor.deck.alternatives import (
@@ -324,7 +327,8 @@ class MatricesSection(Section):
 
     kind: Literal["matrices"] = needed("Matrices from files.")
     file: fields.File = optional(
-        "An .npz file with mass, stiffness, dofs and perhaps damping; hub for modal coordinates."
+        "An .npz file with mass, stiffness, dofs and perhaps damping, hub for modal coordinates; or a .mat file of "
+        "MATLAB with M, K, dofs and perhaps C, Phi."
     )
     mass: fields.File = optional("Matrix Market file of the mass.")
     stiffness: fields.File = optional("Matrix Market file of the stiffness.")
@@ -344,8 +348,9 @@ class MatricesSection(Section):
         "Mass of the rotor model at the hub, which the modes include; not for a mass matrix that includes the rotor."
     )
     modes: fields.Size = optional("Number of lowest modes to keep; all coordinates if left out.")
-    damping_ratio: fields.DampingRatio = optional(
-        "Damping ratio of every mode, relative to critical, without a damping matrix; 0 if left out."
+    damping_ratio: fields.DampingRatios = optional(
+        "Damping ratio of every mode, relative to critical, or a list with one for each of the lowest; added to "
+        "a damping matrix; 0 if left out."
     )
     length_unit: fields.PositiveLength = optional("Unit of length of the files; 1 m if left out.")
     mass_unit: fields.Mass = optional("Unit of mass of the files; 1 kg if left out.")
@@ -370,24 +375,74 @@ class MatricesSection(Section):
 
 
 class NastranSection(Section):
-    """Real modes and generalised masses of a Nastran run at a grid point."""
+    """Real modes of a Nastran run at a grid point, or the matrices of a reduced structure."""
 
-    kind: Literal["nastran"] = needed("An .op2 file.")
-    file: fields.File = needed("The .op2 file.")
+    kind: Literal["nastran"] = needed("A file of a Nastran run.")
+    file: fields.File = needed("Real modes: .op2, .h5, .pch or .f06. Matrices of EXTSEOUT: .pch or .op4.")
     grid: fields.Size = needed("The grid point at the hub.")
     subcase: fields.Size = optional("Subcase, needed for a file with several.")
+    generalized_mass: fields.Positives = optional(
+        "Generalised mass of every mode, in units of the run, or of each of the lowest modes in a list whose last "
+        "value holds for all above. Needed for a file without eigenvalue table (LAMA), and for no other."
+    )
+    coordinates: fields.File = optional(
+        "For an .op4 file: the file of bulk data beside it (.pch or .asm), whose entry EXTRN names the coordinates."
+    )
     hub: dict[str, str] | None = optional(
         'One of T1 to R3 for each of x, y, z, alpha_x, alpha_y, alpha_z, with "-" in front if it has the opposite '
         "direction; aircraft axes if left out."
+    )
+    names: Annotated[list[fields.Name], Field(min_length=1)] | None = optional(
+        "Names of the modes; mode_1 and so on, by the numbers of the run, if left out."
     )
     includes_rotor: fields.IncludesRotor = needed(_HELD)
     shaft: fields.Shaft = optional(_SHAFT)
     carries: fields.Carries = optional(f"{_CARRIES} One rotor if left out.")
     modes: fields.Size = optional("Number of lowest modes to keep; all if left out.")
-    damping_ratio: fields.DampingRatio = optional("Damping ratio of every mode; 0 if left out.")
+    damping_ratio: fields.DampingRatios = optional(
+        "Damping ratio of every mode, or of each of the lowest modes in a list whose last value holds for all above; 0 "
+        "if left out."
+    )
     length_unit: fields.PositiveLength = optional("Unit of length of the run; 1 m if left out.")
     mass_unit: fields.Mass = optional("Unit of mass of the run; 1 kg if left out.")
     wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
+
+
+class UniversalSection(Section):
+    """Real normal modes of a universal file, of a test or of a finite-element code, with their modal masses."""
+
+    kind: Literal["universal"] = needed("A universal file (.unv, .uff).")
+    file: fields.File = needed("The universal file.")
+    node: fields.Size = needed("The node at the hub.")
+    rigid_nodes: str = optional(
+        "Measured nodes that are rigid with the hub, separated by blanks, for a test with translations alone; the node "
+        "at the hub needs a position in the file then.",
+        "",
+    )
+    hub: dict[str, str] | None = optional(
+        'One of X, Y, Z, RX, RY, RZ for each of x, y, z, alpha_x, alpha_y, alpha_z, with "-" in front if it has the '
+        "opposite direction; aircraft axes if left out."
+    )
+    includes_rotor: fields.IncludesRotor = needed(_HELD)
+    shaft: fields.Shaft = optional(_SHAFT)
+    carries: fields.Carries = optional(f"{_CARRIES} One rotor if left out.")
+    modes: fields.Size = optional("Number of lowest modes to keep; all if left out.")
+    damping_ratio: fields.DampingRatios = optional(
+        "Damping ratio of every mode, or a list with one for each of the lowest; those of the file if left out."
+    )
+    length_unit: fields.PositiveLength = optional(
+        "Unit of length of the file; that of its dataset 164 if left out."
+    )
+    mass_unit: fields.Mass = optional("Unit of mass of the file; that of its dataset 164 if left out.")
+    wing_aerodynamics: AssumedShapeSection | None = optional("Airloads of the wing; none if left out.")
+
+    @field_validator("rigid_nodes")
+    @classmethod
+    def _whole_numbers(cls, text: str) -> str:
+        """Refuse a list of nodes that is none."""
+        if not all(word.isascii() and word.isdigit() for word in text.replace(",", " ").split()):
+            raise InputError("", text, 'must be whole numbers, such as "101 102 103"')
+        return text
 
 
 class PivotSection(Section):
@@ -417,6 +472,7 @@ SupportSection = Annotated[
     | AircraftSection
     | MatricesSection
     | NastranSection
+    | UniversalSection
     | PivotSection
     | RigidSection,
     Field(discriminator="kind"),

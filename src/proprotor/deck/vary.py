@@ -10,6 +10,7 @@ import numpy as np
 
 from proprotor.datum import Datum
 from proprotor.deck.build import C, assemble
+from proprotor.deck.numbers import numbers_of
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.configuration import Configuration
 from proprotor.units import has_own_unit
@@ -93,6 +94,24 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
         written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
         numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
     return assemble(case.deck, numbers, tuple(case.support.names), kind=type(case))
+
+
+def varied_numbers(case: Configuration) -> dict[str, Any]:
+    """Return the SI values, by path, of the numbers in which a case differs from the deck that it was made from.
+
+    `vary` of the case of the deck, with these numbers, gives the case again.
+
+    Parameters
+    ----------
+    case : Case
+        A case built from a deck.
+    """
+    own = numbers_of(case.deck)
+    return {path: number.si for path, number in case.given.items() if not _same(number.si, own[path].si)}
+
+
+def _same(one: Any, other: Any) -> bool:
+    return type(one) is type(other) and np.shape(one) == np.shape(other) and bool(np.all(one == other))
 
 
 def _number(path: str, value: Any, unit: str) -> np.ndarray:

@@ -1,4 +1,8 @@
-"""Text files that users give: read without the byte order mark that some editors write first."""
+"""Text files that users give, decoded in one place.
+
+A byte order mark at the start of a file says how the file is encoded: UTF-8, as Notepad writes it, or UTF-16 and
+UTF-32, as PowerShell's ``>`` does. Without a mark the text is UTF-8, or what a format allows beside it.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,16 @@ from proprotor.errors import InputError
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
+
+# Marks of UTF-32 stand before those of UTF-16, with one of which they begin.
+_MARKS = {
+    codecs.BOM_UTF8: "utf-8",
+    codecs.BOM_UTF32_LE: "utf-32-le",
+    codecs.BOM_UTF32_BE: "utf-32-be",
+    codecs.BOM_UTF16_LE: "utf-16-le",
+    codecs.BOM_UTF16_BE: "utf-16-be",
+}
+_LONGEST_MARK = max(map(len, _MARKS))
 
 
 def read_text(
@@ -27,12 +41,12 @@ def read_text(
     largest : int
         Largest allowed size of the file, bytes.
     encoding : str
-        Encoding of the text; "latin-1" accepts any bytes.
+        Encoding of a text without a byte order mark; "latin-1" accepts any bytes.
 
     Raises
     ------
     InputError
-        When the file does not exist, cannot be read, is larger than allowed or is not text of that encoding.
+        When the file does not exist, cannot be read, is larger than allowed or is not text of its encoding.
     """
     content = None
     try:
@@ -45,10 +59,13 @@ def read_text(
         raise InputError(field, label, "no such file")
     if len(content) > largest:
         raise InputError(field, label, f"must not be larger than {largest} bytes")
+    mark, encoding = _encoding(content, encoding)
     try:
-        return content.removeprefix(codecs.BOM_UTF8).decode(encoding)
-    except UnicodeDecodeError:
-        raise InputError(field, label, f"must be text in {encoding.upper()}") from None
+        return content[mark:].decode(encoding)
+    except UnicodeDecodeError as error:
+        line = content[: mark + error.start].count(b"\n") + 1
+        rule = f"must be text in {encoding.upper()}: line {line} is not; save the file in that encoding"
+        raise InputError(field, label, rule) from None
 
 
 def is_file(path: Path | Traversable) -> bool:
@@ -71,6 +88,14 @@ def is_file(path: Path | Traversable) -> bool:
 def open_text(path: Path, *, encoding: str = "utf-8") -> io.TextIOWrapper:
     """Return a text file opened after its byte order mark, with all line ends as ``\\n``; see `read_text`."""
     file = path.open("rb")
-    if file.read(len(codecs.BOM_UTF8)) != codecs.BOM_UTF8:
-        file.seek(0)
+    mark, encoding = _encoding(file.read(_LONGEST_MARK), encoding)
+    file.seek(mark)
     return io.TextIOWrapper(file, encoding=encoding, newline=None)
+
+
+def _encoding(content: bytes, usual: str) -> tuple[int, str]:
+    """Return how many bytes the mark of a file has, and the encoding of what follows."""
+    for mark, encoding in _MARKS.items():
+        if content.startswith(mark):
+            return len(mark), encoding
+    return 0, usual

@@ -4,11 +4,14 @@ In come a rotor, its operation and its support (`rotor`, `support`); out go line
 configuration, and the stamp that every result has.
 
     linear_model         the record LinearModel: M q̈ + C q̇ + K q = B u about a trim, over a batch of points
+    kept                 results that are kept as long as the objects live from which they were made
+    batches              shapes of batches, and their points a few at a time
     quantities           the numbers of rotor, operation and options by the names of the derivation
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
     mass_at_rest         the rotor's mass matrix at rest with locked blades
     rotor_share          the rotor's share, taken off a support whose masses include the rotor
+    unit_doubts          doubts about the units of a structure from a file
     mount                one rotor on a support
     pair                 two mirrored rotors on an airframe, in symmetric and antisymmetric coordinates
     mast                 a mast that twists between a rotor and its engine
@@ -24,6 +27,8 @@ configuration, and the stamp that every result has.
     options_in_force     the options of a model as plain data and in words
     deck_fingerprint     a short text that identifies a deck
     stamp                the case, options and sources that a result carries
+    html                 pieces of HTML for notebooks
+    in_notebook          a case and a model as HTML
     options_of_result    options taken back from a result
 
 The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor` and `support`. One
@@ -51,6 +56,7 @@ __all__ = [
     "deck_fingerprint",
     "doubts",
     "first_order",
+    "html",
     "in_closed_form",
     "mass_at_rest",
     "mount",
@@ -68,6 +74,7 @@ __all__ = [
     "stamp",
     "state_space",
     "structural_damping",
+    "unit_doubts",
     "with_mast",
     "with_reasons",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair
 from proprotor.model.provenance import reservations
-from proprotor.model.rotor_model import rotor_model
+from proprotor.model.rotor_model import model_of, rotor_model
 from proprotor.model.side import Side
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
@@ -86,6 +86,12 @@ class Configuration:
         ]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from proprotor.model.in_notebook import case_html  # here, because most uses need no HTML
+
+        return case_html(self)
+
     def linearize(self, airspeed: Any, **options: Any) -> LinearModel:
         """Return the equations of motion of the rotor on its support.
 
@@ -108,9 +114,7 @@ class Configuration:
             For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
         """
         own = self.model_options(options)
-        rotor_alone = rotor_model(self.rotor, self.operation, airspeed, **own)
-        if rotor_alone.origin is not None:
-            rotor_alone = replace(rotor_alone, origin=rotor_alone.origin._replace(case=self))
+        rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self)
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
         if isinstance(support, Airframe):
             return self._pair(rotor_alone, support, airspeed, options)

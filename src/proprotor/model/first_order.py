@@ -10,11 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.model.batches import at_rows, few_at_once
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import massless_coordinates
 from proprotor.typing import Array
@@ -45,22 +47,33 @@ def state_matrix(model: LinearModel) -> Array:
     """
     model = without_massless(model)
     matrix = first_order(model)
-    matrix[~np.isfinite(model.M).all(axis=(-2, -1))] = np.nan
+    if not model.finite.all():
+        matrix[~model.finite] = np.nan
     return matrix
 
 
 def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
-    n = len(model.dofs)
-    held = held_coordinates(model)
-    acceleration = np.linalg.solve(model.M, np.concatenate([model.K.take(held, -1), model.C], axis=-1))
-    matrix = np.zeros((*model.M.shape[:-2], len(held) + n, len(held) + n))
-    matrix[..., np.arange(len(held)), len(held) + np.array(held, dtype=int)] = 1
-    np.negative(acceleration, out=matrix[..., len(held) :, :])
+    held, shape = held_coordinates(model), model.M.shape[:-2]
+    rates = _rates(tuple(held), len(model.dofs))
+    matrix = np.empty((*shape, rates.shape[1], rates.shape[1]))
+    for rows in few_at_once(shape):
+        mass, damping, stiffness = (at_rows(part, rows, shape) for part in (model.M, model.C, model.K))
+        loads = np.concatenate([stiffness.take(held, -1), damping], axis=-1)
+        matrix[rows][..., : len(held), :] = rates
+        np.negative(np.linalg.solve(mass, loads), out=matrix[rows][..., len(held) :, :])
     for state, free in lacking_states(model):
         matrix[free, state, :] = np.nan
         matrix[free, :, state] = np.nan
     return matrix
+
+
+@lru_cache(maxsize=32)
+def _rates(held: tuple[int, ...], n: int) -> Array:
+    """Return the rows of A that say that the rate of a displacement is a state, (held, held + n)."""
+    found = np.zeros((len(held), len(held) + n))
+    found[np.arange(len(held)), len(held) + np.array(held, dtype=int)] = 1
+    return found
 
 
 def without_massless(model: LinearModel) -> LinearModel:
@@ -79,7 +92,7 @@ def have_modes(model: LinearModel) -> Array:
     InputError
         For a rotor alone of which no point is left.
     """
-    good, singular = np.asarray(np.isfinite(np.real(model.M)).all(axis=(-2, -1))), model.massless
+    good, singular = model.finite, model.massless
     if model.hub is None and singular.any() and not (good & ~singular).any():
         names = massless_coordinates(model.M[singular][0], model.dofs)
         rule = "give the mass matrix no inverse: mount the rotor on a support, or hold some of them with submodel"
@@ -116,6 +129,8 @@ def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]
 def lack_azimuths(model: LinearModel) -> Array:
     """Return which azimuths points (..., azimuths) lack among their states though other points of the batch do not."""
     holds = model.azimuths_held
+    if holds.ndim == 1:
+        return np.zeros_like(holds)
     lacks = np.asarray(_anywhere(holds) & ~holds)
     if lacks.any():
         lacks &= np.asarray(np.isfinite(model.K).all(axis=(-2, -1)))[..., None]
@@ -129,7 +144,9 @@ def _anywhere(holds: Array) -> Array:
 
 def lacking_states(model: LinearModel) -> Iterator[tuple[int, Array]]:
     """Yield the place of each azimuth among the states that some points lack, with these points (...)."""
-    lacks, held = lack_azimuths(model), held_coordinates(model)
+    if model.azimuths_held.ndim == 1 or not (lacks := lack_azimuths(model)).any():
+        return
+    held = held_coordinates(model)
     for name, free in zip(model.azimuths, np.moveaxis(lacks, -1, 0), strict=True):
         if free.any():
             yield held.index(model.dofs.index(name)), free

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
+_AZIMUTHS = tuple(in_half(half, ROTOR_SPEED) for half in reversed(HALVES))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -66,6 +67,9 @@ class LinearModel:
     halves_couple : bool
         Whether symmetric coordinates couple with antisymmetric ones; if not, the terms between them are exactly zero,
         and each half is a problem of its own.
+    apart : tuple of tuple of str
+        Groups of coordinates that couple with no other coordinate, such as reactionless motions of one harmonic: the
+        terms between them and others are exactly zero, and each group is a problem of its own.
     left : LinearModel, optional
         Of two rotors that differ: the left rotor alone, in its mirrored axes.
     left_hub : array (..., 6, n), optional
@@ -91,6 +95,7 @@ class LinearModel:
     rigid_body: tuple[str, ...] = ()
     symmetry: tuple[str, ...] = ()
     halves_couple: bool = True
+    apart: tuple[tuple[str, ...], ...] = ()
     left: LinearModel | None = None
     left_hub: Array | None = None
     inputs: tuple[str, ...] = INPUTS
@@ -112,6 +117,12 @@ class LinearModel:
         lines += [f"  {len(at)} of {converged.size} doubtful: {text}" for text, at in doubts.items()]
         return "\n".join(lines)
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from proprotor.model.in_notebook import model_html  # here, because most uses need no HTML
+
+        return model_html(self)
+
     @property
     def matrices(self) -> dict[str, Array]:
         """M, C, K and, for a model with inputs, B, by name; SI."""
@@ -119,11 +130,19 @@ class LinearModel:
 
     @property
     def blocks(self) -> list[list[int]]:
-        """Places of the coordinates, in groups of which no two couple."""
+        """Places of the coordinates, in groups of which no two couple: those of `apart` behind the others."""
+        groups = [[self.dofs.index(name) for name in group] for group in self.apart]
+        apart = {place for group in groups for place in group}
+        others = [place for place in range(len(self.dofs)) if place not in apart]
         if self.halves_couple or not self.symmetry:
-            return [list(range(len(self.dofs)))]
-        places = {half: [k for k, own in enumerate(self.symmetry) if own == half] for half in HALVES}
-        return [own for own in places.values() if own]
+            return [group for group in (others, *groups) if group]
+        halves = [[place for place in others if self.symmetry[place] == half] for half in HALVES]
+        return [group for group in (*halves, *groups) if group]
+
+    @cached_property
+    def finite(self) -> Array:
+        """Points (...) with a mass matrix; failed points have NaN in its place."""
+        return np.asarray(np.isfinite(self.M).all(axis=(-2, -1)))
 
     @cached_property
     def massless(self) -> Array:
@@ -136,7 +155,7 @@ class LinearModel:
 
         An interconnect shaft between two rotors holds the antisymmetric azimuth alone.
         """
-        names = [in_half(half, ROTOR_SPEED) for half in reversed(HALVES)] if self.symmetry else [ROTOR_SPEED]
+        names = _AZIMUTHS if self.symmetry else (ROTOR_SPEED,)
         return tuple(name for name in names if name in self.dofs)
 
     @cached_property
@@ -146,7 +165,7 @@ class LinearModel:
         Without a shaft only the rate of an azimuth counts.
         """
         places = [self.dofs.index(name) for name in self.azimuths]
-        return np.asarray(np.nan_to_num(np.real(self.K[..., places, places])) > 0)
+        return np.asarray(np.real(self.K.diagonal(0, -2, -1)[..., places]) > 0)
 
     @property
     def shaft_holds_azimuth(self) -> Array:
@@ -205,7 +224,9 @@ class LinearModel:
         whole = self.shapes is not None and places[: self.shapes.shape[-1]] == [*range(self.shapes.shape[-1])]
         shapes = self.shapes if whole else None
         rates, rigid = (tuple(name for name in own if name in dofs) for own in (self.rates, self.rigid_body))
+        apart = (tuple(name for name in group if name in dofs) for group in self.apart)
         more: dict[str, Any] = {"rates": rates, "rigid_body": rigid, "left_hub": left}
+        more["apart"] = tuple(group for group in apart if group)
         if self.symmetry:
             more["symmetry"] = tuple(self.symmetry[place] for place in places)
         return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts, **more)

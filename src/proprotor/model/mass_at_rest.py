@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES, inertia, multiblade, pitch
 
+from proprotor.model.kept import kept
 from proprotor.model.quantities import of_rotor
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.motions import HUB
@@ -14,12 +13,10 @@ from proprotor.rotor.rotor import Rotor
 from proprotor.rotor.trim import UNKNOWNS
 from proprotor.typing import Array
 
-_FOUND: WeakKeyDictionary[Rotor, Array] = (
-    WeakKeyDictionary()
-)  # an analysis asks at each of its batches of airspeeds
 MASS_AT_REST = (*HUB, "gimbal_1c", "gimbal_1s")  # coordinates of a rotor at rest with locked blades
 
 
+@kept
 def mass_at_rest(rotor: Rotor) -> Array:
     """Return the mass matrix of the undeflected rotor with locked blades, which no option of an analysis changes.
 
@@ -32,15 +29,10 @@ def mass_at_rest(rotor: Rotor) -> Array:
     array (..., 8, 8)
         On the coordinates `MASS_AT_REST`, in kg, kg m and kg m²; not to be written to.
     """
-    if rotor not in _FOUND:
-        _FOUND[rotor] = _mass_at_rest(rotor)
-        _FOUND[rotor].flags.writeable = False
-    return _FOUND[rotor]
-
-
-def _mass_at_rest(rotor: Rotor) -> Array:
     quantities = of_rotor(rotor) | dict.fromkeys(UNKNOWNS, 0.0)
     quantities |= evaluate(inertia.trim_integrals, quantities)._asdict()
     blade = evaluate(inertia.mass, quantities) + evaluate(pitch.mass, quantities)
     places = np.array([FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
-    return np.asarray(evaluate(multiblade.mass, quantities, blade)[..., places[:, None], places])
+    found = np.asarray(evaluate(multiblade.mass, quantities, blade)[..., places[:, None], places])
+    found.flags.writeable = False
+    return found

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from proprotor.model.batches import few_at_once
 from proprotor.typing import Array
 
 if TYPE_CHECKING:
@@ -24,10 +25,12 @@ _TAKES_PART = 0.01  # component of a unit vector
 def massless(mass: Array) -> Array:
     """Return which mass matrices of a batch (..., n, n) have no inverse, (...); False at failed points."""
     mass, found = np.real(mass), np.zeros(mass.shape[:-2], dtype=bool)
-    good = np.isfinite(mass).all(axis=(-2, -1))
-    numbers = mass.reshape(-1, *mass.shape[-2:]) if good.all() else mass[good]
-    if not _clearly_positive(numbers):
-        found[good] = np.linalg.cond(_scaled(numbers)) > _NO_INERTIA
+    for rows in few_at_once(found.shape):
+        if _clearly_positive(some := mass[rows]):  # which matrices with NaN are not
+            continue
+        finite = np.isfinite(some).all(axis=(-2, -1))
+        if not _clearly_positive(numbers := some[finite]):
+            found[rows][finite] = np.linalg.cond(_scaled(numbers)) > _NO_INERTIA
     return found
 
 
@@ -63,7 +66,7 @@ def _clearly_positive(mass: Array) -> bool:
     """Return whether every motion has mass, from a Cholesky factor of M + Mᵀ: much cheaper than singular values."""
     twice = mass + np.swapaxes(mass, -1, -2)
     try:
-        pivots = np.diagonal(np.linalg.cholesky(twice), axis1=-2, axis2=-1) ** 2
+        pivots = np.linalg.cholesky(twice).diagonal(0, -2, -1) ** 2
     except np.linalg.LinAlgError:
         return False
-    return bool(np.all(pivots > _CLEARLY_MASS * np.diagonal(twice, axis1=-2, axis2=-1)))
+    return bool((pivots > _CLEARLY_MASS * twice.diagonal(0, -2, -1)).all())

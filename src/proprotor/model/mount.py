@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from proprotor.errors import InputError
+from proprotor.model.batches import at_rows, few_at_once, joint_shape
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.model.rotor_share import refuse, without_rotors
@@ -56,7 +57,7 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     mass, refusal = without_rotors(support, [(support.hub, rotor_alone.mass_at_rest)])
     additions = {"M": mass, "C": support.damping, "K": support.stiffness}
     parts = (rotor_alone.M, support.hub, *additions.values())
-    shape = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in parts))
+    shape = joint_shape(*(matrix.shape[:-2] for matrix in parts))
     rotor_alone = broadcast(rotor_alone, shape)
     matrices: dict[str, Any] = {
         name: _on_support(getattr(rotor_alone, name), support.hub, addition)
@@ -85,7 +86,7 @@ def check_hub(field: str, model: LinearModel) -> None:
         raise InputError(field, ", ".join(model.dofs), f"must begin with {', '.join(HUB)}")
 
 
-def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> LinearModel:
+def refused_where(refusal: Array | None, model: LinearModel, support: NormalModes) -> LinearModel:
     """Return the model with NaN and the reason at each point whose support has no mass without its rotors.
 
     Raises
@@ -94,7 +95,7 @@ def refused_where(refusal: Array, model: LinearModel, support: NormalModes) -> L
         When one refusal holds for all points.
     """
     refuse(refusal, support)
-    if not (refused := refusal != "").any():
+    if refusal is None or not (refused := refusal != "").any():
         return model
     field = str(InputError("support.includes_rotor", support.includes_rotor, ""))
     return failed_where(np.where(refused, field + refusal, ""), model)
@@ -133,16 +134,18 @@ def with_warning(trim: Trim, warning: Array | None) -> Trim:
 
 def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
     """Return Tᵀ (...) T plus the support's matrix; T = diag(Φ, 1) does not change the rotor's own block."""
-    modes, hubs = hub.shape[-1], len(HUB)
-    own = matrix.shape[-1] - hubs
-    virtual = np.swapaxes(hub, -1, -2)
-    columns = matrix[..., :hubs] @ hub
-    kind = np.result_type(columns, addition)
-    whole = np.empty((*matrix.shape[:-2], modes + own, modes + own), dtype=kind)
-    whole[..., :modes, :modes] = virtual @ columns[..., :hubs, :] + addition
-    whole[..., :modes, modes:] = virtual @ matrix[..., :hubs, hubs:]
-    whole[..., modes:, :modes] = columns[..., hubs:, :]
-    whole[..., modes:, modes:] = matrix[..., hubs:, hubs:]
+    modes, hubs, shape = hub.shape[-1], len(HUB), matrix.shape[:-2]
+    n = modes + matrix.shape[-1] - hubs
+    kind = np.result_type(matrix, hub, addition)
+    whole = np.empty((*shape, n, n), dtype=kind)
+    for rows in few_at_once(shape):
+        own, motion, added = (at_rows(part, rows, shape) for part in (matrix, hub, addition))
+        found, columns = whole[rows], np.empty((*own.shape[:-1], n), dtype=kind)
+        np.matmul(own[..., :hubs], motion, out=columns[..., :modes])
+        columns[..., modes:] = own[..., hubs:]
+        np.matmul(np.swapaxes(motion, -1, -2), columns[..., :hubs, :], out=found[..., :modes, :])
+        found[..., :modes, :modes] += added
+        found[..., modes:, :] = columns[..., hubs:, :]
     return whole
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
+from proprotor.model.kept import kept
 from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.model.mount import at_points, broadcast, check_hub, failed_where, refused_where, with_warning
@@ -151,6 +152,7 @@ def rotors_on(
         rigid_body=airframe.rigid_body,
         symmetry=(*airframe.symmetry, *(half for half in halves for _ in own)),
         inputs=tuple(in_half(half, name) for half in halves for name in INPUTS),
+        apart=_apart(right.apart, halves, together=left is not None),
     )
 
 
@@ -163,6 +165,16 @@ def _names(airframe: Airframe, rotor: LinearModel) -> tuple[str, ...]:
     """Return the names of the coordinates of an airframe with two rotors."""
     own = rotor.dofs[len(HUB) :]
     return (*airframe.names, *(in_half(half, name) for half in _halves_in(airframe) for name in own))
+
+
+def _apart(
+    groups: tuple[tuple[str, ...], ...], halves: list[str], together: bool
+) -> tuple[tuple[str, ...], ...]:
+    """Return groups of coordinates of a rotor in the halves of the motion, which couple where the rotors differ."""
+    parts = [halves] if together else [[half] for half in halves]
+    return tuple(
+        tuple(in_half(half, name) for half in part for name in group) for part in parts for group in groups
+    )
 
 
 def halves_of(model: LinearModel) -> list[_Half]:
@@ -307,11 +319,20 @@ def shares(
 
     The left rotor is alike by default.
     """
-    if left is None:
-        hubs = [(airframe.hub + sign * airframe.left_hub) / 2 for sign in (1, -1)]
-        return [(hub, right) for hub in hubs]
-    half = np.sqrt(0.5)
-    return [(half * airframe.hub, right), (half * airframe.left_hub, left)]
+    hubs = _hubs(airframe.hub, airframe.left_hub, "alike" if left is None else "different")
+    return list(zip(hubs, (right, right if left is None else left), strict=True))
+
+
+@kept
+def _hubs(hub: Array, left_hub: Array, sides: str) -> tuple[Array, Array]:
+    """Return the hub motions of half an airframe: of both halves of the motion, or of both of its different sides."""
+    if sides == "alike":
+        hubs = (hub + left_hub) / 2, (hub - left_hub) / 2
+    else:
+        hubs = np.sqrt(0.5) * hub, np.sqrt(0.5) * left_hub
+    for motion in hubs:
+        motion.flags.writeable = False
+    return hubs
 
 
 # Trim -----------------------------------------------------------------------------------------------------------------

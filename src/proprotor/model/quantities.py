@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from proprotor_equations import pitch
 
+from proprotor.model.batches import joint_shape
+from proprotor.model.kept import kept
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import evaluate
@@ -28,15 +30,21 @@ def batch_shape(
     rotor: Rotor, operation: Operation, airspeed: Array, drive_train: DriveTrain | None = None
 ) -> tuple[int, ...]:
     """Return the shape of all arrays among the inputs, broadcast together."""
+    inputs = [airspeed, *(getattr(operation, name) for name in _AIR)]
+    inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())
+    inputs += [] if drive_train is None else list(vars(drive_train).values())
+    return joint_shape(shape_of(rotor), *(np.shape(value) for value in inputs if _may_vary(value)))
+
+
+@kept
+def shape_of(rotor: Rotor) -> tuple[int, ...]:
+    """Return the shape of all arrays among the numbers of a rotor, broadcast together; () for a single design."""
     inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name != "airfoil"]
     leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
     inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)] + leading
     if isinstance(rotor.airfoil, Airfoil):
         inputs += [getattr(rotor.airfoil, entry.name) for entry in fields(rotor.airfoil)]
-    inputs += [getattr(operation, name) for name in _AIR]
-    inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())
-    inputs += [] if drive_train is None else list(vars(drive_train).values())
-    return np.broadcast_shapes(*{np.shape(value) for value in (airspeed, *inputs) if _may_vary(value)})
+    return joint_shape((), *(np.shape(value) for value in inputs if _may_vary(value)))
 
 
 def _may_vary(value: Any) -> bool:
@@ -56,14 +64,21 @@ def model_quantities(
 
     The options give couplings, drive train and section damping.
     """
-    given = of_rotor(rotor) | {name: getattr(operation, name) for name in _AIR}
-    softest = _SOFTEST_SPRING * np.maximum(np.maximum(rotor.flap_stiffness, rotor.lag_stiffness), 1.0)
-    given |= {name: np.maximum(given[name], softest) for name in ("flap_stiffness", "lag_stiffness")}
-    given |= {"propeller_moment": float(rotor.propeller_moment), "airspeed": airspeed}
+    given = _numbers_of(rotor) | {name: getattr(operation, name) for name in _AIR}
+    given["airspeed"] = airspeed
     given |= {name: value for name in COUPLINGS if (value := getattr(options, name)) is not None}
     given |= {} if options.drive_train is None else options.drive_train.at_rotor
     given["section_damping"] = float(bool(options.section_damping))
-    return {name: flat(value, shape) for name, value in given.items()}
+    return {name: flat(value, shape) for name, value in given.items()} if shape else given
+
+
+@kept
+def _numbers_of(rotor: Rotor) -> dict[str, Any]:
+    """Return the rotor's own numbers; no spring is so soft that two springs in series would divide by zero."""
+    given = of_rotor(rotor)
+    softest = _SOFTEST_SPRING * np.maximum(np.maximum(rotor.flap_stiffness, rotor.lag_stiffness), 1.0)
+    given |= {name: np.maximum(given[name], softest) for name in ("flap_stiffness", "lag_stiffness")}
+    return given | {"propeller_moment": float(rotor.propeller_moment)}
 
 
 def of_rotor(rotor: Rotor) -> dict[str, Any]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import replace
+from math import prod
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,15 +14,16 @@ from proprotor_equations import rotor as whole_rotor
 from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
+from proprotor.model.kept import kept
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
-from proprotor.model.quantities import batch_shape, couplings, flat, model_quantities
+from proprotor.model.quantities import batch_shape, couplings, flat, model_quantities, shape_of
 from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.motions import MAST_TWIST, ROTOR_SPEED, reactionless_coordinates, reactionless_harmonics
+from proprotor.rotor.motions import MAST_TWIST, ROTOR_SPEED, reactionless_groups, reactionless_harmonics
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -37,6 +39,9 @@ from proprotor.rotor.trim import Trim, trim_target
 from proprotor.rotor.trim_solver import Settled, solve_trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
+
+if TYPE_CHECKING:
+    from proprotor.model.configuration import Configuration
 
 _PITCH = [place for place, coordinate in enumerate(FIXED) if coordinate.angle == "pitch"]
 _KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}
@@ -64,20 +69,32 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     InputError
         For an unknown option, a rotor that the options do not allow, or too many points for the memory.
     """
+    return model_of(rotor, operation, airspeed, options)
+
+
+def model_of(
+    rotor: Rotor,
+    operation: Operation,
+    airspeed: Any,
+    options: Mapping[str, Any],
+    case: Configuration | None = None,
+) -> LinearModel:
+    """Return the rotor alone as `rotor_model` does, with the case to which the rotor belongs, if there is one."""
     choice = parse_options(options)
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed, operation.density)
     shape = batch_shape(rotor, operation, speed, choice.drive_train)
-    points = int(np.prod(shape, dtype=int))
+    points = prod(shape)
     _check_memory(rotor, choice, points)
     quantities = model_quantities(rotor, operation, choice, speed, shape)
-    sections = BladeSections.of(rotor, shape)
-    few = sections if rotor.has_effective_sections else BladeSections.of(rotor, shape, few=True)
+    sections, few = _sections(rotor, shape)
     target = trim_target(rotor, operation)
-    target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
-    settled = solve_trim(sections, few, quantities, choice, target, points)
+    if shape:
+        target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
+    settled = solve_trim(sections, few, quantities, choice, target, points, one=shape == ())
     reactionless = _reactionless(rotor, choice)
-    coordinates = (*FIXED, *(reactionless_coordinates(reactionless) if reactionless else ()))
+    apart = reactionless_groups(reactionless) if reactionless else []
+    coordinates = (*FIXED, *(coordinate for group in apart for coordinate in group))
     found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
     matrices: dict[str, Any] = {
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in found.items()
@@ -85,10 +102,11 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     model = LinearModel(
         **matrices,
         dofs=tuple(coordinate.name for coordinate in coordinates),
-        trim=Trim(**{e.name: getattr(settled.trim, e.name).reshape(shape) for e in fields(Trim)}),
-        airspeed=np.broadcast_to(speed, shape),
+        trim=Trim(**{name: value.reshape(shape) for name, value in vars(settled.trim).items()}),
+        airspeed=speed if speed.shape == shape else np.broadcast_to(speed, shape),
         mass_at_rest=mass_at_rest(rotor),
-        origin=Origin(choice),
+        origin=Origin(choice, case),
+        apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
     )
     if choice.drive_train is not None and choice.drive_train.mast_stiffness is not None:
         model = with_mast(model, choice.drive_train)
@@ -97,20 +115,46 @@ def rotor_model(rotor: Rotor, operation: Operation, airspeed: ArrayLike, **optio
     return model if free == model.dofs else model.submodel(free)
 
 
+def _sections(rotor: Rotor, shape: tuple[int, ...]) -> tuple[BladeSections, BladeSections]:
+    """Return the sections at all stations of a blade and at a few; one object where all stations are few."""
+    return _sections_at(rotor, shape) if shape_of(rotor) else _own_sections(rotor)
+
+
+@kept
+def _own_sections(rotor: Rotor) -> tuple[BladeSections, BladeSections]:
+    """Return the sections of a single design, which all points of a batch share."""
+    return _sections_at(rotor, ())
+
+
+def _sections_at(rotor: Rotor, shape: tuple[int, ...]) -> tuple[BladeSections, BladeSections]:
+    sections = BladeSections.of(rotor, shape)
+    return sections, sections if rotor.has_effective_sections else BladeSections.of(rotor, shape, few=True)
+
+
 def _check_pitch(rotor: Rotor, options: Options) -> None:
     """Refuse a rotor whose pitch inertia or control stiffness is zero where the options need it."""
-    if options.pitch_is_free and np.any(np.asarray(rotor.pitch_inertia) <= 0):
-        raise InputError("pitch_inertia", rotor.pitch_inertia, 'must be above zero with pitch="dynamic"')
-    if options.pitch == "coupling" and np.any(np.asarray(rotor.control_stiffness) <= 0):
-        rule = 'must be above zero with pitch="coupling"'
-        raise InputError("control_stiffness", rotor.control_stiffness, rule)
+    needed = {"pitch_inertia": options.pitch_is_free, "control_stiffness": options.pitch == "coupling"}
+    for name in _absent(rotor):
+        if needed[name]:
+            rule = f'must be above zero with pitch="{options.pitch}"'
+            raise InputError(name, getattr(rotor, name), rule)
+
+
+@kept
+def _absent(rotor: Rotor) -> list[str]:
+    """Return which of pitch inertia and control stiffness a rotor, or one of many designs, lacks."""
+    return [
+        name
+        for name in ("pitch_inertia", "control_stiffness")
+        if np.any(np.asarray(getattr(rotor, name)) <= 0)
+    ]
 
 
 def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
     """Refuse a batch, or blades whose motions are all kept, that do not fit into memory."""
-    own = len(FIXED_COORDINATES)
-    count = own + 3 * (float(np.max(rotor.n_blades)) - 3) * options.reactionless
-    if count > own:
+    count = float(len(FIXED_COORDINATES))
+    if options.reactionless:
+        count += 3 * (float(np.max(rotor.n_blades)) - 3)
         check_memory("n_blades", rotor.n_blades, _BYTES_PER_ENTRY * count**2, "the matrices")
     size = points * (_BYTES_PER_POINT + _BYTES_PER_ENTRY * count**2)
     check_memory("airspeed", f"{points} points", size, "their matrices", "take fewer points at once")
@@ -144,7 +188,7 @@ def _matrices(
     found: dict[str, Array] = {}
     if len(rows):
         quantities = settled.quantities | couplings(options, settled.quantities)
-        segments = _segments(sections.take(rows), quantities, settled.segments, options)
+        segments = _segments(sections, rows, quantities, settled.segments, options)
         given = segments | quantities | {"equations": options.equation_set}
         served = fused.serves(options.equation_set)
         if reactionless is not None or not served:
@@ -185,7 +229,7 @@ def _at_all_points(matrix: Array | None, points: int, rows: Array, shape: tuple[
 def _reactionless_blocks(
     given: Mapping[str, Any], blade: tuple[Array, ...], n_blades: int
 ) -> Iterator[dict[str, Array]]:
-    """Yield M, C, K of each group of `reactionless_coordinates`, in their order; the groups do not couple."""
+    """Yield M, C, K of each of the `reactionless_groups`."""
     groups = [("reactionless", {"harmonic": n}) for n in reactionless_harmonics(n_blades)]
     groups += [("differential", {})] * (n_blades % 2 == 0)
     for prefix, more in groups:
@@ -214,7 +258,11 @@ def _with_reactionless(
 
 
 def _segments(
-    sections: BladeSections, quantities: Mapping[str, Any], at_trim: Mapping[str, Any], options: Options
+    sections: BladeSections,
+    rows: Array,
+    quantities: Mapping[str, Any],
+    at_trim: Mapping[str, Any],
+    options: Options,
 ) -> dict[str, Any]:
     """Return on which side of the hinges each segment is, and the radial moments of each segment's loads."""
     if options.airloads == "none":
@@ -222,6 +270,7 @@ def _segments(
     equations = options.equation_set.airloads
     if equations is airloads and options.airloads == "full":
         return dict(at_trim)
+    sections = sections.take(rows)
     segments = segment_quantities(sections, quantities, equations)
     return segments | airload_moments(sections, segments, options)
 

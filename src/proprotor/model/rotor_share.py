@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
+from proprotor.model.kept import kept
 from proprotor.model.mass_at_rest import MASS_AT_REST
 from proprotor.rotor.motions import HUB
 from proprotor.support.normal_modes import NormalModes
@@ -76,7 +77,9 @@ def _released(mass: Array, free: list[int]) -> Array:
     return np.asarray(at_hub - np.swapaxes(coupling, -1, -2) @ np.linalg.solve(own, coupling))
 
 
-def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | None]]) -> tuple[Array, Array]:
+def without_rotors(
+    support: NormalModes, rotors: Iterable[tuple[Array, Array | None]]
+) -> tuple[Array, Array | None]:
     """Take the shares of the rotors off the mass of a support.
 
     Parameters
@@ -89,26 +92,52 @@ def without_rotors(support: NormalModes, rotors: Iterable[tuple[Array, Array | N
     -------
     mass : array (..., n, n)
         The mass of the support without the rotors, SI.
-    refusal : array (...) of str
-        The reason for which the remainder is no valid mass; "" for a valid one.
+    refusal : array (...) of str, or None
+        The reason for which the remainder is no valid mass, "" for a valid one; None where all are valid.
 
     Raises
     ------
     InputError
         When a mass at rest is needed and missing.
     """
-    mass, held = support.mass, ""
+    given: list[Array] = []
     for hub, at_rest in rotors if support.includes_rotor else ():
         if at_rest is None:
             rule = "must be given with the model: the support's masses include the rotor"
             raise InputError("mass_at_rest", None, rule)
-        held = _how_held(support, at_rest)
-        mass = mass - np.swapaxes(hub, -1, -2) @ rotor_share(at_rest, held, support.shaft) @ hub
-    refusal = np.full(mass.shape[:-2], "", dtype=object)
-    if held and not _all_positive(mass, support.mass):
-        given = np.broadcast_to(np.real(support.mass), mass.shape)
-        for place in np.ndindex(refusal.shape):
-            refusal[place] = _refusal(np.real(mass[place]), given[place], support.names, held)
+        given += [hub, at_rest]
+    if not given:
+        return support.mass, None
+    held = (*(_how_held(support, at_rest) for at_rest in given[1::2]), support.shaft)
+    return _without(held, tuple(support.names), support.mass, *given)
+
+
+@kept
+def _without(
+    held: tuple[str, ...], names: tuple[str, ...], whole: Array, *rotors: Array
+) -> tuple[Array, Array | None]:
+    """Return mass and refusal as `without_rotors` does, the same at every airspeed.
+
+    Parameters
+    ----------
+    held : tuple of str
+        How each rotor was held, then whether the shaft was.
+    names : tuple of str
+        Of the coordinates of the support.
+    whole : array (..., n, n)
+        Mass of the support with the rotors.
+    *rotors : array
+        Hub motion and mass at rest of each rotor in turn.
+    """
+    *ways, shaft = held
+    mass = whole
+    for way, hub, at_rest in zip(ways, rotors[::2], rotors[1::2], strict=True):
+        mass = mass - np.swapaxes(hub, -1, -2) @ rotor_share(at_rest, way, shaft) @ hub
+    if _all_positive(mass, whole):
+        return mass, None
+    given, refusal = np.broadcast_to(np.real(whole), mass.shape), np.full(mass.shape[:-2], "", dtype=object)
+    for place in np.ndindex(refusal.shape):
+        refusal[place] = _refusal(np.real(mass[place]), given[place], names, ways[-1])
     return mass, refusal
 
 
@@ -129,9 +158,9 @@ def settled(support: NormalModes, mass_at_rest: Array) -> NormalModes:
     return replace(support, includes_rotor=_how_held(support, mass_at_rest))
 
 
-def refuse(refusal: Array, support: NormalModes) -> None:
+def refuse(refusal: Array | None, support: NormalModes) -> None:
     """Raise an error if a single design is refused; of many designs, each fails alone."""
-    if not refusal.ndim and (reason := str(refusal[()])):
+    if refusal is not None and not refusal.ndim and (reason := str(refusal[()])):
         raise InputError("support.includes_rotor", support.includes_rotor, reason)
 
 

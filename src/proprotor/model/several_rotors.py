@@ -98,6 +98,9 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         rotor=None,
         mass_at_rest=None,
         shapes=None,
+        apart=tuple(
+            tuple(f"{name} {dof}" for dof in group) for name, model in models.items() for group in model.apart
+        ),
         # Rotors with different options have no common stamp.
         origin=first.origin if all(stamp.of_model(o).get("options") == options for o in others) else None,
     )

@@ -9,6 +9,7 @@ round numbers, and the motion of points in a mode.
     mode_motion         how wing, mast and blades move in a mode, as points in space
     animation           a mode in motion, as a GIF
 
+    accessor            the accessor ``.proprotor`` of datasets: their pictures, tables and files
     canvas              the axes, and the notes around them: `rests_on` writes the reservations about a case
     mode_lines          the lines of the modes of a sweep
     end_labels          names of lines beside the axes
@@ -35,6 +36,7 @@ from proprotor.plots.study_results import plot_distribution, plot_sobol
 from proprotor.plots.tornado import plot_sensitivity
 
 __all__ = [
+    "accessor",
     "animation",
     "headless",
     "input_names",

@@ -15,6 +15,7 @@ from proprotor.plots.input_names import short_names
 from proprotor.plots.line_of_sweep import axis_of
 from proprotor.plots.style import COLOURS, LABEL_SIZE, white_box
 from proprotor.study.uncertainty import distribution
+from proprotor.tables.percentiles import percentile_text
 from proprotor.typing import Axes, Dataset
 
 _BEYOND = {"above": "stable throughout the airspeeds", "below": "unstable from the lowest airspeed on"}
@@ -41,8 +42,8 @@ def plot_distribution(
     of : str
         Name of a variable with one number for each design.
     percentiles : sequence of float
-        0 to 100, dimensionless. A percentile that lies among designs beyond the range of the study has no line; the
-        note above the axes counts these designs.
+        0 to 100, dimensionless. A percentile that lies among designs beyond the range of the study has no line: the
+        note above the axes gives its bounds and counts these designs.
     unit : str, optional
         Unit of the result; "ktas" by default for speeds.
     bins : int or str
@@ -79,8 +80,19 @@ def plot_distribution(
     ax.set(xlabel=axis.label, ylabel="Share of the designs (%)")
     grid(ax)
     others = [f"{int(found[name])} {text}" for name, text in _BEYOND.items() if int(found[name])]
+    bounds = [
+        f"; {percentile:g} %: {percentile_text(found, place, axis.factor, '.4g')}"
+        for place, percentile in enumerate(percentiles)
+        if not np.isfinite(values[place])
+    ]
     failed = f"; {int(found.failed)} failed and are left out" if int(found.failed) else ""
-    note(ax, f"{counted} designs" + (f", of them {', '.join(others)}" if others else "") + failed)
+    note(
+        ax,
+        f"{counted} designs"
+        + (f", of them {', '.join(others)}" if others else "")
+        + failed
+        + "".join(bounds),
+    )
     say_origin(ax, found.attrs, _doubts(found))
     return ax
 

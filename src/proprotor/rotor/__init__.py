@@ -8,7 +8,9 @@ What a rotor is:
     rotor                a proprotor: geometry, mass, springs, chord and twist
     airfoil              section coefficients; the linear airfoil
     airfoil_table        an airfoil from tables
-    c81                  files of such tables in the C81 format
+    c81                  files of such tables in the C81 format, in the dialects of many programs
+    c81_layouts          the rows of such files, in columns or separated
+    c81_writer           writing such files
     coefficient_surface  the smooth surface through a table
     drive_train          engine and shaft
     blade_frequencies    frequencies given in tables, in place of springs
@@ -26,11 +28,14 @@ Loads and trim:
     effective_sections   chord and twist from tables as polynomials between the stations
     section_loads        section loads gathered into radial moments
     trim                 the trim, and the target that closes it
+    fused_balance        the balance of one blade by the fused functions, for batches
+    balance_of_one       the same for one point, by plain numbers
     trim_balance         the balance of one blade and its slopes
     trim_start           first guess and undeflected blade
     trim_bound           a bound that shows which equilibrium belongs to the undeflected blade
     trim_path            the path from the undeflected blade to the trim
     trim_reasons         reasons and warnings
+    trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
 
 All public names of the modules `fused`, `generated`, `motions`, `options` and `section_loads` belong to the face.
@@ -40,6 +45,7 @@ from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, 
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import Air, standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
@@ -73,4 +79,5 @@ __all__ = [
     "standard_air",
     "trim_target",
     "with_trim",
+    "write_c81",
 ]

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
 from proprotor.rotor.airfoil import SectionCoefficients
-from proprotor.rotor.c81 import COEFFICIENTS, Table, read_c81
+from proprotor.rotor.c81 import read_c81
+from proprotor.rotor.c81_layouts import COEFFICIENTS, Table
 from proprotor.rotor.coefficient_surface import CoefficientSurface, broken_rules
 from proprotor.typing import Array
 
@@ -58,13 +59,24 @@ class AirfoilTable:
                 raise InputError(name, None, f"{rule} ({f'row {row}' if row else 'mach'})")
 
     @classmethod
-    def from_c81(cls, path: str | os.PathLike[str]) -> AirfoilTable:
-        """Return the airfoil of a C81 file; the title in the file is the airfoil's name.
+    def from_c81(
+        cls,
+        path: str | os.PathLike[str],
+        table_name: str | None = None,
+        table_reynolds: float | None = None,
+    ) -> AirfoilTable:
+        """Return an airfoil of a C81 file; the title in the file is the airfoil's name.
+
+        `proprotor.rotor.c81` says which dialects are read.
 
         Parameters
         ----------
         path : str or path
             A C81 file.
+        table_name : str, optional
+            Title of the airfoil in a file of several; the first airfoil without a title.
+        table_reynolds : float, optional
+            Reynolds number of the table, dimensionless; needed in a file of DUST with several.
 
         Returns
         -------
@@ -73,10 +85,15 @@ class AirfoilTable:
         Raises
         ------
         InputError
-            When the file cannot be read or is not C81, with the line and the rule.
+            When the file cannot be read or is not C81, with the line and the rule, or has no such table.
         """
-        name, tables = read_c81(path)
-        return cls(name=name, **tables)
+        found = read_c81(path, table_name, table_reynolds)
+        return cls(name=found.title, **found.tables)
+
+    @property
+    def tables(self) -> dict[str, Table]:
+        """Angles of attack (rad), Mach numbers and values of lift, drag and moment."""
+        return {name: self._table(name) for name in COEFFICIENTS}
 
     @property
     def contains_compressibility(self) -> bool:

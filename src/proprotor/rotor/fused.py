@@ -4,8 +4,8 @@ A fused function is one plan of operations with two renderings. Arrays of a batc
 points, so that all temporaries stay in the cache. Plain numbers of one point go through the same lines of the plan as
 Python floats, or as complex numbers for derivatives by a complex step.
 
-A design has the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and both
-renderings take the sines of NumPy. Complex numbers agree to rounding.
+A trim has matrices of the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and
+both renderings take the sines of NumPy. Complex numbers agree to rounding.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from proprotor_equations import flap_lag_springs
 from proprotor_equations.fused import rotor as plans
+from proprotor_equations.fused import trim as trim_plans
 
 from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate, keywords
 from proprotor.rotor.section_loads import LOAD_MOMENTS
@@ -30,7 +30,7 @@ OF_SEGMENTS = tuple(
     if name in keywords(plans.segment)
 )
 
-_Quantities = Mapping[str, Any]
+Quantities = Mapping[str, Any]
 Matrices = dict[str, Array]
 
 
@@ -39,17 +39,23 @@ def serves(equations: EquationSet) -> bool:
     return equations == EQUATION_SETS["consistent"]
 
 
-def effective_stiffness(quantities: _Quantities) -> dict[str, Any]:
+def effective_stiffness(quantities: Quantities) -> dict[str, Any]:
     """Return the springs of hub and blade in series and their derivatives with structural pitch, by name."""
     names = keywords(plans.effective_stiffness)
     numbers = all(isinstance(quantities[name], float) for name in names)
     waves = (_cos, _sin) if numbers else (np.cos, np.sin)
     results = evaluate(plans.effective_stiffness, quantities, *waves)
-    return dict(zip(flap_lag_springs.EffectiveStiffness._fields, results, strict=True))
+    return dict(zip(plans.EFFECTIVE_STIFFNESS, results, strict=True))
+
+
+def trim_integrals(quantities: Quantities) -> dict[str, Any]:
+    """Return the mass integrals of the deflected blade and the waves of its angles, by name."""
+    results = evaluate(trim_plans.trim_integrals, quantities, np.cos, np.sin)
+    return dict(zip(trim_plans.TRIM_INTEGRALS, results, strict=True))
 
 
 def rotor_matrices(
-    quantities: _Quantities, segments: _Quantities | None, points: int, one: bool = False
+    quantities: Quantities, segments: Quantities | None, points: int, one: bool = False
 ) -> Matrices:
     """Return M, C, K (points, 18, 18) and B (points, 18, 6) of a rotor.
 
@@ -74,7 +80,7 @@ def rotor_matrices(
 
 
 @dataclass(frozen=True)
-class _Layout:
+class Layout:
     """Where the results of a plan stand in its matrices.
 
     opposite : places of the results whose negative is needed as well, counted from 1.
@@ -87,7 +93,7 @@ class _Layout:
     filled: list[tuple[str, int, int, int]]
 
     @classmethod
-    def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> _Layout:
+    def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> Layout:
         """Return the layout of a table, in which n is the n-th result, -n its negative and 0 is zero."""
         signed = {name: np.array(rows) for name, rows in table.items()}
         every = np.concatenate([rows.ravel() for rows in signed.values()])
@@ -107,15 +113,15 @@ class _Layout:
 
 
 @cache
-def _layouts() -> dict[str, _Layout]:
+def _layouts() -> dict[str, Layout]:
     tables = {"in_vacuum": plans.IN_VACUUM, "of_airloads": plans.OF_AIRLOADS, "segment": plans.SEGMENT}
-    return {name: _Layout.of(table) for name, table in tables.items()}
+    return {name: Layout.of(table) for name, table in tables.items()}
 
 
 # Batches
 
 
-def _batch(quantities: _Quantities, segments: _Quantities | None, points: int) -> Matrices:
+def _batch(quantities: Quantities, segments: Quantities | None, points: int) -> Matrices:
     """Return the matrices of many points, a block of points at a time."""
     numbers = (*quantities.values(), *(segments or {}).values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
@@ -131,7 +137,7 @@ def _batch(quantities: _Quantities, segments: _Quantities | None, points: int) -
     return found
 
 
-def _zeros(layout: _Layout, points: int, kind: np.dtype[Any]) -> Matrices:
+def _zeros(layout: Layout, points: int, kind: np.dtype[Any]) -> Matrices:
     """Return matrices of zeros in one piece of memory, which a large batch gets from the system as zeros."""
     sizes = [points * places.size for places in layout.places.values()]
     parts = np.split(np.zeros(sum(sizes), dtype=kind), np.cumsum(sizes)[:-1])
@@ -144,7 +150,7 @@ def _zeros(layout: _Layout, points: int, kind: np.dtype[Any]) -> Matrices:
 def _fill(matrices: Matrices, results: Sequence[Any]) -> None:
     """Put the results of a rotor without airloads, which has many zeros, into matrices of zeros."""
     layout = _layouts()["in_vacuum"]
-    values = _values(results, layout)
+    values = values_of(results, layout)
     for name, row, column, place in layout.filled:
         matrices[name][:, row, column] = values[place]
 
@@ -152,7 +158,7 @@ def _fill(matrices: Matrices, results: Sequence[Any]) -> None:
 def _add_airloads(matrices: Matrices, results: Sequence[Any]) -> None:
     """Add the results of the airloads, which have few zeros."""
     layout, matrix = _layouts()["of_airloads"], matrices["C"]
-    pool = _pool(_values(results, layout), matrix.shape[:1], matrix.dtype)
+    pool = pool_of(values_of(results, layout), matrix.shape[:1], matrix.dtype)
     for name, places in layout.places.items():
         matrices[name] += np.take(pool, places, axis=1)
 
@@ -171,18 +177,18 @@ def _segments_first(value: Any, rows: slice) -> Any:
 
 
 def _of_airloads(
-    quantities: _Quantities, segments: _Quantities, points: int, kind: np.dtype[Any]
+    quantities: Quantities, segments: Quantities, points: int, kind: np.dtype[Any]
 ) -> tuple[Any, ...]:
     """Return the results of the plan `of_airloads`."""
     layout = _layouts()["segment"]
     count = len(segments["beyond_flap_hinge"])
     results = evaluate(plans.segment, {**quantities, **segments}, np.cos, np.sin)
-    pool = _pool(_values(results, layout), (count, points), kind)
+    pool = pool_of(values_of(results, layout), (count, points), kind)
     arrays = {name: np.take(pool, places, axis=2) for name, places in layout.places.items()}
     work = _work(arrays).reshape(points, -1)
     geometric = arrays["geometric_stiffness"].sum(axis=1).reshape(points, -1)
     groups = (np.ascontiguousarray(part.T) for part in (work, geometric))
-    found: tuple[Any, ...] = evaluate(plans.of_airloads, quantities, np.cos, np.sin, *groups)
+    found: tuple[Any, ...] = evaluate(plans.of_airloads, quantities, *groups)
     return found
 
 
@@ -194,12 +200,12 @@ def _work(arrays: Mapping[str, Array]) -> Array:
     return np.asarray(np.swapaxes(virtual.reshape(together), -1, -2) @ loads.reshape(together))
 
 
-def _values(results: Sequence[Any], layout: _Layout) -> list[Any]:
+def values_of(results: Sequence[Any], layout: Layout) -> list[Any]:
     """Return zero, the results and their negatives as a layout counts them."""
     return [0.0, *results, *(-results[place - 1] for place in layout.opposite)]
 
 
-def _pool(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
+def pool_of(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
     """Return values as one array, with the axes of the shape in reverse and a last axis of values."""
     pool = np.empty((len(values), *shape), dtype=kind)
     for place, value in enumerate(values):
@@ -210,16 +216,16 @@ def _pool(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) ->
 # One point
 
 
-def _one_point(quantities: _Quantities, segments: _Quantities | None) -> Matrices:
+def _one_point(quantities: Quantities, segments: Quantities | None) -> Matrices:
     """Return the matrices of one point by plain numbers, with an axis of one point."""
-    blade = {name: _number(value) for name, value in quantities.items()}
+    blade = {name: plain_number(value) for name, value in quantities.items()}
     found = _matrices(np.array([evaluate(plans.in_vacuum, blade, _cos, _sin)]), _layouts()["in_vacuum"])
     if segments is None:
         return found
     rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in _one_by_one(segments)]
     arrays = _matrices(np.array(rows), _layouts()["segment"])
     geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
-    results = evaluate(plans.of_airloads, blade, _cos, _sin, _work(arrays).ravel().tolist(), geometric)
+    results = evaluate(plans.of_airloads, blade, _work(arrays).ravel().tolist(), geometric)
     added = _matrices(np.array([results]), _layouts()["of_airloads"])
     return found | {name: matrix + found[name] for name, matrix in added.items()}
 
@@ -234,22 +240,22 @@ def _sin(angle: complex) -> Any:
     return np.sin(angle).item()
 
 
-def _number(value: Any) -> Any:
+def plain_number(value: Any) -> Any:
     """Return an array of one number, or a number of NumPy, as a plain number."""
     return value.item() if isinstance(value, np.ndarray | np.generic) else value
 
 
-def _one_by_one(segments: _Quantities) -> list[dict[str, Any]]:
+def _one_by_one(segments: Quantities) -> list[dict[str, Any]]:
     """Return the quantities of each segment as plain numbers."""
     count = np.size(segments["beyond_flap_hinge"])
     lists = [
-        np.ravel(value).tolist() if np.ndim(value) else [_number(value)] * count
+        np.ravel(value).tolist() if np.ndim(value) else [plain_number(value)] * count
         for value in segments.values()
     ]
     return [dict(zip(segments, numbers, strict=True)) for numbers in zip(*lists, strict=True)]
 
 
-def _matrices(results: Array, layout: _Layout) -> Matrices:
+def _matrices(results: Array, layout: Layout) -> Matrices:
     """Return the matrices of some rows of results."""
     pool = np.concatenate(
         [np.zeros((len(results), 1)), results, -results[:, [n - 1 for n in layout.opposite]]], axis=1

@@ -70,5 +70,6 @@ def evaluate(function: Callable[..., Any], quantities: Mapping[str, Any], *matri
     except KeyError as missing:
         name = f"{function.__module__}.{function.__name__}"
         raise KeyError(f"{name} takes {missing}, which nothing gives; a field of Rotor does") from None
-    given |= {name: quantities[name] for name in optional if name in quantities}
+    if optional:
+        given |= {name: quantities[name] for name in optional if name in quantities}
     return function(*matrices, **given)

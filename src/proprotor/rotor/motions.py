@@ -40,12 +40,19 @@ class Motion(NamedTuple):
 
 def reactionless_coordinates(n_blades: int) -> list[Coordinate]:
     """Return the blade motions that Eq. 17 leaves out: harmonics 2 to below N/2, for even N also opposed neighbours."""
+    return [motion for group in reactionless_groups(n_blades) for motion in group]
+
+
+def reactionless_groups(n_blades: int) -> list[tuple[Coordinate, ...]]:
+    """Return `reactionless_coordinates` in groups of which no two couple, for equal blades: one for each harmonic."""
     pairs = [
-        motion._replace(name=f"{motion.angle}_{harmonic}{motion.part}", harmonic=harmonic)
+        tuple(
+            motion._replace(name=f"{motion.angle}_{harmonic}{motion.part}", harmonic=harmonic)
+            for motion in REACTIONLESS_PAIR
+        )
         for harmonic in reactionless_harmonics(n_blades)
-        for motion in REACTIONLESS_PAIR
     ]
-    return pairs + list(DIFFERENTIAL) * (n_blades % 2 == 0)
+    return pairs + [tuple(DIFFERENTIAL)] * (n_blades % 2 == 0)
 
 
 def reactionless_harmonics(n_blades: int) -> range:

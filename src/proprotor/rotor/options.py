@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -146,9 +147,20 @@ def parse_options(options: Mapping[str, Any]) -> Options:
     InputError
         For an unknown keyword, with the known keywords.
     """
+    try:
+        return _parsed_once(**options)
+    except TypeError:  # an array among the choices
+        return _parsed(**options)
+
+
+def _parsed(**options: Any) -> Options:
     known = (*CHOICES, *_FURTHER)
     for name in options:
         if name not in known:
             rule = f"{unknown_name(name, known, 'option')} (options: {', '.join(known)})"
             raise InputError(name, options[name], rule)
     return Options(**options)
+
+
+# An analysis asks with the same options at each of its batches; an aircraft has two sides.
+_parsed_once = lru_cache(maxsize=2, typed=True)(_parsed)

@@ -109,7 +109,7 @@ class RadialQuadrature:
         """
         leading = np.broadcast_shapes(at_axis.shape[:-1], self.stations.shape[:-1])
         line = np.empty((*leading, self.stations.shape[-1]), dtype=np.result_type(at_axis, self.stations))
-        for place, own in enumerate(self._slices):
+        for place, own in enumerate(self.slices):
             segment = min(place, at_axis.shape[-1] - 1)
             if per_radius is None:
                 line[..., own] = at_axis[..., segment, None]
@@ -123,11 +123,11 @@ class RadialQuadrature:
 
         Each point has a product of its own, whose shape and so whose result does not depend on the number of points.
         """
-        products = [section_load[..., None, own] @ self.weights[..., own, :] for own in self._slices]
+        products = [section_load[..., None, own] @ self.weights[..., own, :] for own in self.slices]
         return np.concatenate(products, axis=-2)
 
     @functools.cached_property
-    def _slices(self) -> list[slice]:
+    def slices(self) -> list[slice]:
         """Stations of each segment, which follow each other outward."""
         counts = self.counts.reshape(-1, self.counts.shape[-1])
         assert (counts == counts[0]).all(), "these points' stations have no slices in common"

@@ -190,7 +190,8 @@ def load_moments(
         }
         air, coefficients, spins = _aerodynamics(here, block, compressibility, equations)
         if doubts is not None:
-            _doubt(doubts, here, block | air, rows, points)
+            of_stations = air["lift_incidence"], air["mach"]
+            mark_doubts(doubts, here, block["radius"], of_stations, rows, points)
         if lift_slope_only:
             coefficients = SectionCoefficients(lift_coefficient_alpha=coefficients.lift_coefficient_alpha)
         for name, load in _loads(here, air, coefficients, spins and not lift_slope_only, steady_only).items():
@@ -251,17 +252,25 @@ def _loads(
     return loads
 
 
-def _doubt(
-    doubts: dict[str, Array], sections: BladeSections, given: _Quantities, rows: Array | slice, points: int
+def mark_doubts(
+    doubts: dict[str, Array],
+    sections: BladeSections,
+    radius: Any,
+    air: tuple[Array, Array],
+    rows: Array | slice,
+    points: int,
 ) -> None:
-    """Mark the points at which outboard stations are beyond the range of the airfoil, by radius and air."""
+    """Mark the points (points,) at which outboard stations are beyond the range of the airfoil.
+
+    Incidence and Mach number `air` are of the stations of some rows, (rows, stations).
+    """
     if not isinstance(sections.airfoil, Warns):
         return
-    radius = np.ravel(np.real(given["radius"]))[:, None]
-    outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * radius
+    incidence, mach = air
+    outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * np.ravel(np.real(radius))[:, None]
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
-    incidence = given["lift_incidence"] + sections.along.bent
-    found = sections.airfoil.warnings(*(array[..., first:] for array in (incidence, given["mach"])))
+    incidence = incidence + sections.along.bent
+    found = sections.airfoil.warnings(incidence[..., first:], mach[..., first:])
     for text, mask in found.items():
         if mask.any():
             marks = doubts.setdefault(f"{text} outboard of {_OUTBOARD:g} R", np.zeros(points, dtype=bool))

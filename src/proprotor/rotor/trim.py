@@ -7,11 +7,11 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from proprotor_equations import flap_lag_springs, inertia
+from proprotor_equations import flap_lag_springs
 from proprotor_equations import trim as equations
 
 from proprotor.rotor.blade_frequencies import BladeFrequencies
-from proprotor.rotor.fused import effective_stiffness
+from proprotor.rotor.fused import effective_stiffness, trim_integrals
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options
@@ -21,7 +21,7 @@ from proprotor.typing import Array
 # In the order of the columns of `equations.jacobian`.
 UNKNOWNS = ("coning", "lag", "elastic_pitch", "collective")
 TORQUE, THRUST = equations.AZIMUTH, equations.HUB_K  # rows of a blade's balance
-_FLAP_LAG = tuple(f"flap_lag_stiffness{derivative}" for derivative in ("", "_slope", "_curvature"))
+FLAP_LAG = tuple(f"flap_lag_stiffness{derivative}" for derivative in ("", "_slope", "_curvature"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +128,7 @@ def with_trim(quantities: Mapping[str, Any], options: Options, state: Mapping[st
     found = dict(quantities) | dict(state)
     found["pitch"] = state["collective"] + state["elastic_pitch"]
     found["structural_pitch"] = found["pitch"] + quantities["structural_pitch_offset"]
-    found |= evaluate(inertia.trim_integrals, found)._asdict()
+    found |= trim_integrals(found)
     return found | _springs(options, found)
 
 
@@ -137,7 +137,7 @@ def _springs(options: Options, quantities: dict[str, Any]) -> dict[str, Any]:
     if options.frequencies is not None:
         return _springs_of_frequencies(options.frequencies, quantities)
     springs = effective_stiffness(quantities)
-    return springs | dict.fromkeys(_FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
+    return springs | dict.fromkeys(FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
 
 
 def _springs_of_frequencies(frequencies: BladeFrequencies, quantities: dict[str, Any]) -> dict[str, Any]:

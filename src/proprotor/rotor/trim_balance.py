@@ -5,22 +5,29 @@ The share multiplies precone, and the airloads in the rows of flap, lag and pitc
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import functools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 from proprotor_equations import airloads
 from proprotor_equations import trim as equations
 
+from proprotor.rotor.fused_balance import Room, balanced, segments_of, serves_sections
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections, load_moments, segment_quantities
 from proprotor.rotor.trim import UNKNOWNS, Target, take, with_trim
 from proprotor.typing import Array
 
-_LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
+LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
 _COMPLEX_STEP = 1e-30
+# rad, the last step: the error of the loads. Convergence is quadratic, so the trim itself is exact to rounding.
+_CONVERGED = 1e-13
+# rad, a step that is no smaller than half of the step before: rounding limits convergence, as for a spring a hundred
+# million times as stiff as everything else that holds the blade.
+_STALLED = 1e-9
 
 State = dict[str, Array]  # the unknowns by name, (points,)
 
@@ -45,8 +52,8 @@ class Slopes(NamedTuple):
         self.full[rows], self.airloads[rows] = slopes
 
     def at(self, share: Array) -> Array:
-        """Return the slopes (n, k, k) at a share (n,) of the loads."""
-        return np.asarray(self.full - (1 - share[:, None, None]) * self.airloads)
+        """Return the slopes (..., n, k, k) at a share (..., n) of the loads."""
+        return np.asarray(self.full - (1 - share[..., None, None]) * self.airloads)
 
     def by_moments(self, sprung: Array) -> Slopes:
         """Return the slopes per unit of the moments that springs and centrifugal force set against flap and lag.
@@ -70,8 +77,10 @@ class Linear(NamedTuple):
     slopes : Slopes
     work, work_slopes : array (n, 5), (n, 5, k)
         Virtual work of the airloads on all rows, and minus its change with the free unknowns.
-    quantities, segments : dict
-        Quantities of the whole blade, and of each segment with the radial moments of the section loads.
+    quantities : dict
+        Quantities of the whole blade.
+    along : callable
+        Returns the quantities of each segment with the radial moments of the section loads.
     """
 
     residual: Array
@@ -79,7 +88,7 @@ class Linear(NamedTuple):
     work: Array
     work_slopes: Array
     quantities: dict[str, Any]
-    segments: dict[str, Any]
+    along: Callable[[], dict[str, Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +100,13 @@ class Balance:
     options: Options
     target: Target
     free: list[int]
+    points: int
+    room: Room = field(default_factory=Room)
+
+    @functools.cached_property
+    def fused(self) -> bool:
+        """Whether the fused functions hold the airfoil and the springs."""
+        return serves_sections(self.sections) and self.options.frequencies is None
 
     @property
     def rows(self) -> list[int]:
@@ -123,16 +139,31 @@ class Balance:
     ) -> Linear:
         """Return residual and slopes at a state and a share of the precone, with the quantities behind both."""
         quantities = self._at(state, rows, share)
-        segments = self._loads(quantities, rows, doubts=doubts)
-        residual, work = self._residual(quantities, segments, rows)
-        slopes, work_slopes = self._slopes(state, rows, quantities, segments)
-        return Linear(residual[:, self.rows], slopes, work, work_slopes, quantities, segments)
+        if self.fused:
+            sections = self._sections(rows)
+            found = balanced(sections, quantities, self.options.compressibility, self.room, doubts)
+            residual, structure, work, of_airloads, moments = found
+            residual -= work
+            along = functools.partial(segments_of, moments, sections)
+        else:
+            segments = self._loads(quantities, rows, doubts=doubts)
+            work = self._work(segments)
+            residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
+            structure, of_airloads = self._slopes(state, rows, quantities, segments)
+            along = functools.partial(dict, segments)
+        whole = (structure + of_airloads)[..., self.free]
+        of_airloads = of_airloads[..., self.free]
+        blade = of_airloads[:, self.rows] * self.hinged[:, None]
+        slopes = Slopes(whole[:, self.rows], blade)
+        residual = self._to_target(residual, rows)
+        return Linear(residual[:, self.rows], slopes, work, of_airloads, quantities, along)
 
     def left(self, state: State, rows: Array, share: float | None = None) -> Array:
         """Return the residual (n, k) with all of the airloads, without slopes."""
         quantities = self._at(state, rows, share)
-        residual, _ = self._residual(quantities, self._loads(quantities, rows, steady_only=True), rows)
-        return residual[:, self.rows]
+        work = self._work(self._loads(quantities, rows, steady_only=True))
+        residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
+        return self._to_target(residual, rows)[:, self.rows]
 
     def relieved(self, here: Linear, share: Array) -> Array:
         """Return the residual (n, k) at a share (n,) of the airloads."""
@@ -154,37 +185,45 @@ class Balance:
 
     def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
         """Return the quantities of the whole blade at a state and at a share of its precone."""
-        given = take(self.quantities, rows)
+        given = dict(self.quantities) if self._is_all(rows) else take(self.quantities, rows)
         if share is not None:
             given["precone"] = share * given["precone"]
         return with_trim(given, self.options, take(state, rows))
 
+    def _sections(self, rows: Array) -> BladeSections:
+        """Return the sections at some of the points."""
+        return self.sections if self._is_all(rows) else self.sections.take(rows)
+
+    def _is_all(self, rows: Array) -> bool:
+        """Return whether these are all points, in their order."""
+        return len(rows) == self.points and bool((rows == np.arange(self.points)).all())
+
     def _loads(self, quantities: Mapping[str, Any], rows: Array, **wanted: Any) -> dict[str, Any]:
         """Return the quantities of each segment and the radial moments of the section loads."""
-        sections = self.sections.take(rows)
+        sections = self._sections(rows)
         segments = segment_quantities(sections, quantities)
         return segments | load_moments(
             sections, segments, compressibility=self.options.compressibility, **wanted
         )
 
-    def _residual(
-        self, quantities: Mapping[str, Any], segments: Mapping[str, Any], rows: Array
-    ) -> tuple[Array, Array]:
-        """Return the residual (n, 5) of balances and thrust, and the virtual work (n, 5) of the steady airloads."""
+    def _work(self, segments: Mapping[str, Any]) -> Array:
+        """Return the virtual work (n, 5) of the steady airloads on balances and thrust."""
         motion = {
             "virtual_motion": evaluate(equations.virtual_motion, segments),
             "steady_loads": evaluate(airloads.steady_loads, segments),
         }
-        work = evaluate(airloads.steady_work, motion)[..., airloads.TRIM]
-        residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
+        return np.asarray(evaluate(airloads.steady_work, motion)[..., airloads.TRIM])
+
+    def _to_target(self, residual: Array, rows: Array) -> Array:
+        """Add the load of the target to its row of a residual (n, 5)."""
         load = np.asarray(self.target.load)
         residual[..., self.target.row] += load[rows] if load.ndim else load
-        return residual, work
+        return residual
 
     def _slopes(
         self, state: State, rows: Array, quantities: Mapping[str, Any], segments: Mapping[str, Any]
-    ) -> tuple[Slopes, Array]:
-        """Return the change of the balances with the free unknowns, and the airloads' part (n, 5, k) in all rows."""
+    ) -> tuple[Array, Array]:
+        """Return the change (n, 5, 4) of the balances with the unknowns: of the structure, and of the airloads."""
         motion = {
             name: evaluate(getattr(equations, name), segments)
             for name in ("virtual_motion", "displacement_motion", "geometric_stiffness")
@@ -195,10 +234,7 @@ class Balance:
         if self.options.frequencies is not None and equations.COLLECTIVE in self.free:
             structure = np.broadcast_to(structure, of_airloads.shape).copy()
             structure[..., equations.COLLECTIVE] = self._with_collective(state, rows)
-        whole = (structure + of_airloads)[..., self.free]
-        of_airloads = of_airloads[..., self.free]
-        blade = of_airloads[:, self.rows] * self.hinged[:, None]
-        return Slopes(whole[:, self.rows], blade), of_airloads
+        return structure, of_airloads
 
     def _with_collective(self, state: State, rows: Array) -> Array:
         """Return the change (n, 5) of the structure's balances with the collective by a complex step.
@@ -213,11 +249,11 @@ class Balance:
 
 
 def solve(slopes: Array, right: Array) -> Array:
-    """Return slopes⁻¹ right, (n, k, m); NaN at the points whose slopes have no inverse."""
+    """Return slopes⁻¹ right, (..., k, m); NaN at the points whose slopes have no inverse."""
     try:
         return np.linalg.solve(slopes, right)
     except np.linalg.LinAlgError:  # raised for all points if the slopes of one are singular
-        good = np.isfinite(slopes).all(axis=(1, 2)) & (np.abs(np.linalg.det(slopes)) > 0)
+        good = np.isfinite(slopes).all(axis=(-2, -1)) & (np.abs(np.linalg.det(slopes)) > 0)
         found = np.full(right.shape, np.nan, dtype=np.result_type(slopes, right))
         found[good] = np.linalg.solve(slopes[good], right[good])
         return found
@@ -226,7 +262,12 @@ def solve(slopes: Array, right: Array) -> Array:
 def newton_step(slopes: Array, residual: Array) -> Array:
     """Return the step (n, k) to subtract from the unknowns; NaN if the slopes have no inverse."""
     step = solve(slopes, residual[..., None])[..., 0]
-    return step if np.iscomplexobj(step) else np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
+    return step if np.iscomplexobj(step) else np.clip(step, -LARGEST_STEP, LARGEST_STEP)
+
+
+def is_last(size: Any, before: Any) -> Any:
+    """Return whether a step, a number or an array (n,), is the last, by its size and the size of the step before."""
+    return (size <= _CONVERGED) | ((size <= _STALLED) & (size >= before / 2))
 
 
 def copy_state(state: State, rows: Array, onto: State) -> None:

@@ -10,6 +10,7 @@ between the ends, and the radius may be one half at most.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -22,8 +23,9 @@ from proprotor.typing import Array
 CONTRACTION = 0.5  # largest spectral radius of N
 # Change of slopes within reach of the path, in multiples of the change between the ends of a step.
 _REACH = 2.0
-_WINDOWS = (1, 4, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
-_POWER_STEPS, _FLOOR = 8, 1e-9
+_WINDOWS = (3, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
+_POWER_STEPS = (2, 2, 4)  # after which the bound is looked at
+_FLOOR = 1e-9
 
 
 def contraction(
@@ -52,19 +54,17 @@ def contraction(
     between : Slopes, optional
         Slopes half-way, for section models whose slopes may change between the ends in other ways.
     enough : float
-        Radius above which slopes by angles are tried as well as slopes by moments.
+        Radius that needs no sharper bound: above it, slopes by moments are tried as well as slopes by angles.
     """
 
     def radius(rows: Array, *slopes: Slopes) -> Array:
         """Return the largest radius among all windows."""
-        n, half = len(rows), (to - share)[rows] / (2 * windows)
+        half = (to - share)[rows] / (2 * windows)
         middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
-        again = np.tile(np.arange(n), windows)  # all windows at once
-        moved = _moved(half[again], middles.ravel(), *(part.of(again) for part in slopes))
-        return np.asarray(_radius(moved).reshape(windows, n).max(axis=0))
+        return np.asarray(_radius(_moved(half, middles, *slopes), enough).max(axis=0))
 
     slopes = (before, after) if between is None else (before, after, between)
-    return _by_moments_or_angles(sprung, radius, *slopes, enough=enough)
+    return _by_angles_or_moments(sprung, radius, *slopes, enough=enough)
 
 
 def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
@@ -72,9 +72,9 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
 
     def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
         """Return the radius of the relative difference of the slopes."""
-        return _radius(np.abs(solve(expected.full, found.full - expected.full)))
+        return _radius(np.abs(solve(expected.full, found.full - expected.full)), CONTRACTION)
 
-    return _by_moments_or_angles(sprung, radius, found, expected) <= CONTRACTION
+    return _by_angles_or_moments(sprung, radius, found, expected) <= CONTRACTION
 
 
 def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
@@ -97,35 +97,44 @@ def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state:
     return found
 
 
-def _by_moments_or_angles(
+def _by_angles_or_moments(
     sprung: Array, radius: Callable[..., Array], *slopes: Slopes, enough: float = CONTRACTION
 ) -> Array:
-    """Return the spectral radius (n,) with slopes by moments or, where smaller and needed, with slopes by angles."""
+    """Return the spectral radius (n,) with slopes by angles or, where smaller and needed, with slopes by moments."""
     rows = np.arange(len(slopes[0].full))
-    found = radius(rows, *(part.by_moments(sprung) for part in slopes))
+    found = radius(rows, *slopes)
     rows = np.flatnonzero(~(found <= enough))
     if len(rows):
-        found[rows] = np.fmin(found[rows], radius(rows, *(part.of(rows) for part in slopes)))
+        by_moments = (part.of(rows).by_moments(sprung) for part in slopes)
+        found[rows] = np.fmin(found[rows], radius(rows, *by_moments))
     return found
 
 
 def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
-    """Return N (n, k, k) of a window in λ, given by its half length and its middle."""
+    """Return N (windows, n, k, k) of windows in λ, given by half lengths (n,) and middles (windows, n)."""
     mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
-    change = Slopes(*((b - a) / 2 for a, b in zip(before, after, strict=True)))
-    aside = (Slopes(*(a - b for a, b in zip(part, mean, strict=True))) for part in between)
-    parts = [half[:, None, None] * mean.airloads, *(part.at(middle) for part in (change, *aside))]
-    moved = np.abs(solve(mean.at(middle), np.concatenate(parts, axis=-1)))
-    in_share, *in_place = np.split(moved, len(parts), axis=-1)
-    return np.asarray(in_share + _REACH * np.maximum.reduce(in_place))
+    aside = (Slopes(*(a - b for a, b in zip(part, mean, strict=True))) for part in (after, *between))
+    slopes, size = mean.at(middle), mean.full.shape[-1]
+    right = np.empty((*slopes.shape[:-1], (2 + len(between)) * size))
+    right[..., :size] = half[:, None, None] * mean.airloads
+    for place, part in enumerate(aside, start=1):
+        right[..., place * size : (place + 1) * size] = part.at(middle)
+    moved = np.abs(solve(slopes, right))
+    in_share, *in_place = (moved[..., place : place + size] for place in range(0, moved.shape[-1], size))
+    farthest = functools.reduce(np.maximum, in_place)
+    return np.asarray(in_share + _REACH * farthest)
 
 
-def _radius(matrix: Array) -> Array:
-    """Return a bound (n,) of the spectral radius of matrices (n, k, k) without negative entries.
+def _radius(matrix: Array, enough: float) -> Array:
+    """Return a bound (...) of the spectral radius of matrices (..., k, k) without negative entries.
 
-    The bound is that of Collatz and Wielandt, after some steps of power iteration.
+    The bound is that of Collatz and Wielandt, which steps of power iteration make sharper until all bounds are enough.
     """
-    weight = np.ones((*matrix.shape[:2], 1))
-    for _ in range(_POWER_STEPS):
-        weight = matrix @ weight + _FLOOR * weight
-    return np.asarray((matrix @ weight / weight)[..., 0].max(axis=1, initial=0.0))
+    weight = np.ones((*matrix.shape[:-1], 1))
+    for steps in _POWER_STEPS:
+        for _ in range(steps):
+            weight = matrix @ weight + _FLOOR * weight
+        bound = np.asarray((matrix @ weight / weight)[..., 0].max(axis=-1, initial=0.0))
+        if (bound <= enough).all():
+            break
+    return bound

@@ -14,8 +14,8 @@ from proprotor.typing import Array
 
 LOST = "the trim at the end of the path from the undeflected blade was lost: Newton did not stay near it"
 # Of the airspeed: above this share the neglected induced velocity turns the inflow by degrees.
-_INDUCED_SHARE = 0.05
-_LARGEST_ANGLE = np.radians(20)  # of a blade that rigid hinges stand for
+INDUCED_SHARE = 0.05
+LARGEST_ANGLE = np.radians(20)  # of a blade that rigid hinges stand for
 _QUADRATURE = 1e-10  # relative error of the loads and their slopes
 _GIVEN_SPRINGS = ("flap_flap_stiffness", "lag_lag_stiffness", "cyclic_flap_stiffness_excess")
 _ANGLES = ("coning", "lag", "elastic_pitch")
@@ -93,7 +93,7 @@ def warnings(balance: Balance, here: Linear, thrust: Array, doubts: Mapping[str,
         **_negative_springs(balance, here),
         **doubts,
     }
-    induced = share > _INDUCED_SHARE
+    induced = share > INDUCED_SHARE
     found = np.full(points, "", dtype=object)
     for place in np.flatnonzero(np.logical_or.reduce([induced, *masks.values()])):
         notes = [text for text, mask in masks.items() if mask[place]]
@@ -111,9 +111,9 @@ def _doubtful_blades(balance: Balance, here: Linear) -> dict[str, Array]:
     found = {text: _diverges(stiffness)}
     for name in _ANGLES:
         angle = np.broadcast_to(np.abs(np.real(here.quantities[name])), len(stiffness))
-        limit = f"{np.degrees(_LARGEST_ANGLE):.0f} deg"
+        limit = f"{np.degrees(LARGEST_ANGLE):.0f} deg"
         text = f"{name.replace('_', ' ')} beyond {limit}, where rigid hinges are no model"
-        found[text] = angle > _LARGEST_ANGLE
+        found[text] = angle > LARGEST_ANGLE
     return found
 
 

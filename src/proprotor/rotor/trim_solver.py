@@ -12,6 +12,7 @@ Points whose path is lost in the first stage are followed on all stations.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -21,29 +22,56 @@ import numpy as np
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections
 from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim
-from proprotor.rotor.trim_balance import Balance, Linear, Slopes, State, copy_state, newton_step
+from proprotor.rotor.trim_balance import Balance, Linear, Slopes, State, copy_state, is_last, newton_step
 from proprotor.rotor.trim_bound import at_end, near_each_other
+from proprotor.rotor.trim_of_one import Found, trim_of_one
 from proprotor.rotor.trim_path import Path, follow
 from proprotor.rotor.trim_reasons import LOST, before_trim, beyond_reach, not_found, path_ended, warnings
 from proprotor.rotor.trim_start import first_guess, held
 from proprotor.typing import Array
 
 _ITERATIONS = 40
-# rad, the last step: the error of the loads. Convergence is quadratic, so the trim itself is exact to rounding.
-_CONVERGED = 1e-13
-# rad, a step that is no smaller than half of the step before: rounding limits convergence, as for a spring a hundred
-# million times as stiff as everything else that holds the blade.
-_STALLED = 1e-9
 _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below the error of these stations
-_ROUNDING = 1e-14  # rad, of the step that would follow
+_SIDES = ("beyond_flap_hinge", "beyond_lag_hinge")  # of all points alike
+_REAL = np.dtype(float)
+_ALMOST = 1e-10  # rad, of the step that would follow: the slopes are those of the trim
 
 
 class _Loads(NamedTuple):
-    """Loads of a step: virtual work (n, 5) after the step, balance before the step, doubts of the airfoil."""
+    """Loads of a step at n points.
+
+    work : virtual work (n, 5) after the step.
+    before : balance before the step.
+    segments : quantities of each segment before the step, with the radial moments of the section loads.
+    doubts : masks (n,) of the airfoil by reason.
+    """
 
     work: Array
     before: Linear
+    segments: dict[str, Any]
     doubts: dict[str, Array]
+
+    @classmethod
+    def of(cls, here: Linear, step: Array, doubts: dict[str, Array]) -> _Loads:
+        """Return the loads of a step from the balance before it."""
+        work = here.work + (here.work_slopes @ step[..., None])[..., 0]
+        return cls(work, here, here.along(), doubts)
+
+    def put(self, places: Array, others: _Loads, inputs: Mapping[str, Any]) -> None:
+        """Set the loads of some of the points to those of a later step; inputs are the same before each step."""
+        self.work[places] = others.work
+        for name in ("residual", "work", "work_slopes"):
+            getattr(self.before, name)[places] = getattr(others.before, name)
+        self.before.slopes.put(places, others.before.slopes)
+        found = {name: value for name, value in others.before.quantities.items() if name not in inputs}
+        for mine, values in ((self.before.quantities, found), (self.segments, others.segments)):
+            for name, value in values.items():
+                own = mine[name]
+                if np.ndim(own) and len(own) == len(self.work) and name not in _SIDES:
+                    own[places] = value
+        for text in {**self.doubts, **others.doubts}:
+            mask = self.doubts.setdefault(text, np.zeros(len(self.work), dtype=bool))
+            mask[places] = others.doubts.get(text, False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +97,7 @@ def solve_trim(
     options: Options,
     target: Target,
     points: int,
+    one: bool = False,
 ) -> Settled:
     """Return the trim of all points.
 
@@ -84,13 +113,19 @@ def solve_trim(
         The condition that closes the trim.
     points : int
         Number of points.
+    one : bool
+        Compute the only point with plain numbers where this is possible.
     """
     free = _free_unknowns(options, target.finds_collective)
-    balance = Balance(sections, quantities, options, target, free)
+    balance = Balance(sections, quantities, options, target, free, points)
     numbers = (*quantities.values(), target.collective, target.load)
     with np.errstate(all="ignore"):
-        if sections.is_complex or any(map(np.iscomplexobj, numbers)):
+        if sections.is_complex or any(map(_is_complex, numbers)):
             return _complex_trim(balance, few, points)
+        if one and free and balance.fused and few is sections:
+            found = trim_of_one(balance)
+            if found is not None:
+                return _settled(balance, found)
         search = _Search.of(balance, points)
         if free:
             search.come_near(balance if few is sections else replace(balance, sections=few))
@@ -155,7 +190,7 @@ class _Search:
             size = np.abs(step).max(axis=1)
             arrived = size <= _NEAR
             if few is self.balance:
-                arrived &= _small(size, before[active]) | (_next(size, before[active]) <= _ROUNDING)
+                arrived &= is_last(size, before[active]) | (_next(size, before[active]) <= _ALMOST)
             before[active] = size
             near.append(active[arrived])
             active = active[~arrived & ~np.isnan(size)]
@@ -164,7 +199,9 @@ class _Search:
         known = ~self.followed[arrived]
         known |= at_end(few, first.of(arrived), last.of(arrived), self.start, self.state, arrived)
         self.ends.put(arrived[known], last.of(arrived[known]))
-        self._follow(few, np.setdiff1d(rows[self.followed[rows]], arrived[known]))
+        lost = np.setdiff1d(rows[self.followed[rows]], arrived[known])
+        if len(lost):
+            self._follow(few, lost)
 
     def _follow(self, balance: Balance, rows: Array) -> Path:
         """Lead points along their path; points whose path ends before all of the loads go back to their start."""
@@ -196,6 +233,7 @@ class _Search:
         active, done = rows, np.zeros(len(self.reason), dtype=bool)
         size_before = np.full(len(self.reason), np.inf)
         found = Slopes.unknown(len(self.reason), len(self.balance.free))
+        loads = None
         for count in range(_ITERATIONS):
             if not len(active):
                 break
@@ -203,17 +241,23 @@ class _Search:
             copy_state(self.state, active, onto=self.before)
             step, here = _newton(self.balance, self.state, active, doubts)
             found.put(active, here.slopes)
+            if count == 0:
+                loads = _Loads.of(here, step, doubts)
+            elif loads is not None and self.balance.fused:
+                places = np.searchsorted(rows, active)
+                loads.put(places, _Loads.of(here, step, doubts), self.balance.quantities)
+            else:
+                loads = None  # to put loads together would take longer than to compute the loads once more
             size = np.abs(step).max(axis=1)
-            small = _small(size, size_before[active])
+            small = is_last(size, size_before[active])
             size_before[active] = size
-            if count == 0 and small.all():
-                self.last = _Loads(_after(here, step), here, doubts)
             self.balance.take_step(self.state, active, step)
             self.iterations[active] += 1
             done[active] = small
             active = active[~small & ~np.isnan(size)]
         near = near_each_other(self.balance.sprung, found.of(rows), self.ends.of(rows))
         done[rows] &= ~self.followed[rows] | near
+        self.last = loads if done[rows].all() else None
         return done
 
 
@@ -223,11 +267,6 @@ def _newton(
     """Return Newton's step (n, k) at all of the loads, and the balance before the step."""
     here = balance.near(state, rows, doubts=doubts)
     return newton_step(here.slopes.full, here.residual), here
-
-
-def _small(size: Array, before: Array) -> Array:
-    """Return whether a step (n,) is the last, by its size and the size of the step before."""
-    return np.asarray((size <= _CONVERGED) | ((size <= _STALLED) & (size >= before / 2)))
 
 
 def _next(size: Array, before: Array) -> Array:
@@ -244,11 +283,6 @@ def _first_step(balance: Balance, state: State, rows: Array) -> tuple[Array, Lin
     return newton_step(here.slopes.full, here.residual + balance.precone_load(rows)), here
 
 
-def _after(here: Linear, step: Array) -> Array:
-    """Return the virtual work (n, 5) of the airloads after a step."""
-    return np.asarray(here.work + (here.work_slopes @ step[..., None])[..., 0])
-
-
 def _settle(
     balance: Balance,
     state: State,
@@ -263,7 +297,7 @@ def _settle(
     if len(rows) and (last is None or (kept != reason).any()):
         doubts: dict[str, Array] = {}
         step, here = _newton(balance, before, rows, doubts)
-        last = _Loads(_after(here, step), here, doubts)
+        last = _Loads.of(here, step, doubts)
     kind = np.result_type(float, *state.values())
     values = {name: np.full(len(kept), np.nan, dtype=kind) for name in (*UNKNOWNS, "thrust", "torque")}
     warning = np.full(len(kept), "", dtype=object)
@@ -275,7 +309,25 @@ def _settle(
     loads = last.work * np.asarray(quantities["n_blades"])[..., None]
     trim.torque[rows], trim.thrust[rows] = loads[:, TORQUE], loads[:, THRUST]
     warning[rows] = warnings(balance, here, loads[:, THRUST], last.doubts)
-    return Settled(trim, rows, quantities, here.segments)
+    return Settled(trim, rows, quantities, last.segments)
+
+
+def _settled(balance: Balance, found: Found) -> Settled:
+    """Return a trim by plain numbers as the trim of a batch of one."""
+    here, blades = found.here, found.here.quantities["n_blades"]
+    slopes = (here.work_slopes[row] for row in (THRUST, TORQUE))
+    moved = (sum(map(operator.mul, row, found.step)) for row in slopes)
+    values = {name: np.array([value]) for name, value in found.state.items()}
+    trim = Trim(
+        **values,
+        thrust=np.array([blades * (here.work[THRUST] + next(moved))]),
+        torque=np.array([blades * (here.work[TORQUE] + next(moved))]),
+        converged=np.array([True]),
+        reason=np.array([""], dtype=object),
+        warning=np.array([""], dtype=object),
+        iterations=np.array([found.iterations]),
+    )
+    return Settled(trim, np.zeros(1, dtype=int), here.quantities, here.segments(balance.sections.sides))
 
 
 def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
@@ -295,6 +347,11 @@ def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
         step, _ = _newton(balance, state, rows)
         balance.take_step(state, rows, step)
     return _settle(balance, state, state, trim.reason, trim.iterations)
+
+
+def _is_complex(value: Any) -> bool:
+    """Return whether a number or an array is complex."""
+    return isinstance(value, complex) or getattr(value, "dtype", _REAL).kind == "c"
 
 
 def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:

@@ -7,6 +7,9 @@ system.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from proprotor.rotor.trim import UNKNOWNS
@@ -37,12 +40,14 @@ def held(balance: Balance, points: int) -> Array:
     quantities, options = balance.quantities, balance.options
     if "lag" in options.locked or options.frequencies is not None:
         return np.ones(points, dtype=bool)
-    offset, mass, lag, flap = (
-        np.real(quantities[name])
-        for name in ("lag_hinge_offset", "lag_first_moment", "lag_stiffness", "flap_stiffness")
-    )
-    limp = lag <= _NO_SPRING * np.maximum(flap, 1)
-    return np.broadcast_to(~(limp & (offset * mass == 0)), (points,))
+    return np.broadcast_to(~is_limp(quantities), (points,))
+
+
+def is_limp(quantities: Mapping[str, Any]) -> Any:
+    """Return whether a lag hinge at the centre has no spring."""
+    names = ("lag_hinge_offset", "lag_first_moment", "lag_stiffness", "flap_stiffness")
+    offset, mass, lag, flap = (np.real(quantities[name]) for name in names)
+    return (lag <= _NO_SPRING * np.maximum(flap, 1)) & (offset * mass == 0)
 
 
 def undeflect(balance: Balance, state: State, rows: Array) -> Array:

@@ -5,7 +5,9 @@ datasets of modes, maps and derivatives, and records of boundaries. The room may
 `rotor`, `support`, `model` and `deck`.
 
 Modes of one point, or of a batch of points
-    modes                   eigenvalues and vectors, participation, the dataset of a model's modes
+    modes                   eigenvalues and vectors, the dataset of a model's modes
+    real_modes              modes in real numbers, one of each pair; how alike the modes of two points are
+    participation           how much each motion takes part in a mode
     root_error              roots as exact as the matrices allow, and their error: what "neutral" means
     mode_names              what moves in a mode, and how it whirls
     named_modes             modes of a case at one airspeed, by name
@@ -13,9 +15,10 @@ Modes of one point, or of a batch of points
 
 Modes along a line of points
     parameter_lines         lines of airspeeds or of another input, and the approach from the anchor
-    matching                which mode at one point is which at the next
+    matching, assignment    which mode at one point is which at the next; the assignment with the largest sum
     following               branches: roots followed along a line, steps divided where needed
     branches                labels of branches
+    names_and_steps         names of the modes of many lines, and the steps along each
     sweep                   the dataset of a line: modes by name, with the branch of each
 
 Boundaries: where damping passes a level
@@ -27,6 +30,7 @@ Boundaries: where damping passes a level
     boundary, boundaries    records of boundaries; the search along a line of a case
     kinds                   divergence, instability of the rigid body, flutter
     flutter                 the flutter point: the lowest onset
+    in_notebook             boundaries as HTML, for notebooks
     flutter_messages        records and sentences for people
     map, boundary_lines     the plane of two inputs; its boundary by mode
     boundary_against        boundaries against one input, such as altitude or rotor speed
@@ -57,12 +61,13 @@ from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import (
     at_columns,
     coordinate_motion,
-    coordinate_shares,
     decomposition,
     eigenvalues,
     modes,
 )
+from proprotor.stability.names_and_steps import Steps, names_and_steps
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
+from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
 from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
 from proprotor.stability.sweep import mode_columns, sweep, sweep_case
@@ -86,6 +91,7 @@ __all__ = [
     "ParameterLine",
     "Search",
     "Spectrum",
+    "Steps",
     "at_boundary",
     "at_columns",
     "attribution",
@@ -115,6 +121,7 @@ __all__ = [
     "modes",
     "moving",
     "named_at",
+    "names_and_steps",
     "scan_speeds",
     "sensitivity",
     "stability_map",

@@ -77,6 +77,12 @@ class Boundary:
         doubt = f" (doubtful: {self.warning})" if self.warning else ""
         return f"Boundary at {marked(f'{self.position:.6g}', self.warning)}: {self.event}{hertz}{doubt}"
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from proprotor.stability.in_notebook import boundary_html  # here, because most uses need no HTML
+
+        return boundary_html(self)
+
     @property
     def frequency(self) -> float:
         """|Im λ|, rad/s."""
@@ -177,6 +183,12 @@ class Crossings(NamedTuple):
             first += f"; least damping {100 * ratio:.2g} % of critical: {mode} at {position:.6g}"
         lines = [*map(repr, self.boundaries), *start_and_gaps(self.unstable_at_start, self.failed)]
         return "\n  ".join([first, *lines, *stamp.unusual_options(self.stamp)])
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from proprotor.stability.in_notebook import crossings_html  # here, because most uses need no HTML
+
+        return crossings_html(self)
 
 
 def start_and_gaps(

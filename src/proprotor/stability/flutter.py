@@ -101,6 +101,12 @@ class FlutterPoint:
         lines += [f"{MARK} {line}" for line in footnotes(self.doubts, KTAS, KNOT)]
         return "\n  ".join([first, *lines, *stamp.unusual_options(self.stamp)])
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from proprotor.stability.in_notebook import flutter_html  # here, because most uses need no HTML
+
+        return flutter_html(self)
+
     @property
     def boundary(self) -> Boundary | None:
         """The boundary at the flutter speed; None where there is none."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from proprotor.errors import InputError
 from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.matching import POOR, Matches, Spectrum, chain, keep_upper, match_modes
@@ -15,6 +17,7 @@ from proprotor.stability.parameter_lines import ParameterLine
 from proprotor.typing import Array
 
 _MOST_PARTS = 128  # of a step: where two roots pass each other a few dozen parts are needed
+_AHEAD = 16  # points that are solved at once before it is known whether they are needed
 _HALVINGS = 24  # of a step whose modes cannot be told apart: of 20 kt, to 1e-6 kt
 
 
@@ -67,6 +70,45 @@ class Branches:
         )
 
 
+class _Ahead:
+    """Points between others, solved some halvings ahead: a batch of a few points takes hardly longer than one point."""
+
+    def __init__(self, linearize: Callable[[Array], LinearModel], held: list[int]) -> None:
+        self.linearize, self.held = linearize, held
+        self.place: dict[float, int] = {}
+        self.spectrum: Spectrum | None = None
+
+    def middles(self, start: Array, end: Array) -> tuple[Array, Spectrum]:
+        """Return the middles (k,) of some steps, and their eigenvalues and vectors."""
+        middle = (start + end) / 2
+        unknown = np.array([float(one) not in self.place for one in middle])
+        if unknown.any():
+            self._solve(_dyadic(start[unknown], end[unknown]), middle[unknown])
+        assert self.spectrum is not None
+        return middle, self.spectrum.at([self.place[float(one)] for one in middle])
+
+    def _solve(self, wished: Array, needed: Array) -> None:
+        """Solve points that will be wished for; those that are needed alone where one of the others cannot be."""
+        try:
+            found, points = decomposition(self.linearize(wished), self.held), wished
+        except (InputError, np.linalg.LinAlgError):
+            found, points = decomposition(self.linearize(needed), self.held), needed
+        first = 0 if self.spectrum is None else len(self.spectrum.values)
+        self.place |= {float(one): first + place for place, one in enumerate(points)}
+        self.spectrum = found if self.spectrum is None else self.spectrum.joined(found)
+
+
+def _dyadic(start: Array, end: Array) -> Array:
+    """Return the middles of steps, of their halves, and so on, as far as the points are few."""
+    found = []
+    while True:
+        middle = (start + end) / 2
+        found.append(middle)
+        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+        if sum(map(len, found)) + len(start) > _AHEAD:
+            return np.concatenate(found)
+
+
 def _branches_of(spectrum: Spectrum, positions: Array) -> Branches:
     """Return the branches through points in their order; failed points are passed over."""
     good = np.flatnonzero(spectrum.works)
@@ -95,6 +137,7 @@ def follow(model: LinearModel, line: ParameterLine | None = None, held: list[int
     branches = _branches_of(spectrum, np.asarray(positions, dtype=float))
     if line is None or line.linearize is None:
         return branches
+    ahead = _Ahead(line.linearize, held)
     hopeless = np.zeros(max(len(branches.points) - 1, 0), dtype=bool)
     origin = np.arange(len(hopeless))  # of each step: the step of the line that it is a part of
     for _ in range(_HALVINGS):
@@ -103,8 +146,7 @@ def follow(model: LinearModel, line: ParameterLine | None = None, held: list[int
         if not len(poor):
             break
         ends = branches.positions[branches.points]
-        middle = (ends[poor] + ends[poor + 1]) / 2
-        between = decomposition(line.linearize(middle), held)
+        middle, between = ahead.middles(ends[poor], ends[poor + 1])
         works = between.works
         hopeless[poor[~works]] = True
         branches = branches._with_points(poor[works], middle[works], between.at(works))

@@ -11,7 +11,7 @@ from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.matching import Modes
-from proprotor.stability.modes import coordinate_shares
+from proprotor.stability.participation import coordinate_shares
 from proprotor.support.airframe import Airframe
 from proprotor.typing import Array
 

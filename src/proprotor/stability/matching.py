@@ -8,24 +8,26 @@ l the rows of the inverse of the matrix of right vectors r. They are the mass-we
 that has not changed and 0 for any other, whatever units coordinates have and however vectors are scaled. The distance
 of the eigenvalues, as a part of the largest, is subtracted. The assignment with the largest sum of S_ij - d_ij is the
 step. Where the best candidates of all states are different, they are the assignment: no permutation exceeds the sum of
-the largest entries of the rows. Elsewhere `scipy.optimize.linear_sum_assignment` finds it.
+the largest entries of the rows. Elsewhere `proprotor.stability.assignment` finds it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from proprotor.model.first_order import StateBlocks
+from proprotor.stability.assignment import best_assignment
+from proprotor.stability.real_modes import COUPLED, RealModes, closeness, inverse, likeness, quality
 from proprotor.typing import Array
 
 _BLOCK = 64  # steps whose matrices stay in the cache
 _APART = (
     10.0  # more than likeness and distance can be: taken off where two modes are of blocks that do not couple
 )
-_COUPLED = 1e-6  # likeness of different modes; below it is rounding, and the modes pass each other uncoupled
 NOT_TOLD = "the step to here does not tell which root is which"
 POOR = 0.5  # quality of a step below which it is divided
 
@@ -150,7 +152,7 @@ def _left_vectors(values: Array, right: Array) -> Array:
 
 def _left_block(values: Array, right: Array) -> Array:
     real = np.where((values.imag < 0)[:, None, :], -right.imag, right.real)
-    rows = _inverse(real)
+    rows = inverse(real)
     left = rows.astype(complex)
     point, place = np.nonzero(values.imag > 0)
     first, second = rows[point, place], rows[point, place + 1]
@@ -159,15 +161,12 @@ def _left_block(values: Array, right: Array) -> Array:
     return left
 
 
-def _inverse(matrices: Array) -> Array:
-    try:
-        return np.linalg.inv(matrices)
-    except np.linalg.LinAlgError:  # at one point, which is defective
-        return np.linalg.pinv(matrices)
-
-
-def match_modes(spectrum: Spectrum, before: Array, after: Array) -> Matches:
+def match_modes(
+    spectrum: Spectrum, before: Array, after: Array, known: Mapping[int, RealModes] | None = None
+) -> Matches:
     """Match the states of points `before` (steps,) with the states of points `after` (steps,).
+
+    The modes of all points that work may be given in real numbers, by the number of pairs of a point.
 
     The quality of a step is the likeness of a state to its successor, less the largest of
 
@@ -187,13 +186,18 @@ def match_modes(spectrum: Spectrum, before: Array, after: Array) -> Matches:
     states = spectrum.values.shape[-1]
     successor = np.full((len(before), states), -1)
     quality = np.empty((len(before), states))
-    pairs = (spectrum.values.imag > 0).sum(axis=-1)
+    pairs = np.where(spectrum.works, (spectrum.values.imag > 0).sum(axis=-1), -1)
     alike = pairs[before] == pairs[after]
-    for count in np.unique(pairs[before[alike]]):
+    for count in np.unique(pairs[before[alike]]).tolist():
         steps = np.flatnonzero(alike & (pairs[before] == count))
+        place = np.cumsum(pairs == count) - 1  # among the points with this number of pairs
         for start in range(0, len(steps), _BLOCK):
             rows = _as_slice(steps[start : start + _BLOCK])
-            successor[rows], quality[rows] = _match_block(spectrum, before[rows], after[rows], int(count))
+            if known is None:
+                every, ends = _of_some(spectrum, before[rows], after[rows], count)
+            else:
+                every, ends = known[count], (place[before[rows]], place[after[rows]])
+            successor[rows], quality[rows] = _match_block(spectrum, every, *ends)
     for step in np.flatnonzero(successor[:, 0] < 0):
         successor[step], quality[step] = _match_alone(spectrum.at(before[step]), spectrum.at(after[step]))
     return Matches(successor, quality)
@@ -213,122 +217,53 @@ def _match_in_common(spectrum: Spectrum, shapes: Array, before: Array, after: Ar
     return match_modes(first.joined(last), rows, len(rows) + rows)
 
 
-class _Packed(NamedTuple):
-    """Points with one number of pairs: places of the states, values, vectors.
+def _of_some(
+    spectrum: Spectrum, before: Array, after: Array, pairs: int
+) -> tuple[RealModes, tuple[Array, Array]]:
+    """Return the modes of the points of some steps, and the places of both ends of each step among these points."""
+    points, ends = np.unique(np.concatenate([before, after]), return_inverse=True)
+    some = spectrum.at(_as_slice(points))
+    return RealModes.of(some.values, some.right, pairs), (ends[: len(before)], ends[len(before) :])
 
-    places (n, states): of the states above the real axis, of their conjugates, of real states; values (n, pairs + rest)
-    above the real axis and real; columns (n, states, states) real: real parts of the vectors of the pairs, then
-    imaginary parts, then the real vectors; rows, the inverse.
+
+def _match_block(spectrum: Spectrum, every: RealModes, before: Array, after: Array) -> tuple[Array, Array]:
+    """Match modes of points with one number of pairs, from places `before` (steps,) to places `after`.
+
+    The successors of a step are -1 where the best candidates of the modes are not all different.
     """
-
-    places: Array
-    values: Array
-    columns: Array
-    rows: Array
-
-    @classmethod
-    def of(cls, spectrum: Spectrum, pairs: int) -> _Packed:
-        values, right = spectrum.values, spectrum.right
-        n, states = values.shape
-        above = np.nonzero(values.imag > 0)[1].reshape(n, pairs)
-        real = np.nonzero(~((values.imag > 0) | (values.imag < 0)))[1].reshape(n, states - 2 * pairs)
-        upper = np.concatenate([above, real], axis=1)
-        vectors = np.take_along_axis(right, upper[:, None, :], 2)
-        pair, rest = vectors[..., :pairs], vectors[..., pairs:]
-        columns = np.concatenate([pair.real, pair.imag, rest.real], axis=-1)
-        places = np.concatenate([above, above + 1, real], axis=1)
-        return cls(places, np.take_along_axis(values, upper, 1), columns, _inverse(columns))
-
-    def at(self, points: slice) -> _Packed:
-        return _Packed(*(part[points] for part in self))
+    low, high = int(before.min()), int(after.max())
+    if np.array_equal(after, before + 1) and high - low < 2 * len(before):  # neighbours, which need no copies
+        successor, trust = _match_ends(
+            every.at(slice(low, high)), every.at(slice(low + 1, high + 1)), spectrum
+        )
+        return successor[before - low], trust[before - low]
+    return _match_ends(every.at(before), every.at(after), spectrum)
 
 
-def _match_block(spectrum: Spectrum, before: Array, after: Array, pairs: int) -> tuple[Array, Array]:
-    """Match modes of points with one number of pairs; -1 where the best candidates are not all different."""
-    if np.array_equal(after, before + 1) and isinstance(_as_slice(before), slice):
-        every = _Packed.of(spectrum.at(slice(int(before[0]), int(after[-1]) + 1)), pairs)
-        first, last = every.at(slice(None, -1)), every.at(slice(1, None))
-    else:
-        first, last = (_Packed.of(spectrum.at(points), pairs) for points in (before, after))
-    likeness = _packed_likeness(first, last, pairs)
-    scale = np.sqrt(np.fmax.reduce(first.values.real**2 + first.values.imag**2, axis=1))[:, None, None]
-    ends = np.concatenate([last.values[:, :pairs], last.values[:, :pairs].conj(), last.values[:, pairs:]], 1)
-    gain = likeness - _distance(first.values[:, :, None], ends[:, None, :], scale)
+def _match_ends(first: RealModes, last: RealModes, spectrum: Spectrum) -> tuple[Array, Array]:
+    """Match modes of points, each with those of another point, as `_match_block`."""
+    start, end = (np.ascontiguousarray(one.values.T) for one in (first, last))
+    modes, pairs = len(start), first.pairs
+    alike = likeness(first, last)
+    candidates = np.concatenate([end[:pairs], end[:pairs].conj(), end[pairs:]])
+    scale = np.sqrt(np.fmax.reduce(start.real**2 + start.imag**2, axis=0))
+    gain = alike - _distance(start[:, None], candidates, scale)
     if len(spectrum.blocks) > 1:
-        own, other = (spectrum.block[one.places] for one in (first, last))
-        own = np.concatenate([own[:, :pairs], own[:, 2 * pairs :]], axis=1)
-        gain -= _APART * (own[:, :, None] != other[:, None, :])
-    choice = gain.argmax(axis=2)
+        own = spectrum.block[first.upper].T
+        gain -= _APART * (own[:, None] != spectrum.block[last.places].T)
+    choice = gain.argmax(axis=1)
     # Upper states go to pairs, real ones to real ones, each to another.
     target = np.where((choice >= pairs) & (choice < 2 * pairs), choice - pairs, choice)
-    rows = np.arange(likeness.shape[1])
-    good = (np.sort(target, axis=1) == np.where(rows < pairs, rows, rows + pairs)).all(axis=1)
-    good &= (choice[:, :pairs] < 2 * pairs).all(axis=1)
-    above, real = np.split(np.take_along_axis(last.places, choice, 1), [pairs], axis=1)
-    turned = np.where(choice[:, :pairs] < pairs, 1, -1)  # a state that turns over the real axis
-    trust = _trust(likeness, choice, first.values, np.take_along_axis(ends, choice, 1))
+    rows = np.arange(modes)[:, None]
+    good = (np.sort(target, axis=0) == np.where(rows < pairs, rows, rows + pairs)).all(axis=0)
+    good &= (choice[:pairs] < 2 * pairs).all(axis=0)
+    above, real = np.split(np.take_along_axis(last.places.T, choice, 0), [pairs])
+    turned = np.where(choice[:pairs] < pairs, 1, -1)  # a state that turns over the real axis
+    trust = quality(alike, choice, start, np.take_along_axis(candidates, choice, 0))
     own = first.places.argsort(axis=1)
-    successor = np.take_along_axis(np.concatenate([above, above + turned, real], axis=1), own, 1)
+    successor = np.take_along_axis(np.concatenate([above, above + turned, real]).T, own, 1)
     successor[~good] = -1
-    return successor, np.take_along_axis(np.concatenate([trust[:, :pairs], trust], axis=1), own, 1)
-
-
-def _packed_likeness(first: _Packed, last: _Packed, pairs: int) -> Array:
-    """Return S (n, pairs + rest, 2 pairs + rest): rows above the real axis, real; columns above, conjugate, real."""
-    forward = _squares(first.rows @ last.columns, pairs)
-    back = _squares(last.rows @ first.columns, pairs)
-    # |l_j(2) r_i(1)| of a conjugate j is that of j with the conjugate of i.
-    above, conjugates, real = slice(0, pairs), slice(pairs, 2 * pairs), slice(2 * pairs, None)
-    rest = slice(pairs, None)
-    for rows, of_above, of_conjugates in ((above, above, conjugates), (rest, real, real)):
-        forward[:, rows, above] *= back[:, above, of_above].swapaxes(1, 2)
-        forward[:, rows, conjugates] *= back[:, above, of_conjugates].swapaxes(1, 2)
-        forward[:, rows, real] *= back[:, rest, of_above].swapaxes(1, 2)
-    np.sqrt(forward, out=forward)
-    return np.sqrt(forward, out=forward)
-
-
-def _squares(product: Array, pairs: int) -> Array:
-    """Return |l r|² (n, pairs + rest, 2 pairs + rest) from the products of packed rows and columns.
-
-    With l = (p - iq)/2 and r = a + ib, or a - ib for the conjugate; rows and columns of real states stand alone.
-    """
-    a, b, c = slice(0, pairs), slice(pairs, 2 * pairs), slice(2 * pairs, None)
-    rest = slice(pairs, None)
-    found = np.empty((len(product), product.shape[1] - pairs, product.shape[1]))
-    pa, pb, qa, qb = product[:, a, a], product[:, a, b], product[:, b, a], product[:, b, b]
-    found[:, a, a] = ((pa + qb) ** 2 + (pb - qa) ** 2) / 4
-    found[:, a, b] = ((pa - qb) ** 2 + (pb + qa) ** 2) / 4
-    found[:, a, c] = (product[:, a, c] ** 2 + product[:, b, c] ** 2) / 4
-    found[:, rest, a] = product[:, c, a] ** 2 + product[:, c, b] ** 2
-    found[:, rest, b] = found[:, rest, a]
-    found[:, rest, c] = product[:, c, c] ** 2
-    return found
-
-
-def _trust(likeness: Array, choice: Array, start: Array, end: Array) -> Array:
-    """Return the quality (n, m) of steps from likeness (n, m, any), chosen successors and eigenvalues at both ends."""
-    n, m = choice.shape
-    # mixing[i, k]: likeness of state i to the successor of state k
-    mixing = np.take_along_axis(likeness, np.broadcast_to(choice[:, None, :], (n, m, m)), 2)
-    own = np.diagonal(mixing, axis1=1, axis2=2).copy()
-    mixing[:, np.arange(m), np.arange(m)] = 0
-    step, one, other = np.nonzero(mixing > _COUPLED)
-    index = _index(
-        mixing[step, one, other], start[step, one] - start[step, other], end[step, one] - end[step, other]
-    )
-    mixing[...] = 0
-    mixing[step, one, other] = index
-    worst = np.maximum(mixing.max(axis=2, initial=0), mixing.max(axis=1, initial=0))
-    return np.asarray(np.clip(np.minimum(own, 1) - worst, 0, 1))
-
-
-def _index(mixing: Array, apart: Array, later: Array) -> Array:
-    """Return S max(|Δ1|, |Δ2|) / |Δmin|; 0 where a point does not have one of the states."""
-    nearest = np.fmax(way_to_zero(apart, later), 1e-300)
-    with np.errstate(over="ignore"):
-        index = mixing * np.maximum(np.abs(apart), np.abs(later)) / nearest
-    return np.where(np.isnan(index), 0.0, index)
+    return successor, np.take_along_axis(np.concatenate([trust[:pairs], trust]).T, own, 1)
 
 
 def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
@@ -343,18 +278,11 @@ def _match_alone(first: Spectrum, last: Spectrum) -> tuple[Array, Array]:
     states, twins = np.arange(len(start)), (conjugate(start), conjugate(end))
     related = (states[:, None] == states) | (twins[0][:, None] == states)
     related |= twins[1][successor][:, None] == successor
-    counts = ~related & (mixing > _COUPLED)
+    counts = ~related & (mixing > COUPLED)
     apart, later = start[:, None] - start, end[successor][:, None] - end[successor]
     index = np.zeros(mixing.shape)
-    index[counts] = _index(mixing[counts], apart[counts], later[counts])
+    index[counts] = np.nan_to_num(mixing[counts] * closeness(apart[counts], later[counts]))
     return successor, np.clip(np.minimum(own, 1) - np.maximum(index.max(axis=0), index.max(axis=1)), 0, 1)
-
-
-def best_assignment(gain: Array) -> Array:
-    """Return the column of each row in the assignment of columns to rows with the largest sum."""
-    from scipy.optimize import linear_sum_assignment  # here, because it takes long to import
-
-    return np.asarray(linear_sum_assignment(gain, maximize=True)[1])
 
 
 def _as_slice(points: Array) -> slice | Array:

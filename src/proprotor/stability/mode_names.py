@@ -24,20 +24,25 @@ cos ψ + β_1s sin ψ).
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.model.first_order import blocks, held_coordinates, some_points
+from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
-from proprotor.rotor.motions import HUB, Motion, motions, name_list
-from proprotor.stability.matching import Modes, best_assignment
+from proprotor.rotor.motions import HUB, motions, name_list
+from proprotor.stability.assignment import best_assignment
+from proprotor.stability.matching import Modes
 from proprotor.stability.modes import coordinate_motion
+from proprotor.stability.participation import participation, whirling
+from proprotor.stability.real_modes import by_pairs, mode_of_states, places_of, upper_places
 from proprotor.typing import Array
 
 DOUBTFUL = 1 / 3  # a share below which two other motions may each move more
 _TIE = 1e-6  # of a share: what parts names that fit equally well, above the rounding of vectors
+_AT_ONCE = 256  # points whose vectors stay in the cache
 _STILL = 1e-6  # participation of cyclic motion below which the way it whirls is rounding
 
 
@@ -85,51 +90,100 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
         Left vectors in rows, right ones in columns, left @ right = 1, as from
         `proprotor.stability.matching.Spectrum.all_modes`.
     """
-    known = name_list(model.dofs)
-    place, exists = np.full(values.shape, -1), np.isfinite(values)
-    good = np.asarray(exists.any(axis=-1))
-    # A state that a point does not have, though others do, stands as a root at zero while names are given.
-    roots = np.where(exists, values, 0)
-    if good.all():  # the usual case, without copies
-        shares = _name_shares(model, left, right)
-    else:
-        shares = np.full((*values.shape[:-1], len(known), values.shape[-1]), np.nan)
-        shares[good] = _name_shares(some_points(model, good), left[good], right[good])
-    held = held_coordinates(model, values.shape[-1])
-    for own, (_, columns) in zip(model.blocks, blocks(model, held), strict=True):
-        dofs = tuple(model.dofs[one] for one in own)
-        names = np.array([known.index(name) for name in name_list(dofs)])
-        moved = [dofs.index(model.dofs[one]) for one in held if one in own]
-        best = _assign_names(dofs, moved, shares[good][:, names, columns], roots[good][:, columns])
-        place[good, columns] = names[best]
-    return Moving(known, place, shares)
+    states = values.shape[-1]
+    known, held = name_list(model.dofs), held_coordinates(model, states)
+    place, shares = (
+        np.full((values.size // states, states), -1),
+        np.full((values.size // states, len(known), states), np.nan),
+    )
+    for points, pairs in by_pairs(values.reshape(-1, states), _AT_ONCE):
+        at = np.unravel_index(points, values.shape[:-1]) if values.ndim > 1 else None
+        roots, part = values[at], some_points(model, at)
+        upper = upper_places(places_of(roots, pairs), pairs)
+        vectors = np.take_along_axis(right[at], upper[:, None, :], -1)
+        rows = np.take_along_axis(left[at], upper[:, :, None], -2)
+        taken = participation(part, held, rows.T, np.moveaxis(vectors, 0, -1)).names
+        mode = mode_of_states(roots, upper)
+        place[points] = np.take_along_axis(named_after(part, roots, upper, taken).T, mode, 1)
+        shares[points] = np.moveaxis(np.take_along_axis(taken, mode.T[None], 1), -1, 0)
+    return Moving(known, place.reshape(values.shape), shares.reshape(*values.shape[:-1], len(known), states))
 
 
-def _whirl_shares(motion: Motion, held: list[int], left: Array, right: Array) -> Array:
-    """Return the participation of whirl against and with the rotor in each state (2, ..., states).
+def named_after(model: LinearModel, values: Array, upper: Array, shares: Array) -> Array:
+    """Return the name of each mode (modes, points) of points with one number of pairs, by its place in `name_list`.
 
     Parameters
     ----------
-    motion : Motion
-        A cyclic one.
-    held : list of int
-        Coordinates whose displacement is a state.
-    left, right : array (..., states, states)
-        Left vectors in rows, right ones in columns.
+    model : LinearModel
+        Of the points.
+    values : array (points, states)
+        All eigenvalues, each pair side by side; NaN for a state that a point does not have, though others do, which
+        stands as a root at zero while names are given.
+    upper : array (points, modes) of int
+        State of one mode of each pair, and of each real mode.
+    shares : array (names, modes, points)
+        Participation in these modes.
     """
-    shares = np.zeros(())
-    for cosine, sine in zip(*(_states(place, held) for place in motion.places), strict=True):
-        c, s = right[..., cosine, :], right[..., sine, :]
-        lc, ls = left[..., :, cosine], left[..., :, sine]
-        against, with_rotor = (c - 1j * s) * (lc + 1j * ls), (c + 1j * s) * (lc - 1j * ls)
-        shares = shares + np.abs([against, with_rotor]) / 2
-    return shares
+    held = tuple(held_coordinates(model, values.shape[-1]))
+    groups = _groups(model.dofs, tuple(map(tuple, model.blocks)), held)
+    return _assign_names(groups, np.where(np.isnan(values), 0, values), upper, shares)
 
 
-def _states(place: int, held: list[int]) -> list[int]:
-    """Return the places of the states of a coordinate: its displacement, where this is a state, and its rate."""
-    rate = len(held) + place
-    return [held.index(place), rate] if place in held else [rate]
+def _assign_names(groups: tuple[_Group, ...], values: Array, upper: Array, shares: Array) -> Array:
+    """Return names as `named_after`, from the names and states of coordinates that do not couple with others.
+
+    The assignment with the largest sum of shares is taken. Where the best names of all states are different, these are
+    that assignment. Of assignments that are equally good, as for a propeller on a pivot that is alike in all
+    directions, the one is taken in which frequencies rise in the order of the names, so that rounding does not decide.
+    """
+    rank, of_name = np.empty(values.shape), np.empty(len(shares))
+    for one in groups:
+        rank[:, one.states] = _ranks(values[:, one.states])
+        of_name[one.names] = np.linspace(0, 1, len(one.names))
+    gain = np.take_along_axis(rank, upper, 1).T * (_TIE * of_name)[:, None, None]
+    gain += shares
+    best: Array = gain.argmax(axis=0)
+    states_of_mode = np.where(np.take_along_axis(values, upper, 1).T.imag > 0, 2, 1)
+    counts = np.array([(states_of_mode * (best == name)).sum(axis=0) for name in range(len(shares))])
+    for one in groups:
+        for point in np.flatnonzero((counts[one.names] != one.counts[:, None]).any(axis=0)):
+            mode = mode_of_states(values[[point]], upper[[point]])[0, one.states]
+            fit = shares[one.names[:, None], mode, point].T
+            fit = fit + _TIE * (rank[point, one.states, None] * of_name[one.names])
+            best[mode, point] = one.names[_assigned(fit, one.slots, values[point, one.states])]
+    return best
+
+
+class _Group(NamedTuple):
+    """Names and states of coordinates that do not couple with others.
+
+    names (k,) : places of the names in `name_list`; states : place of the states in the spectrum; counts (k,) : number
+    of states that have each name.
+    """
+
+    names: Array
+    states: slice
+    counts: Array
+
+    @property
+    def slots(self) -> Array:
+        """The names, by their place in the group, in as many places as the group has states."""
+        return np.repeat(np.arange(len(self.counts)), self.counts)
+
+
+@lru_cache(maxsize=16)  # of the models of an analysis, which has many batches
+def _groups(
+    dofs: tuple[str, ...], blocks: tuple[tuple[int, ...], ...], held: tuple[int, ...]
+) -> tuple[_Group, ...]:
+    """Return the groups of coordinates: a mode's name counts twice, that of a rate alone once."""
+    known, found, first = name_list(dofs), [], 0
+    for own in blocks:
+        some = motions(tuple(dofs[one] for one in own))
+        names = [(known.index(name), motion.places) for motion in some for name in motion.names]
+        counts = [1 if len(places) == 1 and own[places[0]] not in held else 2 for _, places in names]
+        states = slice(first, first := first + sum(counts))
+        found.append(_Group(np.array([name for name, _ in names]), states, np.array(counts)))
+    return tuple(found)
 
 
 def whirl(model: LinearModel, modes: Modes) -> Array:
@@ -141,10 +195,7 @@ def whirl(model: LinearModel, modes: Modes) -> Array:
     """
     values, right, left = modes
     held = held_coordinates(model, right.shape[-2])
-    shares = np.zeros((2, *values.shape))
-    for motion in motions(model.dofs):
-        if len(motion.places) == 2:
-            shares = shares + _whirl_shares(motion, held, left, right)
+    shares = whirling(model.dofs, held, np.moveaxis(left, -1, 0), np.moveaxis(right, -2, 0)).sum(axis=1)
     shares = np.where(shares.sum(axis=0) < _STILL, _hub_whirl(model, values, right), shares)
     against, with_rotor = shares
     total = against + with_rotor
@@ -169,102 +220,12 @@ def _hub_whirl(model: LinearModel, values: Array, right: Array) -> Array:
     return np.where(tilt.sum(axis=0) > 0, tilt, way)
 
 
-def _name_shares(model: LinearModel, left: Array, right: Array) -> Array:
-    """Return the share of each name in each state (..., names, states); it sums to 1 over the names.
-
-    Parameters
-    ----------
-    model : LinearModel
-        With leading axes (...) that broadcast to those of the vectors.
-    left, right : array (..., states, states)
-        Left vectors in rows, right ones in columns.
-    """
-    held, columns = held_coordinates(model, right.shape[-2]), []
-    for motion in motions(model.dofs):
-        if len(motion.places) == 1:
-            places = _states(motion.places[0], held)
-            columns.append(sum(np.abs(left[..., place] * right[..., place, :]) for place in places))
-            continue
-        whole = _whirl_shares(motion, held, left, right).sum(axis=0)
-        progressive = _progressive_part(model, motion, held, left, right)
-        columns += [whole * (1 - progressive), whole * progressive]
-    sums = np.stack(columns, axis=-2)
-    shares: Array = sums / sums.sum(axis=-2, keepdims=True)
-    return shares
-
-
-def _progressive_part(
-    model: LinearModel, motion: Motion, held: list[int], left: Array, right: Array
-) -> Array:
-    """Return the part of a cyclic motion that is its uncoupled progressive mode, in each state (..., states).
-
-    Alone, z = β_1c + i β_1s has the roots s_p and s_r. Its displacement and rate are the sums z = p + r and
-    ż = s_p p + s_r r of both modes, so that p = (ż - s_r z) / (s_p - s_r) and r = (s_p z - ż) / (s_p - s_r); the
-    conjugate of z has the conjugates of both.
-    """
-    faster, slower = _uncoupled_roots(model, motion)
-    cosine, sine = (_states(place, held) for place in motion.places)
-    progressive, regressive = np.zeros(()), np.zeros(())
-    for turn, p, r in ((1j, faster, slower), (-1j, faster.conj(), slower.conj())):
-        p, r = p[..., None], r[..., None]
-        z, rate = (right[..., c, :] + turn * right[..., s, :] for c, s in zip(cosine, sine, strict=True))
-        of_z, of_rate = (left[..., :, c] - turn * left[..., :, s] for c, s in zip(cosine, sine, strict=True))
-        progressive = progressive + np.abs((of_z + p * of_rate) * (rate - r * z))
-        regressive = regressive + np.abs((of_z + r * of_rate) * (p * z - rate))
-    total = progressive + regressive
-    return np.where(total > 0, progressive / np.where(total > 0, total, 1), 0.5)
-
-
-def _uncoupled_roots(model: LinearModel, motion: Motion) -> tuple[Array, Array]:
-    """Return the two roots (...) of a cyclic motion with all else held, averaged over directions; progressive first.
-
-    In the rotating frame the roots are σ ± iν. Seen from the fixed frame the rotor's speed is added to both.
-    """
-    c, s = motion.places
-    mass, damping, stiffness = (
-        (matrix[..., c, c] + matrix[..., s, s]) / 2 - 0.5j * (matrix[..., c, s] - matrix[..., s, c])
-        for matrix in (np.real(getattr(model, name)) for name in "MCK")
-    )
-    with np.errstate(all="ignore"):
-        spread = np.sqrt(damping**2 - 4 * mass * stiffness)
-        both = np.stack([-damping + spread, -damping - spread]) / (2 * mass)
-    ahead = both[0].imag >= both[1].imag
-    return np.where(ahead, both[0], both[1]), np.where(ahead, both[1], both[0])
-
-
-def _assign_names(dofs: tuple[str, ...], held: list[int], shares: Array, values: Array) -> Array:
-    """Return the name of each state (points, states), by its place in `name_list`; a pair has one name.
-
-    The assignment with the largest sum of shares is taken. Where the best names of all states are different, these are
-    that assignment. Of assignments that are equally good, as for a propeller on a pivot that is alike in all
-    directions, the one is taken in which frequencies rise in the order of the names, so that rounding does not decide.
-
-    Parameters
-    ----------
-    dofs : tuple of str
-    held : list of int
-    shares : array (points, names, states)
-        Of `_name_shares`.
-    values : array (points, states)
-        Eigenvalues, each pair side by side.
-    """
-    slots = _slots(dofs, held)
-    gain = np.swapaxes(shares, -1, -2) + _TIE * _by_rank(values, shares.shape[-2])
-    upper = values.imag > 0
-    best: Array = gain.argmax(axis=-1)
-    best[:, 1:] = np.where(upper[:, :-1], best[:, :-1], best[:, 1:])
-    counts = (best[..., None] == np.arange(shares.shape[-2])).sum(axis=-2)
-    for point in np.flatnonzero((counts != np.bincount(slots)).any(axis=-1)):
-        best[point] = _assigned(gain[point], slots, values[point])
-    return best
-
-
-def _by_rank(values: Array, names: int) -> Array:
-    """Return products (points, states, names) of the ranks of frequencies and of names, 0 to 1."""
+def _ranks(values: Array) -> Array:
+    """Return the ranks of frequencies (points, states), 0 to 1."""
     order = np.lexsort((values.real, np.abs(values.imag)), axis=-1)
     rank = np.empty(values.shape)
     np.put_along_axis(rank, order, np.broadcast_to(np.linspace(0, 1, values.shape[-1]), values.shape), -1)
-    return rank[..., None] * np.linspace(0, 1, names)
+    return rank
 
 
 def _assigned(gain: Array, slots: Array, values: Array) -> Array:
@@ -292,13 +253,3 @@ def _assigned(gain: Array, slots: Array, values: Array) -> Array:
             given[upper] = given[upper + 1] = of_pairs[pairs]
             given[real] = of_real[roots]
     return given
-
-
-def _slots(dofs: tuple[str, ...], held: list[int]) -> Array:
-    """Return the names in as many places as a model has states: each mode's name twice, that of a rate alone once."""
-    counts = [
-        1 if len(motion.places) == 1 and motion.places[0] not in held else 2
-        for motion in motions(dofs)
-        for _ in motion.names
-    ]
-    return np.repeat(np.arange(len(counts)), counts)

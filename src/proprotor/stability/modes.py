@@ -30,6 +30,7 @@ from proprotor.model.first_order import (
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.stability.matching import Modes, Spectrum, size_of
+from proprotor.stability.participation import coordinate_shares
 from proprotor.typing import Array, Dataset
 
 _ROUNDING = 10 * float(np.finfo(float).eps)  # of the largest root: what a root at zero may be off by
@@ -182,20 +183,6 @@ def coordinate_motion(held: list[int], n: int, values: Array, right: Array) -> A
     with np.errstate(all="ignore"):
         shapes[..., rates, :] /= np.where(values == 0, np.nan, values)[..., None, :]
     return shapes
-
-
-def coordinate_shares(held: list[int], n: int, left: Array, right: Array) -> Array:
-    """Return the share of each coordinate in each mode (..., n, modes), from left times right vector; it sums to 1.
-
-    The share depends neither on units nor on the scale of vectors, unlike the largest component of a mode that mixes
-    lengths and angles. Left vectors (..., modes, states) stand in rows, right ones (..., states, modes) in columns.
-    """
-    products = np.swapaxes(left, -1, -2) * right
-    products = np.sqrt(products.real**2 + products.imag**2)
-    sums = products[..., -n:, :].copy()
-    sums[..., held, :] += products[..., : len(held), :]
-    shares: Array = sums / sums.sum(axis=-2, keepdims=True)
-    return shares
 
 
 def modes(model: LinearModel) -> Dataset:

@@ -15,7 +15,14 @@ import numpy as np
 from proprotor.stability.cubic import band, bend, hermite, hermite_extrema, hermite_slope
 from proprotor.stability.matching import POOR
 from proprotor.stability.points import Points
-from proprotor.stability.root_pairs import PairsWithin, by_derivatives, joining_roots, keep_off, may_meet
+from proprotor.stability.root_pairs import (
+    PairsWithin,
+    by_derivatives,
+    joining_roots,
+    keep_off,
+    may_meet,
+    ways,
+)
 from proprotor.stability.steps import Steps
 from proprotor.typing import Array
 
@@ -133,10 +140,8 @@ def _reach_of_couple(mean: Array, square: Array, side: Array, trust: float) -> t
 
 
 def _may_reach(steps: Steps, points: Points, ends: Array, sides: Array, width: Array) -> Array:
-    """Return which roots come as near to the level as they move over the step, or cross the level."""
-    values = points.spectrum.values
-    move = np.abs(steps.later(values) - values[steps.before])
-    reach = move + width + np.abs(ends[2:]).max(axis=0)
+    """Return which roots come as near to the level as they may go over the step, or cross the level."""
+    reach = ways(steps, points) + width + np.abs(ends[2:]).max(axis=0)
     return np.asarray((np.abs(ends[:2]).min(axis=0) <= reach) | (sides[0] * sides[1] < 0))
 
 
@@ -144,10 +149,10 @@ def _learn_quality(steps: Steps, points: Points, near: Array) -> None:
     """Set the quality of some states of steps by values alone: 0 where a state may meet another, else 1."""
     row, state = np.nonzero(near & np.isnan(steps.quality))
     if len(row):
-        values, block = points.spectrum.values, points.spectrum.block
-        first, last = values[steps.before[row]], values[steps.after[row]]
-        last = np.take_along_axis(last, steps.successor[row], 1)
-        steps.quality[row, state] = ~may_meet(first, last, state[:, None], block)[:, 0].any(axis=1)
+        few = steps.at(row)
+        first, last = few.at_ends(points.spectrum.values)
+        meeting = may_meet(first, last, ways(few, points), state[:, None], points.spectrum.block)
+        steps.quality[row, state] = ~meeting[:, 0].any(axis=1)
 
 
 def _squares(steps: Steps, points: Points) -> tuple[Array, Array]:

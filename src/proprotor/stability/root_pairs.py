@@ -22,6 +22,9 @@ from proprotor.typing import Array
 
 _APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
 _MEETING = 0.5  # of the distance at the farther end: roots that are nearer than this at one end may meet too
+_WITHIN_REACH = (
+    3.0  # ways of two roots: if shorter ones lead each to the end of the other, they may have passed
+)
 _OF_CHORD = 0.01  # of what parts a polynomial of a scan from the chord: its least error
 _INSIDE = np.linspace(0.0, 1.0, 33)[1:-1]
 MANY, _FEW = 6, 4  # points of a scan through which polynomials go
@@ -37,27 +40,44 @@ class _Smooth(NamedTuple):
 PairsWithin = Callable[[Steps, Points, Array, Array, Array], tuple[_Smooth, _Smooth]]
 
 
-def may_meet(first: Array, last: Array, state: Array, block: Array) -> Array:
+def ways(steps: Steps, points: Points) -> Array:
+    """Return how far (steps, states) each root may go over its step, by its ends or by its change at both ends."""
+    first, last = steps.at_ends(points.spectrum.values)
+    by_change = size_of(steps.at_ends(points.change)).sum(axis=0) * steps.length(points)
+    return np.asarray(np.fmax(size_of(last - first), by_change))
+
+
+def may_meet(first: Array, last: Array, way: Array, state: Array, block: Array) -> Array:
     """Return which roots (n, k, states) some roots, state (n, k), may meet or turn away from between two points.
 
-    Values (n, states) alone decide: the straight ways of two roots come nearer to each other than their ends, or the
-    roots are much nearer at one end. Roots of blocks that do not couple, block (states,), pass each other.
+    Values (n, states) and how far each root may go, way (n, states), decide. The straight ways of two roots come nearer
+    to each other than their ends, or the roots are much nearer at one end, or each may have gone to the end of the
+    other: the nearest roots at the ends of a step are not the same ones where two roots have passed. With this last
+    reason the answer is the same whichever of two equally good choices of the ends was taken. Roots of blocks that do
+    not couple, block (states,), pass each other.
     """
-    apart, later = (
-        np.take_along_axis(values, state, 1)[:, :, None] - values[:, None, :] for values in (first, last)
-    )
+    own, end, reach = (np.take_along_axis(part, state, 1)[:, :, None] for part in (first, last, way))
+    others, ends = first[:, None, :], last[:, None, :]
+    apart, later = own - others, end - ends
     one, other = size_of(apart), size_of(later)
     near, far = np.minimum(one, other), np.maximum(one, other)
     near_each_other = (way_to_zero(apart, later) < _APPROACH * near) | (near < _MEETING * far)
-    return np.asarray(near_each_other & (block[state][:, :, None] == block))
+    exchanged = size_of(ends - own) + size_of(end - others)
+    within_reach = exchanged <= _WITHIN_REACH * (reach + way[:, None, :])
+    others_alone = state[:, :, None] != np.arange(first.shape[1])
+    same_block = block[state][:, :, None] == block
+    return np.asarray((near_each_other | within_reach) & others_alone & same_block)
 
 
-def _partners(first: Array, last: Array, block: Array) -> Array:
-    """Return the root (n, states) that each root may meet, if neither may meet a third; -1 elsewhere."""
-    meeting = may_meet(first, last, np.broadcast_to(np.arange(first.shape[1]), first.shape), block)
-    alone = meeting.sum(axis=2) == 1
-    partner = meeting.argmax(axis=2)
-    return np.where(alone & np.take_along_axis(alone, partner, 1), partner, -1)
+def _partners(steps: Steps, points: Points, state: Array) -> Array:
+    """Return the root (m,) that one root of each step, state (m,), may meet, if neither may meet a third; else -1."""
+    first, last = steps.at_ends(points.spectrum.values)
+    way, block, rows = ways(steps, points), points.spectrum.block, np.arange(len(state))
+    meeting = may_meet(first, last, way, state[:, None], block)[:, 0]
+    partner = meeting.argmax(axis=1)
+    others = may_meet(first, last, way, partner[:, None], block)[:, 0]
+    alone = (meeting.sum(axis=1) == 1) & (others.sum(axis=1) == 1) & others[rows, state]
+    return np.where(alone, partner, -1)
 
 
 def keep_off(
@@ -67,12 +87,9 @@ def keep_off(
     found = np.zeros(len(row), dtype=bool)
     if not len(row):
         return found
-    which, place = np.unique(row, return_inverse=True)
-    few = steps.at(which)
-    spectrum = points.spectrum
-    first, last = few.at_ends(spectrum.values)
-    partner = _partners(first, last, spectrum.block)[place, state]
-    sides = few.sides(points)[:, place]
+    few = steps.at(row)
+    partner = _partners(few, points, state)
+    sides = few.sides(points)
     own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
     side = own[0]
     alike = (np.concatenate([own, other]) == side).all(axis=0)

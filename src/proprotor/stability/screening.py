@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from proprotor.stability.matching import best_assignment, size_of
+from proprotor.stability.assignment import best_assignment
+from proprotor.stability.matching import size_of
 from proprotor.stability.steps import Steps, first_steps
 from proprotor.typing import Array
 

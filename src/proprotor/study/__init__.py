@@ -9,11 +9,14 @@ sampling            plans: grids, lists, Latin hypercubes, Sobol and Saltelli sa
 input_ranges        what an input may be: values, or a distribution of values, read into SI
 designs             a plan, and the designs that it gives with the numbers of a deck
 request             the request that a study answers: its arguments, read and checked
+description         what a study was asked, as plain data in the attributes of its results
+study_file          files of studies: `save_study`, and the arguments of a study to repeat
 division            how many points a batch has, so that all batches at work fit into memory
 variables           the quantities of a study, their variables, and empty arrays for these
 batch               the analysis of one batch, with a reason for each design or point that fails
 roots               eigenvalues of a batch, mode shapes, the least stable mode
 followed_modes      modes of a batch, followed along the airspeeds of each design
+censoring           what is known of flutter speeds beyond the airspeeds of a study: limits
 flutter_speeds      the flutter speed of each design of a batch
 workers             who analyses the batches: this process, other processes or a cluster
 worker              what a worker process does
@@ -28,17 +31,24 @@ May import the engine, `deck`, `stability` and `case`.
 
 from proprotor.study import sampling
 from proprotor.study.damping import mode_damping
+from proprotor.study.designs import AIRSPEED
 from proprotor.study.study import study
+from proprotor.study.study_file import is_study_file, read_study, repeated, save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
 from proprotor.study.variables import DEFAULT_QUANTITIES, STABLE, UNSTABLE
 
 __all__ = [
+    "AIRSPEED",
     "DEFAULT_QUANTITIES",
     "STABLE",
     "UNSTABLE",
     "distribution",
+    "is_study_file",
     "mode_damping",
+    "read_study",
+    "repeated",
     "sampling",
+    "save_study",
     "share_below",
     "sobol_indices",
     "study",

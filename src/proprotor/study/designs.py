@@ -18,7 +18,7 @@ from proprotor.typing import Array
 
 AIRSPEED = "airspeed"
 DESIGN = "design"  # the dimension of a list or a sample
-_SPEED = Datum("", None, "m/s")  # airspeed is no number of the deck
+SPEED = Datum("", None, "m/s")  # airspeed is no number of the deck
 _FACTOR = Datum("", 1.0, "")  # on several numbers of the deck, which vary together
 
 _Path = str | tuple[str, ...]  # of one input, or of several that vary together
@@ -79,11 +79,17 @@ class Plan:
         Returns the designs, from the inputs that were read and the numbers of the deck by path.
     read : callable
         Returns an input in SI, from its label, the value or distribution of the user, and the number of the deck.
+    method : str
+        "grid", "points", "latin hypercube", "sobol" or "saltelli".
+    settings : mapping
+        What else the function that makes the plan was given, such as size and seed.
     """
 
     inputs: Mapping[Any, Any]
     lay_out: Callable[[dict[Any, Any], Mapping[str, Datum]], Designs]
     read: Callable[[str, Any, Datum], Any]
+    method: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)
 
     def resolve(self, known: Mapping[str, Datum]) -> Designs:
         """Return the designs in SI.
@@ -103,11 +109,11 @@ class Plan:
             For an unknown path, with the nearest one, a value of another dimension, lists of unequal lengths, or a
             factor on an input that has no number in the deck.
         """
-        known = {**known, AIRSPEED: _SPEED}
+        known = {**known, AIRSPEED: SPEED}
         for path in paths_of(self.inputs):
             check_input(path, known)
         read = {
-            name: self.read(label_of(name), given, _number(name, known))
+            name: self.read(label_of(name), given, number_of(name, known))
             for name, given in self.inputs.items()
         }
         return self.lay_out(read, known)
@@ -123,7 +129,7 @@ def label_of(name: _Path) -> str:
     return name if isinstance(name, str) else ", ".join(name)
 
 
-def _number(name: _Path, known: Mapping[str, Datum]) -> Datum:
+def number_of(name: _Path, known: Mapping[str, Datum]) -> Datum:
     """Return the number of the deck that an input varies, or the factor of several numbers."""
     if isinstance(name, str):
         return known[name]

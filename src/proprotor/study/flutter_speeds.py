@@ -15,7 +15,8 @@ from proprotor.stability.crossings import Search
 from proprotor.stability.kinds import FLUTTER, kinds
 from proprotor.stability.matching import Modes, Spectrum
 from proprotor.stability.mode_names import moving
-from proprotor.stability.modes import coordinate_shares
+from proprotor.stability.participation import coordinate_shares
+from proprotor.study.censoring import put_limits
 from proprotor.study.variables import ALWAYS, STABLE, UNSTABLE
 from proprotor.typing import Array
 
@@ -81,6 +82,7 @@ def put_flutter_speeds(
     _put_least_damping(found, search)
     if first:
         _put_onsets(found, first, models)
+    put_limits(found, np.asarray(batch.speeds, dtype=float))
     for line, text in aside.items():
         found["flutter_warning"][line] = "; ".join(filter(None, (str(found["flutter_warning"][line]), text)))
 

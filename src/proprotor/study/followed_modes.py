@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES
 
-from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
-from proprotor.stability.matching import NOT_TOLD, Spectrum, match_modes
-from proprotor.stability.mode_names import moving
-from proprotor.stability.modes import coordinate_shares
+from proprotor.rotor.motions import name_list
+from proprotor.stability.matching import NOT_TOLD, Spectrum
+from proprotor.stability.names_and_steps import Steps, names_and_steps
 from proprotor.study.roots import by_frequency
 from proprotor.typing import Array
 
@@ -24,63 +23,54 @@ def modes_along(model: LinearModel, spectrum: Spectrum) -> dict[str, Array]:
     spectrum : Spectrum
         Eigenvalues and vectors of the model.
     """
-    modes = spectrum.all_modes
-    places, quality, first = _follow(spectrum)
-    followed = np.take_along_axis(modes.values, places, -1)
-    moves = moving(model, modes.values, modes.left, modes.right)
-    shares = coordinate_shares(held_coordinates(model), len(model.dofs), modes.left, modes.right)
+    shape = spectrum.values.shape
+    designs, speeds, states = shape
     support = [place for place, name in enumerate(model.dofs) if name not in FIXED_COORDINATES]
-    designs = np.arange(len(places))
-    largest = np.nan_to_num(shares[designs, first]).argmax(axis=-2)
-    main = np.take_along_axis(largest, places[designs, first], -1)
-    none = np.isnan(followed[designs, first])
+    found, steps = names_and_steps(model, spectrum, support)
+    values = spectrum.values.reshape(-1, states)
+    places, quality = _followed(values, steps, speeds)
+    followed, name, share, of_support, main = (
+        np.take_along_axis(part, places, -1).reshape(shape) for part in (values, *found)
+    )
+    first = np.arange(designs), spectrum.works.argmax(axis=1)
+    names, dofs = (np.array(list(some), dtype=object) for some in ([*name_list(model.dofs), ""], model.dofs))
+    none = np.isnan(followed)
     return {
         "mode_eigenvalue": followed,
-        "mode_quality": np.where(np.isnan(followed), np.nan, quality),
-        "mode_name": np.take_along_axis(moves.names, places, -1),
-        "mode_share": np.take_along_axis(moves.share, places, -1),
-        "mode_support_share": np.take_along_axis(shares[..., support, :].sum(axis=-2), places, -1),
-        "mode_coordinate": np.where(none, "", np.array(model.dofs, dtype=object)[main]),
+        "mode_quality": np.where(none, np.nan, quality.reshape(shape)),
+        "mode_name": names[name],
+        "mode_share": share,
+        "mode_support_share": of_support,
+        "mode_coordinate": np.where(none[first], "", dofs[main[first]]),
     }
 
 
-def _follow(spectrum: Spectrum) -> tuple[Array, Array, Array]:
+def _followed(values: Array, steps: Steps, speeds: int) -> tuple[Array, Array]:
     """Follow the states of each design along its airspeeds, over its failed points.
 
     Parameters
     ----------
-    spectrum : Spectrum
-        Eigenvalues and vectors of points (designs, speeds).
+    values : array (points, states)
+        Eigenvalues, the airspeeds of one design after those of another.
+    steps : Steps
+    speeds : int
+        Number of airspeeds.
 
     Returns
     -------
-    places : array (designs, speeds, states) of int
-        Place of each followed state at each airspeed; states by their frequency at the design's first good airspeed.
-    quality : array (designs, speeds, states)
+    places : array (points, states) of int
+        Place of each followed state; states by their frequency at the design's first good airspeed.
+    quality : array (points, states)
         Trust in the step from the good airspeed before, see `proprotor.stability.matching.match_modes`; NaN at the
         first good airspeed and at failed points.
-    first : array (designs,) of int
-        Place of the first good airspeed, -1 where there is none.
     """
-    designs, speeds, states = spectrum.values.shape
-    good = spectrum.works
-    points = np.flatnonzero(good)
-    same_design = np.diff(points // speeds) == 0
-    before, after = points[:-1][same_design], points[1:][same_design]
-    flat_values, flat_right = (
-        array.reshape(designs * speeds, *array.shape[2:]) for array in (spectrum.values, spectrum.right)
-    )
-    flat = Spectrum(flat_values, flat_right, blocks=spectrum.blocks)
-    steps = match_modes(flat, before, after)
-    places = by_frequency(spectrum.values).reshape(-1, states)
-    quality = np.full(places.shape, np.nan)
+    places, quality = by_frequency(values), np.full(values.shape, np.nan)
     for speed in range(1, speeds):
-        rows = np.flatnonzero(after % speeds == speed)
-        here = places[before[rows]]
-        places[after[rows]] = np.take_along_axis(steps.successor[rows], here, -1)
-        quality[after[rows]] = np.take_along_axis(steps.quality[rows], here, -1)
-    first = np.where(good.any(axis=1), good.argmax(axis=1), -1)
-    return places.reshape(designs, speeds, states), quality.reshape(designs, speeds, states), first
+        rows = np.flatnonzero(steps.after % speeds == speed)
+        here, there = places[steps.before[rows]], steps.after[rows]
+        places[there] = np.take_along_axis(steps.successor[rows], here, -1)
+        quality[there] = np.take_along_axis(steps.quality[rows], here, -1)
+    return places, quality
 
 
 def doubted(warning: Array, quality: Array) -> Array:

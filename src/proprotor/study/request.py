@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,8 @@ from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import HALVES, HUB, half_of
 from proprotor.rotor.options import parse_options
 from proprotor.study.batch import Analysis, Batch
-from proprotor.study.designs import AIRSPEED, Designs, Plan, paths_of
+from proprotor.study.description import as_attribute, described, with_deck_units
+from proprotor.study.designs import AIRSPEED, Designs, paths_of
 from proprotor.study.sampling import as_plan
 from proprotor.study.variables import ALONG_AIRSPEEDS, POINT, QUANTITIES, bytes_of, shape_of, variables
 from proprotor.support.airframe import Airframe
@@ -42,12 +43,15 @@ class Request:
         m/s, the same for every design; None if airspeed is among the inputs.
     scalar_airspeed : bool
         Whether one airspeed was given as a number, so that the results have no axis of airspeeds.
+    description : mapping
+        What the study was asked, as plain data: see `proprotor.study.description`.
     """
 
     analysis: Analysis
     designs: Designs
     airspeed: Array | None
     scalar_airspeed: bool
+    description: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -109,19 +113,19 @@ class Request:
             shape = (*self.designs.shape, *self.shape[1:] * along, *array.shape[1 + (one.on == POINT) :])
             attributes = {"long_name": one.meaning} | ({"units": one.units} if one.units else {})
             data[name] = ((*axes, *[AIRSPEED] * along, *one.dims), array.reshape(shape), attributes)
-        coordinates: dict[str, Any] = dict(self.designs.coordinates)
+        coordinates: dict[str, Any] = with_deck_units(self.designs.coordinates, analysis.case)
         if self.airspeed is not None:
             speeds = self.airspeed if over_speeds else self.airspeed[0]
             coordinates[AIRSPEED] = ((AIRSPEED,) * over_speeds, speeds, {"units": "m/s"})
         if "vectors" in analysis.quantities:
             coordinates["dof"] = list(analysis.dofs)
         own = stamp.of_case(analysis.case, analysis.options, self.designs.values) | self.designs.attributes
-        return xarray.Dataset(data, coordinates, own)
+        return xarray.Dataset(data, coordinates, own | as_attribute(self.description))
 
 
 def requested(
     case: Case,
-    inputs: Plan | Mapping[str, Any],
+    inputs: Any,
     airspeed: Any,
     quantities: str | Sequence[str],
     tolerance: Any,
@@ -140,7 +144,8 @@ def requested(
     plan = as_plan(inputs)
     from proprotor.deck.vary import design_inputs
 
-    designs = plan.resolve(design_inputs(case) if set(plan.inputs) - {AIRSPEED} else {})
+    known = design_inputs(case) if set(plan.inputs) - {AIRSPEED} else {}
+    designs = plan.resolve(known)
     own = AIRSPEED in plan.inputs
     if own == (airspeed is not None):
         raise InputError(AIRSPEED, airspeed, "must be given, either for all designs or among the inputs")
@@ -156,7 +161,8 @@ def requested(
             raise InputError("tolerance", tolerance, "must be a number above zero")
         analysis = replace(analysis, tolerance=float(tolerance))
     line = None if speeds is None else np.atleast_1d(speeds)
-    return Request(analysis, designs, line, speeds is not None and not speeds.ndim)
+    description = described(case, plan, known, airspeed, speeds, quantities, tolerance, options)
+    return Request(analysis, designs, line, speeds is not None and not speeds.ndim, description)
 
 
 def _known_quantities(quantities: str | Sequence[str]) -> tuple[str, ...]:

@@ -52,22 +52,26 @@ def grid(inputs: Mapping[str, Any]) -> Plan:
     -------
     Plan
     """
-    return _plan_of_values(inputs, _outer_product)
+    return _plan_of_values(inputs, _outer_product, "grid", {})
 
 
-def points(inputs: Mapping[str, Any]) -> Plan:
+def points(inputs: Mapping[str, Any], drawn: bool = False) -> Plan:
     """Return the plan of designs given one by one: lists of equal lengths; a single value is that of every design.
 
     Parameters
     ----------
     inputs : mapping
         Lists by deck path, as for `grid`.
+    drawn : bool
+        Whether the caller has drawn the designs at random, so that their results have percentiles.
 
     Returns
     -------
     Plan
     """
-    return _plan_of_values(inputs, _side_by_side)
+    return _plan_of_values(
+        inputs, partial(_side_by_side, drawn=drawn), "points", {"drawn": True} if drawn else {}
+    )
 
 
 def latin_hypercube(inputs: Mapping[Any, Any], size: int, seed: int = 0) -> Plan:
@@ -141,7 +145,7 @@ def saltelli(inputs: Mapping[Any, Any], size: int, seed: int = 0, second_order: 
     return _sampled("saltelli", inputs, size, seed, _draw_saltelli, second_order=second_order)
 
 
-def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
+def as_plan(inputs: Any) -> Plan:
     """Return a plan as it is, and a mapping as a `grid`.
 
     Parameters
@@ -165,12 +169,14 @@ def as_plan(inputs: Plan | Mapping[str, Any]) -> Plan:
     raise InputError("inputs", inputs, rule)
 
 
-def _plan_of_values(inputs: Mapping[str, Any], lay_out: Callable[..., Designs]) -> Plan:
+def _plan_of_values(
+    inputs: Mapping[str, Any], lay_out: Callable[..., Designs], method: str, settings: Mapping[str, Any]
+) -> Plan:
     for name, given in inputs.items():
         if not isinstance(name, str):
             rule = "must be one input: several vary together only in a sample"
             raise InputError(label_of(name), given, rule)
-    return Plan(dict(inputs), lay_out, read_values)
+    return Plan(dict(inputs), lay_out, read_values, method, settings)
 
 
 def _outer_product(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs:
@@ -183,8 +189,8 @@ def _outer_product(read: dict[str, Array], known: Mapping[str, Datum]) -> Design
     return Designs(dict(zip(axes, values, strict=True)), along, _units(axes, known))
 
 
-def _side_by_side(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs:
-    """Return the designs whose values stand at the same place of each list.
+def _side_by_side(read: dict[str, Array], known: Mapping[str, Datum], drawn: bool) -> Designs:
+    """Return the designs whose values stand at the same place of each list, and whether they were drawn at random.
 
     Raises
     ------
@@ -197,7 +203,8 @@ def _side_by_side(read: dict[str, Array], known: Mapping[str, Datum]) -> Designs
         raise InputError("inputs", given, "must be lists of equal lengths")
     size = max(lengths.values(), default=1)
     values = {name: np.broadcast_to(array, (size,)).copy() for name, array in read.items()}
-    return Designs(values, {DESIGN: np.arange(size)}, _units(values, known))
+    sample = {"method": "points", "size": size, "inputs": list(values)} if drawn else {}
+    return Designs(values, {DESIGN: np.arange(size)}, _units(values, known), sample)
 
 
 def _check_size(field: str, given: object, designs: int, inputs: int) -> None:
@@ -233,7 +240,8 @@ def _sampled(
         sample = {"method": method, "size": int(size), "seed": seed, "inputs": labels} | extra
         return _drawn(read, known, shares, sample)
 
-    return Plan(dict(inputs), lay_out, read_distribution)
+    settings = {"size": int(size), "seed": seed} | extra
+    return Plan(dict(inputs), lay_out, read_distribution, method, settings)
 
 
 def _drawn(

@@ -16,8 +16,9 @@ from proprotor.study import workers as study_workers
 from proprotor.study.checkpoint import Checkpoint
 from proprotor.study.designs import Plan
 from proprotor.study.division import Block, blocks_of, check_needs, points_at_once
-from proprotor.study.progress import progress_bar
+from proprotor.study.progress import Progress, Shown, shown_progress
 from proprotor.study.request import Request, requested
+from proprotor.study.study_file import repeated
 from proprotor.study.variables import DEFAULT_QUANTITIES, POINT, VARIABLE, blank
 from proprotor.typing import Array, Dataset
 
@@ -28,25 +29,28 @@ _SMALL = 4000  # points that are analysed before worker processes have started
 
 
 def study(
-    case: Case,
-    inputs: Plan | Mapping[str, Any],
+    case: Case | Dataset | str | os.PathLike[str],
+    inputs: Plan | Mapping[str, Any] | Dataset | str | os.PathLike[str] | None = None,
     airspeed: Any = None,
     quantities: str | Sequence[str] = DEFAULT_QUANTITIES,
     *,
     workers: int | None = None,
     client: Client | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
-    progress: bool | None = None,
+    progress: Shown = None,
     batch: int | None = None,
     tolerance: float | None = None,
     **options: Any,
 ) -> Dataset:
     """Return the stability and trim of many designs.
 
+    ``study(file)`` and ``study(results)`` repeat a study, from a file (`proprotor.save_study`) or from its results;
+    ``study(case, file)`` repeats a study of a case that was not loaded from a deck.
+
     Parameters
     ----------
-    case : Case
-    inputs : mapping or plan
+    case : Case; or xarray.Dataset or path, to repeat a study
+    inputs : mapping or plan; or xarray.Dataset or path, to repeat a study
         How inputs vary, by deck path (`proprotor.design_inputs`): a mapping of lists is a grid of all combinations;
         lists point by point, Latin hypercube, Sobol and Saltelli samples are plans of `proprotor.sampling`. Values are
         in SI, pint quantities or text with a unit. ``"airspeed"`` may be among the inputs.
@@ -63,8 +67,9 @@ def study(
     checkpoint : path, optional
         A folder that keeps each finished batch. The same call goes on where a killed one was, with the same results
         to the last bit, as long as the code is the same.
-    progress : bool, optional
-        A progress bar on the error stream; by default on a terminal.
+    progress : bool or callable, optional
+        A progress bar; by default on a terminal (the error stream) and in a notebook. A callable is called with the
+        numbers of points that are done, of all points, and of points that failed.
     batch : int, optional
         Points analysed at once, by default as many as memory allows up to 2000.
     tolerance : float, optional
@@ -82,21 +87,29 @@ def study(
     ------
     InputError
         For an unknown input, quantity or option, a value with a wrong unit, a checkpoint of another study or of other
-        code, a cluster that runs other code, or results, batches or workers that do not fit into memory.
+        code, a cluster that runs other code, or results, batches or workers that do not fit into memory; for a study to
+        repeat that was not written out, or whose deck has changed.
     """
+    given = {"airspeed": airspeed, "tolerance": tolerance} | options
+    given |= {} if quantities is DEFAULT_QUANTITIES else {"quantities": quantities}
+    again = repeated(case, inputs, given)
+    if again is not None:
+        run: dict[str, Any] = {"workers": workers, "client": client, "checkpoint": checkpoint}
+        return study(**again, **run, progress=progress, batch=batch)
+    assert isinstance(case, Case)
     # Results that are kept, or come from other computers, must all be of one code.
     code = "" if checkpoint is None and client is None else code_fingerprint()
-    request = requested(case, inputs, airspeed, quantities, tolerance, options, code)
-    check_needs(request, batch, workers, client)
-    division = {"points": batch or points_at_once(request, workers, client)}
     with ExitStack() as held:
+        told = held.enter_context(shown_progress(progress))
+        request = requested(case, inputs, airspeed, quantities, tolerance, options, code)
+        check_needs(request, batch, workers, client)
+        division = {"points": batch or points_at_once(request, workers, client)}
         kept = None if checkpoint is None else Checkpoint(checkpoint)
         if kept:
             division = held.enter_context(kept.open(request.identity, division))
         request = request.with_coordinates()
         blocks = blocks_of(request, int(division["points"]))
-        found = _found(request, blocks, kept, workers, client, progress)
-    return request.dataset(found)
+        return request.dataset(_found(request, blocks, kept, workers, client, told))
 
 
 def _found(
@@ -105,7 +118,7 @@ def _found(
     kept: Checkpoint | None,
     workers: int | None,
     client: Client | None,
-    progress: bool | None,
+    progress: Progress,
 ) -> dict[str, Array]:
     """Return the variables of all designs, from batches that were kept and batches that are analysed now."""
     analysis = request.analysis
@@ -114,15 +127,15 @@ def _found(
     for number, results in kept.finished(len(blocks)) if kept else ():
         _put(found, todo.pop(number), results)
     remaining = sum(map(_points_in, todo.values()))
+    points = int(np.prod(request.shape))
+    progress.begin(points, points - remaining)
     if not todo:
         return found
-    points = int(np.prod(request.shape))
-    with progress_bar(points, points - remaining, progress) as advance:
-        for number, results in _analysed(request, todo, remaining, workers, client):
-            if kept:
-                kept.save(number, results)
-            _put(found, blocks[number], results)
-            advance(_points_in(blocks[number]), int(np.count_nonzero(results["reason"] != "")))
+    for number, results in _analysed(request, todo, remaining, workers, client):
+        if kept:
+            kept.save(number, results)
+        _put(found, blocks[number], results)
+        progress.advance(_points_in(blocks[number]), int(np.count_nonzero(results["reason"] != "")))
     return found
 
 

@@ -14,6 +14,7 @@ ALONG_AIRSPEEDS = ("flutter", "modes")  # need all airspeeds of a design at once
 DEFAULT_QUANTITIES = QUANTITIES[:3]
 STABLE = "stable throughout"
 UNSTABLE = "unstable at the lowest airspeed"
+ABOVE, BELOW = "flutter_speed_above", "flutter_speed_below"  # limits of flutter speeds beyond the airspeeds
 
 POINT, _DESIGN = "point", "design"
 
@@ -33,6 +34,8 @@ _text = partial(_Variable, units="", dtype=str)  # a variable of texts, which ha
 
 _FLUTTER = {  # of a design
     "flutter_speed": _Variable("lowest airspeed of the range at which a mode becomes unstable", "m/s"),
+    ABOVE: _Variable("limit above which the flutter speed lies: no mode is unstable up to here", "m/s"),
+    BELOW: _Variable("limit below which the flutter speed lies: a mode is unstable here already", "m/s"),
     "flutter_frequency": _Variable("|Im s| of the mode that becomes unstable; 0: divergence", "rad/s"),
     "flutter_mode": _text("what moves in that mode at that airspeed"),
     "flutter_coordinate": _text("coordinate that takes most part in that mode"),

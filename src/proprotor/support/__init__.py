@@ -2,7 +2,7 @@
 
 In: a beam wing, a whole aircraft, or modes or matrices of any finite-element code. Out: `NormalModes`, on which `model`
 mounts rotors.
-This room imports `errors`, `typing`, `needs`, `files` and, for the names of coordinates, `rotor`.
+This room imports `errors`, `typing`, `needs`, `files`, `nastran` and, for the names of coordinates, `rotor`.
 
     normal_modes       coordinates of a support; two-axis pivot; rigid support
     airframe           coordinates of an airframe that carries two rotors
@@ -14,12 +14,17 @@ This room imports `errors`, `typing`, `needs`, `files` and, for the names of coo
     free_airframe      rigid motions and elastic modes of a free aircraft
     aircraft_airloads  airloads of a free aircraft: wing strips and tails
     wing_aerodynamics  airloads of the wing itself, by strips
-    nastran            modes from a Nastran run
+    nastran            modes or a reduced structure from a Nastran run
+    universal_modes    modes from a universal file
+    universal_file     datasets of such a file
     matrix_files       matrices of any finite-element code
+    matlab_file        such matrices in a file of MATLAB
+    matlab_level5      variables of such a file
     matrix_market      files of such matrices in the Matrix Market format
 
 All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam`, `beam_wing`, `free_airframe`,
-`matrix_files`, `nastran`, `stiffness_factors` and `wing_aerodynamics` belong to the face.
+`matlab_file`, `matrix_files`, `nastran`, `stiffness_factors`, `universal_modes` and
+`wing_aerodynamics` belong to the face.
 """
 
 from proprotor.support.airframe import SYMMETRIES, Airframe
@@ -49,10 +54,12 @@ __all__ = [
     "beam_wing",
     "free_airframe",
     "lowest_modes",
+    "matlab_file",
     "matrix_files",
     "nastran",
     "rigid_support",
     "stiffness_factors",
     "two_axis_pivot",
+    "universal_modes",
     "wing_aerodynamics",
 ]

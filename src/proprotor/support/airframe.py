@@ -6,12 +6,12 @@ left hub moves as the right hub does, seen in axes that are mirrored with the ro
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.support.normal_modes import NormalModes
+from proprotor.support.normal_modes import NormalModes, in_air
 from proprotor.typing import Array
 
 SYMMETRIES = ("symmetric", "antisymmetric")
@@ -51,9 +51,15 @@ class Airframe(NormalModes):
 
     symmetric = ("mass",)
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        left_hub = np.array(self.left_hub)
+        left_hub.flags.writeable = False  # like the other matrices
+        object.__setattr__(self, "left_hub", left_hub)
+
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> Airframe:
         """Return the airframe, with matrices (..., n, n), at airspeeds (m/s) and densities (kg/m³) that broadcast."""
         speed, density = np.asarray(airspeed)[..., None, None], np.asarray(density)[..., None, None]
         damping = self.damping + density * speed * np.asarray(self.airload_damping)
         stiffness = self.stiffness + density * speed**2 * np.asarray(self.airload_stiffness)
-        return replace(self, damping=damping, stiffness=stiffness, airload_damping=0.0, airload_stiffness=0.0)
+        return in_air(self, Airframe, damping, stiffness, airload_damping=0.0, airload_stiffness=0.0)

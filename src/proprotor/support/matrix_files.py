@@ -34,7 +34,7 @@ from proprotor.support.normal_modes import (
 from proprotor.typing import Array
 
 _LARGEST = 500_000_000  # bytes of a file, unpacked
-_LARGEST_UNIT = 1e12  # m or kg
+LARGEST_UNIT = 1e12  # m or kg
 _LARGEST_ENTRY = 1e100  # beyond this value products overflow
 _SYMMETRY = 1e-6  # files may have few digits
 _KEYS = ("mass", "stiffness", "damping", "dofs", "hub")
@@ -63,10 +63,10 @@ def read_npz(
         When the file is missing, damaged, too large or contains Python objects, or when the matrices do not make a
         support.
     """
-    with _readable("file", file) as path, zipfile.ZipFile(path) as archive:
+    with readable("file", file) as path, zipfile.ZipFile(path) as archive:
         if sum(entry.file_size for entry in archive.infolist()) > _LARGEST:
             raise InputError("file", str(path), f"must not hold more than {_LARGEST // 10**6} MB")
-    with _readable("file", file) as path, np.load(path, allow_pickle=False) as archive:
+    with readable("file", file) as path, np.load(path, allow_pickle=False) as archive:
         for name in archive.files:
             if name not in _KEYS:
                 raise InputError("file", str(path), unknown_name(name, _KEYS, "array"))
@@ -167,12 +167,12 @@ def support_from_matrices(
     """
     if includes_rotor and np.any(rotor_mass):
         raise InputError("rotor_mass", rotor_mass, "must not be given where the mass includes the rotor")
-    share, names = _share(hub, carries), _names(dofs, len(np.atleast_1d(mass)) if _is_motion(hub) else None)
+    share, names = _share(hub, carries), _names(dofs, (*np.shape(mass), 1)[0] if _is_motion(hub) else None)
     given = {"mass": mass, "stiffness": stiffness, "damping": damping}
     matrices = {name: _checked(name, part, len(names)) for name, part in given.items() if part is not None}
     for name, unit in (("length_unit", length_unit), ("mass_unit", mass_unit)):
-        if not 1 / _LARGEST_UNIT <= unit <= _LARGEST_UNIT:
-            rule = f"must be above zero, from {1 / _LARGEST_UNIT:g} to {_LARGEST_UNIT:g}"
+        if not 1 / LARGEST_UNIT <= unit <= LARGEST_UNIT:
+            rule = f"must be above zero, from {1 / LARGEST_UNIT:g} to {LARGEST_UNIT:g}"
             raise InputError(name, unit, rule)
     # A translation counts lengths in the file's unit, a rotation radians: all entries then have the unit of energy.
     motion = _motion(names, hub)
@@ -310,12 +310,12 @@ def _check_symmetry(name: str, matrix: Any) -> None:
 
 def _matrix_market(field: str, path: str | os.PathLike[str]) -> Any:
     """Return the matrix of a Matrix Market file."""
-    with _readable(field, path) as found:
+    with readable(field, path) as found:
         return read_matrix(found)
 
 
 @contextmanager
-def _readable(field: str, file: str | os.PathLike[str]) -> Iterator[Path]:
+def readable(field: str, file: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield the path of a file that is not too large, and turn any error of its reader into an `InputError`."""
     path = Path(file)
     try:

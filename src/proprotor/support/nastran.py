@@ -1,31 +1,40 @@
-"""A support from a Nastran normal-modes run: eigenvectors at the hub and generalised masses from an .op2 file.
-
-pyNastran reads the file; the extra `nastran` installs it.
-"""
+"""A support from a Nastran run: real modes at the hub's grid point, or the matrices of a reduced structure."""
 
 from __future__ import annotations
 
 import os
-import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, redirect_stdout
-from io import StringIO
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, unknown_name
-from proprotor.needs import need
+from proprotor.errors import InputError, check_finite, unknown_name
+from proprotor.nastran.found import COMPONENTS, FileFault, Found
+from proprotor.nastran.kinds_of_file import DMIG, OP4, kind_of, read_modes
+from proprotor.nastran.reduced import ReducedStructure, reduced_from_dmig, reduced_from_op4
+from proprotor.nastran.selection import chosen_set, is_in_output_system, rows_of, table_of
+from proprotor.support.matrix_files import support_from_matrices
 from proprotor.support.modal_reduction import per_mode
 from proprotor.support.normal_modes import TRANSLATION, NormalModes, signed_names
 from proprotor.typing import Array
 
-_COMPONENTS = ("T1", "T2", "T3", "R1", "R2", "R3")
 # The hub axes (I up, J outboard, K forward) in Nastran's usual aircraft axes: X aft, Y to the right, Z up.
 AIRCRAFT_AXES = {"x": "T3", "y": "T2", "z": "-T1", "alpha_x": "R3", "alpha_y": "R2", "alpha_z": "-R1"}
-_LARGEST = 2_000_000_000  # bytes
+_UNSTABLE = 1.0  # rad²/s², below whose opposite an eigenvalue is no rounding error of a rigid motion
+_Result = TypeVar("_Result")
+
+
+class _Modes(NamedTuple):
+    """Modes of a run: numbers (k), ω in rad/s (k), generalised mass (k), motion T1 … R3 (6, k) and its system."""
+
+    numbers: Sequence[int]
+    frequency: Array
+    generalized_mass: Array
+    motion: Array
+    system: int
 
 
 def nastran_modes(
@@ -38,160 +47,253 @@ def nastran_modes(
     damping_ratio: ArrayLike = 0.0,
     modes: int | None = None,
     subcase: int | None = None,
+    generalized_mass: ArrayLike | None = None,
+    coordinates: str | os.PathLike[str] | None = None,
     hub: Mapping[str, str] | None = None,
     length_unit: float = 1.0,
     mass_unit: float = 1.0,
     names: Sequence[str] | None = None,
 ) -> NormalModes:
-    """Return the real modes of a Nastran run as a support.
+    """Return the real modes, or the reduced structure, of a Nastran run as a support.
 
     Parameters
     ----------
     file : str or path
-        An .op2 file with eigenvectors (OUGV1, DISPLACEMENT(PLOT) = ALL or a set with the grid) and the eigenvalue
-        table LAMA.
+        Real eigenvectors: .op2, .h5 (MSC Nastran), .pch or, with seven digits, .f06. Matrices of an external
+        superelement (EXTSEOUT): .pch with entries DMIG, or .op4. The content tells the kind.
     grid : int
-        The grid point at the hub; its motion is read in the output coordinate system of this grid point.
+        The grid point at the hub. Its motion is read in its output coordinate system, except from tables BOUG… and
+        BOPHIG of an .op2 file without others, which are in the basic one. If the file says that this system is not
+        the basic one, and `hub` is not given, the support has a warning.
     includes_rotor, shaft : bool or str, str
         How the run had the rotor on, as for `proprotor.support.normal_modes.NormalModes`: "mass only" for a point mass
         at the hub's grid point (CONM2 without inertias), "rigid" with the rotor's inertias, "gimballed" with a gimbal
         between rotor and hub.
     carries : "one rotor" or "two rotors"
         What the structure of the run carries: one rotor, as half an aircraft with conditions of symmetry does, or two,
-        as a whole aircraft does, of which one half goes with one rotor. Keep modes of one symmetry then.
+        as a whole aircraft does, of which one half goes with one rotor. Keep modes of one symmetry then. Matrices carry
+        one rotor.
     damping_ratio : float or array
         Fraction of critical damping of the lowest modes, the last value for all modes above.
     modes : int, optional
         How many of the lowest modes to keep; by default all.
     subcase : int, optional
         Number of the subcase, needed when the file has several.
+    generalized_mass : float or array, optional
+        Generalised masses in units of the run, the last value for all modes above, for a file without the table of
+        eigenvalues (LAMA): 1 for eigenvectors normalised to the mass, as EIGRL does it.
+    coordinates : str or path, optional
+        For an .op4 file: the file of bulk data that EXTSEOUT wrote beside it (.pch or .asm), whose entry EXTRN names
+        the coordinates of the matrices.
     hub : mapping of str to str, optional
         For each of x, y, z, alpha_x, alpha_y, alpha_z one of T1 … R3, with "-" before a component that points the other
         way; `AIRCRAFT_AXES` by default.
     length_unit, mass_unit : float
         m and kg per unit of the run, such as 0.0254 and 175.1268 for inches and lbf s²/in.
     names : sequence of str, optional
-        Names of the modes; by default mode_1 and so on.
+        Names of the modes; by default mode_1 and so on, by the numbers that the run gave. Coordinates of matrices are
+        1101.T1 and so on, unless the lowest modes are kept.
+
+    Returns
+    -------
+    NormalModes
+        SI.
 
     Raises
     ------
     InputError
-        When pyNastran is not installed, the file is missing or damaged, or has no such grid, subcase or tables.
+        When the file is missing, cut off, damaged or of another kind, or has no such grid point, subcase or tables, and
+        for input that does not go with this kind of file.
     """
-    results = _read(Path(file))
-    vectors = _one_subcase(results.eigenvectors, subcase, file)
-    motion = _motion_of(grid, vectors)
-    table = _table(results.eigenvalues, vectors, file)
-    available = len(vectors.modes)
-    count = available if modes is None else modes
-    if not 1 <= count <= available:
-        raise InputError("modes", modes, f"must be from 1 to {available}, the modes of the file")
-    rows = [list(table.mode).index(mode) for mode in vectors.modes[:count]]
-    frequency = np.asarray(table.radians, dtype=float)[rows]
-    generalized_mass = np.asarray(table.generalized_mass, dtype=float)[rows]
-    motion = _turned(motion[:, :count], hub)
-    if not (np.isfinite(motion).all() and np.isfinite(generalized_mass).all() and min(generalized_mass) > 0):
-        raise InputError("file", str(file), "must hold finite eigenvectors and generalised masses above zero")
+    check_finite("length_unit", length_unit, "above zero")
+    check_finite("mass_unit", mass_unit, "above zero")
+    path = Path(file)
+    kind = _unless_faulty(path, kind_of)
+    how: dict[str, Any] = {"includes_rotor": includes_rotor, "shaft": shaft}
+    if kind in (DMIG, OP4):
+        _refuse_beside_matrices(subcase=subcase, generalized_mass=generalized_mass)
+        if carries != "one rotor":
+            raise InputError("carries", carries, "must be one rotor with matrices")
+        how |= {"modes": modes, "damping_ratio": damping_ratio}
+        how |= {"length_unit": length_unit, "mass_unit": mass_unit}
+        return _of_matrices(_reduced(path, kind, coordinates), grid, hub, names, **how)
+    if coordinates is not None:
+        raise InputError("coordinates", str(coordinates), "must be given with an .op4 file only")
+    read = _unless_faulty(path, read_modes, kind, grid)
+    found = _kept(_modes(read, grid, file, subcase, generalized_mass), modes, file)
+    motion = _turned(found.motion, hub)
     # The coordinate of a mode is a number without unit: a translation counts lengths in the run's unit.
     motion[TRANSLATION] *= length_unit
-    return NormalModes.from_frequencies(
-        names=tuple(names) if names else [f"mode_{place}" for place in range(1, count + 1)],
-        generalized_mass=generalized_mass * mass_unit * length_unit**2,
-        frequency=frequency,
-        damping_ratio=per_mode(damping_ratio, count),
+    support = NormalModes.from_frequencies(
+        names=tuple(names) if names else [f"mode_{number}" for number in found.numbers],
+        generalized_mass=found.generalized_mass * mass_unit * length_unit**2,
+        frequency=found.frequency,
+        damping_ratio=per_mode(damping_ratio, len(found.numbers)),
         hub=motion,
-        includes_rotor=includes_rotor,
-        shaft=shaft,
         carries=carries,
+        **how,
+    )
+    return _with_doubts(support, _doubt_of_axes(grid, found.system, hub))
+
+
+def _doubt_of_axes(grid: int, system: int, hub: Mapping[str, str] | None) -> str:
+    """Return a doubt of axes that nobody named, where the grid point has its own output coordinate system."""
+    if hub is not None or not system:
+        return ""
+    return (
+        f"grid point {grid} has the output coordinate system {system}, and hub does not say which of its axes are the "
+        "rotor's: aircraft axes are taken"
     )
 
 
-def _read(path: Path) -> Any:
-    """Return the results in an .op2 file as pyNastran holds them."""
-    if not path.is_file():
-        raise InputError("file", str(path), "no such file")
-    if path.stat().st_size > _LARGEST:
-        raise InputError("file", str(path), f"must not be larger than {_LARGEST // 10**9} GB")
-    with warnings.catch_warnings():  # pyNastran uses names that NumPy has deprecated
-        warnings.simplefilter("ignore")
-        with _names_of_older_numpy():
-            need("pyNastran.op2.op2", "file", "Nastran's results", "nastran")
-            from pyNastran.op2.op2 import OP2
-
-            results = OP2(debug=False, log=_Silent())
-            try:
-                with redirect_stdout(StringIO()):
-                    results.read_op2(str(path), build_dataframe=False)
-            except Exception as error:  # a reader of damaged binary files can raise anything
-                rule = f"is damaged, or no .op2 file with results ({type(error).__name__})"
-                raise InputError("file", str(path), rule) from None
-    return results
+def _with_doubts(support: NormalModes, *doubts: str) -> NormalModes:
+    """Return the support with the doubts that are not empty."""
+    text = "; ".join(filter(None, doubts))
+    return replace(support, warning=np.array(text, dtype=object)) if text else support
 
 
-class _Silent:
-    """A log that drops all messages of a reader."""
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):
-            raise AttributeError(name)
-        return lambda *args, **kwargs: None
+def _refuse_beside_matrices(**given: Any) -> None:
+    """Refuse input that is about modes."""
+    for field, value in given.items():
+        if value is not None:
+            raise InputError(field, value, "must not be given with matrices, which have no modes")
 
 
-@contextmanager
-def _names_of_older_numpy() -> Iterator[None]:
-    """Give NumPy its function in1d, which NumPy 2.4 dropped, while pyNastran 1.3 is running."""
-    dropped = "in1d"
-    if hasattr(np, dropped):
-        yield
-        return
-    setattr(np, dropped, lambda tested, among, **options: np.isin(np.ravel(tested), among, **options))
+def _unless_faulty(path: Path, read: Callable[..., _Result], *arguments: Any) -> _Result:
+    """Return what is read from a file, and turn its faults into errors about the input."""
     try:
-        yield
-    finally:
-        delattr(np, dropped)
+        if not path.is_file():
+            raise InputError("file", str(path), "no such file")
+        return read(path, *arguments)
+    except FileFault as fault:
+        raise InputError("file", str(path), str(fault)) from None
+    except OSError as error:
+        raise InputError("file", str(path), f"cannot be read ({error.strerror or error})") from None
 
 
-def _one_subcase(eigenvectors: Mapping[Any, Any], subcase: int | None, path: Any) -> Any:
-    """Return the real eigenvectors of one subcase."""
-    if not eigenvectors:
-        raise InputError("file", str(path), "has no real eigenvectors: ask Nastran for DISPLACEMENT(PLOT)")
-    real = {key: vectors for key, vectors in eigenvectors.items() if hasattr(vectors, "eigns")}
-    if not real:
-        rule = "has complex eigenvectors alone: ask Nastran for real ones (SOL 103)"
-        raise InputError("file", str(path), rule)
-    numbers = {getattr(vectors, "isubcase", key): vectors for key, vectors in real.items()}
-    listed = ", ".join(map(str, numbers))
-    if subcase is None and len(numbers) > 1:
-        raise InputError("subcase", None, f"must be given: the file has {listed}")
-    if subcase is not None and subcase not in numbers:
-        raise InputError("subcase", subcase, f"is not in the file, which has {listed}")
-    return numbers[next(iter(numbers)) if subcase is None else subcase]
+def _modes(
+    found: Found, grid: int, file: Any, subcase: int | None, generalized_mass: ArrayLike | None
+) -> _Modes:
+    """Return the modes of one subcase, with generalised masses of the file or as given."""
+    chosen = chosen_set(found, grid, subcase, str(file))
+    system = found.output_system if is_in_output_system(chosen) else 0
+    table = table_of(chosen, found.tables)
+    if table is None:
+        if generalized_mass is None:
+            rule = (
+                "has no eigenvalue table (LAMA) for its eigenvectors, so that their generalised masses are not known: "
+                "give generalized_mass = 1 if the eigenvectors are normalised to the mass (EIGRL, NORM = MASS), or run "
+                "Nastran with PARAM,POSTEXT,YES"
+            )
+            raise InputError("file", str(file), rule)
+        if np.isnan(chosen.eigenvalues).any():
+            rule = "has no frequencies for its eigenvectors: ask Nastran for SORT1, or PARAM,POSTEXT,YES"
+            raise InputError("file", str(file), rule)
+        masses = _repeated(generalized_mass, len(chosen.numbers))
+        return _Modes(chosen.numbers, _frequency(chosen.eigenvalues, file), masses, chosen.motion, system)
+    if generalized_mass is not None:
+        rule = "must not be given: the file has a table of generalised masses (LAMA)"
+        raise InputError("generalized_mass", generalized_mass, rule)
+    rows = rows_of(chosen, table)
+    masses = np.asarray(table.generalized_mass, dtype=float)[rows]
+    return _Modes(chosen.numbers, _frequency(table.eigenvalues[rows], file), masses, chosen.motion, system)
 
 
-def _motion_of(grid: int, vectors: Any) -> Array:
-    """Return the motion (6, modes) of a grid point, rows T1 … R3."""
-    places = np.flatnonzero(np.asarray(vectors.node_gridtype)[:, 0] == grid)
-    if not len(places):
-        raise InputError("grid", grid, "has no eigenvectors in the file: the hub's grid point is missing")
-    return np.asarray(vectors.data[:, places[0], :], dtype=float).T
+def _frequency(eigenvalues: ArrayLike, file: Any) -> Array:
+    """Return ω in rad/s; a rigid motion may have an eigenvalue just below zero."""
+    square = np.asarray(eigenvalues, dtype=float)
+    if (square < -_UNSTABLE).any():
+        place = int(np.argmin(square)) + 1
+        rule = f"must have modes of a stable structure: eigenvalue {place} is {square.min():g}"
+        raise InputError("file", str(file), rule)
+    frequency: Array = np.sqrt(np.maximum(square, 0.0))
+    return frequency
 
 
-def _table(tables: Mapping[Any, Any], vectors: Any, path: Any) -> Any:
-    """Return the eigenvalue table that belongs to the eigenvectors, which is the table with the same eigenvalues."""
-    for table in tables.values():
-        known = dict(zip(table.mode, table.eigenvalues, strict=True))
-        given = zip(vectors.modes, vectors.eigns, strict=True)
-        if all(np.isclose(known.get(mode, np.nan), value, rtol=1e-4, atol=1e-3) for mode, value in given):
-            return table
-    raise InputError("file", str(path), "has no eigenvalue table (LAMA) for its eigenvectors")
+def _repeated(values: ArrayLike, count: int) -> Array:
+    """Return one generalised mass for each mode; the last given value is repeated."""
+    given = np.atleast_1d(np.asarray(values, dtype=float))
+    if not given.size or not (np.isfinite(given) & (given > 0)).all():
+        raise InputError("generalized_mass", values, "must be above zero for each mode")
+    return given[np.minimum(np.arange(count), len(given) - 1)]
+
+
+def _kept(found: _Modes, modes: int | None, file: Any) -> _Modes:
+    """Return the lowest modes, or refuse modes that are no numbers of a structure."""
+    available = len(found.numbers)
+    count = available if modes is None else modes
+    if not 1 <= count <= available:
+        raise InputError("modes", modes, f"must be from 1 to {available}, the modes of the file")
+    order = np.argsort(found.frequency, kind="stable")[:count]
+    kept = _Modes(
+        [found.numbers[place] for place in order],
+        found.frequency[order],
+        found.generalized_mass[order],
+        found.motion[:, order],
+        found.system,
+    )
+    finite = all(np.isfinite(part).all() for part in kept[1:4])
+    if not (finite and min(kept.generalized_mass) > 0):
+        raise InputError("file", str(file), "must hold finite eigenvectors and generalised masses above zero")
+    return kept
+
+
+def hub_components(hub: Mapping[str, str] | None) -> list[tuple[str, float, str]]:
+    """Return component, sign and axis of the hub for each of x … αz; see `nastran_modes`.
+
+    Raises
+    ------
+    InputError
+        For an axis or a component that is missing or unknown.
+    """
+    hub = AIRCRAFT_AXES if hub is None else hub
+    found = []
+    for axis, name, sign in signed_names(hub, "motions"):
+        if name not in COMPONENTS:
+            raise InputError(f"hub.{axis}", hub[axis], unknown_name(name, COMPONENTS, "component"))
+        found.append((name, sign, axis))
+    return found
 
 
 def _turned(motion: Array, hub: Mapping[str, str] | None) -> Array:
     """Return the rows x … αz from the rows T1 … R3."""
-    hub = AIRCRAFT_AXES if hub is None else hub
-    rows = []
-    for axis, name, sign in signed_names(hub, "motions"):
-        if name not in _COMPONENTS:
-            raise InputError(f"hub.{axis}", hub[axis], unknown_name(name, _COMPONENTS, "component"))
-        rows.append(sign * motion[_COMPONENTS.index(name)])
-    return np.array(rows)
+    return np.array([sign * motion[COMPONENTS.index(name)] for name, sign, _ in hub_components(hub)])
+
+
+def _reduced(path: Path, kind: str, coordinates: str | os.PathLike[str] | None) -> ReducedStructure:
+    """Return the reduced structure in a file of matrices."""
+    if kind == DMIG:
+        if coordinates is not None:
+            raise InputError("coordinates", str(coordinates), "must be given with an .op4 file only")
+        return _unless_faulty(path, reduced_from_dmig)
+    if coordinates is None:
+        rule = "is missing: an .op4 file needs the file of bulk data that EXTSEOUT wrote beside it (.pch or .asm)"
+        raise InputError("coordinates", None, rule)
+    beside = Path(coordinates)
+    if not beside.is_file():
+        raise InputError("coordinates", str(coordinates), "no such file")
+    return _unless_faulty(path, reduced_from_op4, beside)
+
+
+def _of_matrices(
+    structure: ReducedStructure,
+    grid: int,
+    hub: Mapping[str, str] | None,
+    names: Sequence[str] | None,
+    **options: Any,
+) -> NormalModes:
+    """Return a reduced structure as a support; structural damping of its elements is left out, and said so."""
+    signs = {1.0: "", -1.0: "-"}
+    at_hub = {axis: f"{signs[sign]}{grid}.{name}" for name, sign, axis in hub_components(hub)}
+    if missing := [name for name in at_hub.values() if name.lstrip("-") not in structure.names]:
+        rule = f"has no coordinate {missing[0].lstrip('-')} in the matrices: the hub's grid point must be kept (ASET)"
+        raise InputError("grid", grid, rule)
+    support = support_from_matrices(
+        structure.mass, structure.stiffness, structure.damping, dofs=structure.names, hub=at_hub, **options
+    )
+    if names:
+        support = replace(support, names=tuple(names))
+    left_out = structure.left_out and (
+        f"structural damping of the elements ({structure.left_out}) is left out: give damping_ratio"
+    )
+    return _with_doubts(support, left_out, _doubt_of_axes(grid, structure.output_systems.get(grid, 0), hub))

@@ -6,8 +6,8 @@ The simplest supports are here too: a two-axis pivot, and a support that does no
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -160,6 +160,40 @@ class NormalModes:
             includes_rotor=includes_rotor,
             shaft=shaft,
         )
+
+
+_Support = TypeVar("_Support", bound=NormalModes)
+
+
+def in_air(
+    support: NormalModes, kind: type[_Support], damping: Array, stiffness: Array, **others: Any
+) -> _Support:
+    """Return a support with the damping and stiffness of an airstream; all else was checked when it was made.
+
+    Parameters
+    ----------
+    support : NormalModes
+    kind : type
+        Class of the result, whose other fields `support` or `others` give.
+    damping, stiffness : array (..., n, n)
+        SI.
+    **others
+        Further fields that change.
+
+    Raises
+    ------
+    InputError
+        When a matrix is not finite.
+    """
+    found, size = object.__new__(kind), (len(support.names),) * 2
+    others |= {
+        "damping": _finite("damping", damping, size),
+        "stiffness": _finite("stiffness", stiffness, size),
+    }
+    for entry in fields(kind):
+        own = others[entry.name] if entry.name in others else getattr(support, entry.name)
+        object.__setattr__(found, entry.name, own)
+    return found
 
 
 def share_of_one_rotor(carries: str) -> float:

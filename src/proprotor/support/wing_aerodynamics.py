@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError, check_finite
 from proprotor.support.beam import section_motions
 from proprotor.support.beam_wing import BeamStructure
-from proprotor.support.normal_modes import HUB_AXES, NormalModes
+from proprotor.support.normal_modes import HUB_AXES, NormalModes, in_air
 from proprotor.typing import Array
 
 _UP, _OUTBOARD, _PITCH = (HUB_AXES.index(axis) for axis in ("x", "y", "alpha_y"))
@@ -105,10 +105,9 @@ class WingInAirstream(NormalModes):
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
         """Return the support, with matrices (..., n, n), at airspeeds (m/s) and densities (kg/m³) that broadcast."""
         speed, density = np.asarray(airspeed)[..., None, None], np.asarray(density)[..., None, None]
-        own = {entry.name: getattr(self, entry.name) for entry in fields(NormalModes)}
-        own["damping"] = self.damping + density * speed * np.asarray(self.airload_damping)
-        own["stiffness"] = self.stiffness + density * speed**2 * np.asarray(self.airload_stiffness)
-        return _LoadedModes(**own)
+        damping = self.damping + density * speed * np.asarray(self.airload_damping)
+        stiffness = self.stiffness + density * speed**2 * np.asarray(self.airload_stiffness)
+        return in_air(self, _LoadedModes, damping, stiffness)
 
 
 def in_airstream(support: NormalModes, strips: Strips, aerodynamics: WingAerodynamics) -> WingInAirstream:

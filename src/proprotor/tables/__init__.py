@@ -8,6 +8,8 @@ sweep_summary         numbers of a sweep: frequency, damping, unstable ranges, l
 sweep_table           a sweep as lines for a terminal, as records and as sentences
 sensitivity_summary   sensitivities as records
 study_summary         a study in a few numbers
+study_table           a study as records: one for each design, with its inputs in the units of the deck
+percentiles           percentiles of a sample as text, with bounds where designs lie beyond the airspeeds
 csv_text              records of any kind as CSV
 boundary_table        boundaries against an input: records and lines
 points                points of a CSV file, to stand on plots beside results
@@ -19,9 +21,11 @@ May import the engine, `stability` and `case`.
 __all__ = [
     "boundary_table",
     "csv_text",
+    "percentiles",
     "points",
     "sensitivity_summary",
     "study_summary",
+    "study_table",
     "sweep_summary",
     "sweep_table",
 ]

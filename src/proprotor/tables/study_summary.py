@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.errors import InputError
 from proprotor.model.doubts import reasons_for_doubt
+from proprotor.study.uncertainty import distribution
 from proprotor.typing import DataArray, Dataset
 
 
@@ -23,8 +25,8 @@ def study_summary(results: Dataset) -> dict[str, Any]:
     -------
     dict
         title; points, how many failed and why, the most frequent reason first, and how many are doubtful and why;
-        reservations; of flutter speeds how many were found and are doubtful, the lowest, median and highest in m/s;
-        without flutter speeds how many points are unstable, and the lowest damping.
+        reservations; of flutter speeds how many were found and are doubtful, how many lie above or below the airspeeds,
+        the lowest and the highest in m/s; without flutter speeds how many points are unstable, and the lowest damping.
     """
     reasons = _most_frequent(results.reason)
     summary: dict[str, Any] = {
@@ -37,7 +39,7 @@ def study_summary(results: Dataset) -> dict[str, Any]:
         "reservations": results.attrs["reservations"],
     }
     if "flutter_speed" in results:
-        return summary | _of_flutter_speeds(results)
+        return summary | _of_flutter_speeds(results) | _percentiles(results)
     if summary["failed"] == summary["points"]:
         return summary
     return summary | {
@@ -63,8 +65,24 @@ def _of_flutter_speeds(results: Dataset) -> dict[str, Any]:
         "flutter speeds found": len(speeds),
         "flutter speeds doubtful": int((results.flutter_warning != "").sum()),
         "doubts": _doubts(results.flutter_warning),
+        "flutter speeds above the airspeeds": int(np.isfinite(results.flutter_speed_above.values).sum()),
+        "flutter speeds below the airspeeds": int(np.isfinite(results.flutter_speed_below.values).sum()),
         "lowest flutter speed (m/s)": float(speeds[0]) if len(speeds) else None,
-        "median flutter speed (m/s)": float(np.median(speeds)) if len(speeds) else None,
         "highest flutter speed (m/s)": float(speeds[-1]) if len(speeds) else None,
         "notes": _most_frequent(results.flutter_note),
+    }
+
+
+def _percentiles(results: Dataset) -> dict[str, Any]:
+    """Return percentiles of the flutter speeds of a sample; nothing for designs that were chosen, as in a grid."""
+    if "sample" not in results.attrs:
+        return {}
+    try:
+        found = distribution(results)
+    except InputError:  # no flutter speed is known
+        return {}
+    bounds = zip(found.percentile.values, found.at_least.values, found.at_most.values, strict=True)
+    names = ("percentile", "at least (m/s)", "at most (m/s)")
+    return {
+        "percentiles of the flutter speed": [dict(zip(names, map(float, row), strict=True)) for row in bounds]
     }

@@ -1,0 +1,271 @@
+"""Balance of one blade at many points by the fused functions: loads of the sections, their work, and the slopes.
+
+The functions hold a straight lift line with the Prandtl-Glauert factor. Stations are the first axis of all arrays and
+points the last, so that the points of a block lie side by side in the cache.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from proprotor_equations.fused import trim as plans
+
+from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.fused import Layout, pool_of, values_of
+from proprotor.rotor.generated import evaluate
+from proprotor.rotor.quadrature import POWERS
+from proprotor.rotor.section_loads import LOAD_MOMENTS, BladeSections, mark_doubts
+from proprotor.typing import Array
+
+_Quantities = Mapping[str, Any]
+
+LOADS = plans.SECTION_LOADS[:-2]  # the last two results say if the loads are in doubt
+MOMENTS = tuple(f"{load}_{power}" for load in LOADS for power in range(POWERS))
+# A product of matrices has the same bits in each column if the number of columns is a multiple of this: no kernel of
+# BLAS then has columns left over, which it would add up in another order.
+_COLUMNS = 16
+_OF_SEGMENTS = ("ut_0", "ut_1", "up_0", "up_1", "ur_0", "spin")
+PITCH_TWICE = [0, 1, 2, 2]  # the collective moves the blade as the elastic pitch does
+
+
+_NO_LOADS = dict.fromkeys(LOAD_MOMENTS, 0.0)
+# Fields of the airfoil, and their names in the plan `section_loads`.
+OF_AIRFOIL = {
+    "lift_slope": "lift_slope",
+    "zero_lift_angle": "zero_lift_angle",
+    "drag": "drag_coefficient",
+    "moment": "moment_coefficient",
+}
+
+
+class Room:
+    """Memory for the loads at the stations, the same for every block: to get new memory takes longer than the loads."""
+
+    def __init__(self) -> None:
+        self._numbers = np.empty(0)
+
+    def array(self, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
+        """Return an array whose numbers stay until the next call."""
+        size = int(np.prod(shape))
+        if self._numbers.size < size or self._numbers.dtype != kind:
+            self._numbers = np.empty(size, dtype=kind)
+        return self._numbers[:size].reshape(shape)
+
+
+class _Balanced(NamedTuple):
+    """Balance of a blade at n points.
+
+    residual, slopes : array (n, 5), (n, 5, 4)
+        Without airloads; columns as the unknowns of the trim.
+    work, work_slopes : array (n, 5), (n, 5, 4)
+        Virtual work of the airloads, and minus its change with the unknowns.
+    moments : array (loads, powers of r, segments, n)
+        Radial moments of the section loads.
+    """
+
+    residual: Array
+    slopes: Array
+    work: Array
+    work_slopes: Array
+    moments: Array
+
+
+def serves_sections(sections: BladeSections) -> bool:
+    """Return whether the fused functions hold the airfoil of these sections."""
+    return type(sections.airfoil) is Airfoil
+
+
+def balanced(
+    sections: BladeSections,
+    quantities: _Quantities,
+    compressibility: bool,
+    room: Room,
+    doubts: dict[str, Array] | None = None,
+) -> _Balanced:
+    """Return the balance of a blade at trim states.
+
+    Parameters
+    ----------
+    sections : BladeSections
+    quantities : mapping
+        Numbers or arrays (n,) of the blade at trim by name.
+    compressibility : bool
+    room : Room
+    doubts : dict, optional
+        Filled with the reasons to doubt the airfoil's coefficients outboard, masks (n,) by reason.
+    """
+    points = len(quantities["coning"])
+    blade = dict(quantities) | {name: side[:, None] for name, side in sections.sides.items()}
+    blade |= zip(plans.LINE, evaluate(plans.line, blade, np.cos, np.sin), strict=True)
+    air = _air(sections, blade, compressibility)
+    moments = _load_moments(sections, air, quantities["radius"], room, points, doubts)
+    shape = moments.shape[2:]
+    structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
+    blade |= _NO_LOADS
+    blade |= zip(MOMENTS, moments.reshape(-1, *shape), strict=True)
+    work = _matrices("work", evaluate(plans.work, blade), shape)
+    slopes = work["work_slopes"][..., PITCH_TWICE]
+    return _Balanced(
+        structure["residual"][..., 0], structure["slopes"], work["work"][..., 0], slopes, moments
+    )
+
+
+def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
+    """Return sides of the hinges (segments,) and radial moments (n, segments) by name and power of r."""
+    named = zip(MOMENTS, moments.reshape(-1, *moments.shape[2:]).swapaxes(1, 2), strict=True)
+    return _NO_LOADS | sections.sides | dict(named)
+
+
+@cache
+def _layouts() -> dict[str, Layout]:
+    return {"work": Layout.of(plans.WORK), "balance": Layout.of(plans.BALANCE)}
+
+
+def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> dict[str, Array]:
+    """Return the matrices (n, rows, columns) of a plan from results of a shape (n,), or (segments, n) to be summed."""
+    layout = _layouts()[plan]
+    kind = np.result_type(float, *results)
+    pool = np.empty((len(results), *shape), dtype=kind)
+    for place, result in enumerate(results):
+        pool[place] = result
+    total = pool if len(shape) == 1 else np.add.reduce(pool, axis=1)
+    whole = pool_of(values_of(tuple(total), layout), shape[-1:], kind)
+    return {name: np.take(whole, places, axis=1) for name, places in layout.places.items()}
+
+
+# Loads along the blade
+
+
+def _air(sections: BladeSections, blade: _Quantities, compressibility: bool) -> dict[str, Any]:
+    """Return what the sections meet, by name: arrays (segments, n) and (n,), or numbers that all points share."""
+    airfoil = vars(cast(Airfoil, sections.airfoil))
+    found = {name: np.ravel(airfoil[field]) for field, name in OF_AIRFOIL.items()}
+    names = (*_OF_SEGMENTS, "density", "section_damping", "pitch", "speed_of_sound")
+    found |= {name: blade[name] for name in names}
+    return found if compressibility else found | {"speed_of_sound": np.inf}
+
+
+def _load_moments(
+    sections: BladeSections,
+    air: _Quantities,
+    radius: Any,
+    room: Room,
+    points: int,
+    doubts: dict[str, Array] | None,
+) -> Array:
+    """Return the radial moments (loads, powers, segments, n) of the section loads, a block of points at a time."""
+    kind = np.result_type(float, *(np.asarray(value).dtype for value in air.values()))
+    shape = len(LOADS), POWERS, len(sections.quadrature.beyond_lag_hinge), points
+    moments = np.empty(shape, dtype=kind)
+    for rows, here in sections.blocks(points):
+        count = len(range(points)[rows]) if isinstance(rows, slice) else len(rows)
+        shared = here.quadrature.counts.ndim == 1
+        width = _full_width(count) if shared else count
+        met = {name: _columns(value, rows, width) for name, value in air.items()}
+        loads = _loads_at_stations(here, met, width, room, kind)
+        if doubts is not None:
+            of_stations = loads[-2, :, :count].T, loads[-1, :, :count].T
+            own = radius[rows] if np.ndim(radius) and len(radius) > 1 else radius
+            mark_doubts(doubts, here, own, of_stations, rows, points)
+        of_loads = loads[: len(LOADS)]
+        found = _by_product(here, of_loads) if shared else _point_by_point(here, of_loads)
+        moments[..., rows] = found[..., :count]
+    return moments
+
+
+def _full_width(count: int) -> int:
+    """Return the number of columns of a product that has room for a number of columns."""
+    return -(-count // _COLUMNS) * _COLUMNS
+
+
+def _columns(value: Any, rows: Array | slice, width: int) -> Any:
+    """Return a quantity (..., n) at some points, with copies of the first of them up to a width."""
+    if np.ndim(value) == 0 or value.shape[-1] == 1:
+        return value
+    some = value[..., rows]
+    return _widened(some, width)
+
+
+def _widened(some: Array, width: int) -> Array:
+    """Return an array (..., count) with copies of its first column up to a width."""
+    count = some.shape[-1]
+    if count == width:
+        return some
+    wide = np.empty((*some.shape[:-1], width), dtype=some.dtype)
+    wide[..., :count], wide[..., count:] = some, some[..., :1]
+    return wide
+
+
+def _loads_at_stations(
+    sections: BladeSections, air: dict[str, Any], width: int, room: Room, kind: np.dtype[Any]
+) -> Array:
+    """Return the results (results, stations, width) of the plan `section_loads`."""
+    r = _stations_first(sections.quadrature.stations, width)
+    given = dict(air)
+    shape = len(r), width
+    slices = sections.quadrature.slices
+    for name, motion in (("tangential_velocity", "ut"), ("axial_velocity", "up")):
+        given[name] = _along(air[f"{motion}_0"], slices, shape, kind, air[f"{motion}_1"], r)
+    for name, motion in (("radial_velocity", "ur_0"), ("section_spin", "spin")):
+        given[name] = _along(air[motion], slices, shape, kind)
+    along = sections.along.each(lambda part: _stations_first(part, width))
+    given["section_pitch"] = air["pitch"] + along.twist
+    given |= {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
+    loads = room.array((len(plans.SECTION_LOADS), *shape), kind)
+    evaluate(plans.section_loads, given, np.sqrt, np.arctan, loads)
+    return loads
+
+
+def _stations_first(value: Array, width: int) -> Array:
+    """Return a quantity (stations,) or (n, stations) as an array (stations, 1) or (stations, width)."""
+    return value[:, None] if value.ndim == 1 else _widened(np.ascontiguousarray(value.T), width)
+
+
+def _along(
+    at_axis: Array,
+    slices: list[slice],
+    shape: tuple[int, int],
+    kind: np.dtype[Any],
+    per_radius: Array | None = None,
+    r: Array | None = None,
+) -> Array:
+    """Return a quantity (stations, width) that is linear in r along each segment, or constant."""
+    found = np.empty(shape, dtype=kind)
+    for segment, own in enumerate(slices):
+        if per_radius is None or r is None:
+            found[own] = at_axis[segment]
+        else:
+            np.multiply(per_radius[segment], r[own], out=found[own])
+            found[own] += at_axis[segment]
+    return found
+
+
+def _by_product(sections: BladeSections, loads: Array) -> Array:
+    """Return the moments (loads, powers, segments, width) by a product with the weights that all points share."""
+    weights, slices = sections.quadrature.weights, sections.quadrature.slices
+    whole = np.zeros((POWERS, len(slices), len(weights)), dtype=weights.dtype)
+    for segment, own in enumerate(slices):
+        whole[:, segment, own] = weights[own].T
+    found = whole.reshape(-1, len(weights)) @ loads
+    return np.asarray(found.reshape(len(loads), POWERS, len(slices), -1))
+
+
+def _point_by_point(sections: BladeSections, loads: Array) -> Array:
+    """Return the moments (loads, powers, segments, n) by a product with the weights of each point.
+
+    The product has the order of sums of `_by_product`, so that a point has the same bits by either way.
+    """
+    quadrature = sections.quadrature
+    weights, slices = quadrature.weights, quadrature.slices
+    count, stations = weights.shape[:2]
+    whole = np.zeros((count, POWERS, len(slices), stations), dtype=weights.dtype)
+    for segment, own in enumerate(slices):
+        whole[:, :, segment, own] = weights[:, own].swapaxes(1, 2)
+    wide = np.zeros((count, stations, _full_width(len(loads))), dtype=loads.dtype)
+    wide[..., : len(loads)] = loads.T
+    found = whole.reshape(count, -1, stations) @ wide
+    moments = np.moveaxis(found[..., : len(loads)], 0, -1).swapaxes(0, 1)
+    return np.asarray(moments.reshape(len(loads), POWERS, len(slices), count))
