@@ -91,7 +91,7 @@ def boundaries(stiffness: list[float]) -> Iterator[str]:
     case = pp.load_case("xv15")
     for one in stiffness:
         found = case.vary({"rotor.control_stiffness": one * FT_LBF}).boundaries("50:500:10kt")
-        first = found.first
+        first = found.flutter
         yield "none to 500" if first is None else f"{first.airspeed / 0.514444444:.1f} {first.mode}"
 
 
