@@ -14,6 +14,7 @@ import numpy as np
 from proprotor_equations import airloads
 from proprotor_equations import trim as equations
 
+from proprotor.rotor.elimination import solve
 from proprotor.rotor.fused_balance import Room, balanced, segments_of, serves_sections
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options
@@ -64,7 +65,7 @@ class Slopes(NamedTuple):
         angles = solve(structure, np.broadcast_to(np.eye(len(sprung)), structure.shape))
         return Slopes(self.full @ angles, self.airloads @ angles)
 
-    def of(self, rows: Array) -> Slopes:
+    def of(self, rows: Array | slice) -> Slopes:
         """Return the slopes at some of the points."""
         return Slopes(self.full[rows], self.airloads[rows])
 
@@ -246,17 +247,6 @@ class Balance:
         given = {name: np.real(value) for name, value in take(self.quantities, rows).items()}
         quantities = with_trim(given, self.options, take(real, rows))
         return np.asarray(evaluate(equations.residual, quantities)[..., equations.TRIM].imag / _COMPLEX_STEP)
-
-
-def solve(slopes: Array, right: Array) -> Array:
-    """Return slopes⁻¹ right, (..., k, m); NaN at the points whose slopes have no inverse."""
-    try:
-        return np.linalg.solve(slopes, right)
-    except np.linalg.LinAlgError:  # raised for all points if the slopes of one are singular
-        good = np.isfinite(slopes).all(axis=(-2, -1)) & (np.abs(np.linalg.det(slopes)) > 0)
-        found = np.full(right.shape, np.nan, dtype=np.result_type(slopes, right))
-        found[good] = np.linalg.solve(slopes[good], right[good])
-        return found
 
 
 def newton_step(slopes: Array, residual: Array) -> Array:
