@@ -152,12 +152,12 @@ class Balance:
             residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
             structure, of_airloads = self._slopes(state, rows, quantities, segments)
             along = functools.partial(dict, segments)
-        whole = (structure + of_airloads)[..., self.free]
-        of_airloads = of_airloads[..., self.free]
-        blade = of_airloads[:, self.rows] * self.hinged[:, None]
-        slopes = Slopes(whole[:, self.rows], blade)
+        blade = self._square(of_airloads)
+        slopes = Slopes(self._square(structure) + blade, blade * self.hinged[:, None])
         residual = self._to_target(residual, rows)
-        return Linear(residual[:, self.rows], slopes, work, of_airloads, quantities, along)
+        return Linear(
+            residual[:, self.rows], slopes, work, np.take(of_airloads, self.free, axis=-1), quantities, along
+        )
 
     def left(self, state: State, rows: Array, share: float | None = None) -> Array:
         """Return the residual (n, k) with all of the airloads, without slopes."""
@@ -183,6 +183,12 @@ class Balance:
         """Subtract a step (n, k) from the free unknowns."""
         for column, place in enumerate(self.free):
             state[UNKNOWNS[place]][rows] -= step[:, column]
+
+    def _square(self, slopes: Array) -> Array:
+        """Return the rows that close the free unknowns, and the columns of these unknowns, (n, k, k)."""
+        width = slopes.shape[-1]
+        places = [[width * row + column for column in self.free] for row in self.rows]
+        return np.take(slopes.reshape(len(slopes), -1), places, axis=1)
 
     def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
         """Return the quantities of the whole blade at a state and at a share of its precone."""
@@ -252,7 +258,7 @@ class Balance:
 def newton_step(slopes: Array, residual: Array) -> Array:
     """Return the step (n, k) to subtract from the unknowns; NaN if the slopes have no inverse."""
     step = solve(slopes, residual[..., None])[..., 0]
-    return step if np.iscomplexobj(step) else np.clip(step, -LARGEST_STEP, LARGEST_STEP)
+    return step if np.iscomplexobj(step) else np.minimum(np.maximum(step, -LARGEST_STEP), LARGEST_STEP)
 
 
 def is_last(size: Any, before: Any) -> Any:
