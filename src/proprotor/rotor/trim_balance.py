@@ -188,7 +188,7 @@ class Balance:
         """Return the rows that close the free unknowns, and the columns of these unknowns, (n, k, k)."""
         width = slopes.shape[-1]
         places = [[width * row + column for column in self.free] for row in self.rows]
-        return np.take(slopes.reshape(len(slopes), -1), places, axis=1)
+        return np.take(slopes.reshape(*slopes.shape[:-2], -1), places, axis=-1)
 
     def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
         """Return the quantities of the whole blade at a state and at a share of its precone."""
