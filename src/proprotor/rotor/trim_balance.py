@@ -186,8 +186,8 @@ class Balance:
 
     def _square(self, slopes: Array) -> Array:
         """Return the rows that close the free unknowns, and the columns of these unknowns, (n, k, k)."""
-        width = slopes.shape[-1]
-        places = [[width * row + column for column in self.free] for row in self.rows]
+        rows, columns = (np.array(places, dtype=int) for places in (self.rows, self.free))
+        places = slopes.shape[-1] * rows[:, None] + columns
         return np.take(slopes.reshape(*slopes.shape[:-2], -1), places, axis=-1)
 
     def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
