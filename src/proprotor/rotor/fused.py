@@ -242,6 +242,8 @@ def _sin(angle: complex) -> Any:
 
 def plain_number(value: Any) -> Any:
     """Return an array of one number, or a number of NumPy, as a plain number."""
+    if type(value) is float:  # as most are: to ask about arrays takes longer
+        return value
     return value.item() if isinstance(value, np.ndarray | np.generic) else value
 
 

@@ -26,6 +26,9 @@ _REACH = 2.0
 _WINDOWS = (3, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
 _POWER_STEPS = (2, 2, 4)  # after which the bound is looked at
 _FLOOR = 1e-9
+# The fewest windows of the path of one point: half of their length (1,), and their middles (windows, 1), in λ.
+_HALF_WINDOW = np.array([0.5 / _WINDOWS[0]])
+_MIDDLES = (2 * np.arange(_WINDOWS[0])[:, None] + 1) * _HALF_WINDOW
 
 
 def contraction(
@@ -75,6 +78,16 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
         return _radius(np.abs(solve(expected.full, found.full - expected.full)), CONTRACTION)
 
     return _by_angles_or_moments(sprung, radius, found, expected) <= CONTRACTION
+
+
+def leads_to_end(before: Slopes, after: Slopes) -> bool:
+    """Return whether one point with these slopes at the start and after the search is at the end of the path.
+
+    The bound is that of `at_end` in the fewest windows, with slopes by angles, for an airfoil with a straight lift
+    line. A point without this bound may still have that of `at_end`.
+    """
+    radius = _radius(_moved(_HALF_WINDOW, _MIDDLES, before, after), CONTRACTION)
+    return bool((radius <= CONTRACTION).all())
 
 
 def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
