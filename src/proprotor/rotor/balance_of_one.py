@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
-import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
@@ -32,12 +31,9 @@ Numbers = dict[str, Any]
 Rows = list[list[float]]
 _NO_LOADS = dict.fromkeys(LOAD_MOMENTS, 0.0)
 _LINES = plans.LINE.index("ut_0")
-# What the plan `work` takes: of the line of a segment, of the radial moments, and moments that are always zero. The
-# names are those of the plan itself, which Python finds among its arguments without a look at their letters.
-_GEOMETRY = plans.LINE[:_LINES]
-_WORKING = [name for name in keywords(plans.work) if name in MOMENTS]
-_IDLE = {name: 0.0 for name in keywords(plans.work) if name in LOAD_MOMENTS and name not in MOMENTS}
-_ON_BLADE = ("rotor_speed", "airspeed", "lag_hinge_offset")
+# What the plan `work` takes besides line and moments: of the blade, and moments that a straight lift line has not.
+_OF_BLADE = ("rotor_speed", "airspeed", "lag_hinge_offset")
+_IDLE = {name: 0.0 for name in keywords(plans.work) if name in LOAD_MOMENTS}
 
 
 class Here(NamedTuple):
@@ -84,10 +80,10 @@ class Here(NamedTuple):
 class _Stations:
     """The stations of the blade, arrays (stations,), with the segment of each and the weights of all segments.
 
-    given : chord and airfoil, by the names of the plan `section_loads`.
+    given : chord and airfoil, by the names of the plan `section_loads`. A chord that all stations share is a number,
+        for what depends on it alone; the airfoil meets arrays, and arrays go with arrays faster than numbers do.
     weights : array (stations, powers of all segments)
     sides : on which side of the hinges each segment is.
-    own : for each segment, what picks its moments out of the moments of all segments.
     """
 
     radii: Array
@@ -98,7 +94,6 @@ class _Stations:
     given: Numbers
     weights: Array
     sides: list[Numbers]
-    own: Sequence[Callable[[list[float]], tuple[float, ...]]]
 
     @staticmethod
     @functools.lru_cache(maxsize=8)
@@ -110,16 +105,18 @@ class _Stations:
         weights = np.zeros((len(segment), count, POWERS))
         weights[np.arange(len(segment)), segment] = quadrature.weights
         airfoil = cast(Airfoil, sections.airfoil)
-        given = {name: getattr(airfoil, field) for field, name in OF_AIRFOIL.items()}
-        given |= {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
-        given = {name: plain_number(value) if np.size(value) == 1 else value for name, value in given.items()}
+        chords = {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
+        given = {name: part.item() if part.size == 1 else part for name, part in chords.items()}
+        given |= {
+            name: np.full(len(segment), getattr(airfoil, field), dtype=float)
+            for field, name in OF_AIRFOIL.items()
+        }
         numbers = zip(*(side.tolist() for side in sections.sides.values()), strict=True)
         sides = [dict(zip(sections.sides, own, strict=True)) for own in numbers]
-        own = [operator.itemgetter(*_places_of_moments(place, count)) for place in range(count)]
         flat = weights.reshape(len(segment), -1)
         radii, twist = quadrature.stations, along.twist
         bent = np.broadcast_to(along.bent, radii.shape)
-        return _Stations(radii, segment, twist, bent, airfoil, given, flat, sides, own)
+        return _Stations(radii, segment, twist, bent, airfoil, given, flat, sides)
 
     def along(self, lines: list[tuple[float, ...]], quantities: Numbers, sound: float) -> tuple[Array, Array]:
         """Return the loads (results, stations), and the moments (loads, powers of all segments).
@@ -150,12 +147,6 @@ class _Stations:
         first = self.radii.searchsorted(OUTBOARD * radius)
         incidence, mach = loads[-2:, first:]
         return any(mask.any() for mask in self.airfoil.warnings(incidence + self.bent[first:], mach).values())
-
-
-def _places_of_moments(segment: int, count: int) -> list[int]:
-    """Return where the moments of one of some segments that work stand among (loads, segments, powers)."""
-    places = np.arange(len(MOMENTS) * count).reshape(len(LOADS), count, POWERS)[:, segment].ravel()
-    return [int(places[MOMENTS.index(name)]) for name in _WORKING]
 
 
 class _Places(NamedTuple):
@@ -231,13 +222,10 @@ class BalanceOfOne:
 
     def _work(self, lines: list[tuple[float, ...]], moments: Array) -> Sequence[float]:
         """Return the results of the plan `work`, summed over the segments."""
-        of_blade = {name: self.quantities[name] for name in _ON_BLADE} | _IDLE
-        numbers, parts = moments.ravel().tolist(), []
-        for line, side, own in zip(lines, self.stations.sides, self.stations.own, strict=True):
-            given = of_blade | side
-            given.update(zip(_GEOMETRY, line, strict=False))
-            given.update(zip(_WORKING, own(numbers), strict=True))
-            parts.append(plans.work(**given))
+        of_blade, parts = {name: self.quantities[name] for name in _OF_BLADE} | _IDLE, []
+        for place, (line, side) in enumerate(zip(lines, self.stations.sides, strict=True)):
+            own = moments[:, POWERS * place : POWERS * (place + 1)].ravel().tolist()
+            parts.append(plans.work(line, own, **of_blade, **side))
         return parts[0] if len(parts) == 1 else list(map(sum, zip(*parts, strict=True)))
 
     def _linear(

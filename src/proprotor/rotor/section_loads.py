@@ -61,7 +61,7 @@ class BladeSections:
         flat = along.each(lambda part: flatten_points(part, shape, 1))
         return cls(quadrature.flattened(shape), flat, airfoil)
 
-    @property
+    @functools.cached_property
     def is_complex(self) -> bool:
         """Whether any number is complex, for derivatives by a complex step."""
         airfoil = vars(self.airfoil).values() if isinstance(self.airfoil, Airfoil) else ()

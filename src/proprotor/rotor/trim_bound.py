@@ -125,13 +125,14 @@ def _by_angles_or_moments(
 
 def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
     """Return N (windows, n, k, k) of windows in λ, given by half lengths (n,) and middles (windows, n)."""
-    mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
-    aside = (Slopes(*(a - b for a, b in zip(part, mean, strict=True))) for part in (after, *between))
-    slopes, size = mean.at(middle), mean.full.shape[-1]
-    right = np.empty((*slopes.shape[:-1], (2 + len(between)) * size))
-    right[..., :size] = half[:, None, None] * mean.airloads
-    for place, part in enumerate(aside, start=1):
-        right[..., place * size : (place + 1) * size] = part.at(middle)
+    first, last, *others = (np.asarray(part) for part in (before, after, *between))  # full and airloads
+    mean, left = (first + last) / 2, (1 - middle)[..., None, None]
+    slopes, size = mean[0] - left * mean[1], mean.shape[-1]
+    right = np.empty((*slopes.shape[:-1], (2 + len(others)) * size))
+    right[..., :size] = half[:, None, None] * mean[1]
+    for place, part in enumerate((last, *others), start=1):
+        aside = part - mean
+        right[..., place * size : (place + 1) * size] = aside[0] - left * aside[1]
     moved = np.abs(solve(slopes, right))
     in_share, *in_place = (moved[..., place : place + size] for place in range(0, moved.shape[-1], size))
     farthest = functools.reduce(np.maximum, in_place)

@@ -349,6 +349,8 @@ def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
 
 def _is_complex(value: Any) -> bool:
     """Return whether a number or an array is complex."""
+    if type(value) is float:  # as most are: to ask about arrays takes longer
+        return False
     return isinstance(value, complex) or getattr(value, "dtype", _REAL).kind == "c"
 
 
