@@ -157,12 +157,13 @@ class _Places(NamedTuple):
     work: list[int]
     work_slopes: list[list[int]]
 
-    @classmethod
-    def of(cls, rows: Sequence[int], free: Sequence[int]) -> _Places:
+    @staticmethod
+    @functools.lru_cache(maxsize=32)
+    def of(rows: tuple[int, ...], free: tuple[int, ...]) -> _Places:
         """Return the places of the entries of some rows and columns."""
         residual, slopes = plans.BALANCE["residual"], plans.BALANCE["slopes"]
         work, work_slopes = plans.WORK["work"], plans.WORK["work_slopes"]
-        return cls(
+        return _Places(
             [residual[row][0] for row in rows],
             [[slopes[row][place] for place in free] for row in rows],
             [work[row][0] for row in rows],
@@ -193,7 +194,9 @@ class BalanceOfOne:
         quantities = {name: plain_number(value) for name, value in balance.quantities.items()}
         stations, load = _Stations.of(balance.sections), plain_number(balance.target.load)
         rows, free, hinged = balance.rows, balance.free, balance.hinged.tolist()
-        return cls(balance, quantities, stations, load, rows, free, hinged, _Places.of(rows, free))
+        return cls(
+            balance, quantities, stations, load, rows, free, hinged, _Places.of(tuple(rows), tuple(free))
+        )
 
     def precone_load(self) -> list[float]:
         """Return the part of precone in the residual of the undeflected blade."""
