@@ -31,8 +31,8 @@ class Steps(NamedTuple):
     depth: Array
     open: Array
 
-    def at(self, rows: Array) -> Steps:
-        """Return some of the steps."""
+    def at(self, rows: Array | slice) -> Steps:
+        """Return some of the steps; those of a slice share their arrays with these steps."""
         return Steps(*(part[rows] for part in self))
 
     def ends(self, points: Points) -> Array:
