@@ -15,7 +15,6 @@ compiled before the first round.
 from __future__ import annotations
 
 import argparse
-import os
 import subprocess
 import sys
 import time
@@ -28,6 +27,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks import environments
 from benchmarks.fused import versions
 from benchmarks.study import INPUTS
 from proprotor import sampling
@@ -174,11 +174,9 @@ def against(console: Console, folder: Path) -> None:
 
 def _of_process(folder: Path, code: str, compiled: str) -> float:
     """Processor time that a program says it took with the package of a folder, s; its modules are compiled once."""
-    paths = os.pathsep.join(str(folder / part) for part in ("src", "generated"))
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     done = subprocess.run(
         [sys.executable, "-c", code],
-        env=environment | {"PYTHONPATH": paths, "PYTHONPYCACHEPREFIX": compiled},
+        env=environments.of_package(folder, compiled),
         capture_output=True,
         text=True,
         check=True,
