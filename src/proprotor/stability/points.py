@@ -51,7 +51,8 @@ class Points(NamedTuple):
 
     def at(self, rows: Array) -> Points:
         """Return some of the points."""
-        return Points(*(part.at(rows) if isinstance(part, Spectrum) else part[rows] for part in self))
+        parts = {name: own[rows] for name, own in self._asdict().items() if name != "spectrum"}
+        return Points(spectrum=self.spectrum.at(rows), **parts)
 
     def joined(self, other: Points) -> Points:
         """Return the points of both."""

@@ -83,8 +83,8 @@ def first_steps(before: Array, after: Array, successor: Array, quality: Array) -
 def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:
     """Return the steps with some of them, `rows`, parted at the points from `first` on."""
     old, new = steps.at(rows), np.arange(first, first + len(rows))
-    ends = (np.concatenate(part) for part in ((old.before, new), (new, old.after)))
-    both = match_modes(points.spectrum, *ends)
+    before, after = np.concatenate([old.before, new]), np.concatenate([new, old.after])
+    both = match_modes(points.spectrum, before, after)
     halves = [Matches(*(part[half] for part in both)) for half in np.split(np.arange(2 * len(new)), 2)]
     share = (points.position[new] - points.position[old.before])[:, None] / old.length(points)
     seen = np.take_along_axis(points.growth[new], halves[0].successor, 1)
