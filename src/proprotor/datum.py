@@ -12,7 +12,7 @@ from typing import Any
 
 from proprotor.units import factor_to_si
 
-STATUSES = ("published", "derived", "recalled", "calibrated", "assumed")
+STATUSES = ("published", "measured", "derived", "recalled", "calibrated", "assumed")
 PER_REV = "1/rev"
 _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*")
 
@@ -31,7 +31,7 @@ class Datum:
     unit : str
         SI unit, ``""`` for a plain number.
     status : str
-        published, derived, recalled, calibrated or assumed; ``"unstated"`` when the deck does not say.
+        published, measured, derived, recalled, calibrated or assumed; ``"unstated"`` when the deck does not say.
     source : str
         Where the number was read, or how it was found.
     r_over_R : tuple of float or None
