@@ -13,6 +13,7 @@ from typing import Any
 from proprotor.units import factor_to_si
 
 STATUSES = ("published", "measured", "derived", "recalled", "calibrated", "assumed")
+UNSTATED = "unstated"  # the status of a number whose deck does not say
 PER_REV = "1/rev"
 _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*")
 
@@ -45,7 +46,7 @@ class Datum:
     written: str
     si: Any
     unit: str
-    status: str = "unstated"
+    status: str = UNSTATED
     source: str = ""
     r_over_R: tuple[float, ...] | None = None
     rotor_speed: float | None = None

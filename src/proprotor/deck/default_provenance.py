@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from proprotor.datum import STATUSES
+from proprotor.datum import STATUSES, UNSTATED
 from proprotor.errors import InputError
 
 DEFAULT_STATUS, DEFAULT_SOURCE = "default_status", "default_source"
@@ -41,19 +41,22 @@ def with_default_provenance(tables: dict[str, Any]) -> dict[str, Any]:
     provenance = _checked(case)
     rest = {name: entry for name, entry in case.items() if name not in (DEFAULT_STATUS, DEFAULT_SOURCE)}
     kind = tables["support"].get("kind") if isinstance(tables.get("support"), dict) else None
-    return _stated(tables | {"case": rest}, (), kind, provenance)
+    tables = tables | {"case": rest}
+    return _stated(tables, (), kind, provenance) if provenance else tables
 
 
 def _checked(case: Mapping[str, Any]) -> dict[str, str]:
     """Return status and source of all numbers of a file."""
-    status, source = case.get(DEFAULT_STATUS), case.get(DEFAULT_SOURCE, "")
-    if status is None:
-        raise InputError(f"case.{DEFAULT_SOURCE}", source, f"must be given with {DEFAULT_STATUS}")
-    if status not in STATUSES:
+    status, source = case.get(DEFAULT_STATUS, UNSTATED), case.get(DEFAULT_SOURCE, "")
+    if status not in (UNSTATED, *STATUSES):
         raise InputError(f"case.{DEFAULT_STATUS}", status, f"must be one of {', '.join(STATUSES)}")
     if not isinstance(source, str):
         raise InputError(f"case.{DEFAULT_SOURCE}", source, "must be text")
-    return {"status": status, "source": source} if source else {"status": status}
+    if status == UNSTATED and source:
+        raise InputError(f"case.{DEFAULT_SOURCE}", source, f"must be given with {DEFAULT_STATUS}")
+    return {
+        name: text for name, text in (("status", status), ("source", source)) if text not in ("", UNSTATED)
+    }
 
 
 def _stated(

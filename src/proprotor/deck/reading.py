@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from proprotor.datum import PER_REV, STATUSES, Datum
+from proprotor.datum import PER_REV, STATUSES, UNSTATED, Datum
 from proprotor.deck.written import FileName, FilePath, PerRevolution
 from proprotor.errors import InputError, as_toml, is_choice, list_choices, unknown_name
 from proprotor.units import meaning, to_si
@@ -102,7 +102,7 @@ def datum(
     r_over_R: tuple[float, ...] | None = None,
 ) -> Datum:
     """Return a number with the status and source of its table."""
-    status, source = table.get("status", "unstated"), table.get("source", "")
+    status, source = table.get("status", UNSTATED), table.get("source", "")
     if "status" in table and status not in STATUSES:
         raise InputError("status", status, f"must be one of {', '.join(STATUSES)}")
     if not isinstance(source, str):

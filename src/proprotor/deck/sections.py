@@ -64,7 +64,7 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 
-from proprotor.datum import STATUSES
+from proprotor.datum import STATUSES, UNSTATED
 from proprotor.deck import fields
 from proprotor.deck.alternatives import (
     AIR_ALTERNATIVES,
@@ -89,16 +89,17 @@ class CaseSection(Section):
     warnings: list[fields.Text] = Field(
         default_factory=list, description="Remarks that a reader of results needs, one text each."
     )
-    default_status: Literal[STATUSES] | None = optional(  # type: ignore[valid-type]
-        "Status of every number of this file that states none; its base and its variants have their own."
+    default_status: Literal[UNSTATED, *STATUSES] = optional(  # type: ignore[valid-type]
+        "Status of every number of this file that states none; its base and its variants have their own.",
+        UNSTATED,
     )
     default_source: str = optional("Source of every number that has the default_status.", "")
 
     @model_validator(mode="after")
     def _defaults_of_a_file(self) -> CaseSection:
         """Refuse a default that came from elsewhere: `proprotor.deck.default_provenance` takes those of files."""
-        for name in (DEFAULT_STATUS, DEFAULT_SOURCE):
-            if name in self.model_fields_set:
+        for name, none in ((DEFAULT_STATUS, UNSTATED), (DEFAULT_SOURCE, "")):
+            if getattr(self, name) != none:
                 rule = "must stand in the file of a deck; a number that is set for a run is assumed"
                 raise InputError(name, getattr(self, name), rule)
         return self

@@ -185,14 +185,15 @@ class Rotor:
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
             rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
             raise InputError("flap_inertia", self.flap_inertia, rule)
-        if not nowhere_negative(np.real(self._gram_matrix())):
+        if not nowhere_negative(np.real(self.gram_matrix)):
             rule = (
                 "cannot belong to one blade: the Gram matrix of the mass integrals has a negative eigenvalue"
             )
             raise InputError("blade_inertia", self.blade_inertia, rule)
 
-    def _gram_matrix(self) -> Array:
-        """Return the integrals of m times two of the arms 1, r, ρβ, ρζ."""
+    @property
+    def gram_matrix(self) -> Array:
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ, (..., 4, 4) in kg, kg m and kg m²."""
         entries = (
             (self.blade_mass, self.blade_first_moment, self.flap_first_moment, self.lag_first_moment),
             (self.blade_first_moment, self.blade_inertia, self.flap_hub_inertia, self.lag_hub_inertia),

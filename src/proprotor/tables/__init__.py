@@ -12,6 +12,7 @@ study_table           a study as records: one for each design, with its inputs i
 percentiles           percentiles of a sample as text, with bounds where designs lie beyond the airspeeds
 csv_text              records of any kind as CSV
 boundary_table        boundaries against an input: records and lines
+amounts_table         what the inputs of a case amount to, as lines for a terminal and a report
 points                points of a CSV file, to stand on plots beside results
 ====================  =========================================================================
 
@@ -19,6 +20,7 @@ May import the engine, `stability` and `case`.
 """
 
 __all__ = [
+    "amounts_table",
     "boundary_table",
     "csv_text",
     "percentiles",
