@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from proprotor.errors import InputError
 from proprotor.units import factor_to_si
 
 STATUSES = ("published", "measured", "derived", "recalled", "calibrated", "assumed")
@@ -64,4 +65,7 @@ def deck_unit(number: Datum) -> tuple[str, float]:
         return "/rev", number.rotor_speed
     if not unit:
         return number.unit, 1.0
-    return unit, factor_to_si(number.written, unit, number.unit)
+    try:
+        return unit, factor_to_si(number.written, unit, number.unit)
+    except InputError:  # an angle whose tangent is the number
+        return number.unit, 1.0

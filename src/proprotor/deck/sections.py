@@ -222,10 +222,21 @@ class RotorSection(Section):
         "Angle from the collective reference to the blade's structural axes."
     )
     gimbal_stiffness: fields.Stiffness = needed("Stiffness of the hub spring.")
-    pitch_gimbal_coupling: fields.Number = needed("K_PG = tan δ3, pitch per gimbal tilt.")
+    pitch_gimbal_coupling: fields.Tangent = needed(
+        "K_PG = tan δ3, pitch nose down per gimbal tilt; an angle is δ3 itself."
+    )
+    kinematic_pitch_flap_coupling: fields.Tangent = optional(
+        "K_P3 = tan δ3 of the blade's own flap hinge, pitch nose down per flap; an angle is δ3 itself."
+    )
+    kinematic_pitch_lag_coupling: fields.Tangent = optional(
+        "K_P4 = tan δ4 of the blade's own lag hinge, pitch nose down per lag; an angle is δ4 itself."
+    )
     pitch_inertia: fields.InertiaOrNone = needed("Inertia of one blade about its pitch axis.")
     control_stiffness: fields.Stiffness = needed(
         "Control system stiffness of one blade, about its pitch axis."
+    )
+    cyclic_control_stiffness: fields.Stiffness = optional(
+        "Control system stiffness of one blade where the swashplate tilts; that of control_stiffness if left out."
     )
     flap_damping: fields.Damping = optional("Viscous damping of the flap hinge.")
     lag_damping: fields.Damping = optional("Viscous damping of the lag hinge.")
