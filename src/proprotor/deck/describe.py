@@ -167,6 +167,8 @@ def _takes(reading: Reading) -> str:
     values = meaning(reading.unit)
     if isinstance(reading, AfterChoice):
         values = f"of a length {values}; of an angle {meaning(reading.other_unit)}"
+    if reading.form == "tangent":
+        values += ', or the angle of which it is the tangent, "-15 deg"'
     if reading.form == "frequency":
         values += ', or "0.42/rev"'
     return f"{values}; {_ALONG[reading.form]}" if reading.form in _ALONG else values

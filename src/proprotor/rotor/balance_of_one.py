@@ -23,7 +23,7 @@ from proprotor.rotor.fused_balance import LOADS, MOMENTS, OF_AIRFOIL, PITCH_TWIC
 from proprotor.rotor.generated import evaluate, keywords
 from proprotor.rotor.quadrature import POWERS
 from proprotor.rotor.section_loads import LOAD_MOMENTS, OUTBOARD, BladeSections
-from proprotor.rotor.trim import FLAP_LAG
+from proprotor.rotor.trim import FLAP_LAG, blade_pitch
 from proprotor.rotor.trim_balance import Balance
 from proprotor.typing import Array
 
@@ -208,7 +208,7 @@ class BalanceOfOne:
         here = self.quantities | state
         if precone is not None:
             here["precone"] = precone
-        here["pitch"] = state["collective"] + state["elastic_pitch"]
+        here["pitch"] = blade_pitch(here, state)
         here["structural_pitch"] = here["pitch"] + here["structural_pitch_offset"]
         found = evaluate(plans.trim_integrals, here, math.cos, math.sin)
         here.update(zip(plans.TRIM_INTEGRALS, found, strict=True))
