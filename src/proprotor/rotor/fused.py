@@ -11,7 +11,7 @@ both renderings take the sines of NumPy. Complex numbers agree to rounding.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -89,13 +89,12 @@ class Layout:
 
     opposite : places of the results whose negative is needed as well, counted from 1.
     places : by the name of a matrix, the place of each entry among zero, the results, and the negatives.
-    entries : place of each entry of all matrices, one after the other, among zero, the results, and all negatives;
-        empty where one point has no use for the layout.
+    entries : place of each entry of all matrices, one after the other, among zero, the results, and all negatives.
     """
 
     opposite: list[int]
     places: dict[str, Array]
-    entries: Array = field(default_factory=lambda: np.empty(0, dtype=int))
+    entries: Array
 
     @classmethod
     def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> Layout:
@@ -173,7 +172,8 @@ def _pairs() -> tuple[Array, dict[str, Array]]:
 @cache
 def _sums() -> Layout:
     """Return the layout of the sums of the pairs."""
-    return Layout([], _pairs()[1])
+    places = _pairs()[1]
+    return Layout([], places, np.concatenate([part.ravel() for part in places.values()]))
 
 
 def _with_airloads(values: Sequence[Any], results: Sequence[Any]) -> list[Any]:

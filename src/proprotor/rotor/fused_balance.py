@@ -104,9 +104,8 @@ def balanced(
     moments = _load_moments(sections, air, quantities["radius"], room, points, doubts)
     shape = moments.shape[2:]
     structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
-    work = _matrices(
-        "work", evaluate(plans.work, blade | _NO_LOADS, line, moments.reshape(-1, *shape)), shape
-    )
+    of_loads = evaluate(plans.work, blade | _NO_LOADS, line, moments.reshape(-1, *shape))
+    work = _matrices("work", of_loads, shape)
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
 

@@ -29,12 +29,12 @@ _REACH = 2.0
 _WINDOWS = (4, 8, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
 _POWER_STEPS = (2, 2, 4)  # after which the bound is looked at
 _FLOOR = 1e-9
-_BLOCK = 2048  # windows and points whose matrices stay in the cache
-
-_Solution = Callable[[Array, Array], Array]
 # The fewest windows of the path of one point: half of their length (1,), and their middles (windows, 1), in λ.
 _HALF_WINDOW = np.array([0.5 / _WINDOWS[0]])
 _MIDDLES = (2 * np.arange(_WINDOWS[0])[:, None] + 1) * _HALF_WINDOW
+_BLOCK = 2048  # windows and points whose matrices stay in the cache
+
+_Solution = Callable[[Array, Array], Array]
 
 
 def contraction(
