@@ -85,7 +85,10 @@ class _Stations:
         weights = np.zeros((len(segment), len(quadrature.counts), POWERS))
         weights[np.arange(len(segment)), segment] = quadrature.weights
         airfoil = vars(cast(Airfoil, sections.airfoil))
-        of_airfoil = {name: plain_number(airfoil[field]) for field, name in OF_AIRFOIL.items()}
+        of_airfoil = {
+            name: plain_number(airfoil[field]) if np.size(airfoil[field]) == 1 else np.ravel(airfoil[field])
+            for field, name in OF_AIRFOIL.items()
+        }
         given = of_airfoil | {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
         numbers = zip(*(side.tolist() for side in sections.sides.values()), strict=True)
         sides = [dict(zip(sections.sides, own, strict=True)) for own in numbers]
