@@ -77,6 +77,8 @@ OUTPUTS = [
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--csv", "x.csv"),
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--plot", "x.png"),
     ("study", STUDY, "--out", "x.nc"),
+    ("study", STUDY, "--csv", "x.csv"),
+    ("study", STUDY, "--save", "x.toml"),
 ]
 
 

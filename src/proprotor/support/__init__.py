@@ -19,6 +19,7 @@ This room imports `errors`, `typing`, `needs`, `files`, `nastran` and, for the n
     universal_file     datasets of such a file
     matrix_files       matrices of any finite-element code
     matlab_file        such matrices in a file of MATLAB
+    matlab_level5      variables of such a file
     matrix_market      files of such matrices in the Matrix Market format
 
 All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam`, `beam_wing`, `free_airframe`,
