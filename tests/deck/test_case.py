@@ -10,6 +10,7 @@ from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.sections import AirfoilSection, OperationSection, RotorSection
 from proprotor.errors import InputError
 from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.support.normal_modes import NormalModes

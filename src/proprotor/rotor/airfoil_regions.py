@@ -73,9 +73,9 @@ class AirfoilRegions:
         """Refuse joints that overlap or reach beyond the blade."""
         low, high = (np.real(side) for side in self._joints)
         if np.any(high[..., :-1] > low[..., 1:] + _MET):
-            raise InputError("blend", np.real(self.blend).tolist(), "must not make two joints overlap")
+            raise InputError("blend", np.real(self._widths).tolist(), "must not make two joints overlap")
         if np.any(low < -_MET) or np.any(high > 1 + _MET):
-            raise InputError("blend", np.real(self.blend).tolist(), "must not reach beyond centre or tip")
+            raise InputError("blend", np.real(self._widths).tolist(), "must not reach beyond centre or tip")
 
     def _check_compressibility(self) -> None:
         """Refuse airfoils of which some take a Prandtl-Glauert factor and others do not."""
