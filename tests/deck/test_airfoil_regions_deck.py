@@ -6,6 +6,7 @@ from click.testing import CliRunner
 
 import proprotor as pp
 from proprotor.commands.main import main
+from proprotor.model.deck_fingerprint import deck_fingerprint
 from tests.c81_files import as_c81, made_up_tables
 
 HEAD = 'base = "xv15"\n[case]\nname = "regions"\n'
@@ -48,7 +49,10 @@ def test_files_start_from_the_folder_of_the_deck_and_a_file_may_hold_several(dec
     assert case.given["rotor.airfoil.table"].written == "inner.c81, outer.c81"
     (tmp_path / "both.c81").write_text(as_c81("INNER", **one) + as_c81("OUTER", **two))
     text = '[rotor.airfoil]\nregion_ends = 0.6\ntable = "both.c81"\ntable_name = ["OUTER", "INNER"]\n'
-    assert [part.name for part in pp.load_case(deck(text)).rotor.airfoil.airfoils] == ["OUTER", "INNER"]
+    turned = pp.load_case(deck(text))
+    assert [part.name for part in turned.rotor.airfoil.airfoils] == ["OUTER", "INNER"]
+    swapped = pp.load_case(deck(text.replace('"OUTER", "INNER"', '"INNER", "OUTER"')))
+    assert len({deck_fingerprint(case) for case in (turned, swapped)}) == 2
 
 
 def test_the_end_of_two_regions_and_the_width_may_vary(deck):

@@ -21,7 +21,6 @@ from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, 
 from proprotor.rotor.quadrature import flatten_points
 from proprotor.typing import Array
 
-_OF_JOINTS = ("region_ends", "blend")
 _MET = 1e-9  # of the radius: joints that overlap by less have their ends in common
 
 
@@ -35,12 +34,12 @@ class AirfoilRegions:
         An airfoil for each of n regions, such as `Airfoil` or `AirfoilTable`; two or more. Numbers of an `Airfoil` may
         be arrays of designs.
     region_ends : array_like (..., n - 1)
-        Outer ends r/R of all regions but the last, increasing between 0 and 1; a single number for two regions. Leading
-        axes are those of many designs, here and in `blend`.
+        Outer ends r/R of all regions but the last, dimensionless, increasing between 0 and 1; a single number for two
+        regions. Leading axes are those of many designs, here and in `blend`.
     blend : array_like, () or (..., n - 1) or (..., 1)
-        Width of the joint at each end, of the radius: half of the width lies on each side of the end, and across the
-        width the coefficients change linearly from one airfoil to the next. 0 is a sharp joint. Joints may meet, and
-        must not overlap.
+        Width of the joint at each end, as a share of the radius: half of the width lies on each side of the end, and
+        across the width the coefficients change linearly from one airfoil to the next. 0 is a sharp joint. Joints may
+        meet, and must not overlap.
 
     Raises
     ------
@@ -92,17 +91,30 @@ class AirfoilRegions:
         """Whether all airfoils have straight lift lines, whose sum along the blade is one again."""
         return all(type(airfoil) is Airfoil for airfoil in self.airfoils)
 
-    @property
-    def contains_compressibility(self) -> bool:
-        """Whether the coefficients take no Prandtl-Glauert factor."""
-        return any(airfoil.contains_compressibility for airfoil in self.airfoils)
-
     def edges(self, radius: ArrayLike) -> Array:
-        """Return the radii (..., k) of the ends of all joints, at which the coefficients have a kink or a jump, m."""
-        return np.concatenate(self._joints, axis=-1) * np.asarray(radius)[..., None]
+        """Return the radii at which the coefficients have a kink or a jump: the ends of all joints.
+
+        Parameters
+        ----------
+        radius : float or array (...)
+            Radius of the rotor, m.
+
+        Returns
+        -------
+        array (..., k)
+            m.
+        """
+        edges: Array = np.concatenate(self._joints, axis=-1) * np.asarray(radius)[..., None]
+        return edges
 
     def numbers(self) -> Iterator[Any]:
-        """Yield everything that may be an array of designs, without the axis of the joints."""
+        """Yield everything that may be an array of designs.
+
+        Yields
+        ------
+        float or array (...)
+            End and width of the first joint (r/R, dimensionless), and the numbers of each `Airfoil` in its units.
+        """
         for values in (self._ends, self._widths):
             yield values[..., 0]
         for airfoil in self.airfoils:
@@ -128,7 +140,7 @@ class AirfoilRegions:
         Parameters
         ----------
         r_over_R : array (stations,) or (points, stations)
-            Radii of the stations, of the radius.
+            Radii of the stations r/R, dimensionless.
         shape : tuple of int
             Shape of the batch of designs, of which the points are the flattened places.
 
@@ -137,15 +149,13 @@ class AirfoilRegions:
         SectionModel
             For angles of attack (points, stations).
         """
-        flat = replace(
-            self,
-            **{name: flatten_points(np.atleast_1d(getattr(self, name)), shape, 1) for name in _OF_JOINTS},
-        )
+        ends, widths = (flatten_points(part, shape, 1) for part in (self._ends, self._widths))
+        flat = replace(self, region_ends=ends, blend=widths)
         shares = flat._shares(np.atleast_2d(r_over_R))
         parts = [part.flattened(shape) if isinstance(part, Airfoil) else part for part in self.airfoils]
         if self.are_straight:
             return _straight(cast("list[Airfoil]", parts), shares)
-        return AirfoilsAtStations(tuple(parts), shares)
+        return _AirfoilsAtStations(tuple(parts), shares)
 
     @property
     def _ends(self) -> Array:
@@ -167,7 +177,7 @@ class AirfoilRegions:
 
 
 @dataclass(frozen=True, eq=False)
-class AirfoilsAtStations:
+class _AirfoilsAtStations:
     """Airfoils of the stations of a blade, of which some have no straight lift line.
 
     airfoils : tuple of SectionModel
@@ -189,16 +199,16 @@ class AirfoilsAtStations:
         return np.iscomplexobj(self.shares) or any(part.is_complex for part in lines)
 
     @property
-    def real(self) -> AirfoilsAtStations:
+    def real(self) -> _AirfoilsAtStations:
         """The same airfoils without imaginary parts."""
         parts = (part.real if isinstance(part, Airfoil) else part for part in self.airfoils)
-        return AirfoilsAtStations(tuple(parts), np.real(self.shares))
+        return _AirfoilsAtStations(tuple(parts), np.real(self.shares))
 
-    def take(self, rows: Array | slice, stations: slice) -> AirfoilsAtStations:
+    def take(self, rows: Array | slice, stations: slice) -> _AirfoilsAtStations:
         """Return the airfoils at some of the points and stations."""
         parts = (part.take(rows, stations) if isinstance(part, Airfoil) else part for part in self.airfoils)
         some = self.shares if self.shares.shape[1] == 1 else self.shares[:, rows]
-        return AirfoilsAtStations(tuple(parts), some[..., stations])
+        return _AirfoilsAtStations(tuple(parts), some[..., stations])
 
     def coefficients(self, alpha: Array, mach: Array) -> SectionCoefficients:
         """Return the coefficients of the airfoils, added up by their shares, of the broadcast shape (..., stations)."""

@@ -271,7 +271,7 @@ def mark_doubts(
     outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * np.ravel(np.real(radius))[:, None]
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
     incidence = incidence + sections.along.bent
-    airfoil = sections.airfoil
+    airfoil: SectionModel = sections.airfoil
     if isinstance(airfoil, HasPoints):
         airfoil = airfoil.take(slice(None), slice(first, None))
     found = cast(Warns, airfoil).warnings(incidence[..., first:], mach[..., first:])
