@@ -102,7 +102,7 @@ def best(*tasks: tuple[Callable[[], Any], Callable[[], float]]) -> list[float]:
 def processor_time_of_workers() -> float:
     """Of the worker processes that wait for a study, s (Linux)."""
     fields = [
-        Path(f"/proc/{worker.process.pid}/stat").read_text().rpartition(")")[2].split()
+        Path(f"/proc/{worker.process.pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
         for worker in study_workers._idle
     ]
     return sum(int(field[11]) + int(field[12]) for field in fields) / os.sysconf("SC_CLK_TCK")

@@ -42,6 +42,7 @@ NOT_RUN = {
     "python -m benchmarks": "minutes; writes the tables and figures of pages",
     "proprotor explore": "a server, which its own tests start",
     "proprotor report": "half a minute each; tests/report/test_report.py makes reports",
+    "pip install": "changes the environment; tests/verify/test_packaging.py installs both wheels",
     "source ": "the shell that a reader works in",
     "derive/ ──▶": "a drawing",
     "--- a/": "a change of the derivation, which tests/derive/test_add_a_term.py makes in a copy",

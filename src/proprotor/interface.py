@@ -28,6 +28,7 @@ from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet
@@ -47,6 +48,7 @@ __all__ = [
     "AirfoilRegions",
     "AirfoilTable",
     "BladeFrequencies",
+    "BladeStations",
     "Case",
     "DriveTrain",
     "EquationSet",

@@ -125,3 +125,8 @@ def test_print_with_stars_in_place_of_a_number(tmp_path):
     text[place] = text[place][:25] + "  *************" + text[place][40:]
     path.write_text("\n".join(text))
     assert "must be numbers" in refusal(path)
+
+
+def test_text_that_is_not_in_the_encoding_of_its_mark(tmp_path):
+    (tmp_path / "a.pch").write_bytes(b"\xff\xfe" + "$TITLE".encode("utf-16-le") + b"\x00")
+    assert "is damaged: it is not text in utf-16" in refusal(tmp_path / "a.pch")
