@@ -130,8 +130,20 @@ def test_the_bundled_deck_has_four_lift_slopes_and_a_zero_lift_line_by_tenths():
     np.testing.assert_allclose(found.lift_slope[0] / np.sqrt(1 - mach**2), published, rtol=1e-4)
 
 
-def test_a_report_lists_values_by_region(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("name", "values"), [("xv15-sections", "6.119, 6.119, "), ("xv15-bell-frequencies", "1.69, 2.04")]
+)
+def test_a_report_shows_the_values_of_a_list(tmp_path, monkeypatch, name, values):
     monkeypatch.chdir(tmp_path)
-    result = CliRunner().invoke(main, ["report", "xv15-sections", "--out", "report.html"])
+    result = CliRunner().invoke(main, ["report", name, "--out", "report.html"])
     assert result.exit_code == 0, result.output
-    assert "6.119, 6.119" in (tmp_path / "report.html").read_text()
+    assert values in (tmp_path / "report.html").read_text()
+
+
+def test_the_left_rotor_may_have_airfoils_of_its_own(deck):
+    """A list on one side, one number on the other."""
+    text = 'base = "xv15-aircraft"\n[case]\nname = "apart"\n[left.rotor.airfoil]\nregion_ends = 0.6\n'
+    case = pp.load_case(deck(text + "moment = { value = [-0.075, -0.02] }\n", "apart.toml"))
+    assert [part.moment for part in case.left.rotor.airfoil.airfoils] == [-0.075, -0.02]
+    assert case.rotor.airfoil.moment == 0 and case.given["left.rotor.airfoil.moment"].si == (-0.075, -0.02)
+    assert case.linearize(120.0).trim.converged
