@@ -101,9 +101,10 @@ def test_the_shares_along_the_blade_are_as_stated():
     )
 
 
-def test_a_design_is_in_a_batch_what_it_is_alone():
+@pytest.mark.parametrize("kind", [pp.Airfoil, Line])
+def test_a_design_is_in_a_batch_what_it_is_alone(kind):
     """Designs that differ in ends, widths and coefficients."""
-    first, second, third = three()
+    first, second, third = three(kind)
     slopes, ends, widths = np.array([5.5, 6.0, 6.5]), np.array([0.5, 0.55, 0.6]), np.array([0.0, 0.1, 0.2])
 
     def design(slope, end, width):
