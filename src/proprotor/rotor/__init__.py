@@ -7,6 +7,7 @@ matrices. This room imports `errors`, `typing` and `files`, and the generated eq
 What a rotor is:
     rotor                a proprotor: geometry, mass, springs, chord and twist
     airfoil              section coefficients; the linear airfoil
+    airfoil_regions      airfoils by region of the span
     airfoil_table        an airfoil from tables
     c81                  files of such tables in the C81 format, in the dialects of many programs
     c81_layouts          the rows of such files, in columns or separated
@@ -50,6 +51,7 @@ All public names of the modules `blade_stations`, `elastic_blade`, `hinged_blade
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import Air, standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
@@ -68,6 +70,7 @@ __all__ = [
     "UNKNOWNS",
     "Air",
     "Airfoil",
+    "AirfoilRegions",
     "AirfoilTable",
     "BladeFrequencies",
     "BladeStations",

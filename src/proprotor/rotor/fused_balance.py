@@ -140,10 +140,8 @@ def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> di
 
 def _air(sections: BladeSections, blade: _Quantities, compressibility: bool) -> dict[str, Any]:
     """Return what the sections meet, by name: arrays (segments, n) and (n,), or numbers that all points share."""
-    airfoil = vars(cast(Airfoil, sections.airfoil))
-    found = {name: np.ravel(airfoil[field]) for field, name in OF_AIRFOIL.items()}
     names = (*_OF_SEGMENTS, "density", "section_damping", "pitch", "speed_of_sound")
-    found |= {name: blade[name] for name in names}
+    found = {name: blade[name] for name in names}
     return found if compressibility else found | {"speed_of_sound": np.inf}
 
 
@@ -156,7 +154,8 @@ def _load_moments(
     doubts: dict[str, Array] | None,
 ) -> Array:
     """Return the radial moments (loads, powers, segments, n) of the section loads, a block of points at a time."""
-    kind = np.result_type(float, *(np.asarray(value).dtype for value in air.values()))
+    numbers = (*air.values(), *vars(sections.airfoil).values())
+    kind = np.result_type(float, *(np.asarray(value).dtype for value in numbers))
     shape = len(LOADS), POWERS, len(sections.quadrature.beyond_lag_hinge), points
     moments = np.empty(shape, dtype=kind)
     for rows, here in sections.blocks(points):
@@ -203,7 +202,8 @@ def _loads_at_stations(
 ) -> Array:
     """Return the results (results, stations, width) of the plan `section_loads`."""
     r = _stations_first(sections.quadrature.stations, width)
-    given = dict(air)
+    airfoil = vars(cast(Airfoil, sections.airfoil))
+    given = air | {name: _of_stations(airfoil[field], width) for field, name in OF_AIRFOIL.items()}
     shape = len(r), width
     slices = sections.quadrature.slices
     for name, motion in (("tangential_velocity", "ut"), ("axial_velocity", "up")):
@@ -221,6 +221,13 @@ def _loads_at_stations(
 def _stations_first(value: Array, width: int) -> Array:
     """Return a quantity (stations,) or (n, stations) as an array (stations, 1) or (stations, width)."""
     return value[:, None] if value.ndim == 1 else _widened(np.ascontiguousarray(value.T), width)
+
+
+def _of_stations(value: Any, width: int) -> Any:
+    """Return a number of an airfoil, or an array (1 or n, 1 or stations) of it, with the stations as the first axis."""
+    if np.ndim(value) == 0:
+        return value
+    return value.T if len(value) == 1 else _widened(np.ascontiguousarray(value.T), width)
 
 
 def _along(
