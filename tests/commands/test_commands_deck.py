@@ -247,6 +247,19 @@ def test_the_page_of_fields_is_up_to_date():
         assert f"| `{field.path.rpartition('.')[2]}` | {field.meaning}" in page
 
 
+def test_describe_tells_what_the_inputs_of_a_deck_amount_to(tmp_path):
+    output = run("describe", "xv15-uncoupled").stdout
+    assert re.search(r"Lock number +3\.83 ", output) and re.search(r"gimbal frequency +1\.0176 +/rev", output)
+    assert re.search(r"^beam ", output, re.MULTILINE) and "K_Pζ" in output and "?" not in output
+    slip = tmp_path / "slip.toml"
+    slip.write_text('base = "xv15-uncoupled"\n[case]\nname = "slip"\n[rotor]\nchord = "14 ft"\n')
+    output = " ".join(run("describe", str(slip)).stdout.split())
+    assert "? mean chord 1.12 R is above 0.4 R: blades have 0.05 to 0.25 of the radius" in output
+    found = json.loads(run("describe", "xv15-uncoupled", "--json").stdout)
+    assert {"Lock number", "solidity"} < {one["name"] for one in found["amounts"]}
+    assert len(found["blade at trim"]) == 5 and len(found["support modes"]) == 3
+
+
 def test_describe_tells_a_field_a_section_and_all():
     output = run("describe", "rotor.precone").stdout
     assert "Cone built into the hub" in output and "rad" in output

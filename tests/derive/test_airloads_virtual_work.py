@@ -191,8 +191,10 @@ def pitch_flap_and_pitch_lag_coupling(rotor, trim):
     """K_Pβ and K_Pζ: the control spring against the spring moment −∂U/∂θ of a blade bent a little further."""
     step = 1e-30
 
+    linked = rotor.kinematic_pitch_flap_coupling * trim[FLAP] + rotor.kinematic_pitch_lag_coupling * trim[LAG]
+
     def pitch_moment(flap, lag):
-        turn = Motion(rotor.collective + rotor.structural_pitch_offset, 1.0)
+        turn = Motion(rotor.collective - linked + rotor.structural_pitch_offset, 1.0)
         return -hinge_spring_energy(rotor, Motion(flap), Motion(lag), turn).rate
 
     bent = (trim[FLAP] + 1j * step, trim[LAG]), (trim[FLAP], trim[LAG] + 1j * step)

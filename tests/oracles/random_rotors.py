@@ -125,6 +125,10 @@ def random_rotor(seed, n_blades=None, tables=False, **changes):
     if tables:
         given["chord"] = (np.array([0.0, 0.35, 1.0]) * radius, np.array([0.45, 0.4, 0.25]))
         given["twist"] = (np.array([0.0, 0.25, 0.6, 1.0]) * radius, np.array([0.7, 0.3, 0.1, -0.1]))
+    # Drawn from numbers of their own, so that the others are what they were.
+    linkages = np.random.default_rng([seed, 3])
+    given["kinematic_pitch_flap_coupling"] = linkages.uniform(0.1, 0.5)
+    given["kinematic_pitch_lag_coupling"] = linkages.uniform(-0.4, -0.1)
     given |= changes
     given |= mass_integrals(station, mass, given["flap_hinge_offset"], given["lag_hinge_offset"])
     rotor_speed = rng.uniform(40.0, 55.0)

@@ -5,6 +5,7 @@ asked for, with the source of every number, or the text of a deck and the descri
 
     file               find and read deck files, with the deck that each alters
     alternatives       fields that exclude each other, and how a variant replaces them
+    default_provenance a status and source for all numbers of one file
     written            texts whose meaning depends on their file: names of files, frequencies per revolution
     per_revolution     the rotor speed of each frequency per revolution
     reading            one number: text to SI, with status and source

@@ -169,6 +169,8 @@ def _takes(reading: Reading) -> str:
     values = meaning(reading.unit)
     if isinstance(reading, AfterChoice):
         values = f"of a length {values}; of an angle {meaning(reading.other_unit)}"
+    if reading.form == "tangent":
+        values += ', or the angle of which it is the tangent, "-15 deg"'
     if reading.form == "frequency":
         values += ', or "0.42/rev"'
     if reading.form == "curve" and reading.unit:

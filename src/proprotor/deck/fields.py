@@ -29,9 +29,10 @@ class Reading:
     Parameters
     ----------
     form : str
-        "number", "count", "joint" (a number or a choice), "frequency", "along the blade", "distribution" (along the
-        blade, never one number), "along the wing", "curve" (one number or a list of them), "rising list", "file",
-        "files" (one file or a list of them) or "choice".
+        "number", "tangent" (a number, or the angle of which it is the tangent), "count", "joint" (a number or a
+        choice), "frequency", "along the blade", "distribution" (along the blade, never one number), "along the wing",
+        "curve" (one number or a list of them), "rising list", "file", "files" (one file or a list of them) or
+        "choice".
     unit : str
         SI unit.
     bound : Bound
@@ -75,6 +76,7 @@ class Reading:
 
 _READERS: dict[str, Callable[[Any, Reading], Datum]] = {
     "number": lambda raw, field: reading.read_quantity(raw, field.unit, field.bound),
+    "tangent": lambda raw, field: reading.read_tangent(raw),
     "count": lambda raw, field: reading.read_count(raw, field.least),
     "choice": lambda raw, field: reading.read_choice(raw, field.choices),
     "joint": lambda raw, field: reading.read_joint(raw, field.unit, field.bound, field.choices),
@@ -137,6 +139,7 @@ NotNegative = Annotated[Datum | None, Reading("number", "", NOT_NEGATIVE)]
 Positive = Annotated[Datum | None, Reading("number", "", POSITIVE)]
 Fraction = Annotated[Datum | None, Reading("number", "", FRACTION)]
 Angle = Annotated[Datum | None, Reading("number", "rad")]
+Tangent = Annotated[Datum | None, Reading("tangent")]
 Length = Annotated[Datum | None, Reading("number", "m", NOT_NEGATIVE)]
 PositiveLength = Annotated[Datum | None, Reading("number", "m", POSITIVE)]
 Offset = Annotated[Datum | None, Reading("number", "m")]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from proprotor.deck.alternatives import altered, without
+from proprotor.deck.default_provenance import with_default_provenance
 from proprotor.deck.left import nested
 from proprotor.deck.per_revolution import per_revolution_of
 from proprotor.deck.written import FileName
@@ -58,6 +59,7 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
     tables = _parse(file, name)
     if "left" in tables:
         tables["left"] = nested(tables["left"])
+    tables = with_default_provenance(tables)
     folder = file.parent if isinstance(file, Path) else folder
     for place in _FILES:
         _locate_file(tables, folder, place)

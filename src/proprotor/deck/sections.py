@@ -7,7 +7,8 @@ without a dimension is plain. Either may be a table that names its source::
 
     radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
 
-with a status of published, derived, recalled, calibrated or assumed. Chord and twist take one value (twist:
+with a status of published, measured, derived, recalled, calibrated or assumed, see `default_status` of [case] for a
+status of all numbers of a file. Chord and twist take one value (twist:
 the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
 linear between its stations; chord, twist and mass_distribution may also be a column of a CSV file,
 ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
@@ -20,7 +21,8 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
     Above all sections: the deck that this deck alters, a bundled name or a file in the same folder. A field of this
     deck replaces the field of the base; one of two alternatives removes the other.
 ``[case]``
-    name, title, description, calibration (which inputs to which result), warnings.
+    name, title, description, calibration (which inputs to which result), warnings; default_status and default_source:
+    the status and the source of every number of this file that states no status, not of its base and its variants.
 ``[rotor]``
     The arguments of `proprotor.Rotor`, or instead of flap_stiffness and lag_stiffness: flap_frequency and
     lag_frequency, non-rotating, K = I ω²; of chord: lock_number γ, chord = γ I_b / (ρ c_lα R⁴) at the
@@ -66,7 +68,7 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 
-from proprotor.datum import Datum
+from proprotor.datum import STATUSES, UNSTATED, Datum
 from proprotor.deck import fields
 from proprotor.deck.alternatives import (
     AIR_ALTERNATIVES,
@@ -74,6 +76,7 @@ from proprotor.deck.alternatives import (
     ALTERNATIVES,
     TRIM_ALTERNATIVES,
 )
+from proprotor.deck.default_provenance import DEFAULT_SOURCE, DEFAULT_STATUS
 from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.deck.reading import read_quantity
 from proprotor.deck.support_sections import SupportSection
@@ -90,6 +93,20 @@ class CaseSection(Section):
     warnings: list[fields.Text] = Field(
         default_factory=list, description="Remarks that a reader of results needs, one text each."
     )
+    default_status: Literal[UNSTATED, *STATUSES] = optional(  # type: ignore[valid-type]
+        "Status of every number of this file that states none; its base and its variants have their own.",
+        UNSTATED,
+    )
+    default_source: str = optional("Source of every number that has the default_status.", "")
+
+    @model_validator(mode="after")
+    def _defaults_of_a_file(self) -> CaseSection:
+        """Refuse a default that came from elsewhere: `proprotor.deck.default_provenance` takes those of files."""
+        for name, none in ((DEFAULT_STATUS, UNSTATED), (DEFAULT_SOURCE, "")):
+            if getattr(self, name) != none:
+                rule = "must stand in the file of a deck; a number that is set for a run is assumed"
+                raise InputError(name, getattr(self, name), rule)
+        return self
 
 
 class AirfoilSection(Section):
@@ -254,10 +271,21 @@ class RotorSection(Section):
         "Angle from the collective reference to the blade's structural axes."
     )
     gimbal_stiffness: fields.Stiffness = needed("Stiffness of the hub spring.")
-    pitch_gimbal_coupling: fields.Number = needed("K_PG = tan δ3, pitch per gimbal tilt.")
+    pitch_gimbal_coupling: fields.Tangent = needed(
+        "K_PG = tan δ3, pitch nose down per gimbal tilt; an angle is δ3 itself."
+    )
+    kinematic_pitch_flap_coupling: fields.Tangent = optional(
+        "K_P3 = tan δ3 of the blade's own flap hinge, pitch nose down per flap; an angle is δ3 itself."
+    )
+    kinematic_pitch_lag_coupling: fields.Tangent = optional(
+        "K_P4 = tan δ4 of the blade's own lag hinge, pitch nose down per lag; an angle is δ4 itself."
+    )
     pitch_inertia: fields.InertiaOrNone = needed("Inertia of one blade about its pitch axis.")
     control_stiffness: fields.Stiffness = needed(
         "Control system stiffness of one blade, about its pitch axis."
+    )
+    cyclic_control_stiffness: fields.Stiffness = optional(
+        "Control system stiffness of one blade where the swashplate tilts; that of control_stiffness if left out."
     )
     flap_damping: fields.Damping = optional("Viscous damping of the flap hinge.")
     lag_damping: fields.Damping = optional("Viscous damping of the lag hinge.")
@@ -430,6 +458,12 @@ def _places(
 
 SECTIONS = dict(_places(Deck))
 SUPPORT_KINDS = tuple(place[1] for place in SECTIONS if place[:1] == ("support",) and len(place) == 2)
+
+
+def is_number_of(section: type[Section], name: str) -> bool:
+    """Return whether a section has a field of a name that is a number, rather than a word or a section."""
+    field = section.model_fields.get(name)
+    return field is not None and any(isinstance(part, fields.Reading) for part in field.metadata)
 
 
 def sections_at(place: tuple[str, ...]) -> dict[str, type[Section]]:

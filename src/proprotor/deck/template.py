@@ -20,7 +20,8 @@ _HEAD = """\
 #   radius = "12.5 ft"
 # or is a table that also names the source, which results then repeat:
 #   radius = {{ value = "12.5 ft", status = "published", source = "report, table" }}
-# with a status of published, derived, recalled, calibrated or assumed.
+# with a status of published, measured, derived, recalled, calibrated or assumed; default_status in [case] is the status
+# of every number of this file that states none.
 #
 #   proprotor describe rotor.precone        what a field is
 #   proprotor flutter {file}

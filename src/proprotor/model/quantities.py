@@ -87,7 +87,10 @@ def _numbers_of(rotor: Rotor) -> dict[str, Any]:
 def of_rotor(rotor: Rotor) -> dict[str, Any]:
     """Return the rotor's own numbers, without the properties that are distributed along the blade."""
     names = [entry.name for entry in fields(rotor) if entry.name not in _ALONG_THE_BLADE]
-    return {name: getattr(rotor, name) for name in (*names, *_HINGE_INERTIAS)}
+    given = {name: getattr(rotor, name) for name in (*names, *_HINGE_INERTIAS)}
+    cyclic = given.pop("cyclic_control_stiffness")
+    excess = 0.0 if cyclic is None else cyclic - rotor.control_stiffness
+    return given | {"cyclic_control_stiffness_excess": excess}
 
 
 def couplings(options: Options, quantities: Mapping[str, Any]) -> dict[str, Any]:

@@ -71,6 +71,8 @@ class Warns(Protocol):
 # Limits of a straight lift line and of the Prandtl-Glauert factor (assumed, typical of thin sections).
 _LINEAR_ALPHA = np.radians(12.0)
 _LINEAR_MACH = 0.85
+_BEYOND_ALPHA = f"angle of attack beyond {np.degrees(_LINEAR_ALPHA):.0f} deg"
+_BEYOND_MACH = f"Mach number beyond {_LINEAR_MACH:g}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,6 +196,6 @@ class Airfoil:
             Masks of the broadcast shape, by reason.
         """
         return {
-            f"angle of attack beyond {np.degrees(_LINEAR_ALPHA):.0f} deg": np.abs(alpha) > _LINEAR_ALPHA,
-            f"Mach number beyond {_LINEAR_MACH:g}": np.real(mach) > _LINEAR_MACH,
+            _BEYOND_ALPHA: np.abs(alpha) > _LINEAR_ALPHA,
+            _BEYOND_MACH: np.real(mach) > _LINEAR_MACH,
         }

@@ -71,13 +71,16 @@ def rotor_matrices(
     one : bool
         Compute the only point with plain numbers.
     """
-    functions = (
-        (plans.in_vacuum,) if segments is None else (plans.in_vacuum, plans.of_airloads, plans.segment)
-    )
-    names = {name for function in functions for name in keywords(function)} & quantities.keys()
-    blade = {name: quantities[name] for name in names}
+    blade = {name: quantities[name] for name in _names(segments is not None) if name in quantities}
     along = None if segments is None else {name: segments[name] for name in OF_SEGMENTS}
     return _one_point(blade, along) if one else _batch(blade, along, points)
+
+
+@cache
+def _names(in_air: bool) -> tuple[str, ...]:
+    """Return the names of the quantities that the fused functions take."""
+    functions = (plans.in_vacuum, plans.of_airloads, plans.segment) if in_air else (plans.in_vacuum,)
+    return tuple(dict.fromkeys(name for function in functions for name in keywords(function)))
 
 
 @dataclass(frozen=True)
@@ -86,10 +89,12 @@ class Layout:
 
     opposite : places of the results whose negative is needed as well, counted from 1.
     places : by the name of a matrix, the place of each entry among zero, the results, and the negatives.
+    entries : place of each entry of all matrices, one after the other, among zero, the results, and all negatives.
     """
 
     opposite: list[int]
     places: dict[str, Array]
+    entries: Array
 
     @classmethod
     def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> Layout:
@@ -103,7 +108,8 @@ class Layout:
             places[name] = rows.copy()
             negative = rows < 0
             places[name][negative] = behind[np.searchsorted(opposite, -rows[negative])]
-        return cls(opposite.tolist(), places)
+        entries = np.where(every < 0, np.abs(every).max() - every, every)
+        return cls(opposite.tolist(), places, entries)
 
 
 @cache
@@ -166,7 +172,8 @@ def _pairs() -> tuple[Array, dict[str, Array]]:
 @cache
 def _sums() -> Layout:
     """Return the layout of the sums of the pairs."""
-    return Layout([], _pairs()[1])
+    places = _pairs()[1]
+    return Layout([], places, np.concatenate([part.ravel() for part in places.values()]))
 
 
 def _with_airloads(values: Sequence[Any], results: Sequence[Any]) -> list[Any]:
@@ -234,14 +241,14 @@ def pool_of(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) 
 def _one_point(quantities: Quantities, segments: Quantities | None) -> Matrices:
     """Return the matrices of one point by plain numbers, with an axis of one point."""
     blade = {name: plain_number(value) for name, value in quantities.items()}
-    found = _matrices(np.array([evaluate(plans.in_vacuum, blade, _cos, _sin)]), _layouts()["in_vacuum"])
+    found = _matrices([evaluate(plans.in_vacuum, blade, _cos, _sin)], _layouts()["in_vacuum"])
     if segments is None:
         return found
     rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in _one_by_one(segments)]
-    arrays = _matrices(np.array(rows), _layouts()["segment"])
+    arrays = _matrices(rows, _layouts()["segment"])
     geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
     results = evaluate(plans.of_airloads, blade, _work(arrays).ravel().tolist(), geometric)
-    added = _matrices(np.array([results]), _layouts()["of_airloads"])
+    added = _matrices([results], _layouts()["of_airloads"])
     return found | {name: matrix + found[name] for name, matrix in added.items()}
 
 
@@ -257,6 +264,8 @@ def _sin(angle: complex) -> Any:
 
 def plain_number(value: Any) -> Any:
     """Return an array of one number, or a number of NumPy, as a plain number."""
+    if type(value) is float:  # as most are: to ask about arrays takes longer
+        return value
     return value.item() if isinstance(value, np.ndarray | np.generic) else value
 
 
@@ -264,15 +273,23 @@ def _one_by_one(segments: Quantities) -> list[dict[str, Any]]:
     """Return the quantities of each segment as plain numbers."""
     count = np.size(segments["beyond_flap_hinge"])
     lists = [
-        np.ravel(value).tolist() if np.ndim(value) else [plain_number(value)] * count
+        value.ravel().tolist()
+        if isinstance(value, np.ndarray) and value.ndim
+        else [plain_number(value)] * count
         for value in segments.values()
     ]
     return [dict(zip(segments, numbers, strict=True)) for numbers in zip(*lists, strict=True)]
 
 
-def _matrices(results: Array, layout: Layout) -> Matrices:
-    """Return the matrices of some rows of results."""
-    pool = np.concatenate(
-        [np.zeros((len(results), 1)), results, -results[:, [n - 1 for n in layout.opposite]]], axis=1
-    )
-    return {name: np.take(pool, places, axis=1) for name, places in layout.places.items()}
+def _matrices(rows: Sequence[Sequence[Any]], layout: Layout) -> Matrices:
+    """Return the matrices (rows, ...) of some rows of results."""
+    results = np.array(rows)
+    count = results.shape[1]
+    pool = np.zeros((len(rows), 1 + 2 * count), dtype=results.dtype)
+    pool[:, 1 : 1 + count] = results
+    np.negative(results, out=pool[:, 1 + count :])
+    entries, start, found = pool.take(layout.entries, axis=1), 0, {}
+    for name, places in layout.places.items():
+        found[name] = entries[:, start : start + places.size].reshape(len(rows), *places.shape)
+        start += places.size
+    return found

@@ -99,14 +99,13 @@ def balanced(
     """
     points = len(quantities["coning"])
     blade = dict(quantities) | {name: side[:, None] for name, side in sections.sides.items()}
-    blade |= zip(plans.LINE, evaluate(plans.line, blade, np.cos, np.sin), strict=True)
-    air = _air(sections, blade, compressibility)
+    line = evaluate(plans.line, blade, np.cos, np.sin)
+    air = _air(sections, blade | dict(zip(plans.LINE, line, strict=True)), compressibility)
     moments = _load_moments(sections, air, quantities["radius"], room, points, doubts)
     shape = moments.shape[2:]
     structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
-    blade |= _NO_LOADS
-    blade |= zip(MOMENTS, moments.reshape(-1, *shape), strict=True)
-    work = _matrices("work", evaluate(plans.work, blade), shape)
+    of_loads = evaluate(plans.work, blade | _NO_LOADS, line, moments.reshape(-1, *shape))
+    work = _matrices("work", of_loads, shape)
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
 

@@ -62,8 +62,14 @@ class Rotor:
         Hub spring, N m/rad.
     pitch_gimbal_coupling : float
         K_PG = tan δ3 (Eq. 16), dimensionless.
+    kinematic_pitch_flap_coupling, kinematic_pitch_lag_coupling : float
+        K_P3 = tan δ3 and K_P4 = tan δ4 of the blade's own hinges, dimensionless: a linkage turns the blade nose down by
+        K_P3 times its flap angle and K_P4 times its lag angle, trim angles included.
     pitch_inertia, control_stiffness : float
         Inertia and stiffness for one blade: kg m², N m/rad.
+    cyclic_control_stiffness : float, optional
+        Stiffness of the control system for one blade where the swashplate tilts, N m/rad. The default is
+        `control_stiffness`, which holds where all blades turn alike, in the trim and for reactionless motions.
     flap_damping, lag_damping, pitch_damping, gimbal_damping : float
         Viscous dampers, N m s/rad; the gimbal's does not rotate.
     structural_pitch_offset : float
@@ -103,8 +109,11 @@ class Rotor:
     lag_outboard_fraction: float = 0.0
     gimbal_stiffness: float = 0.0
     pitch_gimbal_coupling: float = 0.0
+    kinematic_pitch_flap_coupling: float = 0.0
+    kinematic_pitch_lag_coupling: float = 0.0
     pitch_inertia: float = 0.0
     control_stiffness: float = 0.0
+    cyclic_control_stiffness: float | None = None
     flap_damping: float = 0.0
     lag_damping: float = 0.0
     pitch_damping: float = 0.0
@@ -127,6 +136,8 @@ class Rotor:
 
     def _check_number(self, name: str, value: Any) -> None:
         """Refuse a field that is no finite number; distributions wait until the radius is known to be positive."""
+        if value is None and name == "cyclic_control_stiffness":
+            return
         distributed = name in ("chord", "twist") and (isinstance(value, tuple) or callable(value))
         if isinstance(value, tuple) and not distributed:
             raise InputError(name, value, "must be a number in SI units")
@@ -138,7 +149,8 @@ class Rotor:
         passive = [e.name for e in fields(self) if e.name.endswith(("_stiffness", "_damping"))]
         for names, sign in ((_POSITIVE, "above zero"), ((*_NOT_NEGATIVE, *passive), "not negative")):
             for name in names:
-                check_finite(name, getattr(self, name), sign)
+                if getattr(self, name) is not None:
+                    check_finite(name, getattr(self, name), sign)
         for name in _FRACTIONS:
             if np.any((np.real(getattr(self, name)) < 0) | (np.real(getattr(self, name)) > 1)):
                 raise InputError(name, getattr(self, name), "must lie between 0 and 1")
@@ -187,14 +199,15 @@ class Rotor:
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
             rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
             raise InputError("flap_inertia", self.flap_inertia, rule)
-        if not nowhere_negative(np.real(self._gram_matrix())):
+        if not nowhere_negative(np.real(self.gram_matrix)):
             rule = (
                 "cannot belong to one blade: the Gram matrix of the mass integrals has a negative eigenvalue"
             )
             raise InputError("blade_inertia", self.blade_inertia, rule)
 
-    def _gram_matrix(self) -> Array:
-        """Return the integrals of m times two of the arms 1, r, ρβ, ρζ."""
+    @property
+    def gram_matrix(self) -> Array:
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ, (..., 4, 4) in kg, kg m and kg m²."""
         entries = (
             (self.blade_mass, self.blade_first_moment, self.flap_first_moment, self.lag_first_moment),
             (self.blade_first_moment, self.blade_inertia, self.flap_hub_inertia, self.lag_hub_inertia),

@@ -22,7 +22,7 @@ from proprotor.typing import Array
 _Quantities = Mapping[str, Any]
 # Numbers in an array of section loads, points times stations: a core's cache holds a dozen such arrays.
 _BLOCK = 12000
-_OUTBOARD = 0.5  # of the radius: from here to the tip angle of attack and Mach number matter to the loads
+OUTBOARD = 0.5  # of the radius: from here to the tip angle of attack and Mach number matter to the loads
 LOAD_MOMENTS = tuple(
     f"{load}_{power}"
     for load in (*section.Forces._fields, *section.PitchingMoment._fields)
@@ -61,7 +61,7 @@ class BladeSections:
         flat = along.each(lambda part: flatten_points(part, shape, 1))
         return cls(quadrature.flattened(shape), flat, airfoil)
 
-    @property
+    @functools.cached_property
     def is_complex(self) -> bool:
         """Whether any number is complex, for derivatives by a complex step."""
         if isinstance(self.airfoil, HasPoints) and self.airfoil.is_complex:
@@ -268,7 +268,7 @@ def mark_doubts(
     if not isinstance(sections.airfoil, Warns):
         return
     incidence, mach = air
-    outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * np.ravel(np.real(radius))[:, None]
+    outboard = np.real(sections.quadrature.stations) >= OUTBOARD * np.ravel(np.real(radius))[:, None]
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
     incidence = incidence + sections.along.bent
     airfoil: SectionModel = sections.airfoil
@@ -277,7 +277,7 @@ def mark_doubts(
     found = cast(Warns, airfoil).warnings(incidence[..., first:], mach[..., first:])
     for text, mask in found.items():
         if mask.any():
-            marks = doubts.setdefault(f"{text} outboard of {_OUTBOARD:g} R", np.zeros(points, dtype=bool))
+            marks = doubts.setdefault(f"{text} outboard of {OUTBOARD:g} R", np.zeros(points, dtype=bool))
             marks[rows] = (mask & outboard[..., first:]).any(axis=-1)
 
 

@@ -188,7 +188,7 @@ class Balance:
         """Return the rows that close the free unknowns, and the columns of these unknowns, (n, k, k)."""
         rows, columns = (np.array(places, dtype=int) for places in (self.rows, self.free))
         places = slopes.shape[-1] * rows[:, None] + columns
-        return np.take(slopes.reshape(*slopes.shape[:-2], -1), places, axis=-1)
+        return np.asarray(np.take(slopes.reshape(*slopes.shape[:-2], -1), places, axis=-1))
 
     def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
         """Return the quantities of the whole blade at a state and at a share of its precone."""

@@ -12,7 +12,6 @@ Points whose path is lost in the first stage are followed on all stations.
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -310,13 +309,12 @@ def _settle(
 def _settled(balance: Balance, found: Found) -> Settled:
     """Return a trim by plain numbers as the trim of a batch of one."""
     here, blades = found.here, found.here.quantities["n_blades"]
-    slopes = (here.work_slopes[row] for row in (THRUST, TORQUE))
-    moved = (sum(map(operator.mul, row, found.step)) for row in slopes)
+    thrust, torque = (here.virtual_work_after(found.step, balance.free, row) for row in (THRUST, TORQUE))
     values = {name: np.array([value]) for name, value in found.state.items()}
     trim = Trim(
         **values,
-        thrust=np.array([blades * (here.work[THRUST] + next(moved))]),
-        torque=np.array([blades * (here.work[TORQUE] + next(moved))]),
+        thrust=np.array([blades * thrust]),
+        torque=np.array([blades * torque]),
         converged=np.array([True]),
         reason=np.array([""], dtype=object),
         warning=np.array([""], dtype=object),
@@ -346,6 +344,8 @@ def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
 
 def _is_complex(value: Any) -> bool:
     """Return whether a number or an array is complex."""
+    if type(value) is float:  # as most are: to ask about arrays takes longer
+        return False
     return isinstance(value, complex) or getattr(value, "dtype", _REAL).kind == "c"
 
 
