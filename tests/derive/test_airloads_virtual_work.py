@@ -30,6 +30,17 @@ from tests.oracles.virtual_work import airload_rows, lift_slope_rows
 DENSITY = 1.1
 POWERED = {"collective": 0.8}
 
+THREE_AIRFOILS = (
+    pp.Airfoil(lift_slope=6.3, zero_lift_angle=-0.07, drag=0.02, moment=-0.075),
+    pp.Airfoil(lift_slope=5.4, zero_lift_angle=-0.02, drag=0.006, moment=-0.008),
+    pp.Airfoil(lift_slope=6.0, zero_lift_angle=-0.01, drag=0.009, moment=-0.02),
+)
+
+
+def regions(*ends, blend):
+    return pp.AirfoilRegions(airfoils=THREE_AIRFOILS, region_ends=ends, blend=blend)
+
+
 CASES = {
     "windmilling": {"seed": 1, "n_blades": 3, "airspeed": 90.0, "trim": "windmill"},
     "windmilling, tables": {"seed": 2, "n_blades": 4, "tables": True, "airspeed": 130.0, "trim": "windmill"},
@@ -46,6 +57,19 @@ CASES = {
     },
     "hinges inboard of the cutout": {"seed": 8, "airspeed": 110.0, "trim": POWERED, "root_cutout": 0.9},
     "slow flight": {"seed": 9, "airspeed": 20.0, "trim": {"collective": 0.2}},
+    "airfoils by region": {
+        "seed": 12,
+        "airspeed": 115.0,
+        "trim": "windmill",
+        "airfoil": regions(0.45, 0.8, blend=0.0),
+    },
+    "airfoils by region, blended, powered, tables": {
+        "seed": 13,
+        "tables": True,
+        "airspeed": 105.0,
+        "trim": POWERED,
+        "airfoil": regions(0.3, 0.7, blend=[0.15, 0.4]),
+    },
     "no section damping": {"seed": 10, "airspeed": 105.0, "trim": "windmill", "section_damping": False},
     "no section damping, powered, tables": {
         "seed": 11,

@@ -22,6 +22,7 @@ asked for, with the source of every number, or the text of a deck and the descri
     numbers            the numbers of a deck by path
     build              rotor, operation and support from numbers
     build_support      the support from numbers and files
+    build_airfoil      the airfoil, or the airfoils by region of the span
     build_aircraft     the airframe of a whole aircraft from numbers
     each_design        each different design of a batch, built once
     left               what differs on the left side of an aircraft

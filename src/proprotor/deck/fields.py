@@ -31,7 +31,8 @@ class Reading:
     form : str
         "number", "tangent" (a number, or the angle of which it is the tangent), "count", "joint" (a number or a
         choice), "frequency", "along the blade", "distribution" (along the blade, never one number), "along the wing",
-        "curve" (one number or a list of them), "rising list", "file" or "choice".
+        "curve" (one number or a list of them), "rising list", "file", "files" (one file or a list of them) or
+        "choice".
     unit : str
         SI unit.
     bound : Bound
@@ -90,6 +91,7 @@ _READERS: dict[str, Callable[[Any, Reading], Datum]] = {
     "curve": lambda raw, field: reading_lists.read_curve(raw, field.unit, field.bound),
     "rising list": lambda raw, field: reading_lists.read_list(raw, field.unit, field.bound, rising=True),
     "file": lambda raw, field: reading.read_file(raw),
+    "files": lambda raw, field: reading.read_files(raw),
 }
 
 
@@ -172,6 +174,12 @@ Abscissa = Annotated[
     AfterChoice("rising list", "rad", choice="against", usual="collective", other_unit="m/s"),
 ]
 File = Annotated[Datum | None, Reading("file")]
+Slopes = Annotated[Datum | None, Reading("curve", "1/rad", POSITIVE)]
+Angles = Annotated[Datum | None, Reading("curve", "rad")]
+NotNegatives = Annotated[Datum | None, Reading("curve", "", NOT_NEGATIVE)]
+Numbers = Annotated[Datum | None, Reading("curve")]
+Fractions = Annotated[Datum | None, Reading("curve", "", FRACTION)]
+Files = Annotated[Datum | None, Reading("files")]
 IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
 Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
 Held = Annotated[

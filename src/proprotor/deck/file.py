@@ -115,10 +115,12 @@ def _parse(file: Traversable, name: str) -> dict[str, Any]:
 
 
 def _locate_file(tables: Any, folder: Path, place: tuple[str, ...]) -> None:
-    """Make the name of a file, at a place in the tables or on the path to that place, start from the deck's folder."""
+    """Make the names of files, at a place in the tables or on the path to that place, start from the deck's folder."""
     key, *further = place
     entry = tables.get(key) if isinstance(tables, dict) else None
     if isinstance(entry, str):
         tables[key] = FileName.inside(folder, entry)
+    elif isinstance(entry, list):
+        tables[key] = [FileName.inside(folder, one) if isinstance(one, str) else one for one in entry]
     elif further:
         _locate_file(entry, folder, tuple(further))

@@ -103,17 +103,33 @@ def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
 def read_file(raw: Any) -> Datum:
     """Return the name of a file, or the name in a table; plain text starts from the working directory."""
     table = as_table(raw, ("value",))
-    name = table["value"]
+    return datum(table, str(table["value"]), _path_of(table["value"]), "")
+
+
+def read_files(raw: Any) -> Datum:
+    """Return the name of a file, or a list of names, or either in a table."""
+    table = as_table(raw, ("value",))
+    names = table["value"]
+    if not isinstance(names, list):
+        return read_file(raw)
+    if len(names) < 2:
+        raise InputError("", names, "must have two files or more, or be the name of one")
+    paths = tuple(_path_of(name) for name in names)
+    return datum(table, ", ".join(names), paths, "")
+
+
+def _path_of(name: Any) -> FilePath:
+    """Return the path of a file by its name in a deck."""
     if not isinstance(name, str) or not name:
         raise InputError("", name, "must be the name of a file")
     folder = name.folder if isinstance(name, FileName) else FileName.folder
-    return datum(table, str(name), FilePath(folder / name), "")
+    return FilePath(folder / name)
 
 
 def datum(
     table: Mapping[str, Any],
     written: str,
-    si: bool | float | tuple[float, ...] | str,
+    si: bool | float | tuple[float, ...] | tuple[str, ...] | str,
     unit: str,
     r_over_R: tuple[float, ...] | None = None,
 ) -> Datum:

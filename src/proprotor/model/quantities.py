@@ -12,6 +12,7 @@ from proprotor_equations import pitch
 from proprotor.model.batches import joint_shape
 from proprotor.model.kept import kept
 from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.operation import Operation
@@ -43,7 +44,9 @@ def shape_of(rotor: Rotor) -> tuple[int, ...]:
     leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
     inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)] + leading
     if isinstance(rotor.airfoil, Airfoil):
-        inputs += [getattr(rotor.airfoil, entry.name) for entry in fields(rotor.airfoil)]
+        inputs += vars(rotor.airfoil).values()
+    if isinstance(rotor.airfoil, AirfoilRegions):
+        inputs += rotor.airfoil.numbers()
     return joint_shape((), *(np.shape(value) for value in inputs if _may_vary(value)))
 
 

@@ -193,9 +193,9 @@ def _matrices(
     if len(rows):
         quantities = settled.quantities | couplings(options, settled.quantities)
         segments = _segments(sections, rows, quantities, settled.segments, options)
-        given = segments | quantities | {"equations": options.equation_set}
         served = fused.serves(options.equation_set)
         if reactionless is not None or not served:
+            given = segments | quantities | {"equations": options.equation_set}
             blade = evaluate(whole_rotor.blade_matrices, given)
         if served:
             in_air = None if options.airloads == "none" else segments

@@ -316,9 +316,16 @@ def _si(number: Datum) -> str:
         return f"{low:.6g} to {high:.6g} {number.unit}".strip() + ", see below"
     if isinstance(number.si, FilePath):
         return "a file"
+    if isinstance(number.si, tuple):
+        return "files" if isinstance(number.si[0], FilePath) else _listed(number.si, number.unit)
     if isinstance(number.si, bool | str):
         return as_toml(number.si)
     return f"{number.si:.6g} {number.unit}".strip()
+
+
+def _listed(values: tuple[float, ...], unit: str) -> str:
+    """Return a list of values with their unit."""
+    return f"{', '.join(f'{value:.6g}' for value in values)} {unit}".strip()
 
 
 def _distribution(path: str, number: Datum) -> Table:

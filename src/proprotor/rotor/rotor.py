@@ -13,10 +13,11 @@ from proprotor_equations import inertia
 
 from proprotor.errors import InputError, check_finite, check_number, nowhere_negative
 from proprotor.rotor.airfoil import Airfoil, SectionModel
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.effective_sections import EffectiveSections, Line, effective_sections
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.quadrature import Panels, RadialQuadrature, long_panels, short_panels
+from proprotor.rotor.quadrature import Panels, RadialQuadrature, flatten_points, long_panels, short_panels
 from proprotor.typing import Array
 
 MASS_INTEGRALS = (
@@ -80,8 +81,8 @@ class Rotor:
         linearly between its stations, which reach from the root cutout to the tip; with (r, values, "held") the end
         values hold beyond the stations. A smooth function takes an array of radii. Twist counts from the pitch at
         0.75 R.
-    airfoil : SectionModel
-        Section coefficients, such as `Airfoil`.
+    airfoil : SectionModel or AirfoilRegions
+        Section coefficients, such as `Airfoil`, or airfoils by region of the span.
 
     Raises
     ------
@@ -121,7 +122,7 @@ class Rotor:
     propeller_moment: bool = True
     chord: _Distribution
     twist: _Distribution = 0.0
-    airfoil: SectionModel = field(repr=False)
+    airfoil: SectionModel | AirfoilRegions = field(repr=False)
 
     def __post_init__(self) -> None:
         for entry in fields(self):
@@ -235,6 +236,10 @@ class Rotor:
         **more
             Further fields, or other values for fields that were found: the number of blades and the airfoil at least.
 
+        Returns
+        -------
+        Rotor
+
         Raises
         ------
         InputError
@@ -268,17 +273,45 @@ class Rotor:
     def has_effective_sections(self) -> bool:
         """Whether loads are linear in chord and twist, and both are known at every radius.
 
-        The loads are linear with the straight lift line of `Airfoil`. Kinks of tables then need no panels of their own.
+        The loads are linear with the straight lift lines of `Airfoil`. Kinks of tables of chord and twist then need no
+        panels of their own; between the joints of `AirfoilRegions`, lift slope and the like are smooth factors.
         """
-        return type(self.airfoil) is Airfoil and not (callable(self.chord) or callable(self.twist))
+        regions = self.airfoil if isinstance(self.airfoil, AirfoilRegions) else None
+        straight = type(self.airfoil) is Airfoil if regions is None else regions.are_straight
+        return straight and not (callable(self.chord) or callable(self.twist))
 
     @functools.cached_property
     def _panels(self) -> Panels:
         """Panels of all stations."""
         if self.has_effective_sections:
-            return long_panels(**self._radii)
+            return long_panels(**self._radii, knots=self._airfoil_edges)
         knots = [np.asarray(d[0]) for d in (self.chord, self.twist) if isinstance(d, tuple)]
-        return short_panels(**self._radii, knots=_joined(knots))
+        return short_panels(**self._radii, knots=_joined([*knots, self._airfoil_edges]))
+
+    @property
+    def _airfoil_edges(self) -> Array:
+        """Radii (..., k) at which one airfoil begins to pass into the next, or has done so, m."""
+        return self.airfoil.edges(self.radius) if isinstance(self.airfoil, AirfoilRegions) else np.empty(0)
+
+    def airfoil_at(self, stations: Array, shape: tuple[int, ...]) -> SectionModel:
+        """Return the airfoil of the stations of a batch of designs, which are flattened.
+
+        Parameters
+        ----------
+        stations : array (..., stations)
+            Radii from the centre of rotation, m; leading axes broadcast to `shape`.
+        shape : tuple of int
+            Shape of the batch.
+
+        Returns
+        -------
+        SectionModel
+            For angles of attack (points, stations).
+        """
+        if isinstance(self.airfoil, AirfoilRegions):
+            r_over_R = stations / np.asarray(self.radius)[..., None]
+            return self.airfoil.at(flatten_points(r_over_R, shape, 1), shape)
+        return self.airfoil.flattened(shape) if isinstance(self.airfoil, Airfoil) else self.airfoil
 
     @functools.cached_property
     def quadrature(self) -> RadialQuadrature:
@@ -295,7 +328,7 @@ class Rotor:
     @functools.cached_property
     def few_sections(self) -> tuple[RadialQuadrature, EffectiveSections]:
         """Stations on long panels with chord and twist there, near enough to all stations to begin a trim with."""
-        panels = long_panels(**self._radii)
+        panels = long_panels(**self._radii, knots=self._airfoil_edges)
         quadrature = panels.quadrature()
         if callable(self.chord) or callable(self.twist):
             return quadrature, self._sections_at(quadrature)
