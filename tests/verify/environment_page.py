@@ -139,10 +139,8 @@ def table_of_versions(found: list[Environment]) -> Iterator[str]:
 def not_tried(found: list[Environment]) -> str:
     """Return a sentence about what is not in the table."""
     tried = {one.place for one in found}
-    missing = [
-        f"Python {python} with the {which}" for python, which in places() if (python, which) not in tried
-    ]
-    return f"Not tried: {', '.join(missing)}." if missing else "No row is missing."
+    missing = [f"Python {' '.join(place)}" for place in places() if place not in tried]
+    return f"Not tried: {', '.join([*missing, 'systems that are not in the table'])}."
 
 
 def failures(found: list[Environment]) -> Iterator[str]:
