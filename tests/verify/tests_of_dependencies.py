@@ -74,6 +74,7 @@ SHORT = ALL | {
         "nastran/test_other_results.py::test_hdf5",
         "nastran/test_other_results.py::test_hdf5_with_two_subcases_and_complex_vectors_beside",
         "nastran/test_other_results.py::test_hdf5_without_eigenvalues_needs_the_masses",
+        "nastran/test_other_results.py::test_results_are_saved_after_an_hdf5_file_was_opened",
     ),
     "jinja2": (
         "report/test_report.py::test_the_tables_of_modes_are_those_of_sweep",
