@@ -12,7 +12,7 @@ The earlier version is a worktree of the repository at the last commit before se
     git worktree add --detach ../baseline 35e295d
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.speed --baseline ../baseline
 
-It runs with the packages of this environment.
+It runs with the packages of this environment. As in an installed package, modules are compiled before the first round.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -33,7 +34,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from benchmarks import fused, stations
+from benchmarks import environments, fused, stations
 from benchmarks.flutter_cost import DESIGNS
 from benchmarks.peers.cost import BATCHES
 from benchmarks.peers.lambdified import Lambdified, rotor_expressions
@@ -166,9 +167,9 @@ class Version:
     """A process that runs the tasks of `benchmarks.speed_tasks` with the package of a worktree."""
 
     def __init__(self, worktree: Path) -> None:
-        self.environment = os.environ | {
-            "PYTHONPATH": os.pathsep.join(str(worktree / part) for part in ("src", "generated")),
-            "OPENBLAS_NUM_THREADS": "1",
+        self.compiled = TemporaryDirectory()
+        self.environment = environments.of_package(worktree, self.compiled.name) | {
+            "OPENBLAS_NUM_THREADS": "1"
         }
         tasks = [sys.executable, str(ROOT / "benchmarks" / "speed_tasks.py")]
         self.process = subprocess.Popen(
@@ -202,6 +203,7 @@ class Version:
         assert self.process.stdin is not None  # a pipe
         self.process.stdin.close()
         self.process.wait()
+        self.compiled.cleanup()
 
 
 AGAINST = {

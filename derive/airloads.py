@@ -122,7 +122,7 @@ class SegmentKinematics:
         steps = [kin.beyond_flap_hinge, kin.beyond_lag_hinge]
         geometry = [*anchor, flap_arm_at_center, s.flap_hinge_offset, s.lag_hinge_offset, s.radial_station]
         operation = [s.rotor_speed, s.airspeed, s.pitch, s.pitch_gimbal_coupling]
-        operation += [s.pitch_flap_coupling, s.pitch_lag_coupling]
+        operation += [*s.HINGE_LINKAGES, s.pitch_flap_coupling, s.pitch_lag_coupling]
         self.ring = PolynomialRing(
             [*trig, *steps, *geometry, *operation],
             "`geometry` or `operation` of `SegmentKinematics` in derive/airloads.py",

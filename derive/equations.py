@@ -81,11 +81,13 @@ BLADE_AXES = (
 )
 SUM = f"{PAPER}, Eqs. 7-9 and 17: sum over N blades"
 ANY_SUM = f"{SUM}, any N of at least 3"
-CYCLIC = "separate cyclic and collective flap frequencies, as NASA TN D-7677"
+CYCLIC = (
+    "cyclic and collective flap frequencies apart, as NASA TN D-7677; collective and cyclic control systems"
+)
 SHAPES = "Euler-Bernoulli bending as a cubic in two planes, linear twist and extension"
 STRAIN = f"strain energy of {SHAPES}"
 KINETIC = f"kinetic energy of {SHAPES}"
-TURNING = "energies of a slender blade that bends while it turns"
+TURNING = "energies of an Euler-Bernoulli blade that bends while it turns"
 ENGINE = "energies of engine and shaft on the azimuth of Eq. 17"
 WORK = f"{PAPER}, virtual work of Eqs. 12 and 32"
 OF_BLADE = f"{PAPER}, Eqs. 4-16 and 32-34"

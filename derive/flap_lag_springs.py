@@ -191,7 +191,10 @@ def stiffness(i: str, j: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
         return sp.Integer(0)
     if "spring_curvature" in dropped and i == j == "pitch":
         return sp.Integer(0)
-    return sp.factor_terms(sp.expand(kin.at_trim(sp.diff(_spring_moment(i, dropped), kin.q[j]))))
+    moment = sp.expand(kin.at_trim(sp.diff(_spring_moment(i, dropped), kin.q[j])))
+    if "springs_follow_pitch" in dropped:
+        moment = moment.subs(dict.fromkeys(s.HINGE_LINKAGES, 0))
+    return sp.factor_terms(moment)
 
 
 def steady(i: str) -> sp.Expr:

@@ -14,10 +14,10 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import sympy as sp
 
-from derive import lift_slope, section
+from derive import airloads, lift_slope, section
 from derive import symbols as s
 from derive.coordinates import SEGMENT_LOADS, SEGMENT_MOTIONS, names
-from derive.fused import FusedFunction, arguments, entries_of, named_values, of_catalogue
+from derive.fused import FusedFunction, Group, arguments, entries_of, named_values, of_catalogue
 from derive.plan import Matrix, Place, Steps, plan
 from derive.trim import HINGED, STEADY_ROWS
 
@@ -126,7 +126,19 @@ def work() -> FusedFunction:
     }
     matrices = {"work": _matrix(("trim",), done), "work_slopes": _matrix(HINGED, changes)}
     made = plan(steps, matrices, short_lived=True)
-    return FusedFunction("work", _summary(work), made, arguments(made, steps))
+    groups = (
+        Group("line", "the results of `line`", tuple(line().plan.results)),
+        Group("moments", "the moments of r^0, r^1 and r^2 of each load of `section_loads`", _moments()),
+    )
+    in_groups = {name for group in groups for name in group.members}
+    others = [symbol for symbol in arguments(made, steps) if symbol.name not in in_groups]
+    return FusedFunction("work", _summary(work), made, others, groups)
+
+
+def _moments() -> tuple[str, ...]:
+    """Return the names of the radial moments of the loads of `section_loads`, in the order of these loads."""
+    loads = section_loads().plan.results[:-2]  # without the two numbers for doubts
+    return tuple(airloads.MOMENTS[load, power].name for load in loads for power in airloads.POWERS)
 
 
 def _loads_of_motion() -> tuple[list[tuple[sp.Symbol, sp.Expr]], dict[Place, sp.Expr]]:

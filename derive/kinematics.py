@@ -153,9 +153,14 @@ def gimbal_flap_and_roll() -> tuple[sp.Expr, sp.Expr]:
 
 
 def pitch_angles(dropped: frozenset[str] = frozenset()) -> tuple[sp.Expr, sp.Expr]:
-    """Blade pitch relative to the shaft (Theta_s) and to the yoke (Theta_y); the swashplate follows the shaft."""
+    """Blade pitch relative to the shaft (Theta_s) and to the yoke (Theta_y); the swashplate follows the shaft.
+
+    Linkages turn the blade as the gimbal tilts and as the blade moves on its own hinges. The trim pitch has what the
+    trim coning and lag turn it by.
+    """
     gimbal_flap, gimbal_roll = gimbal_flap_and_roll()
-    to_shaft = s.pitch + q["pitch"] - s.pitch_gimbal_coupling * gimbal_flap
+    of_hinges = s.kinematic_pitch_flap_coupling * q["flap"] + s.kinematic_pitch_lag_coupling * q["lag"]
+    to_shaft = s.pitch + q["pitch"] - s.pitch_gimbal_coupling * gimbal_flap - of_hinges
     if "yoke_roll" in dropped:
         return tuple([to_shaft.subs(q["gimbal_roll"], 0)] * 2)
     return to_shaft, to_shaft - gimbal_roll

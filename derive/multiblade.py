@@ -45,6 +45,8 @@ GUST_INDEX = {gust.name: sp.Symbol(f"BLADE_{gust.name.upper()}") for gust in BLA
 I_AZIMUTH = sp.Matrix([sp.sin(psi), -sp.cos(psi), 0])  # i and j in I, J, K
 J_AZIMUTH = sp.Matrix([sp.cos(psi), sp.sin(psi), 0])
 
+_CYCLIC_EXCESS = {"flap": cyclic_flap_stiffness_excess, "pitch": pitch.cyclic_control_stiffness_excess}
+
 Column = dict[str, sp.Expr]  # what the blade's coordinates have of one coordinate of the fixed frame
 
 
@@ -170,13 +172,19 @@ def swashplate_loads(row: str, column: str) -> sp.Expr:
     Each blade's control system and pitch damper pull at its pitch towards the swashplate's, which is held in the fixed
     frame; rates of the swashplate are left out.
     """
-    asked = wave(next(motion for motion in SWASHPLATE if motion.name == column))
+    motion = next(motion for motion in SWASHPLATE if motion.name == column)
+    asked = wave(motion)
     products = (
-        pitch.swashplate_stiffness(i) * azimuth_mean(left * asked)
+        _control_stiffness(i, motion) * azimuth_mean(left * asked)
         + s.rotor_speed * pitch.damping(i, "pitch") * azimuth_mean(left * sp.diff(asked, psi))
         for i, left in _columns(0)[row].items()
     )
     return s.n_blades * sum(products, sp.Integer(0))
+
+
+def _control_stiffness(i: str, motion: Coordinate) -> sp.Expr:
+    excess = pitch.cyclic_swashplate_stiffness(i) if motion.harmonic else sp.Integer(0)
+    return pitch.swashplate_stiffness(i) + excess
 
 
 # Motions of the blades in which nothing reaches the hub
@@ -203,9 +211,11 @@ def reactionless(kind: str, row: str, column: str) -> sp.Expr:
 
 
 def cyclic_restraint(row: str, column: str) -> sp.Expr:
-    """Stiffness that only cyclic flapping feels, for cyclic and collective frequencies given apart."""
-    cyclic = [c.name for c in FIXED if c.angle == "flap" and c.harmonic]
-    if row not in cyclic or column not in cyclic:
+    """Stiffness that only cyclic motions feel: of flap frequencies and of the control system, given apart."""
+    angle = COORDINATE[row].angle
+    if angle not in _CYCLIC_EXCESS or COORDINATE[column].angle != angle:
         return sp.Integer(0)
-    left, right = (_columns(0)[name]["flap"] for name in (row, column))
-    return s.n_blades * cyclic_flap_stiffness_excess * azimuth_mean(left * right)
+    if not (COORDINATE[row].harmonic and COORDINATE[column].harmonic):
+        return sp.Integer(0)
+    left, right = (_columns(0)[name][angle] for name in (row, column))
+    return s.n_blades * _CYCLIC_EXCESS[angle] * azimuth_mean(left * right)

@@ -16,6 +16,12 @@ from derive import kinematics as kin
 from derive import symbols as s
 from derive.published import CONSISTENT
 
+cyclic_control_stiffness_excess = s.quantity(
+    "cyclic_control_stiffness_excess",
+    r"\Delta K_{\theta c}",
+    "N m/rad",
+    "control system stiffness of cyclic above collective motion",
+)
 RATES = {name: sp.Symbol(f"rate_{name}", real=True) for name in kin.COORDINATES}
 
 
@@ -28,7 +34,7 @@ def rate(expression: sp.Expr) -> sp.Expr:
 def kinetic_energy(dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     to_shaft, _ = kin.pitch_angles(dropped)
     if "gimbal_pitch_inertia" in dropped:
-        to_shaft = to_shaft.subs(s.pitch_gimbal_coupling, 0)
+        to_shaft = to_shaft.subs(dict.fromkeys(s.LINKAGES, 0))
     return s.pitch_inertia * rate(to_shaft) ** 2 / 2
 
 
@@ -99,6 +105,11 @@ def swashplate_stiffness(i: str) -> sp.Expr:
     return at_rest(sp.diff(control_energy(), kin.q[i], kin.q["pitch"]))
 
 
+def cyclic_swashplate_stiffness(i: str) -> sp.Expr:
+    """The same per unit of cyclic motion, above that of collective motion."""
+    return cyclic_control_stiffness_excess if i == "pitch" else sp.Integer(0)
+
+
 def steady(i: str) -> sp.Expr:
     return at_rest(sp.diff(potential(), kin.q[i]))
 
@@ -108,9 +119,11 @@ def couplings() -> dict[sp.Symbol, sp.Expr]:
     """Pitch-flap and pitch-lag coupling of the control system's flexibility.
 
     K_Pbeta = -d theta/d beta and K_Pzeta = -d theta/d zeta of K_theta theta + dU/d theta = 0 (Eqs. 35-37). U is the
-    spring energy; the control system alone resists the moment.
+    spring energy; the control system alone resists the moment, so linkages of the hinges only add to the couplings.
     """
+    no_linkage = dict.fromkeys(s.HINGE_LINKAGES, 0)
     return {
-        symbol: flap_lag_springs.stiffness("pitch", name) / s.control_stiffness
+        symbol: sp.factor_terms(flap_lag_springs.stiffness("pitch", name).subs(no_linkage))
+        / s.control_stiffness
         for symbol, name in ((s.pitch_flap_coupling, "flap"), (s.pitch_lag_coupling, "lag"))
     }

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from derive import airloads, flap_lag_springs
+from derive import airloads, flap_lag_springs, pitch
 from derive import kinematics as kin
 from derive import symbols as s
 from derive.function import Function
@@ -23,12 +23,14 @@ OF_SEGMENTS = frozenset({kin.beyond_flap_hinge, kin.beyond_lag_hinge, *airloads.
 # What many rotors do not have; zero where it is not given.
 OPTIONAL = frozenset(
     {
+        *s.HINGE_LINKAGES,
         s.pitch_flap_coupling,
         s.pitch_lag_coupling,
         s.drive_inertia,
         s.drive_damping,
         s.shaft_stiffness,
         flap_lag_springs.cyclic_flap_stiffness_excess,
+        pitch.cyclic_control_stiffness_excess,
     }
 )
 

@@ -108,6 +108,12 @@ lag_outboard_fraction = quantity(
 gimbal_stiffness = quantity("gimbal_stiffness", "K_G", "N m/rad", "hub spring of the gimbal")
 control_stiffness = quantity("control_stiffness", r"K_\theta", "N m/rad", "control system stiffness")
 pitch_gimbal_coupling = quantity("pitch_gimbal_coupling", "K_{PG}", "", "pitch-gimbal coupling, tan(delta 3)")
+kinematic_pitch_flap_coupling = quantity(
+    "kinematic_pitch_flap_coupling", r"K_{P3}", "", "pitch-flap coupling of the blade's hinge, tan(delta 3)"
+)
+kinematic_pitch_lag_coupling = quantity(
+    "kinematic_pitch_lag_coupling", r"K_{P4}", "", "pitch-lag coupling of the blade's hinge, tan(delta 4)"
+)
 flap_damping = quantity("flap_damping", r"C_\beta", "N m s/rad", "flap damper")
 lag_damping = quantity("lag_damping", r"C_\zeta", "N m s/rad", "lag damper")
 pitch_damping = quantity("pitch_damping", r"C_\theta", "N m s/rad", "pitch damper")
@@ -142,7 +148,7 @@ lag = quantity("lag", r"\bar\zeta_0", "rad", "trim lag")
 elastic_pitch = quantity(
     "elastic_pitch", r"\bar\theta_0", "rad", "trim pitch of the control system's flexibility"
 )
-pitch = quantity("pitch", r"\Theta", "rad", "trim pitch at 0.75R: collective and elastic pitch")
+pitch = quantity("pitch", r"\Theta", "rad", "trim pitch at 0.75R: collective, elastic pitch and hinges")
 structural_pitch = quantity(
     "structural_pitch", r"\Theta + \delta_s", "rad", "trim angle of the blade's structural axes"
 )
@@ -152,3 +158,7 @@ pitch_flap_coupling = quantity(
 pitch_lag_coupling = quantity(
     "pitch_lag_coupling", r"K_{P\zeta}", "", "pitch-lag coupling, nose down per lag"
 )
+
+# Linkages that turn a blade as it moves: on its own hinges, and with the gimbal.
+HINGE_LINKAGES = (kinematic_pitch_flap_coupling, kinematic_pitch_lag_coupling)
+LINKAGES = (pitch_gimbal_coupling, *HINGE_LINKAGES)

@@ -10,9 +10,11 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from proprotor.errors import InputError
 from proprotor.units import factor_to_si
 
-STATUSES = ("published", "derived", "recalled", "calibrated", "assumed")
+STATUSES = ("published", "measured", "derived", "recalled", "calibrated", "assumed")
+UNSTATED = "unstated"  # the status of a number whose deck does not say
 PER_REV = "1/rev"
 _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*")
 
@@ -31,7 +33,7 @@ class Datum:
     unit : str
         SI unit, ``""`` for a plain number.
     status : str
-        published, derived, recalled, calibrated or assumed; ``"unstated"`` when the deck does not say.
+        published, measured, derived, recalled, calibrated or assumed; ``"unstated"`` when the deck does not say.
     source : str
         Where the number was read, or how it was found.
     r_over_R : tuple of float or None
@@ -45,7 +47,7 @@ class Datum:
     written: str
     si: Any
     unit: str
-    status: str = "unstated"
+    status: str = UNSTATED
     source: str = ""
     r_over_R: tuple[float, ...] | None = None
     rotor_speed: float | None = None
@@ -63,4 +65,7 @@ def deck_unit(number: Datum) -> tuple[str, float]:
         return "/rev", number.rotor_speed
     if not unit:
         return number.unit, 1.0
-    return unit, factor_to_si(number.written, unit, number.unit)
+    try:
+        return unit, factor_to_si(number.written, unit, number.unit)
+    except InputError:  # an angle whose tangent is the number
+        return number.unit, 1.0

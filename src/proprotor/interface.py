@@ -24,6 +24,7 @@ from proprotor.model.rotor_model import rotor_model
 from proprotor.model.several_rotors import mount_rotors
 from proprotor.model.structural_damping import neutral_damping
 from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
@@ -44,6 +45,7 @@ from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_
 
 __all__ = [
     "Airfoil",
+    "AirfoilRegions",
     "AirfoilTable",
     "BladeFrequencies",
     "BladeStations",

@@ -247,6 +247,19 @@ def test_the_page_of_fields_is_up_to_date():
         assert f"| `{field.path.rpartition('.')[2]}` | {field.meaning}" in page
 
 
+def test_describe_tells_what_the_inputs_of_a_deck_amount_to(tmp_path):
+    output = run("describe", "xv15-uncoupled").stdout
+    assert re.search(r"Lock number +3\.83 ", output) and re.search(r"gimbal frequency +1\.0176 +/rev", output)
+    assert re.search(r"^beam ", output, re.MULTILINE) and "K_Pζ" in output and "?" not in output
+    slip = tmp_path / "slip.toml"
+    slip.write_text('base = "xv15-uncoupled"\n[case]\nname = "slip"\n[rotor]\nchord = "14 ft"\n')
+    output = " ".join(run("describe", str(slip)).stdout.split())
+    assert "? mean chord 1.12 R is above 0.4 R: blades have 0.05 to 0.25 of the radius" in output
+    found = json.loads(run("describe", "xv15-uncoupled", "--json").stdout)
+    assert {"Lock number", "solidity"} < {one["name"] for one in found["amounts"]}
+    assert len(found["blade at trim"]) == 5 and len(found["support modes"]) == 3
+
+
 def test_describe_tells_a_field_a_section_and_all():
     output = run("describe", "rotor.precone").stdout
     assert "Cone built into the hub" in output and "rad" in output
@@ -368,8 +381,9 @@ def test_every_field_that_is_left_out_has_an_example_that_can_be_read(tmp_path, 
                 "operation.temperature_offset",
                 "rotor.hub_mass",
                 "rotor.airfoil.table_reynolds",
+                "rotor.airfoil.blend",
             ):
-                continue  # goes with an altitude, with a mass distribution, with a table
+                continue  # goes with an altitude, with a mass distribution, with a table, with region_ends
             if field.path.startswith("left.") and kind != "aircraft":
                 continue
             if (
@@ -462,6 +476,7 @@ print([name for name in {slow} if name in sys.modules])
                 "xv15-mass-distribution",
                 "xv15-uncoupled",
                 "xv15-bell-frequencies",
+                "xv15-sections",
             },
         ),
         (["sweep", "xv15-uncoupled", "--set", "rotor.prec"], {"rotor.precone="}),

@@ -134,7 +134,7 @@ MISTAKES = [
     (
         '"12.5 ft"',
         '{ value = "12.5 ft", status = "guessed" }',
-        "rotor.radius.status = guessed: must be one of published, derived, recalled, calibrated, assumed",
+        "rotor.radius.status = guessed: must be one of published, measured, derived, recalled, calibrated, assumed",
     ),
     ('"12.5 ft"', '{ value = "12.5 ft", source = 3 }', "rotor.radius.source = 3: must be text"),
     ('"12.5 ft"', '{ status = "derived" }', "rotor.radius.value: is missing"),

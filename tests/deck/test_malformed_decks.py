@@ -181,7 +181,7 @@ MALFORMED = {
     ),
     "status unknown": Malformed(
         variant('[rotor]\nradius = { value = "12.5 ft", status = "guessed" }'),
-        "rotor.radius.status = guessed: must be one of published, derived, recalled, calibrated, assumed",
+        "rotor.radius.status = guessed: must be one of published, measured, derived, recalled, calibrated, assumed",
     ),
     "columns of unequal length": Malformed(
         variant('[rotor]\nchord = { r_over_R = [0.1, 1], value = [1, 2, 3], unit = "ft" }'),

@@ -30,6 +30,17 @@ from tests.oracles.virtual_work import airload_rows, lift_slope_rows
 DENSITY = 1.1
 POWERED = {"collective": 0.8}
 
+THREE_AIRFOILS = (
+    pp.Airfoil(lift_slope=6.3, zero_lift_angle=-0.07, drag=0.02, moment=-0.075),
+    pp.Airfoil(lift_slope=5.4, zero_lift_angle=-0.02, drag=0.006, moment=-0.008),
+    pp.Airfoil(lift_slope=6.0, zero_lift_angle=-0.01, drag=0.009, moment=-0.02),
+)
+
+
+def regions(*ends, blend):
+    return pp.AirfoilRegions(airfoils=THREE_AIRFOILS, region_ends=ends, blend=blend)
+
+
 CASES = {
     "windmilling": {"seed": 1, "n_blades": 3, "airspeed": 90.0, "trim": "windmill"},
     "windmilling, tables": {"seed": 2, "n_blades": 4, "tables": True, "airspeed": 130.0, "trim": "windmill"},
@@ -46,6 +57,19 @@ CASES = {
     },
     "hinges inboard of the cutout": {"seed": 8, "airspeed": 110.0, "trim": POWERED, "root_cutout": 0.9},
     "slow flight": {"seed": 9, "airspeed": 20.0, "trim": {"collective": 0.2}},
+    "airfoils by region": {
+        "seed": 12,
+        "airspeed": 115.0,
+        "trim": "windmill",
+        "airfoil": regions(0.45, 0.8, blend=0.0),
+    },
+    "airfoils by region, blended, powered, tables": {
+        "seed": 13,
+        "tables": True,
+        "airspeed": 105.0,
+        "trim": POWERED,
+        "airfoil": regions(0.3, 0.7, blend=[0.15, 0.4]),
+    },
     "no section damping": {"seed": 10, "airspeed": 105.0, "trim": "windmill", "section_damping": False},
     "no section damping, powered, tables": {
         "seed": 11,
@@ -167,8 +191,10 @@ def pitch_flap_and_pitch_lag_coupling(rotor, trim):
     """K_Pβ and K_Pζ: the control spring against the spring moment −∂U/∂θ of a blade bent a little further."""
     step = 1e-30
 
+    linked = rotor.kinematic_pitch_flap_coupling * trim[FLAP] + rotor.kinematic_pitch_lag_coupling * trim[LAG]
+
     def pitch_moment(flap, lag):
-        turn = Motion(rotor.collective + rotor.structural_pitch_offset, 1.0)
+        turn = Motion(rotor.collective - linked + rotor.structural_pitch_offset, 1.0)
         return -hinge_spring_energy(rotor, Motion(flap), Motion(lag), turn).rate
 
     bent = (trim[FLAP] + 1j * step, trim[LAG]), (trim[FLAP], trim[LAG] + 1j * step)

@@ -198,7 +198,9 @@ def blade_pitch_equation(model):
 
 def bent_blades(rotor, trim):
     given = {name: np.full_like(trim.coning, getattr(rotor, name)) for name in SPRINGS}
-    turn = {"structural_pitch": trim.pitch + rotor.structural_pitch_offset}
+    by_flap = rotor.kinematic_pitch_flap_coupling * trim.coning
+    by_lag = rotor.kinematic_pitch_lag_coupling * trim.lag
+    turn = {"structural_pitch": trim.pitch - by_flap - by_lag + rotor.structural_pitch_offset}
     return given | turn | {"coning": trim.coning, "lag": trim.lag}
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from proprotor.rotor import balance_of_one, trim_balance, trim_solver
+from proprotor.rotor import balance_of_one, trim_balance, trim_bound, trim_solver
 from proprotor.rotor.trim import UNKNOWNS
 from tests.rotor.test_trim import OPERATION, TABLES, alone, assert_rounding_of, rotor
 
@@ -159,6 +159,26 @@ def test_other_airfoils_and_frequencies_take_the_readable_functions(monkeypatch)
     frequencies = pp.BladeFrequencies(at_rotor_speed=40.0, flap=1.1, lag=1.6)
     options = {"structure": "tabulated", "frequencies": frequencies}
     assert not given_to_the_trim(monkeypatch, rotor(), OPERATION, SPEEDS, **options).fused
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 4])
+def test_the_quick_bound_of_one_point_is_a_bound(size):
+    """Of the eigenvalues of N, made from its definition, in each window of the path."""
+    verdicts, windows = [], trim_bound._WINDOWS[0]
+    for spread in np.geomspace(0.003, 3.0, 100):
+        first, last = (np.eye(size) + spread * RNG.standard_normal((size, size)) for _ in range(2))
+        parts = [spread * RNG.standard_normal((size, size)) for _ in range(2)]
+        ends = (trim_balance.Slopes(a[None], b[None]) for a, b in zip((first, last), parts, strict=True))
+        verdicts.append(trim_bound.leads_to_end(*ends))
+        if not verdicts[-1]:
+            continue
+        mean, of_air = (first + last) / 2, (parts[0] + parts[1]) / 2
+        for share in (np.arange(windows) + 0.5) / windows:
+            inverse = np.linalg.inv(mean - (1 - share) * of_air)
+            aside = (last - first) / 2 - (1 - share) * (parts[1] - parts[0]) / 2
+            moved = np.abs(inverse @ of_air) / (2 * windows) + 2 * np.abs(inverse @ aside)
+            assert np.abs(np.linalg.eigvals(moved)).max() <= 0.5 * (1 + 1e-9)
+    assert any(verdicts) and not all(verdicts)
 
 
 @pytest.mark.parametrize("size", [1, 2, 3, 4])

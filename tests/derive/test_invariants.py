@@ -134,18 +134,29 @@ def test_mass_is_positive_once_the_hub_carries_inertia(flight, seed):
     assert least(model.M) > 1e-12
 
 
+LINKAGES = ("pitch_gimbal_coupling", "kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling")
+
+
 @any_rotor
 @given(flights(hinges="at centre"))
 def test_blades_hinged_at_the_centre_move_as_yoke_and_shaft_move_them(flight):
     """Flap and lag can then undo a gimbal tilt and a turn of the shaft, and no hub inertia makes the mass positive."""
     model = undamped(flight)
     cone, lag = flight.rotor.precone + model.trim.coning, model.trim.lag
-    rise, swing, pitch = np.cos(cone) * np.tan(lag), np.sin(cone), flight.rotor.pitch_gimbal_coupling
+    rise, swing = np.cos(cone) * np.tan(lag), np.sin(cone)
+    by_tilt, by_flap, by_lag = (getattr(flight.rotor, name) for name in LINKAGES)
+    # The control system gives way by what the linkages turn the blade.
+    pitch, across = by_tilt - by_flap, by_lag * swing - by_flap * rise
+    turned = by_flap * swing * np.tan(lag) + by_lag * np.cos(cone)
     matrices = Matrices(model, flight.rotor_speed)
     for name in "MC":
-        matrices.assert_cancel(name, azimuth=1, flap_0=swing * np.tan(lag), lag_0=np.cos(cone))
-        matrices.assert_cancel(name, gimbal_1c=1, flap_1c=-1, flap_1s=-rise, lag_1s=swing, pitch_1c=pitch)
-        matrices.assert_cancel(name, gimbal_1s=1, flap_1s=-1, flap_1c=rise, lag_1c=-swing, pitch_1s=pitch)
+        matrices.assert_cancel(
+            name, azimuth=1, flap_0=swing * np.tan(lag), lag_0=np.cos(cone), pitch_0=turned
+        )
+        back = {"pitch_1c": pitch, "pitch_1s": across}
+        matrices.assert_cancel(name, gimbal_1c=1, flap_1c=-1, flap_1s=-rise, lag_1s=swing, **back)
+        back = {"pitch_1s": pitch, "pitch_1c": -across}
+        matrices.assert_cancel(name, gimbal_1s=1, flap_1s=-1, flap_1c=rise, lag_1c=-swing, **back)
 
 
 @any_rotor
@@ -367,7 +378,11 @@ def structure(rotor, rotor_speed, trim):
         | trim
         | {"rotor_speed": rotor_speed}
     )
-    pool["pitch"] = trim["collective"] + trim["elastic_pitch"]
+    by_hinges = [
+        rotor.kinematic_pitch_flap_coupling * trim["coning"],
+        rotor.kinematic_pitch_lag_coupling * trim["lag"],
+    ]
+    pool["pitch"] = trim["collective"] + trim["elastic_pitch"] - sum(by_hinges)
     pool["structural_pitch"] = pool["pitch"] + rotor.structural_pitch_offset
     inertia, springs, pitch = equations.inertia, equations.flap_lag_springs, equations.pitch
     for named in (inertia.dependent_inertias, inertia.trim_integrals, springs.effective_stiffness):
@@ -388,6 +403,7 @@ def mirrored(rotor):
     return replace(
         rotor,
         pitch_gimbal_coupling=-rotor.pitch_gimbal_coupling,
+        kinematic_pitch_flap_coupling=-rotor.kinematic_pitch_flap_coupling,
         structural_pitch_offset=-rotor.structural_pitch_offset,
     )
 
@@ -524,6 +540,8 @@ def test_mass_knows_nothing_but_masses_geometry_and_deflection():
         "blade_mass",
         "pitch_inertia",
         "pitch_gimbal_coupling",
+        "kinematic_pitch_flap_coupling",
+        "kinematic_pitch_lag_coupling",
         "n_blades",
     }
     known |= {"cos_cone", "sin_cone", "cos_lag", "sin_lag"}

@@ -68,7 +68,8 @@ def seeds() -> tuple[str, ...]:
     bundled = [(folder / f"{name}.toml").read_text(encoding="utf-8") for name in pp.list_cases()]
     more = [f'base = "xv15-uncoupled"\n[case]\nname = "fuzz"\n[support]\n{text}' for text in _MORE.values()]
     table = 'base = "xv15-uncoupled"\n[case]\nname = "fuzz"\n[rotor.airfoil]\ntable = "airfoil.c81"\n'
-    return (*bundled, *more, table)
+    by_region = 'region_ends = 0.6\nblend = 0.1\ntable = ["airfoil.c81", "airfoil.c81"]\n'
+    return (*bundled, *more, table, table.replace('table = "airfoil.c81"\n', by_region))
 
 
 def make(rng: Random) -> tuple[dict[str, bytes], dict]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from proprotor_equations.fused import trim as plans
 
+from proprotor.rotor.fused_balance import MOMENTS
 from tests.mutation import one_blade, paper_blade
 from tests.mutation.comparison import Check, call, matrix_check, values_check
 from tests.mutation.inputs import Quantities, blade_quantities, natural_sizes, points, stacked
@@ -262,12 +263,13 @@ def _filled(layouts: dict[str, list[list[int]]], results: tuple[NDArray, ...]) -
 def _balance_by_plan() -> Iterator[Check]:
     """Balance without airloads, work of the airloads, and the change of both with the unknowns."""
     quantities, along = blade_quantities(), _quantities(published=False)
+    line, loads = ([along.get(name, np.nan) for name in names] for names in (plans.LINE, MOMENTS))
 
     def balance() -> dict[str, NDArray]:
         return _filled(plans.BALANCE, call(("fused.trim", "balance"), quantities, np.cos, np.sin))
 
     def work() -> dict[str, NDArray]:
-        found = call(("fused.trim", "work"), along)
+        found = call(("fused.trim", "work"), along, line, loads)
         return _filled(plans.WORK, tuple(np.sum(part, axis=-1) for part in found))
 
     still = [replace(p, pitch_flap_coupling=0.0, pitch_lag_coupling=0.0) for p in points()]

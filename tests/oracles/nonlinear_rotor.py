@@ -49,6 +49,9 @@ class NonlinearRotor:
     lag_damping: float = 0.0
     pitch_damping: float = 0.0
     gimbal_damping: float = 0.0
+    kinematic_pitch_flap_coupling: float = 0.0
+    kinematic_pitch_lag_coupling: float = 0.0
+    cyclic_control_stiffness: float | None = None  # of one blade; as that of the collective by default
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,12 @@ def blades(rotor, station, q, shaft):
     local_lag = lag * (lag_arm > 0)
     gimbal_flap = gimbal_c * cos(azimuth) + gimbal_s * sin(azimuth)
     gimbal_roll = gimbal_s * cos(azimuth) - gimbal_c * sin(azimuth)
-    shaft_pitch = rotor.collective + elastic_pitch - rotor.pitch_gimbal_coupling * gimbal_flap
+    by_linkages = (
+        rotor.pitch_gimbal_coupling * gimbal_flap
+        + rotor.kinematic_pitch_flap_coupling * flap
+        + rotor.kinematic_pitch_lag_coupling * lag
+    )
+    shaft_pitch = rotor.collective + elastic_pitch - by_linkages
     return Blades(
         position=hub + arm,
         arm=arm,
@@ -147,7 +155,23 @@ def spring_energy(rotor, motion, coordinates):
     control = 0.5 * rotor.control_stiffness * motion.elastic_pitch * motion.elastic_pitch
     propeller_stiffness = rotor.propeller_moment * rotor.pitch_inertia * rotor.rotor_speed**2
     propeller = 0.5 * propeller_stiffness * sin(motion.pitch) * sin(motion.pitch)
-    return over_blades(hinges + control + propeller) + 0.5 * rotor.gimbal_stiffness * dot(gimbal, gimbal)
+    blades_and_gimbal = over_blades(hinges + control + propeller) + 0.5 * rotor.gimbal_stiffness * dot(
+        gimbal, gimbal
+    )
+    return blades_and_gimbal + swashplate_energy(rotor, coordinates)
+
+
+def swashplate_energy(rotor, coordinates):
+    """What a swashplate on tilt springs of its own stores beside links that are all alike.
+
+    A tilt a of the swashplate moves N links by a cos ψ, whose squares add up to N/2: links of stiffness k feel
+    as a tilt spring of N k/2.
+    """
+    if rotor.cyclic_control_stiffness is None:
+        return Motion(0.0)
+    tilt = coordinates[..., PITCH + 1 : PITCH + 3]
+    missing = rotor.cyclic_control_stiffness - rotor.control_stiffness
+    return 0.5 * (rotor.n_blades / 2 * missing) * dot(tilt, tilt)
 
 
 def hinge_spring_energy(rotor, flap, lag, turn):

@@ -38,6 +38,7 @@ class Pair:
 
     def air(self, airspeed, density, compressibility=True, section_damping=True):
         airfoil, radius = self.fields["airfoil"], self.fields["radius"]
+        regions = isinstance(airfoil, pp.AirfoilRegions)
         station, twist = tabulated(self.fields["twist"], radius, linear=True)
         return Aerodynamics(
             airspeed=airspeed,
@@ -47,10 +48,7 @@ class Pair:
             root_cutout=self.fields["root_cutout"],
             chord=tabulated(self.fields["chord"], radius),
             twist=(station, twist - np.interp(0.75 * radius, station, twist)),
-            lift_slope=airfoil.lift_slope,
-            zero_lift_angle=airfoil.zero_lift_angle,
-            drag=airfoil.drag,
-            moment=airfoil.moment,
+            **(of_regions(airfoil, radius) if regions else vars(airfoil)),
             compressibility=compressibility,
             section_damping=section_damping,
         )
@@ -61,6 +59,15 @@ def tabulated(given, radius, linear=False):
     if isinstance(given, tuple):
         return given
     return np.array([0.0, radius]), given * np.array([0.0 if linear else 1.0, 1.0])
+
+
+def of_regions(airfoils, radius):
+    """The coefficients of airfoils from root to tip, and the radii between which one passes into the next."""
+    names = [field.name for field in fields(pp.Airfoil)]
+    found = {name: tuple(getattr(airfoil, name) for airfoil in airfoils.airfoils) for name in names}
+    widths = np.broadcast_to(airfoils.blend, np.shape(airfoils.region_ends))
+    pairs = zip(airfoils.region_ends, widths, strict=True)
+    return found | {"joints": tuple((radius * (r - w / 2), radius * (r + w / 2)) for r, w in pairs)}
 
 
 def mass_integrals(station, mass, flap_hinge_offset, lag_hinge_offset):
@@ -118,6 +125,10 @@ def random_rotor(seed, n_blades=None, tables=False, **changes):
     if tables:
         given["chord"] = (np.array([0.0, 0.35, 1.0]) * radius, np.array([0.45, 0.4, 0.25]))
         given["twist"] = (np.array([0.0, 0.25, 0.6, 1.0]) * radius, np.array([0.7, 0.3, 0.1, -0.1]))
+    # Drawn from numbers of their own, so that the others are what they were.
+    linkages = np.random.default_rng([seed, 3])
+    given["kinematic_pitch_flap_coupling"] = linkages.uniform(0.1, 0.5)
+    given["kinematic_pitch_lag_coupling"] = linkages.uniform(-0.4, -0.1)
     given |= changes
     given |= mass_integrals(station, mass, given["flap_hinge_offset"], given["lag_hinge_offset"])
     rotor_speed = rng.uniform(40.0, 55.0)

@@ -24,7 +24,10 @@ from tests.oracles.nonlinear_rotor import (
 
 @dataclass(frozen=True)
 class Aerodynamics:
-    """The air, and what it acts on. `chord` and `twist` are tables (radius, value), linear in between."""
+    """The air, and what it acts on. `chord` and `twist` are tables (radius, value), linear in between.
+
+    With `joints`, radii (inner, outer) between which one airfoil passes into the next, a coefficient may be a tuple.
+    """
 
     airspeed: float
     density: float
@@ -39,6 +42,30 @@ class Aerodynamics:
     moment: float
     compressibility: bool = True
     section_damping: bool = True
+    joints: tuple = ()
+
+    def along(self, station, value_of):
+        """The sum over all regions of `value_of` a region's number, times the region's share at the stations."""
+        if not self.joints:
+            return value_of(0)
+        passed = [
+            np.ones_like(station),
+            *(rise(station, *joint) for joint in self.joints),
+            np.zeros_like(station),
+        ]
+        return sum((passed[k] - passed[k + 1]) * value_of(k) for k in range(len(passed) - 1))
+
+    def of(self, name, region):
+        """A coefficient of a region: the same everywhere, or one of a list from root to tip."""
+        value = getattr(self, name)
+        return value[region] if isinstance(value, tuple) else value
+
+
+def rise(station, inner, outer):
+    """From 0 to 1 on a straight line, or at once where both radii are one."""
+    return np.where(
+        station < inner, 0.0, np.where(station >= outer, 1.0, (station - inner) / (outer - inner or 1.0))
+    )
 
 
 def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=14):
@@ -47,7 +74,9 @@ def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=14):
     Fourteen points integrate the smooth panels to rounding; the nearest singularities (V/Ω off the real axis,
     and sonic speed) are about a panel length away.
     """
-    corners = {rotor.flap_hinge_offset, rotor.lag_hinge_offset, *air.chord[0], *air.twist[0]}
+    corners = {rotor.flap_hinge_offset, rotor.lag_hinge_offset, *air.chord[0], *air.twist[0]}.union(
+        *air.joints
+    )
     edges = [air.root_cutout, *sorted(c for c in corners if air.root_cutout < c < air.radius), air.radius]
     node, weight = np.polynomial.legendre.leggauss(order)
     middle, half = (np.add(edges[1:], edges[:-1]) / 2)[:, None], (np.diff(edges) / 2)[:, None]
@@ -97,23 +126,29 @@ def section_loads(air, station, motion):
     """Force and nose-up moment per length on every section, from its own velocity and pitch."""
     flow, chord = section_flow(air, station, motion), np.interp(station, *air.chord)
     pressure_chord = 0.5 * air.density * chord * flow.speed**2
-    lift_coefficient = air.lift_slope * flow.prandtl_glauert * (flow.lift_incidence - air.zero_lift_angle)
-    lift, drag = pressure_chord * lift_coefficient, pressure_chord * air.drag
-    radial_drag = 0.5 * air.density * chord * flow.speed * air.drag * flow.radial
+    lift_coefficient = flow.prandtl_glauert * air.along(
+        station, lambda k: air.of("lift_slope", k) * (flow.lift_incidence - air.of("zero_lift_angle", k))
+    )
+    drag_coefficient, moment_coefficient = (
+        air.along(station, lambda k, name=name: air.of(name, k)) for name in ("drag", "moment")
+    )
+    lift, drag = pressure_chord * lift_coefficient, pressure_chord * drag_coefficient
+    radial_drag = 0.5 * air.density * chord * flow.speed * drag_coefficient * flow.radial
     force = (
         scaled(lift * np.sin(flow.inflow) + drag * np.cos(flow.inflow), motion.chordwise.value)
         + scaled(lift * np.cos(flow.inflow) - drag * np.sin(flow.inflow), motion.normal.value)
         - scaled(radial_drag, motion.spanwise.value)
     )
     resistance = np.pi / 8 * air.density * chord**3 * flow.speed * flow.rotation
-    return force, pressure_chord * chord * air.moment * flow.prandtl_glauert - resistance
+    return force, pressure_chord * chord * moment_coefficient * flow.prandtl_glauert - resistance
 
 
 def lift_slope_loads(air, station, motion, trim):
     """What a change of angle of attack alone does: c_lα in the flow and the axes of `trim`, nothing else."""
     flow, chord = section_flow(air, station, trim), np.interp(station, *air.chord)
     change = section_flow(air, station, motion).lift_incidence - flow.lift_incidence
-    lift = 0.5 * air.density * chord * flow.speed**2 * air.lift_slope * flow.prandtl_glauert * change
+    lift_slope = air.along(station, lambda k: air.of("lift_slope", k))
+    lift = 0.5 * air.density * chord * flow.speed**2 * lift_slope * flow.prandtl_glauert * change
     chordwise, normal = motion.chordwise.value, motion.normal.value
     force = scaled(lift * np.sin(flow.inflow), chordwise) + scaled(lift * np.cos(flow.inflow), normal)
     return force, 0.0 * lift

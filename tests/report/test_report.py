@@ -155,11 +155,21 @@ def test_every_input_stands_there_with_value_status_and_source(page, case):
         _, written, si, status, source = rows[path]
         assert written == number.written and status.rstrip("*") == number.status
         assert source == (number.source or "–")
-        assert status.endswith("*") == (number.status not in ("published", "derived"))
+        assert status.endswith("*") == (number.status not in ("published", "measured", "derived"))
         if isinstance(number.si, float):
             assert float(si.split()[0]) == pytest.approx(number.si, rel=1e-5)
     stations = [cell for row in table(page, "rotor.twist")[1:] for cell in row[::2] if cell]
     assert sorted(map(float, stations)) == pytest.approx(case.sources["rotor.twist"].r_over_R)
+
+
+def test_what_the_inputs_amount_to_stands_there(page, case):
+    numbers = {row[0]: row[1] for row in table(page, "Blade, rotor and air")[1:]}
+    tip = float(case.operation.rotor_speed * case.rotor.radius / case.operation.speed_of_sound)
+    assert float(numbers["tip Mach number"].rstrip("?")) == pytest.approx(tip, rel=1e-4)
+    trims = table(page, "The blade at trim")[1:]
+    assert [len(row) for row in trims] == [8] * 5
+    modes = {row[0]: row for row in table(page, "Modes of the support without")[1:]}
+    assert set(modes) == {"beam", "chord", "torsion"}
 
 
 def test_what_the_numbers_rest_on_stands_on_its_face(page, case):

@@ -22,6 +22,7 @@ from proprotor.stability.branches import by_branch
 from proprotor.stability.matching import POOR
 from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import decomposition
+from proprotor.stability.participation import coordinate_shares
 from tests.known_systems import continued, roots
 
 KNOT, RPM = 1852 / 3600, np.pi / 30
@@ -256,6 +257,15 @@ def test_names_that_fit_equally_well_do_not_hang_on_rounding():
         values, found = named(replace(model, M=model.M * noise, K=model.K * noise))
         low = np.where(values.imag > 0, values.imag, np.inf).argmin(axis=-1)
         assert (np.take_along_axis(found.place, low[:, None], 1) == 0).all()
+
+
+def test_two_roots_that_fall_into_one_have_shares():
+    """A mass without spring has the right vectors (1, 0) and (1, -δ), and the left ones (1, 1/δ) and (0, -1/δ)."""
+    near = 2.0**-960
+    right, left = np.array([[1, 1], [0, -near]]), np.array([[1, 1 / near], [0, -1 / near]])
+    both = np.kron(np.eye(2), right)[[0, 2, 1, 3]], np.kron(np.eye(2), left)[:, [0, 2, 1, 3]]
+    shares = coordinate_shares([0, 1], 2, both[1] + 0j, both[0] + 0j)
+    np.testing.assert_array_equal(shares, [[1, 1, 0, 0], [0, 0, 1, 1]])
 
 
 def test_the_modes_of_a_propeller_on_a_pivot_whirl():

@@ -1,7 +1,9 @@
 """Points of many lines solved at once, where one of them cannot be solved."""
 
 import numpy as np
+import pytest
 
+from proprotor.stability import points
 from proprotor.stability.points import solve_points
 from tests.known_systems import linear_model
 
@@ -18,6 +20,12 @@ def models(line, position):
     stiffness[:, 0, 0] = 100 * position
     stiffness[:, 1, 1] = np.where(position > 0.5, 400 * position, 0)
     return linear_model(np.eye(2), np.diag([0.2, 0.4]), stiffness, ("spring", "azimuth"))
+
+
+@pytest.fixture(params=[2000, 3, 1], autouse=True)
+def at_once(request, monkeypatch):
+    """All points at once, in parts of which one has both numbers of states, and one by one."""
+    monkeypatch.setattr(points, "_AT_ONCE", request.param)
 
 
 def test_a_point_that_cannot_be_solved_spoils_no_other_where_numbers_of_states_differ():

@@ -96,6 +96,14 @@ class Field(StringParamType):
         return dict.fromkeys(field.path for field in deck_fields())
 
 
+class FieldOrCase(Field):
+    """The type of an argument that is a field or a deck; the shell completes fields and bundled cases."""
+
+    def paths(self, ctx: click.Context) -> Iterable[str]:
+        """Return all fields of decks, and the bundled cases."""
+        return (*super().paths(ctx), *list_cases())
+
+
 class _Setting(Field):
     """The type of FIELD=VALUE; the shell completes the field."""
 

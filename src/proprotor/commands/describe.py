@@ -1,4 +1,4 @@
-"""The command `proprotor describe`: the fields of a deck."""
+"""The command `proprotor describe`: the fields of a deck, or what the inputs of one amount to."""
 
 from __future__ import annotations
 
@@ -7,8 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from proprotor.case import Case, list_cases, load_case
 from proprotor.commands import arguments, output
 from proprotor.errors import InputError
+from proprotor.model.amounts import amounts, blade_at_trims, support_modes
+from proprotor.tables.amounts_table import amounts_tables
+from proprotor.tables.sweep_table import heading
 
 if TYPE_CHECKING:
     from proprotor.deck.describe import DeckField
@@ -18,7 +22,7 @@ _MOST_IN_FULL = 3  # up to so many fields are printed in full, more fields as a 
 
 
 @arguments.command()
-@click.argument("field", required=False, type=arguments.Field(), metavar="[FIELD]")
+@click.argument("field", required=False, type=arguments.FieldOrCase(), metavar="[FIELD]")
 @click.option("--schema", is_flag=True, help="Print the JSON schema, with which editors check a deck.")
 @click.option("--markdown", is_flag=True, help="Print all fields as a page in Markdown (docs/decks.md).")
 @output.json_option
@@ -26,13 +30,15 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
     """Show the fields of a deck: the meaning, unit, range, default and alternatives of each field.
 
     FIELD is a field, a section, a kind of support or the last part of a field's name. Without FIELD all fields are
-    listed.
+    listed. A deck in its place, a bundled case or a TOML file, shows what its inputs amount to: Lock number,
+    frequencies, couplings and so on; a doubtful number is marked, and the rule told.
 
     \b
     Examples:
       proprotor describe rotor.precone
       proprotor describe rotor
       proprotor describe beam-wing
+      proprotor describe my.toml
       proprotor describe --schema > deck.schema.json
     """
     from proprotor.deck import describe as fields  # here, because pydantic takes long to import
@@ -41,6 +47,9 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
 
     if sum((schema, markdown, as_json)) > 1:
         raise InputError("--schema", None, "must not be given with --markdown or --json")
+    if field is not None and not (schema or markdown) and (field in list_cases() or field.endswith(".toml")):
+        _describe_case(load_case(field), as_json)
+        return
     if field is not None and (schema or markdown):
         raise InputError("FIELD", field, "goes with the table or --json; a schema or page has all fields")
     if schema:
@@ -56,6 +65,27 @@ def describe(field: str | None, schema: bool, markdown: bool, as_json: bool) -> 
         _print_in_full(found)
     else:
         _print_table(found)
+
+
+def _describe_case(case: Case, as_json: bool) -> None:
+    """Print what the inputs of a case amount to, with the rule for each doubtful number."""
+    if as_json:
+        output.print_json(
+            {
+                "amounts": [asdict(one) for one in amounts(case)],
+                "blade at trim": [asdict(one) for one in blade_at_trims(case)],
+                "support modes": [asdict(one) for one in support_modes(case)],
+            }
+        )
+        return
+    tables, doubts = amounts_tables(case)
+    out = output.console()
+    out.print(heading(case))
+    for table in tables:
+        out.print(table.caption, style="bold")
+        output.print_table(table.columns, table.rows, text=table.text)
+    for doubt in doubts:
+        out.print(doubt, style="yellow")
 
 
 def _print_in_full(found: tuple[DeckField, ...]) -> None:

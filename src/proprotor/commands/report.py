@@ -127,11 +127,15 @@ def _deck_hash(case: Case, request: arguments.Request) -> str:
     """Return the SHA-256 of a deck with its base, the fields of `--set`, and the content of the files in the deck."""
     from proprotor.deck.settings import with_settings  # here, because pydantic takes long to import
 
-    numbers = {
-        path: Path(number.si).read_bytes() if isinstance(number.si, FilePath) else number.si
-        for path, number in case.given.items()
-    }
+    numbers = {path: _content(number.si) for path, number in case.given.items()}
     return fingerprint((with_settings(read_tables(request.name), request.settings), numbers))
+
+
+def _content(value: Any) -> Any:
+    """Return the content of a file, or of each file of a list; any other value as it is."""
+    if isinstance(value, tuple):
+        return tuple(map(_content, value))
+    return Path(value).read_bytes() if isinstance(value, FilePath) else value
 
 
 def _document(case: Case, found: Findings, document: Document, places: list[str]) -> dict[str, Any]:

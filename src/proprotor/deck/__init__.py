@@ -5,6 +5,7 @@ asked for, with the source of every number, or the text of a deck and the descri
 
     file               find and read deck files, with the deck that each alters
     alternatives       fields that exclude each other, and how a variant replaces them
+    default_provenance a status and source for all numbers of one file
     written            texts whose meaning depends on their file: names of files, frequencies per revolution
     per_revolution     the rotor speed of each frequency per revolution
     reading            one number: text to SI, with status and source
@@ -21,6 +22,7 @@ asked for, with the source of every number, or the text of a deck and the descri
     numbers            the numbers of a deck by path
     build              rotor, operation and support from numbers
     build_support      the support from numbers and files
+    build_airfoil      the airfoil, or the airfoils by region of the span
     build_aircraft     the airframe of a whole aircraft from numbers
     each_design        each different design of a batch, built once
     left               what differs on the left side of an aircraft

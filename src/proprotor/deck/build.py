@@ -14,6 +14,7 @@ import numpy as np
 from proprotor.datum import Datum
 from proprotor.deck.alternatives import fields_instead_of
 from proprotor.deck.build_aircraft import fuselage_of
+from proprotor.deck.build_airfoil import airfoil_of
 from proprotor.deck.build_support import build_support, fitted_stiffness_factors
 from proprotor.deck.file import read_tables
 from proprotor.deck.numbers import LEFT, left_numbers, numbers_of, own_numbers
@@ -23,8 +24,7 @@ from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.rotor_share import rotor_share, settled, spring_warnings
 from proprotor.model.side import Side
 from proprotor.model.unit_doubts import unit_warnings
-from proprotor.rotor.airfoil import Airfoil, SectionModel
-from proprotor.rotor.airfoil_table import AirfoilTable
+from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
@@ -120,7 +120,7 @@ def _machinery(deck: Deck, numbers: Mapping[str, Datum]) -> _Machinery:
     with _errors_as_written("operation", numbers):
         operation, air = _operation(deck, numbers)
     with _errors_as_written("rotor.airfoil", numbers):
-        airfoil = _airfoil(_values(numbers, "rotor.airfoil"), deck.rotor.airfoil.table_name)
+        airfoil = airfoil_of(_values(numbers, "rotor.airfoil"), deck.rotor.airfoil.table_name)
     with _errors_as_written("rotor", numbers):
         given = {"airfoil": airfoil, "propeller_moment": deck.rotor.propeller_moment}
         rotor, derived = _rotor(_values(numbers, "rotor") | given, operation.density)
@@ -210,12 +210,6 @@ def _operation(deck: Deck, numbers: Mapping[str, Datum]) -> tuple[Operation, dic
     return operation, {f"operation.{name}": number for name, number in air.items()}
 
 
-def _airfoil(given: dict[str, Any], table_name: str) -> SectionModel:
-    if "table" not in given:
-        return Airfoil(**given)
-    return AirfoilTable.from_c81(given["table"], table_name or None, given.get("table_reynolds"))
-
-
 def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datum]]:
     """Return the rotor, and the numbers that follow from the given ones."""
     omega = {name: given.pop(f"{name}_frequency") for name in ("flap", "lag") if f"{name}_frequency" in given}
@@ -245,7 +239,9 @@ def _chord(rotor: Rotor, lock_number: float, density: float) -> Datum:
     if np.any(np.asarray(density) == 0):
         raise InputError("lock_number", lock_number, "needs a density above zero; give chord instead")
     if not isinstance(rotor.airfoil, Airfoil):
-        raise InputError("lock_number", lock_number, "needs a lift_slope; with an airfoil table give chord")
+        raise InputError(
+            "lock_number", lock_number, "needs one lift_slope; with airfoil tables or regions give chord"
+        )
     chord = lock_number * rotor.blade_inertia / (density * rotor.airfoil.lift_slope * rotor.radius**4)
     source = "lock_number, density, lift_slope, blade_inertia"
     return Datum("γ I_b / (ρ c_lα R⁴)", chord, "m", "derived", source)

@@ -20,6 +20,7 @@ from proprotor.deck.fields import AfterChoice, Reading, Section
 from proprotor.deck.sections import section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.rotor import Rotor
 from proprotor.support.aircraft_airloads import Tail
@@ -37,6 +38,7 @@ _ALONG = {
 _FORMS = {
     "count": "a whole number",
     "file": "the name of a file",
+    "files": "the name of a file, or a list of names",
     "rising list": "{ value = [...], unit = ... }",
 }
 _PLAIN = {bool: "true or false", str: "text"}
@@ -167,8 +169,12 @@ def _takes(reading: Reading) -> str:
     values = meaning(reading.unit)
     if isinstance(reading, AfterChoice):
         values = f"of a length {values}; of an angle {meaning(reading.other_unit)}"
+    if reading.form == "tangent":
+        values += ', or the angle of which it is the tangent, "-15 deg"'
     if reading.form == "frequency":
         values += ', or "0.42/rev"'
+    if reading.form == "curve" and reading.unit:
+        return f"{values}; {_ALONG['curve'].replace(' }', ', unit = ... }')}"
     return f"{values}; {_ALONG[reading.form]}" if reading.form in _ALONG else values
 
 
@@ -176,6 +182,8 @@ def _takes_plain(annotation: Any) -> str:
     """Return the possible values of a field that is no number; "" for a section."""
     if annotation in _PLAIN:
         return _PLAIN[annotation]
+    if str in get_args(annotation) and any(get_origin(part) is list for part in get_args(annotation)):
+        return "text, or a list of texts"
     if get_origin(annotation) is Literal:
         return list_choices(get_args(annotation))
     if sections_of(annotation):
@@ -208,7 +216,7 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
     """Return the defaults of the class that a section describes, by field."""
     described: dict[type[Section], tuple[type, ...]] = {
         deck.RotorSection: (Rotor,),
-        deck.AirfoilSection: (Airfoil,),
+        deck.AirfoilSection: (Airfoil, AirfoilRegions),
         deck.DriveTrainSection: (DriveTrain,),
         support_sections.BeamWingSection: (Wing, Pylon),
         support_sections.AircraftSection: (Wing, Pylon),

@@ -29,8 +29,9 @@ class Reading:
     Parameters
     ----------
     form : str
-        "number", "count", "joint" (a number or a choice), "frequency", "along the blade", "distribution" (along the
-        blade, never one number), "along the wing", "curve" (one number or a list of them), "rising list", "file" or
+        "number", "tangent" (a number, or the angle of which it is the tangent), "count", "joint" (a number or a
+        choice), "frequency", "along the blade", "distribution" (along the blade, never one number), "along the wing",
+        "curve" (one number or a list of them), "rising list", "file", "files" (one file or a list of them) or
         "choice".
     unit : str
         SI unit.
@@ -75,6 +76,7 @@ class Reading:
 
 _READERS: dict[str, Callable[[Any, Reading], Datum]] = {
     "number": lambda raw, field: reading.read_quantity(raw, field.unit, field.bound),
+    "tangent": lambda raw, field: reading.read_tangent(raw),
     "count": lambda raw, field: reading.read_count(raw, field.least),
     "choice": lambda raw, field: reading.read_choice(raw, field.choices),
     "joint": lambda raw, field: reading.read_joint(raw, field.unit, field.bound, field.choices),
@@ -89,6 +91,7 @@ _READERS: dict[str, Callable[[Any, Reading], Datum]] = {
     "curve": lambda raw, field: reading_lists.read_curve(raw, field.unit, field.bound),
     "rising list": lambda raw, field: reading_lists.read_list(raw, field.unit, field.bound, rising=True),
     "file": lambda raw, field: reading.read_file(raw),
+    "files": lambda raw, field: reading.read_files(raw),
 }
 
 
@@ -136,6 +139,7 @@ NotNegative = Annotated[Datum | None, Reading("number", "", NOT_NEGATIVE)]
 Positive = Annotated[Datum | None, Reading("number", "", POSITIVE)]
 Fraction = Annotated[Datum | None, Reading("number", "", FRACTION)]
 Angle = Annotated[Datum | None, Reading("number", "rad")]
+Tangent = Annotated[Datum | None, Reading("tangent")]
 Length = Annotated[Datum | None, Reading("number", "m", NOT_NEGATIVE)]
 PositiveLength = Annotated[Datum | None, Reading("number", "m", POSITIVE)]
 Offset = Annotated[Datum | None, Reading("number", "m")]
@@ -170,6 +174,12 @@ Abscissa = Annotated[
     AfterChoice("rising list", "rad", choice="against", usual="collective", other_unit="m/s"),
 ]
 File = Annotated[Datum | None, Reading("file")]
+Slopes = Annotated[Datum | None, Reading("curve", "1/rad", POSITIVE)]
+Angles = Annotated[Datum | None, Reading("curve", "rad")]
+NotNegatives = Annotated[Datum | None, Reading("curve", "", NOT_NEGATIVE)]
+Numbers = Annotated[Datum | None, Reading("curve")]
+Fractions = Annotated[Datum | None, Reading("curve", "", FRACTION)]
+Files = Annotated[Datum | None, Reading("files")]
 IncludesRotor = Annotated[Datum, Reading("choice", choices=INCLUDES_ROTOR)]
 Shaft = Annotated[Datum | None, Reading("choice", choices=SHAFT)]
 Held = Annotated[

@@ -17,8 +17,9 @@ a dimension is plain. Either may be a table that names its source:
 
     radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
 
-with a status of published, derived, recalled, calibrated or assumed. `base = "xv15"` above all sections alters another
-deck: a field given replaces the base's and its alternatives.
+with a status of published, measured, derived, recalled, calibrated or assumed. `default_status = "measured"` in [case],
+perhaps with `default_source = "weighing report 12"`, is the status of every number of the same file that states none.
+`base = "xv15"` above all sections alters another deck: a field given replaces the base's and its alternatives.
 
 A frequency per revolution, `"0.42/rev"`, refers to the rotor speed that is written in the same file, or in its base if
 the file gives none. The frequency is then fixed in hertz, because the frequencies of a wing do not depend on the rotor:

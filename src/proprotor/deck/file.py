@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from proprotor.deck.alternatives import altered, without
+from proprotor.deck.default_provenance import with_default_provenance
 from proprotor.deck.left import nested
 from proprotor.deck.per_revolution import per_revolution_of
 from proprotor.deck.written import FileName
@@ -58,6 +59,7 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
     tables = _parse(file, name)
     if "left" in tables:
         tables["left"] = nested(tables["left"])
+    tables = with_default_provenance(tables)
     folder = file.parent if isinstance(file, Path) else folder
     for place in _FILES:
         _locate_file(tables, folder, place)
@@ -113,10 +115,12 @@ def _parse(file: Traversable, name: str) -> dict[str, Any]:
 
 
 def _locate_file(tables: Any, folder: Path, place: tuple[str, ...]) -> None:
-    """Make the name of a file, at a place in the tables or on the path to that place, start from the deck's folder."""
+    """Make the names of files, at a place in the tables or on the path to that place, start from the deck's folder."""
     key, *further = place
     entry = tables.get(key) if isinstance(tables, dict) else None
     if isinstance(entry, str):
         tables[key] = FileName.inside(folder, entry)
+    elif isinstance(entry, list):
+        tables[key] = [FileName.inside(folder, one) if isinstance(one, str) else one for one in entry]
     elif further:
         _locate_file(entry, folder, tuple(further))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from proprotor.datum import PER_REV, STATUSES, Datum
+from proprotor.datum import PER_REV, STATUSES, UNSTATED, Datum
 from proprotor.deck.written import FileName, FilePath, PerRevolution
 from proprotor.errors import InputError, as_toml, is_choice, list_choices, unknown_name
 from proprotor.units import meaning, to_si
@@ -25,6 +26,7 @@ ANY = Bound(lambda x: True, "", "")
 POSITIVE = Bound(lambda x: x > 0, "above 0", "must be positive")
 NOT_NEGATIVE = Bound(lambda x: x >= 0, "0 or more", "must not be negative")
 FRACTION = Bound(lambda x: 0 <= x <= 1, "0 to 1", "must lie between 0 and 1")
+BELOW_QUARTER_TURN = Bound(lambda x: abs(x) < math.pi / 2, "within 90 deg", "must lie within 90 deg")
 BELOW_CRITICAL = Bound(lambda x: 0 <= x < 1, "0 to below 1", _BELOW_1)
 
 
@@ -38,6 +40,20 @@ def read_quantity(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
     """
     table = as_table(raw, ("value",))
     return datum(table, str(table["value"]), _bounded(table["value"], unit, bound), unit)
+
+
+def read_tangent(raw: Any) -> Datum:
+    """Return a plain number, or the tangent of an angle that is given instead: -0.268 for ``"-15 deg"``."""
+    try:
+        return read_quantity(raw, "")
+    except InputError as error:
+        if error.field:
+            raise
+        try:
+            angle = read_quantity(raw, "rad", BELOW_QUARTER_TURN)
+        except InputError as of_angle:
+            raise (of_angle if of_angle.rule == BELOW_QUARTER_TURN.rule else error) from None
+    return replace(angle, si=math.tan(angle.si), unit="")
 
 
 def read_count(raw: Any, least: int) -> Datum:
@@ -87,22 +103,38 @@ def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
 def read_file(raw: Any) -> Datum:
     """Return the name of a file, or the name in a table; plain text starts from the working directory."""
     table = as_table(raw, ("value",))
-    name = table["value"]
+    return datum(table, str(table["value"]), _path_of(table["value"]), "")
+
+
+def read_files(raw: Any) -> Datum:
+    """Return the name of a file, or a list of names, or either in a table."""
+    table = as_table(raw, ("value",))
+    names = table["value"]
+    if not isinstance(names, list):
+        return read_file(raw)
+    if len(names) < 2:
+        raise InputError("", names, "must have two files or more, or be the name of one")
+    paths = tuple(_path_of(name) for name in names)
+    return datum(table, ", ".join(names), paths, "")
+
+
+def _path_of(name: Any) -> FilePath:
+    """Return the path of a file by its name in a deck."""
     if not isinstance(name, str) or not name:
         raise InputError("", name, "must be the name of a file")
     folder = name.folder if isinstance(name, FileName) else FileName.folder
-    return datum(table, str(name), FilePath(folder / name), "")
+    return FilePath(folder / name)
 
 
 def datum(
     table: Mapping[str, Any],
     written: str,
-    si: bool | float | tuple[float, ...] | str,
+    si: bool | float | tuple[float, ...] | tuple[str, ...] | str,
     unit: str,
     r_over_R: tuple[float, ...] | None = None,
 ) -> Datum:
     """Return a number with the status and source of its table."""
-    status, source = table.get("status", "unstated"), table.get("source", "")
+    status, source = table.get("status", UNSTATED), table.get("source", "")
     if "status" in table and status not in STATUSES:
         raise InputError("status", status, f"must be one of {', '.join(STATUSES)}")
     if not isinstance(source, str):

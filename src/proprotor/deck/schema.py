@@ -28,6 +28,7 @@ _LIMITS: dict[Bound, _Schema] = {
     BELOW_CRITICAL: {"minimum": 0, "exclusiveMaximum": 1},
 }
 _NUMBERS: _Schema = {"type": "array", "items": {"type": "number"}, "minItems": 2}
+_NAMES: _Schema = {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 2}
 _STATIONS = {"distribution": "r_over_R", "along the blade": "r_over_R", "along the wing": "y_over_span"}
 
 
@@ -101,7 +102,9 @@ def _value_schema(reading: Reading) -> _Schema:
         [] if reading.form == "distribution" else [*value.get("anyOf", [value]), _table({"value": value})]
     )
     if reading.form == "curve":
-        choices.append(_table({"value": _NUMBERS}))
+        choices.append(_table({"value": _NUMBERS} | ({"unit": {"type": "string"}} if reading.unit else {})))
+    if reading.form == "files":
+        choices += [_NAMES, _table({"value": _NAMES})]
     if reading.form in _STATIONS:
         choices.append(_distribution(reading))
     if reading.form in ("along the blade", "distribution"):
@@ -113,7 +116,7 @@ def _value(reading: Reading) -> _Schema:
     """Return the schema of a plain value."""
     if reading.form == "count":
         return {"type": "integer", "minimum": reading.least}
-    if reading.form == "file":
+    if reading.form in ("file", "files"):
         return {"type": "string", "minLength": 1}
     if reading.form == "choice":
         return {"enum": list(reading.choices)}

@@ -7,7 +7,8 @@ without a dimension is plain. Either may be a table that names its source::
 
     radius = { value = "12.5 ft", status = "published", source = "AIAA-2002-1604, Table 1" }
 
-with a status of published, derived, recalled, calibrated or assumed. Chord and twist take one value (twist:
+with a status of published, measured, derived, recalled, calibrated or assumed, see `default_status` of [case] for a
+status of all numbers of a file. Chord and twist take one value (twist:
 the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
 linear between its stations; chord, twist and mass_distribution may also be a column of a CSV file,
 ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
@@ -20,13 +21,18 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
     Above all sections: the deck that this deck alters, a bundled name or a file in the same folder. A field of this
     deck replaces the field of the base; one of two alternatives removes the other.
 ``[case]``
-    name, title, description, calibration (which inputs to which result), warnings.
+    name, title, description, calibration (which inputs to which result), warnings; default_status and default_source:
+    the status and the source of every number of this file that states no status, not of its base and its variants.
 ``[rotor]``
     The arguments of `proprotor.Rotor`, or instead of flap_stiffness and lag_stiffness: flap_frequency and
     lag_frequency, non-rotating, K = I ω²; of chord: lock_number γ, chord = γ I_b / (ρ c_lα R⁴) at the
     deck's density; of the seven mass integrals: mass_distribution.
 ``[rotor.airfoil]``
-    The arguments of `proprotor.Airfoil`, or instead: table, a C81 file, whose name starts from the deck's folder.
+    The arguments of `proprotor.Airfoil`, or instead: table, a C81 file, whose name starts from the deck's folder. With
+    region_ends, ``{ value = [0.55, 0.80] }`` in r/R, there are several airfoils along the span, and each field may be a
+    list with a value for each region from the root outward: ``moment = { value = [-0.08, -0.01, -0.02] }``, or of
+    files,
+    ``table = ["root.c81", "middle.c81", "tip.c81"]``. blend is the width across which one passes into the next.
 ``[rotor.frequencies]``
     Optional; the arguments of `proprotor.BladeFrequencies`: at_rotor_speed, at which the blade has the frequencies;
     against, "collective" or "airspeed"; at, a table ``{ value = [0, 20, 40], unit = "deg" }``; flap, lag and perhaps
@@ -62,6 +68,7 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 
+from proprotor.datum import STATUSES, UNSTATED, Datum
 from proprotor.deck import fields
 from proprotor.deck.alternatives import (
     AIR_ALTERNATIVES,
@@ -69,6 +76,7 @@ from proprotor.deck.alternatives import (
     ALTERNATIVES,
     TRIM_ALTERNATIVES,
 )
+from proprotor.deck.default_provenance import DEFAULT_SOURCE, DEFAULT_STATUS
 from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.deck.reading import read_quantity
 from proprotor.deck.support_sections import SupportSection
@@ -85,10 +93,24 @@ class CaseSection(Section):
     warnings: list[fields.Text] = Field(
         default_factory=list, description="Remarks that a reader of results needs, one text each."
     )
+    default_status: Literal[UNSTATED, *STATUSES] = optional(  # type: ignore[valid-type]
+        "Status of every number of this file that states none; its base and its variants have their own.",
+        UNSTATED,
+    )
+    default_source: str = optional("Source of every number that has the default_status.", "")
+
+    @model_validator(mode="after")
+    def _defaults_of_a_file(self) -> CaseSection:
+        """Refuse a default that came from elsewhere: `proprotor.deck.default_provenance` takes those of files."""
+        for name, none in ((DEFAULT_STATUS, UNSTATED), (DEFAULT_SOURCE, "")):
+            if getattr(self, name) != none:
+                rule = "must stand in the file of a deck; a number that is set for a run is assumed"
+                raise InputError(name, getattr(self, name), rule)
+        return self
 
 
 class AirfoilSection(Section):
-    """Sections of the blade: a straight lift line with constant drag and moment, or a table."""
+    """Sections of the blade: a straight lift line with constant drag and moment, or a table; or several by region."""
 
     alternatives: ClassVar[tuple[Sides, ...]] = AIRFOIL_ALTERNATIVES
     may_lack: ClassVar[tuple[str, ...]] = (
@@ -99,20 +121,33 @@ class AirfoilSection(Section):
         "table_reynolds",
     )
 
-    lift_slope: fields.Slope = optional("Slope of the lift coefficient with the angle of attack.")
-    zero_lift_angle: fields.Angle = optional("Angle of attack without lift.")
-    drag: fields.NotNegative = optional("Drag coefficient.")
-    moment: fields.Number = optional("Moment coefficient about the reference line, nose up.")
-    table: fields.File = optional("A C81 file; its name starts from the deck's folder.")
-    table_name: str = optional("Title of the table in a file of several; the first if left out.", "")
+    lift_slope: fields.Slopes = optional("Slope of the lift coefficient with the angle of attack.")
+    zero_lift_angle: fields.Angles = optional("Angle of attack without lift.")
+    drag: fields.NotNegatives = optional("Drag coefficient.")
+    moment: fields.Numbers = optional("Moment coefficient about the reference line, nose up.")
+    table: fields.Files = optional("A C81 file, or one for each region; names start from the deck's folder.")
+    table_name: str | list[fields.Text] = optional(
+        "Title of the table in a file of several, or a title for each region; the first if left out.", ""
+    )
     table_reynolds: fields.Size = optional(
         "Reynolds number of the table, in a file with tables of one airfoil at several."
     )
 
+    region_ends: fields.Fractions = optional(
+        "Outer ends r/R of the regions from the root outward, but for the last, which ends at the tip; every other "
+        "field of the airfoil may then have a value for each region."
+    )
+    blend: fields.Fractions = optional(
+        "Width, of the radius, across which the coefficients of one region pass linearly into those of the next, "
+        "centred on the end; one width, or one for each end. 0 is a sharp change."
+    )
+
     @model_validator(mode="after")
     def _numbers_or_a_table(self) -> AirfoilSection:
-        of_table = {"table", "table_name", "table_reynolds"}
-        numbers = [name for name in type(self).model_fields if name in self.model_fields_set - of_table]
+        of_table, joints = {"table", "table_name", "table_reynolds"}, {"region_ends", "blend"}
+        numbers = [
+            name for name in type(self).model_fields if name in self.model_fields_set - of_table - joints
+        ]
         if self.table is not None and numbers:
             raise InputError("table", self.table.written, f"must not be given with {', '.join(numbers)}")
         for name in sorted(of_table & self.model_fields_set):
@@ -121,6 +156,38 @@ class AirfoilSection(Section):
         if self.table is None and "lift_slope" not in numbers:
             raise InputError("lift_slope", None, "is missing; give lift_slope or table")
         return self
+
+    @model_validator(mode="after")
+    def _one_value_for_each_region(self) -> AirfoilSection:
+        ends = self.region_ends
+        if ends is None:
+            for name, (count, written) in self._lists().items():
+                raise InputError(
+                    "region_ends", None, f"is missing; {name} has {written or f'{count} values'}"
+                )
+            if self.blend is not None:
+                raise InputError("blend", self.blend.written, "must be given with region_ends")
+            return self
+        regions = 1 + (len(ends.si) if isinstance(ends.si, tuple) else 1)
+        for name, (count, written) in self._lists().items():
+            needed_count = regions - (name == "blend")
+            if count != needed_count:
+                each = "end of a region" if name == "blend" else "region"
+                raise InputError(name, written, f"must have one value for each {each}, {needed_count}")
+        return self
+
+    def _lists(self) -> dict[str, tuple[int, str]]:
+        """Return the number of values, and the values as written, of each field that is a list, but for the ends."""
+        found = {}
+        for name in type(self).model_fields:
+            entry = getattr(self, name)
+            values = entry.si if isinstance(entry, Datum) else entry
+            if name != "region_ends" and isinstance(values, list | tuple):
+                found[name] = (
+                    len(values),
+                    entry.written if isinstance(entry, Datum) else f"{len(values)} titles",
+                )
+        return found
 
 
 class FrequenciesSection(Section):
@@ -204,10 +271,21 @@ class RotorSection(Section):
         "Angle from the collective reference to the blade's structural axes."
     )
     gimbal_stiffness: fields.Stiffness = needed("Stiffness of the hub spring.")
-    pitch_gimbal_coupling: fields.Number = needed("K_PG = tan δ3, pitch per gimbal tilt.")
+    pitch_gimbal_coupling: fields.Tangent = needed(
+        "K_PG = tan δ3, pitch nose down per gimbal tilt; an angle is δ3 itself."
+    )
+    kinematic_pitch_flap_coupling: fields.Tangent = optional(
+        "K_P3 = tan δ3 of the blade's own flap hinge, pitch nose down per flap; an angle is δ3 itself."
+    )
+    kinematic_pitch_lag_coupling: fields.Tangent = optional(
+        "K_P4 = tan δ4 of the blade's own lag hinge, pitch nose down per lag; an angle is δ4 itself."
+    )
     pitch_inertia: fields.InertiaOrNone = needed("Inertia of one blade about its pitch axis.")
     control_stiffness: fields.Stiffness = needed(
         "Control system stiffness of one blade, about its pitch axis."
+    )
+    cyclic_control_stiffness: fields.Stiffness = optional(
+        "Control system stiffness of one blade where the swashplate tilts; that of control_stiffness if left out."
     )
     flap_damping: fields.Damping = optional("Viscous damping of the flap hinge.")
     lag_damping: fields.Damping = optional("Viscous damping of the lag hinge.")
@@ -380,6 +458,12 @@ def _places(
 
 SECTIONS = dict(_places(Deck))
 SUPPORT_KINDS = tuple(place[1] for place in SECTIONS if place[:1] == ("support",) and len(place) == 2)
+
+
+def is_number_of(section: type[Section], name: str) -> bool:
+    """Return whether a section has a field of a name that is a number, rather than a word or a section."""
+    field = section.model_fields.get(name)
+    return field is not None and any(isinstance(part, fields.Reading) for part in field.metadata)
 
 
 def sections_at(place: tuple[str, ...]) -> dict[str, type[Section]]:

@@ -20,7 +20,8 @@ _HEAD = """\
 #   radius = "12.5 ft"
 # or is a table that also names the source, which results then repeat:
 #   radius = {{ value = "12.5 ft", status = "published", source = "report, table" }}
-# with a status of published, derived, recalled, calibrated or assumed.
+# with a status of published, measured, derived, recalled, calibrated or assumed; default_status in [case] is the status
+# of every number of this file that states none.
 #
 #   proprotor describe rotor.precone        what a field is
 #   proprotor flutter {file}
@@ -33,11 +34,14 @@ _EXAMPLES = {
     "bool": "true",
     "count": "4",
     "file": '"name-of-file"',
+    "files": '"name-of-file"',
     "rising list": '{ value = [0, 20, 40], unit = "deg" }',
     "curve": "{ value = [1.9, 1.8, 1.7] }",
     "table": '{ x = "hub_x" }',
 }
 _EXAMPLES_OF_FIELDS = {
+    "rotor.airfoil.lift_slope": '"5.7/rad"',
+    "rotor.airfoil.region_ends": "{ value = [0.55, 0.80] }",
     "left.rotor": '{ control_stiffness = "8000 ft*lbf/rad" }',
     "left.operation": '{ trim = { collective = "30 deg" } }',
     "left.drive_train": '{ drive_damping = "100 N*m*s/rad" }',
@@ -89,7 +93,7 @@ def example(field: DeckField) -> str:
     if field.form == "distribution":
         unit = _first_example(field.unit).strip('"').partition(" ")[2]
         return f'{{ r_over_R = [0, 1], value = [0.3, 0.2], unit = "{unit}" }}'
-    if field.form == "fields":
+    if field.path in _EXAMPLES_OF_FIELDS:
         return _EXAMPLES_OF_FIELDS[field.path]
     if field.form in ("choice", "joint"):
         return field.takes.partition(" or ")[0]
@@ -157,6 +161,8 @@ def _from(value: Any, place: Path) -> Any:
         return os.path.relpath(value.folder / value, place.parent).replace(os.sep, "/")
     if isinstance(value, Mapping):
         return {key: _from(entry, place) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_from(entry, place) for entry in value]
     return value
 
 

@@ -23,6 +23,8 @@ configuration, and the stamp that every result has.
     structural_damping   structural damping at which a model is neutrally stable
     side                 the left side of an aircraft where it differs from the right side
     configuration        the record Configuration: rotor, operation, support, sources; `linearize`
+    amounts              what the inputs of a configuration amount to: Lock number, frequencies, couplings
+    amount_rules         the range of each amount, and what a value outside suggests
     provenance           which numbers of a configuration were not read in a source
     doubts               marks and reasons of doubtful numbers
     options_in_force     the options of a model as plain data and in words
@@ -54,6 +56,8 @@ __all__ = [
     "LinearModel",
     "Side",
     "airload_moments",
+    "amount_rules",
+    "amounts",
     "blade_comparison",
     "deck_fingerprint",
     "doubts",

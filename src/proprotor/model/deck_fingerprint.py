@@ -23,9 +23,7 @@ def deck_fingerprint(case: Configuration) -> str:
     if case.deck is None:
         parts = [case.rotor, case.operation, case.support, case.frequencies, case.drive_train, case.left]
         return short_fingerprint(parts)
-    numbers = {
-        path: [_number(n.si), n.r_over_R] for path, n in case.given.items() if not isinstance(n.si, str)
-    }
+    numbers = {path: [_number(n.si), n.r_over_R] for path, n in case.given.items() if not _names_files(n.si)}
     airfoil_file = case.rotor.airfoil if "rotor.airfoil.table" in case.given else None
     return short_fingerprint([numbers, _choices(case.deck), airfoil_file])
 
@@ -51,9 +49,14 @@ def _choices(section: Any) -> dict[str, Any]:
         if hasattr(type(entry), "model_fields"):
             found[name] = {} if name == "case" else _choices(entry)
         elif isinstance(entry, list | tuple):
-            found[name] = [_choices(one) for one in entry if hasattr(type(one), "model_fields")]
+            found[name] = [_choices(one) if hasattr(type(one), "model_fields") else one for one in entry]
         elif isinstance(entry, str | bool | int | dict) or entry is None:
             found[name] = entry
-        elif isinstance(getattr(entry, "si", None), str):
-            found[name] = entry.written  # the name of a file
+        elif _names_files(getattr(entry, "si", None)):
+            found[name] = entry.written
     return found
+
+
+def _names_files(si: Any) -> bool:
+    """Return whether a value names a file, or several files, or is a word."""
+    return isinstance(si, str) or (isinstance(si, tuple) and isinstance(si[0], str))

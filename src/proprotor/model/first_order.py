@@ -139,7 +139,7 @@ def lack_azimuths(model: LinearModel) -> Array:
 
 def _anywhere(holds: Array) -> Array:
     """Return which azimuths (azimuths,) a shaft holds at some point (..., azimuths)."""
-    return np.asarray(holds.any(axis=tuple(range(holds.ndim - 1))))
+    return holds if holds.ndim == 1 else np.asarray(holds.any(axis=tuple(range(holds.ndim - 1))))
 
 
 def lacking_states(model: LinearModel) -> Iterator[tuple[int, Array]]:

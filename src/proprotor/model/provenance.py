@@ -10,7 +10,7 @@ from proprotor.datum import Datum
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
 
-_READ_IN_A_SOURCE = ("published", "derived")
+_READ_IN_A_SOURCE = ("published", "measured", "derived")
 
 
 def doubtful_inputs(case: Configuration) -> dict[str, Datum]:

@@ -12,6 +12,7 @@ from proprotor_equations import pitch
 from proprotor.model.batches import joint_shape
 from proprotor.model.kept import kept
 from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.operation import Operation
@@ -43,7 +44,9 @@ def shape_of(rotor: Rotor) -> tuple[int, ...]:
     leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
     inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)] + leading
     if isinstance(rotor.airfoil, Airfoil):
-        inputs += [getattr(rotor.airfoil, entry.name) for entry in fields(rotor.airfoil)]
+        inputs += vars(rotor.airfoil).values()
+    if isinstance(rotor.airfoil, AirfoilRegions):
+        inputs += rotor.airfoil.numbers()
     return joint_shape((), *(np.shape(value) for value in inputs if _may_vary(value)))
 
 
@@ -84,7 +87,10 @@ def _numbers_of(rotor: Rotor) -> dict[str, Any]:
 def of_rotor(rotor: Rotor) -> dict[str, Any]:
     """Return the rotor's own numbers, without the properties that are distributed along the blade."""
     names = [entry.name for entry in fields(rotor) if entry.name not in _ALONG_THE_BLADE]
-    return {name: getattr(rotor, name) for name in (*names, *_HINGE_INERTIAS)}
+    given = {name: getattr(rotor, name) for name in (*names, *_HINGE_INERTIAS)}
+    cyclic = given.pop("cyclic_control_stiffness")
+    excess = 0.0 if cyclic is None else cyclic - rotor.control_stiffness
+    return given | {"cyclic_control_stiffness_excess": excess}
 
 
 def couplings(options: Options, quantities: Mapping[str, Any]) -> dict[str, Any]:

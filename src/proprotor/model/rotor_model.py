@@ -139,6 +139,10 @@ def _check_pitch(rotor: Rotor, options: Options) -> None:
             rule = f'must be above zero with pitch="{options.pitch}"'
             raise InputError(name, getattr(rotor, name), rule)
 
+    if options.pitch == "coupling" and rotor.cyclic_control_stiffness is not None:
+        rule = 'must be left out with pitch="coupling", whose couplings are those of control_stiffness'
+        raise InputError("cyclic_control_stiffness", rotor.cyclic_control_stiffness, rule)
+
 
 @kept
 def _absent(rotor: Rotor) -> list[str]:
@@ -189,9 +193,9 @@ def _matrices(
     if len(rows):
         quantities = settled.quantities | couplings(options, settled.quantities)
         segments = _segments(sections, rows, quantities, settled.segments, options)
-        given = segments | quantities | {"equations": options.equation_set}
         served = fused.serves(options.equation_set)
         if reactionless is not None or not served:
+            given = segments | quantities | {"equations": options.equation_set}
             blade = evaluate(whole_rotor.blade_matrices, given)
         if served:
             in_air = None if options.airloads == "none" else segments

@@ -236,7 +236,7 @@ def _modes_with_spring(
     it causes, with unit modal mass, tilt c per unit, gimbal inertia I and spring K, the squares λ of the frequencies
     solve I λ² - (I (ω² + K c²) + K) λ + ω² K = 0.
     """
-    square, shapes, scaled = _undamped_modes(np.real(support.mass), np.real(support.stiffness))
+    square, shapes, scaled = undamped_modes(np.real(support.mass), np.real(support.stiffness))
     own = mass_at_rest[..., _GIMBAL, :][..., _GIMBAL]
     tilt = np.linalg.solve(own, mass_at_rest[..., _GIMBAL, : len(HUB)]) @ np.real(support.hub) @ shapes
     inertia, spring = own[..., :1, 0], np.asarray(gimbal_stiffness, dtype=float)[..., None]
@@ -256,7 +256,7 @@ def _modes_with_spring(
     return np.sqrt(square[worst]), ratio[worst], names[worst].tolist()
 
 
-def _undamped_modes(mass: Array, stiffness: Array) -> tuple[Array, Array, Array]:
+def undamped_modes(mass: Array, stiffness: Array) -> tuple[Array, Array, Array]:
     """Return ω² (..., n), shapes of unit modal mass, and the same shapes scaled; zero for a motion without mass."""
     size = np.sqrt(np.diagonal(mass, axis1=-2, axis2=-1))
     size = np.where(size > 0, size, 1.0)

@@ -322,7 +322,12 @@ class _Blade:
         self.r = np.linspace(float(rotor.root_cutout), float(rotor.radius), _PER_BLADE)
         self.flap_arm = np.maximum(self.r - float(rotor.flap_hinge_offset), 0)
         self.lag_arm = np.maximum(self.r - float(rotor.lag_hinge_offset), 0)
-        self.pitch = float(trim.pitch) + np.asarray(rotor.twist_at(self.r))
+        self.linkages = {
+            "flap": float(rotor.kinematic_pitch_flap_coupling),
+            "lag": float(rotor.kinematic_pitch_lag_coupling),
+        }
+        by_hinges = self.linkages["flap"] * float(trim.coning) + self.linkages["lag"] * float(trim.lag)
+        self.pitch = float(trim.pitch) - by_hinges + np.asarray(rotor.twist_at(self.r))
         self.chord = np.broadcast_to(rotor.chord_at(self.r), self.r.shape)
         self.precone, self.flap, self.lag = float(rotor.precone), float(trim.coning), float(trim.lag)
         self.pitch_gimbal_coupling = float(rotor.pitch_gimbal_coupling)
@@ -355,6 +360,9 @@ class _Blade:
         flap = tilt[0] * np.cos(azimuth) + tilt[1] * np.sin(azimuth)
         roll = tilt[1] * np.cos(azimuth) - tilt[0] * np.sin(azimuth)
         pitch = _at_azimuth("pitch", azimuth, coordinates) - self.pitch_gimbal_coupling * flap - roll
+        pitch -= sum(
+            ratio * _at_azimuth(hinge, azimuth, coordinates) for hinge, ratio in self.linkages.items()
+        )
         turn = _turn(coordinates, hub)
         by_pitch = pitch * turned + np.cross(turn, ahead)
         offsets = [share * self.chord[:, None] for share in (0.25, -0.75)]  # from the axis of pitch

@@ -22,6 +22,7 @@ from proprotor.report import pictures
 from proprotor.report.analyses import Findings
 from proprotor.report.document import Document, Section, Table, Text
 from proprotor.stability.flutter_messages import boundary_record, boundary_row, verdict
+from proprotor.tables.amounts_table import amounts_tables
 from proprotor.tables.points import Points
 from proprotor.tables.sensitivity_summary import (
     NEARLY_DEFECTIVE,
@@ -95,6 +96,7 @@ def report_document(
         Section("Sensitivities", tuple(_sensitivities(case, found, unit, factor))),
         Section("Trim", tuple(_trim(found, table))),
         Section("Inputs", tuple(_inputs(case))),
+        Section("What the inputs amount to", tuple(_amounts(case))),
         Section("Reproduction", (_reproduction(case, deck_hash, date),)),
     )
     failures = (f"Not analysed {airspeeds}: {reason}." for airspeeds, _, reason in _failed(table))
@@ -314,9 +316,16 @@ def _si(number: Datum) -> str:
         return f"{low:.6g} to {high:.6g} {number.unit}".strip() + ", see below"
     if isinstance(number.si, FilePath):
         return "a file"
+    if isinstance(number.si, tuple):
+        return "files" if isinstance(number.si[0], FilePath) else _listed(number.si, number.unit)
     if isinstance(number.si, bool | str):
         return as_toml(number.si)
     return f"{number.si:.6g} {number.unit}".strip()
+
+
+def _listed(values: tuple[float, ...], unit: str) -> str:
+    """Return a list of values with their unit."""
+    return f"{', '.join(f'{value:.6g}' for value in values)} {unit}".strip()
 
 
 def _distribution(path: str, number: Datum) -> Table:
@@ -329,6 +338,17 @@ def _distribution(path: str, number: Datum) -> Table:
         cells = [text for r, value in stations[place::count] for text in (f"{r:.4g}", f"{value:.6g}")]
         rows.append(tuple(cells + [""] * (2 * _PAIRS - len(cells))))
     return Table(f"{path} along the blade", pair * _PAIRS, tuple(rows), frozenset(pair))
+
+
+def _amounts(case: Case) -> Iterator[Table | Text]:
+    """Yield the tables of what the inputs amount to, and the rules that doubtful numbers break."""
+    tables, doubts = amounts_tables(case)
+    for table in tables:
+        yield Table(
+            table.caption, table.columns, table.rows, frozenset(table.columns) - frozenset(table.text)
+        )
+    if doubts:
+        yield Text(doubts, warning=True)
 
 
 def _reproduction(case: Case, deck_hash: str, date: str) -> Table:

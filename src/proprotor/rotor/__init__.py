@@ -7,6 +7,7 @@ matrices. This room imports `errors`, `typing` and `files`, and the generated eq
 What a rotor is:
     rotor                a proprotor: geometry, mass, springs, chord and twist
     airfoil              section coefficients; the linear airfoil
+    airfoil_regions      airfoils by region of the span
     airfoil_table        an airfoil from tables
     c81                  files of such tables in the C81 format, in the dialects of many programs
     c81_layouts          the rows of such files, in columns or separated
@@ -37,6 +38,7 @@ Loads and trim:
     fused_balance        the balance of one blade by the fused functions, for batches
     balance_of_one       the same for one point, by plain numbers
     trim_balance         the balance of one blade and its slopes
+    elimination          linear equations of a few unknowns at many points
     trim_start           first guess and undeflected blade
     trim_bound           a bound that shows which equilibrium belongs to the undeflected blade
     trim_path            the path from the undeflected blade to the trim
@@ -49,6 +51,7 @@ All public names of the modules `blade_stations`, `elastic_blade`, `hinged_blade
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import Air, standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
@@ -67,6 +70,7 @@ __all__ = [
     "UNKNOWNS",
     "Air",
     "Airfoil",
+    "AirfoilRegions",
     "AirfoilTable",
     "BladeFrequencies",
     "BladeStations",

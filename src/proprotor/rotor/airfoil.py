@@ -41,6 +41,25 @@ class SectionModel(Protocol):
 
 
 @runtime_checkable
+class HasPoints(Protocol):
+    """A section model whose numbers may differ from point to point of a batch, and from station to station."""
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether any number is complex, for derivatives by a complex step."""
+        ...
+
+    @property
+    def real(self) -> SectionModel:
+        """The same model without imaginary parts."""
+        ...
+
+    def take(self, rows: Array | slice, stations: slice) -> SectionModel:
+        """Return the model at some of the points, and at some of the stations."""
+        ...
+
+
+@runtime_checkable
 class Warns(Protocol):
     """A section model that says where its coefficients are doubtful."""
 
@@ -52,6 +71,8 @@ class Warns(Protocol):
 # Limits of a straight lift line and of the Prandtl-Glauert factor (assumed, typical of thin sections).
 _LINEAR_ALPHA = np.radians(12.0)
 _LINEAR_MACH = 0.85
+_BEYOND_ALPHA = f"angle of attack beyond {np.degrees(_LINEAR_ALPHA):.0f} deg"
+_BEYOND_MACH = f"Mach number beyond {_LINEAR_MACH:g}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,19 +144,31 @@ class Airfoil:
         """
         return self._with_arrays(lambda array: np.broadcast_to(array, shape).reshape(-1, 1))
 
-    def take(self, rows: Array | slice) -> Airfoil:
+    def take(self, rows: Array | slice, stations: slice = slice(None)) -> Airfoil:
         """Return a flattened airfoil at some of the points.
 
         Parameters
         ----------
         rows : slice, or array of int or bool
-            Places in the batch.
+            Places in the batch; an array with one row holds for all points and stays.
+        stations : slice
+            Stations of the blade to keep, where the airfoil changes along the blade.
 
         Returns
         -------
         Airfoil
         """
-        return self._with_arrays(lambda array: array[rows])
+
+        def some(array: Array) -> Array:
+            of_points = array if len(array) == 1 else array[rows]
+            return of_points if of_points.shape[-1] == 1 else of_points[:, stations]
+
+        return self._with_arrays(some)
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether any number is complex, for derivatives by a complex step."""
+        return any(map(np.iscomplexobj, vars(self).values()))
 
     @property
     def real(self) -> Airfoil:
@@ -163,6 +196,6 @@ class Airfoil:
             Masks of the broadcast shape, by reason.
         """
         return {
-            f"angle of attack beyond {np.degrees(_LINEAR_ALPHA):.0f} deg": np.abs(alpha) > _LINEAR_ALPHA,
-            f"Mach number beyond {_LINEAR_MACH:g}": np.real(mach) > _LINEAR_MACH,
+            _BEYOND_ALPHA: np.abs(alpha) > _LINEAR_ALPHA,
+            _BEYOND_MACH: np.real(mach) > _LINEAR_MACH,
         }

@@ -6,6 +6,7 @@ blade alone.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,10 +20,10 @@ from proprotor_equations.fused import trim as plans
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import plain_number
 from proprotor.rotor.fused_balance import LOADS, MOMENTS, OF_AIRFOIL, PITCH_TWICE
-from proprotor.rotor.generated import evaluate
+from proprotor.rotor.generated import evaluate, keywords
 from proprotor.rotor.quadrature import POWERS
-from proprotor.rotor.section_loads import LOAD_MOMENTS, BladeSections
-from proprotor.rotor.trim import FLAP_LAG
+from proprotor.rotor.section_loads import LOAD_MOMENTS, OUTBOARD, BladeSections
+from proprotor.rotor.trim import FLAP_LAG, blade_pitch
 from proprotor.rotor.trim_balance import Balance
 from proprotor.typing import Array
 
@@ -30,6 +31,9 @@ Numbers = dict[str, Any]
 Rows = list[list[float]]
 _NO_LOADS = dict.fromkeys(LOAD_MOMENTS, 0.0)
 _LINES = plans.LINE.index("ut_0")
+# What the plan `work` takes besides line and moments: of the blade, and moments that a straight lift line has not.
+_OF_BLADE = ("rotor_speed", "airspeed", "lag_hinge_offset")
+_IDLE = {name: 0.0 for name in keywords(plans.work) if name in LOAD_MOMENTS}
 
 
 class Here(NamedTuple):
@@ -37,7 +41,7 @@ class Here(NamedTuple):
 
     residual : of the rows that close the free unknowns.
     full, airloads : slopes of these rows with the free unknowns, as `Slopes`.
-    work, work_slopes : virtual work of the airloads on all five rows, and minus its change with the free unknowns.
+    work : results of the plan `work`, as the places of its layouts count them.
     quantities : of the whole blade.
     moments : array (loads, powers of all segments)
         Radial moments of the section loads.
@@ -49,7 +53,6 @@ class Here(NamedTuple):
     full: Rows
     airloads: Rows
     work: list[float]
-    work_slopes: Rows
     quantities: Numbers
     moments: Array
     loads: Array
@@ -60,12 +63,25 @@ class Here(NamedTuple):
         found: Numbers = {**_NO_LOADS, **sides, **dict(zip(MOMENTS, own, strict=True))}
         return found
 
+    def virtual_work(self, row: int) -> float:
+        """Return the virtual work of the airloads of one blade on a row of the balance."""
+        place: int = plans.WORK["work"][row][0]
+        return self.work[place]
+
+    def virtual_work_after(self, step: Sequence[float], free: Sequence[int], row: int) -> float:
+        """Return the virtual work after a step of the free unknowns, which is subtracted from them."""
+        places: list[int] = plans.WORK["work_slopes"][row]
+        slopes = (self.work[places[PITCH_TWICE[place]]] for place in free)
+        moved = sum(slope * part for slope, part in zip(slopes, step, strict=True))
+        return self.virtual_work(row) + moved
+
 
 @dataclass(frozen=True, eq=False)
 class _Stations:
     """The stations of the blade, arrays (stations,), with the segment of each and the weights of all segments.
 
-    given : chord and airfoil, by the names of the plan `section_loads`.
+    given : chord and airfoil, by the names of the plan `section_loads`. A chord that all stations share is a number,
+        for what depends on it alone; the airfoil meets arrays, and arrays go with arrays faster than numbers do.
     weights : array (stations, powers of all segments)
     sides : on which side of the hinges each segment is.
     """
@@ -73,45 +89,86 @@ class _Stations:
     radii: Array
     segment: Array
     twist: Array
+    bent: Array
+    airfoil: Airfoil
     given: Numbers
     weights: Array
     sides: list[Numbers]
 
-    @classmethod
-    def of(cls, sections: BladeSections) -> _Stations:
+    @staticmethod
+    @functools.lru_cache(maxsize=8)
+    def of(sections: BladeSections) -> _Stations:
         """Return the stations of sections that have no axis of points."""
         quadrature, along = sections.quadrature, sections.along
-        segment = np.repeat(np.arange(len(quadrature.counts)), quadrature.counts)
-        weights = np.zeros((len(segment), len(quadrature.counts), POWERS))
+        count = len(quadrature.counts)
+        segment = np.repeat(np.arange(count), quadrature.counts)
+        weights = np.zeros((len(segment), count, POWERS))
         weights[np.arange(len(segment)), segment] = quadrature.weights
         airfoil = vars(cast(Airfoil, sections.airfoil))
-        of_airfoil = {name: plain_number(airfoil[field]) for field, name in OF_AIRFOIL.items()}
-        given = of_airfoil | {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
+        chords = {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
+        given = {name: part.item() if part.size == 1 else part for name, part in chords.items()}
+        given |= {
+            name: np.broadcast_to(np.ravel(airfoil[field]), segment.shape).astype(float)
+            for field, name in OF_AIRFOIL.items()
+        }
         numbers = zip(*(side.tolist() for side in sections.sides.values()), strict=True)
         sides = [dict(zip(sections.sides, own, strict=True)) for own in numbers]
         flat = weights.reshape(len(segment), -1)
-        return cls(quadrature.stations, segment, along.twist, given, flat, sides)
+        radii, twist = quadrature.stations, along.twist
+        bent = np.broadcast_to(along.bent, radii.shape)
+        return _Stations(radii, segment, twist, bent, airfoil, given, flat, sides)
 
     def along(self, lines: list[tuple[float, ...]], quantities: Numbers, sound: float) -> tuple[Array, Array]:
         """Return the loads (results, stations), and the moments (loads, powers of all segments).
 
         `lines` has the results of the plan `line` for each segment.
         """
-        ends = np.array(lines)[:, _LINES:].T[:, self.segment]
-        ut_0, up_0, radial, ut_1, up_1, spin = ends
-        given = self.given | {
-            "tangential_velocity": ut_0 + ut_1 * self.radii,
-            "axial_velocity": up_0 + up_1 * self.radii,
-            "radial_velocity": radial,
-            "section_spin": spin,
-            "section_pitch": self.twist + quantities["pitch"],
-            "section_damping": quantities["section_damping"],
-            "density": quantities["density"],
-            "speed_of_sound": sound,
-        }
+        ends = np.array([line[_LINES:] for line in lines]).T.take(self.segment, axis=1)
+        tangential, axial = ends[:2] + ends[3:5] * self.radii
         loads = np.empty((len(plans.SECTION_LOADS), len(self.radii)))
-        plans.section_loads(np.sqrt, np.arctan, loads, **given)
+        plans.section_loads(
+            np.sqrt,
+            np.arctan,
+            loads,
+            **self.given,
+            tangential_velocity=tangential,
+            axial_velocity=axial,
+            radial_velocity=ends[2],
+            section_spin=ends[5],
+            section_pitch=self.twist + quantities["pitch"],
+            section_damping=quantities["section_damping"],
+            density=quantities["density"],
+            speed_of_sound=sound,
+        )
         return loads, loads[: len(LOADS)].dot(self.weights)
+
+    def are_in_doubt(self, loads: Array, radius: float) -> bool:
+        """Return whether outboard stations with these results of `section_loads` are beyond the airfoil's range."""
+        first = self.radii.searchsorted(OUTBOARD * radius)
+        incidence, mach = loads[-2:, first:]
+        return any(mask.any() for mask in self.airfoil.warnings(incidence + self.bent[first:], mach).values())
+
+
+class _Places(NamedTuple):
+    """Where the entries of the rows that close the free unknowns stand among the results of `balance` and of `work`."""
+
+    residual: list[int]
+    slopes: list[list[int]]
+    work: list[int]
+    work_slopes: list[list[int]]
+
+    @staticmethod
+    @functools.lru_cache(maxsize=32)
+    def of(rows: tuple[int, ...], free: tuple[int, ...]) -> _Places:
+        """Return the places of the entries of some rows and columns."""
+        residual, slopes = plans.BALANCE["residual"], plans.BALANCE["slopes"]
+        work, work_slopes = plans.WORK["work"], plans.WORK["work_slopes"]
+        return _Places(
+            [residual[row][0] for row in rows],
+            [[slopes[row][place] for place in free] for row in rows],
+            [work[row][0] for row in rows],
+            [[work_slopes[row][PITCH_TWICE[place]] for place in free] for row in rows],
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +176,7 @@ class BalanceOfOne:
     """The balance of the blade of one point: as `Balance`, with the quantities as plain numbers.
 
     rows, free, hinged : as of `Balance`.
+    places : of the entries of the rows and columns of the free unknowns.
     """
 
     balance: Balance
@@ -128,14 +186,17 @@ class BalanceOfOne:
     rows: list[int]
     free: list[int]
     hinged: list[bool]
+    places: _Places
 
     @classmethod
     def of(cls, balance: Balance) -> BalanceOfOne:
         """Return the balance of the only point of a batch."""
         quantities = {name: plain_number(value) for name, value in balance.quantities.items()}
         stations, load = _Stations.of(balance.sections), plain_number(balance.target.load)
-        hinged = balance.hinged.tolist()
-        return cls(balance, quantities, stations, load, balance.rows, balance.free, hinged)
+        rows, free, hinged = balance.rows, balance.free, balance.hinged.tolist()
+        return cls(
+            balance, quantities, stations, load, rows, free, hinged, _Places.of(tuple(rows), tuple(free))
+        )
 
     def precone_load(self) -> list[float]:
         """Return the part of precone in the residual of the undeflected blade."""
@@ -147,7 +208,7 @@ class BalanceOfOne:
         here = self.quantities | state
         if precone is not None:
             here["precone"] = precone
-        here["pitch"] = state["collective"] + state["elastic_pitch"]
+        here["pitch"] = blade_pitch(here, state)
         here["structural_pitch"] = here["pitch"] + here["structural_pitch_offset"]
         found = evaluate(plans.trim_integrals, here, math.cos, math.sin)
         here.update(zip(plans.TRIM_INTEGRALS, found, strict=True))
@@ -159,44 +220,33 @@ class BalanceOfOne:
         lines = [evaluate(plans.line, here | side, math.cos, math.sin) for side in self.stations.sides]
         sound = here["speed_of_sound"] if self.balance.options.compressibility else math.inf
         loads, moments = self.stations.along(lines, here, sound)
-        return self._linear(structure, self._work(here, lines, moments), here, moments, loads)
+        residual, full, airloads, work = self._linear(structure, self._work(lines, moments))
+        return Here(residual, full, airloads, work, here, moments, loads)
 
-    def _work(self, here: Numbers, lines: list[tuple[float, ...]], moments: Array) -> list[float]:
+    def _work(self, lines: list[tuple[float, ...]], moments: Array) -> Sequence[float]:
         """Return the results of the plan `work`, summed over the segments."""
-        segment, parts = here | _NO_LOADS, []
+        of_blade, parts = {name: self.quantities[name] for name in _OF_BLADE} | _IDLE, []
         for place, (line, side) in enumerate(zip(lines, self.stations.sides, strict=True)):
             own = moments[:, POWERS * place : POWERS * (place + 1)].ravel().tolist()
-            segment.update(side)
-            segment.update(zip(plans.LINE, line, strict=True))
-            segment.update(zip(MOMENTS, own, strict=True))
-            parts.append(evaluate(plans.work, segment))
-        return parts[0] if len(parts) == 1 else [sum(results) for results in zip(*parts, strict=True)]
+            parts.append(plans.work(line, own, **of_blade, **side))
+        return parts[0] if len(parts) == 1 else list(map(sum, zip(*parts, strict=True)))
 
     def _linear(
-        self,
-        structure: tuple[float, ...],
-        work: list[float],
-        here: Numbers,
-        moments: Array,
-        loads: Array,
-    ) -> Here:
-        """Return residual and slopes from the results of the plans."""
-        held, lifted = _signed(structure), _signed(work)
-        done = [lifted[number] for (number,) in plans.WORK["work"]]
-        columns = [PITCH_TWICE[place] for place in self.free]
-        slopes = [[lifted[numbers[place]] for place in columns] for numbers in plans.WORK["work_slopes"]]
-        residual = [held[plans.BALANCE["residual"][row][0]] - done[row] for row in self.rows]
+        self, structure: Sequence[float], work: Sequence[float]
+    ) -> tuple[list[float], Rows, Rows, list[float]]:
+        """Return residual, both slopes and work from the results of the plans."""
+        held, done, places = _signed(structure), _signed(work), self.places
+        residual = [held[one] - done[other] for one, other in zip(places.residual, places.work, strict=True)]
         if self.balance.target.finds_collective:
             residual[-1] += self.load
-        full = []
-        for row in self.rows:
-            numbers = plans.BALANCE["slopes"][row]
-            own = zip(self.free, slopes[row], strict=True)
-            full.append([held[numbers[place]] + slope for place, slope in own])
+        slopes = [[done[place] for place in row] for row in places.work_slopes]
+        full = [
+            [held[place] + slope for place, slope in zip(own, row, strict=True)]
+            for own, row in zip(places.slopes, slopes, strict=True)
+        ]
         none = [0.0] * len(self.free)
-        rows = zip(self.rows, self.hinged, strict=True)
-        airloads = [slopes[row] if hinged else none for row, hinged in rows]
-        return Here(residual, full, airloads, done, slopes, here, moments, loads)
+        airloads = [row if hinged else none for row, hinged in zip(slopes, self.hinged, strict=True)]
+        return residual, full, airloads, done
 
 
 def _signed(results: Sequence[float]) -> list[float]:

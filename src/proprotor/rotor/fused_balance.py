@@ -99,18 +99,15 @@ def balanced(
     """
     points = len(quantities["coning"])
     blade = dict(quantities) | {name: side[:, None] for name, side in sections.sides.items()}
-    blade |= zip(plans.LINE, evaluate(plans.line, blade, np.cos, np.sin), strict=True)
-    air = _air(sections, blade, compressibility)
+    line = evaluate(plans.line, blade, np.cos, np.sin)
+    air = _air(sections, blade | dict(zip(plans.LINE, line, strict=True)), compressibility)
     moments = _load_moments(sections, air, quantities["radius"], room, points, doubts)
     shape = moments.shape[2:]
     structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
-    blade |= _NO_LOADS
-    blade |= zip(MOMENTS, moments.reshape(-1, *shape), strict=True)
-    work = _matrices("work", evaluate(plans.work, blade), shape)
-    slopes = work["work_slopes"][..., PITCH_TWICE]
-    return _Balanced(
-        structure["residual"][..., 0], structure["slopes"], work["work"][..., 0], slopes, moments
-    )
+    of_loads = evaluate(plans.work, blade | _NO_LOADS, line, moments.reshape(-1, *shape))
+    work = _matrices("work", of_loads, shape)
+    residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
+    return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
 
 
 def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
@@ -121,7 +118,9 @@ def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
 
 @cache
 def _layouts() -> dict[str, Layout]:
-    return {"work": Layout.of(plans.WORK), "balance": Layout.of(plans.BALANCE)}
+    work = Layout.of(plans.WORK)
+    work.places["work_slopes"] = work.places["work_slopes"][:, PITCH_TWICE]
+    return {"work": work, "balance": Layout.of(plans.BALANCE)}
 
 
 def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> dict[str, Array]:
@@ -141,10 +140,8 @@ def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> di
 
 def _air(sections: BladeSections, blade: _Quantities, compressibility: bool) -> dict[str, Any]:
     """Return what the sections meet, by name: arrays (segments, n) and (n,), or numbers that all points share."""
-    airfoil = vars(cast(Airfoil, sections.airfoil))
-    found = {name: np.ravel(airfoil[field]) for field, name in OF_AIRFOIL.items()}
     names = (*_OF_SEGMENTS, "density", "section_damping", "pitch", "speed_of_sound")
-    found |= {name: blade[name] for name in names}
+    found = {name: blade[name] for name in names}
     return found if compressibility else found | {"speed_of_sound": np.inf}
 
 
@@ -157,7 +154,8 @@ def _load_moments(
     doubts: dict[str, Array] | None,
 ) -> Array:
     """Return the radial moments (loads, powers, segments, n) of the section loads, a block of points at a time."""
-    kind = np.result_type(float, *(np.asarray(value).dtype for value in air.values()))
+    numbers = (*air.values(), *vars(sections.airfoil).values())
+    kind = np.result_type(float, *(np.asarray(value).dtype for value in numbers))
     shape = len(LOADS), POWERS, len(sections.quadrature.beyond_lag_hinge), points
     moments = np.empty(shape, dtype=kind)
     for rows, here in sections.blocks(points):
@@ -204,7 +202,8 @@ def _loads_at_stations(
 ) -> Array:
     """Return the results (results, stations, width) of the plan `section_loads`."""
     r = _stations_first(sections.quadrature.stations, width)
-    given = dict(air)
+    airfoil = vars(cast(Airfoil, sections.airfoil))
+    given = air | {name: _of_stations(airfoil[field], width) for field, name in OF_AIRFOIL.items()}
     shape = len(r), width
     slices = sections.quadrature.slices
     for name, motion in (("tangential_velocity", "ut"), ("axial_velocity", "up")):
@@ -222,6 +221,13 @@ def _loads_at_stations(
 def _stations_first(value: Array, width: int) -> Array:
     """Return a quantity (stations,) or (n, stations) as an array (stations, 1) or (stations, width)."""
     return value[:, None] if value.ndim == 1 else _widened(np.ascontiguousarray(value.T), width)
+
+
+def _of_stations(value: Any, width: int) -> Any:
+    """Return a number of an airfoil, or an array (1 or n, 1 or stations) of it, with the stations as the first axis."""
+    if np.ndim(value) == 0:
+        return value
+    return value.T if len(value) == 1 else _widened(np.ascontiguousarray(value.T), width)
 
 
 def _along(

@@ -39,6 +39,7 @@ _SLOWEST = 0.002  # of ΩR, airspeed
 _SONIC = 1 / 0.9  # of the radius: for slow air and a tip of Mach 0.9, beyond the end of a straight lift line
 _LONG_DIGITS = 8
 _FEWEST = 4  # points: a chord cubed is a polynomial of degree 3
+_NOWHERE = np.empty(0)
 _GRADES = np.array([0.004, 0.02, 0.1])  # edges of long panels near the axis, of the radius
 # Nodes and weights on -1 to 1, kept because to find them takes longer than to fill a rotor's panels.
 gauss = functools.cache(np.polynomial.legendre.leggauss)
@@ -237,13 +238,25 @@ def long_panels(
     radius: ArrayLike,
     flap_hinge_offset: ArrayLike,
     lag_hinge_offset: ArrayLike,
+    knots: Array = _NOWHERE,
 ) -> Panels:
-    """Return one panel for each segment, more for a blade that begins near the axis; parameters as `short_panels`."""
-    root, tip, flap, lag = np.broadcast_arrays(root_cutout, radius, flap_hinge_offset, lag_hinge_offset)
+    """Return one panel for each segment between hinges and knots, more for a blade that begins near the axis.
+
+    Parameters
+    ----------
+    root_cutout, radius, flap_hinge_offset, lag_hinge_offset : float or array (...)
+        m; arrays for many blades at once.
+    knots : array (..., k)
+        Radii at which the airfoil changes its coefficients with a kink or a jump, m.
+    """
+    blades = np.zeros(knots.shape[:-1])
+    given = root_cutout, radius, flap_hinge_offset, lag_hinge_offset, blades
+    root, tip, flap, lag, _ = np.broadcast_arrays(*given)
+    edges = np.broadcast_to(knots, (*root.shape, knots.shape[-1]))
     inner, outer = root[..., None], tip[..., None]
     # A blade that begins beyond half of such a radius has no panel that spans a wide range of radii.
     grades = np.where(np.real(inner) < np.real(outer) * _GRADES / 2, outer * _GRADES, inner)
-    starts, widths = _between(root, tip, flap, lag, grades)
+    starts, widths = _between(root, tip, flap, lag, grades, edges)
     return Panels(starts, widths, _long_points(starts, widths, tip), root, tip, flap, lag)
 
 

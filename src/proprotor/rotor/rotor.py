@@ -13,10 +13,11 @@ from proprotor_equations import inertia
 
 from proprotor.errors import InputError, check_finite, check_number, nowhere_negative
 from proprotor.rotor.airfoil import Airfoil, SectionModel
+from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.effective_sections import EffectiveSections, Line, effective_sections
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.quadrature import Panels, RadialQuadrature, long_panels, short_panels
+from proprotor.rotor.quadrature import Panels, RadialQuadrature, flatten_points, long_panels, short_panels
 from proprotor.typing import Array
 
 MASS_INTEGRALS = (
@@ -61,8 +62,14 @@ class Rotor:
         Hub spring, N m/rad.
     pitch_gimbal_coupling : float
         K_PG = tan δ3 (Eq. 16), dimensionless.
+    kinematic_pitch_flap_coupling, kinematic_pitch_lag_coupling : float
+        K_P3 = tan δ3 and K_P4 = tan δ4 of the blade's own hinges, dimensionless: a linkage turns the blade nose down by
+        K_P3 times its flap angle and K_P4 times its lag angle, trim angles included.
     pitch_inertia, control_stiffness : float
         Inertia and stiffness for one blade: kg m², N m/rad.
+    cyclic_control_stiffness : float, optional
+        Stiffness of the control system for one blade where the swashplate tilts, N m/rad. The default is
+        `control_stiffness`, which holds where all blades turn alike, in the trim and for reactionless motions.
     flap_damping, lag_damping, pitch_damping, gimbal_damping : float
         Viscous dampers, N m s/rad; the gimbal's does not rotate.
     structural_pitch_offset : float
@@ -74,8 +81,8 @@ class Rotor:
         linearly between its stations, which reach from the root cutout to the tip; with (r, values, "held") the end
         values hold beyond the stations. A smooth function takes an array of radii. Twist counts from the pitch at
         0.75 R.
-    airfoil : SectionModel
-        Section coefficients, such as `Airfoil`.
+    airfoil : SectionModel or AirfoilRegions
+        Section coefficients, such as `Airfoil`, or airfoils by region of the span.
 
     Raises
     ------
@@ -102,8 +109,11 @@ class Rotor:
     lag_outboard_fraction: float = 0.0
     gimbal_stiffness: float = 0.0
     pitch_gimbal_coupling: float = 0.0
+    kinematic_pitch_flap_coupling: float = 0.0
+    kinematic_pitch_lag_coupling: float = 0.0
     pitch_inertia: float = 0.0
     control_stiffness: float = 0.0
+    cyclic_control_stiffness: float | None = None
     flap_damping: float = 0.0
     lag_damping: float = 0.0
     pitch_damping: float = 0.0
@@ -112,7 +122,7 @@ class Rotor:
     propeller_moment: bool = True
     chord: _Distribution
     twist: _Distribution = 0.0
-    airfoil: SectionModel = field(repr=False)
+    airfoil: SectionModel | AirfoilRegions = field(repr=False)
 
     def __post_init__(self) -> None:
         for entry in fields(self):
@@ -126,6 +136,8 @@ class Rotor:
 
     def _check_number(self, name: str, value: Any) -> None:
         """Refuse a field that is no finite number; distributions wait until the radius is known to be positive."""
+        if value is None and name == "cyclic_control_stiffness":
+            return
         distributed = name in ("chord", "twist") and (isinstance(value, tuple) or callable(value))
         if isinstance(value, tuple) and not distributed:
             raise InputError(name, value, "must be a number in SI units")
@@ -137,7 +149,8 @@ class Rotor:
         passive = [e.name for e in fields(self) if e.name.endswith(("_stiffness", "_damping"))]
         for names, sign in ((_POSITIVE, "above zero"), ((*_NOT_NEGATIVE, *passive), "not negative")):
             for name in names:
-                check_finite(name, getattr(self, name), sign)
+                if getattr(self, name) is not None:
+                    check_finite(name, getattr(self, name), sign)
         for name in _FRACTIONS:
             if np.any((np.real(getattr(self, name)) < 0) | (np.real(getattr(self, name)) > 1)):
                 raise InputError(name, getattr(self, name), "must lie between 0 and 1")
@@ -186,14 +199,15 @@ class Rotor:
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
             rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
             raise InputError("flap_inertia", self.flap_inertia, rule)
-        if not nowhere_negative(np.real(self._gram_matrix())):
+        if not nowhere_negative(np.real(self.gram_matrix)):
             rule = (
                 "cannot belong to one blade: the Gram matrix of the mass integrals has a negative eigenvalue"
             )
             raise InputError("blade_inertia", self.blade_inertia, rule)
 
-    def _gram_matrix(self) -> Array:
-        """Return the integrals of m times two of the arms 1, r, ρβ, ρζ."""
+    @property
+    def gram_matrix(self) -> Array:
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ, (..., 4, 4) in kg, kg m and kg m²."""
         entries = (
             (self.blade_mass, self.blade_first_moment, self.flap_first_moment, self.lag_first_moment),
             (self.blade_first_moment, self.blade_inertia, self.flap_hub_inertia, self.lag_hub_inertia),
@@ -221,6 +235,10 @@ class Rotor:
             Collectives at 0.75 R for which the blade is fitted, rad; at least 3.
         **more
             Further fields, or other values for fields that were found: the number of blades and the airfoil at least.
+
+        Returns
+        -------
+        Rotor
 
         Raises
         ------
@@ -255,17 +273,45 @@ class Rotor:
     def has_effective_sections(self) -> bool:
         """Whether loads are linear in chord and twist, and both are known at every radius.
 
-        The loads are linear with the straight lift line of `Airfoil`. Kinks of tables then need no panels of their own.
+        The loads are linear with the straight lift lines of `Airfoil`. Kinks of tables of chord and twist then need no
+        panels of their own; between the joints of `AirfoilRegions`, lift slope and the like are smooth factors.
         """
-        return type(self.airfoil) is Airfoil and not (callable(self.chord) or callable(self.twist))
+        regions = self.airfoil if isinstance(self.airfoil, AirfoilRegions) else None
+        straight = type(self.airfoil) is Airfoil if regions is None else regions.are_straight
+        return straight and not (callable(self.chord) or callable(self.twist))
 
     @functools.cached_property
     def _panels(self) -> Panels:
         """Panels of all stations."""
         if self.has_effective_sections:
-            return long_panels(**self._radii)
+            return long_panels(**self._radii, knots=self._airfoil_edges)
         knots = [np.asarray(d[0]) for d in (self.chord, self.twist) if isinstance(d, tuple)]
-        return short_panels(**self._radii, knots=_joined(knots))
+        return short_panels(**self._radii, knots=_joined([*knots, self._airfoil_edges]))
+
+    @property
+    def _airfoil_edges(self) -> Array:
+        """Radii (..., k) at which one airfoil begins to pass into the next, or has done so, m."""
+        return self.airfoil.edges(self.radius) if isinstance(self.airfoil, AirfoilRegions) else np.empty(0)
+
+    def airfoil_at(self, stations: Array, shape: tuple[int, ...]) -> SectionModel:
+        """Return the airfoil of the stations of a batch of designs, which are flattened.
+
+        Parameters
+        ----------
+        stations : array (..., stations)
+            Radii from the centre of rotation, m; leading axes broadcast to `shape`.
+        shape : tuple of int
+            Shape of the batch.
+
+        Returns
+        -------
+        SectionModel
+            For angles of attack (points, stations).
+        """
+        if isinstance(self.airfoil, AirfoilRegions):
+            r_over_R = stations / np.asarray(self.radius)[..., None]
+            return self.airfoil.at(flatten_points(r_over_R, shape, 1), shape)
+        return self.airfoil.flattened(shape) if isinstance(self.airfoil, Airfoil) else self.airfoil
 
     @functools.cached_property
     def quadrature(self) -> RadialQuadrature:
@@ -282,7 +328,7 @@ class Rotor:
     @functools.cached_property
     def few_sections(self) -> tuple[RadialQuadrature, EffectiveSections]:
         """Stations on long panels with chord and twist there, near enough to all stations to begin a trim with."""
-        panels = long_panels(**self._radii)
+        panels = long_panels(**self._radii, knots=self._airfoil_edges)
         quadrature = panels.quadrature()
         if callable(self.chord) or callable(self.twist):
             return quadrature, self._sections_at(quadrature)

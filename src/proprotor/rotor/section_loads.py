@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 from proprotor_equations import airloads, lift_slope, section
 
-from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
+from proprotor.rotor.airfoil import Airfoil, HasPoints, SectionCoefficients, SectionModel, Warns
 from proprotor.rotor.effective_sections import EffectiveSections
 from proprotor.rotor.generated import evaluate, keywords
 from proprotor.rotor.quadrature import POWERS, RadialQuadrature, flatten_points
@@ -22,7 +22,7 @@ from proprotor.typing import Array
 _Quantities = Mapping[str, Any]
 # Numbers in an array of section loads, points times stations: a core's cache holds a dozen such arrays.
 _BLOCK = 12000
-_OUTBOARD = 0.5  # of the radius: from here to the tip angle of attack and Mach number matter to the loads
+OUTBOARD = 0.5  # of the radius: from here to the tip angle of attack and Mach number matter to the loads
 LOAD_MOMENTS = tuple(
     f"{load}_{power}"
     for load in (*section.Forces._fields, *section.PitchingMoment._fields)
@@ -57,20 +57,21 @@ class BladeSections:
     def of(cls, rotor: Rotor, shape: tuple[int, ...], few: bool = False) -> BladeSections:
         """Return the sections of a rotor at all stations or at a few, with the axes of many designs flattened."""
         quadrature, along = rotor.few_sections if few else (rotor.quadrature, rotor.sections)
-        airfoil = rotor.airfoil.flattened(shape) if isinstance(rotor.airfoil, Airfoil) else rotor.airfoil
+        airfoil = rotor.airfoil_at(quadrature.stations, shape)
         flat = along.each(lambda part: flatten_points(part, shape, 1))
         return cls(quadrature.flattened(shape), flat, airfoil)
 
-    @property
+    @functools.cached_property
     def is_complex(self) -> bool:
         """Whether any number is complex, for derivatives by a complex step."""
-        airfoil = vars(self.airfoil).values() if isinstance(self.airfoil, Airfoil) else ()
-        return any(map(np.iscomplexobj, (self.quadrature.stations, *self.along, *airfoil)))
+        if isinstance(self.airfoil, HasPoints) and self.airfoil.is_complex:
+            return True
+        return any(map(np.iscomplexobj, (self.quadrature.stations, *self.along)))
 
     @property
     def real(self) -> BladeSections:
         """The same sections without imaginary parts."""
-        airfoil = self.airfoil.real if isinstance(self.airfoil, Airfoil) else self.airfoil
+        airfoil = self.airfoil.real if isinstance(self.airfoil, HasPoints) else self.airfoil
         return BladeSections(self.quadrature.real, self.along.each(np.real), airfoil)
 
     @property
@@ -88,7 +89,7 @@ class BladeSections:
         quadrature = self.quadrature.take(rows)
         own = slice(quadrature.stations.shape[-1])
         along = self.along.each(lambda part: part[rows][:, own] if part.ndim > 1 else part)
-        airfoil = self.airfoil.take(rows) if isinstance(self.airfoil, Airfoil) else self.airfoil
+        airfoil = self.airfoil.take(rows, own) if isinstance(self.airfoil, HasPoints) else self.airfoil
         return BladeSections(quadrature, along, airfoil)
 
     def blocks(self, points: int) -> Iterator[tuple[Array | slice, BladeSections]]:
@@ -267,19 +268,24 @@ def mark_doubts(
     if not isinstance(sections.airfoil, Warns):
         return
     incidence, mach = air
-    outboard = np.real(sections.quadrature.stations) >= _OUTBOARD * np.ravel(np.real(radius))[:, None]
+    outboard = np.real(sections.quadrature.stations) >= OUTBOARD * np.ravel(np.real(radius))[:, None]
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
     incidence = incidence + sections.along.bent
-    found = sections.airfoil.warnings(incidence[..., first:], mach[..., first:])
+    airfoil: SectionModel = sections.airfoil
+    if isinstance(airfoil, HasPoints):
+        airfoil = airfoil.take(slice(None), slice(first, None))
+    found = cast(Warns, airfoil).warnings(incidence[..., first:], mach[..., first:])
     for text, mask in found.items():
         if mask.any():
-            marks = doubts.setdefault(f"{text} outboard of {_OUTBOARD:g} R", np.zeros(points, dtype=bool))
+            marks = doubts.setdefault(f"{text} outboard of {OUTBOARD:g} R", np.zeros(points, dtype=bool))
             marks[rows] = (mask & outboard[..., first:]).any(axis=-1)
 
 
 def has_closed_form(sections: BladeSections) -> bool:
     """Return whether the lift-slope airloads of the published set can be computed without quadrature."""
-    return isinstance(sections.airfoil, Airfoil) and sections.along.chord.shape[-1] == 1
+    airfoil = sections.airfoil
+    alike = isinstance(airfoil, Airfoil) and np.shape(airfoil.lift_slope)[-1:] in ((), (1,))
+    return alike and sections.along.chord.shape[-1] == 1
 
 
 def closed_form_moments(sections: BladeSections, segments: _Quantities) -> dict[str, Any]:

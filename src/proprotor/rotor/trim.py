@@ -59,7 +59,7 @@ class Trim:
 
     @property
     def pitch(self) -> Array:
-        """Pitch of the blade at 0.75 R, rad."""
+        """Pitch at 0.75 R by swashplate and control system, without what the linkages of the hinges add, rad."""
         return self.collective + self.elastic_pitch
 
     def broadcast(self, shape: tuple[int, ...]) -> Trim:
@@ -123,10 +123,17 @@ def take(quantities: Mapping[str, Any], rows: Array) -> dict[str, Any]:
     return {name: value[rows] if np.ndim(value) else value for name, value in quantities.items()}
 
 
+def blade_pitch(quantities: Mapping[str, Any], state: Mapping[str, Any]) -> Any:
+    """Return the pitch at 0.75 R, rad: of swashplate and control system, and of the linkages of the blade's hinges."""
+    by_flap = quantities["kinematic_pitch_flap_coupling"] * state["coning"]
+    by_lag = quantities["kinematic_pitch_lag_coupling"] * state["lag"]
+    return state["collective"] + state["elastic_pitch"] - by_flap - by_lag
+
+
 def with_trim(quantities: Mapping[str, Any], options: Options, state: Mapping[str, Any]) -> dict[str, Any]:
     """Return all quantities of the whole blade at a trim state: pitch, trim integrals and springs are added."""
     found = dict(quantities) | dict(state)
-    found["pitch"] = state["collective"] + state["elastic_pitch"]
+    found["pitch"] = blade_pitch(quantities, state)
     found["structural_pitch"] = found["pitch"] + quantities["structural_pitch_offset"]
     found |= trim_integrals(found)
     return found | _springs(options, found)

@@ -12,14 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.rotor.balance_of_one import BalanceOfOne, Here, Numbers, Rows, solve, sums_of_minors
+from proprotor.rotor.elimination import by_lapack
 from proprotor.rotor.fused import plain_number
-from proprotor.rotor.section_loads import mark_doubts
 from proprotor.rotor.trim import THRUST, UNKNOWNS
 from proprotor.rotor.trim_balance import LARGEST_STEP, Balance, Slopes, is_last
-from proprotor.rotor.trim_bound import at_end
+from proprotor.rotor.trim_bound import at_end, leads_to_end
 from proprotor.rotor.trim_reasons import INDUCED_SHARE, LARGEST_ANGLE
 from proprotor.rotor.trim_start import FARTHEST, is_limp
-from proprotor.typing import Array
 
 _MOST = 12  # steps of a point without reservation
 _ANGLES = ("coning", "lag", "elastic_pitch")
@@ -94,8 +93,11 @@ def _is_end_of_path(balance: Balance, passed: list[Here], start: Numbers, state:
     first, last = (
         Slopes(np.array([here.full]), np.array([here.airloads])) for here in (passed[0], passed[-1])
     )
+    if leads_to_end(first, last):
+        return True
     before, after = ({name: np.array([value]) for name, value in end.items()} for end in (start, state))
-    return bool(at_end(balance, first, last, before, after, np.zeros(1, dtype=int)).all())
+    rows = np.zeros(1, dtype=int)
+    return bool(at_end(balance, first, last, before, after, rows, solution=by_lapack).all())
 
 
 def _is_without_doubt(one: BalanceOfOne, found: Found) -> bool:
@@ -107,12 +109,10 @@ def _is_without_doubt(one: BalanceOfOne, found: Found) -> bool:
     if one.balance.target.finds_collective and not turned < FARTHEST:
         return False
     disk = 2 * quantities["density"] * math.pi * quantities["radius"] ** 2 * quantities["airspeed"] ** 2
-    if abs(here.work[THRUST] * quantities["n_blades"]) > INDUCED_SHARE * disk / 2:
+    if abs(here.virtual_work(THRUST) * quantities["n_blades"]) > INDUCED_SHARE * disk / 2:
         return False
-    doubts: dict[str, Array] = {}
-    alpha, mach = here.loads[-2:]
-    mark_doubts(doubts, one.balance.sections, quantities["radius"], (alpha[None], mach[None]), slice(1), 1)
-    return not doubts and not _may_diverge(here.full, one.hinged)
+    doubtful = one.stations.are_in_doubt(here.loads, quantities["radius"])
+    return not (doubtful or _may_diverge(here.full, one.hinged))
 
 
 def _may_diverge(slopes: Rows, hinged: list[bool]) -> bool:

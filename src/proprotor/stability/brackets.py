@@ -144,14 +144,12 @@ class Brackets:
         """
         rows, spectrum = np.arange(len(active)), points.spectrum
         nearer = np.argmin(np.abs(self.x[:, active] - points.position), axis=0)
-        places, alike = np.empty((2, len(active)), dtype=int), np.empty((2, len(active)), dtype=bool)
-        quality = np.empty((2, len(active)))
-        for end, found in enumerate(self.ends):
-            start = found.at(active)
-            step = match_modes(start.joined(spectrum), rows, len(active) + rows)
-            own = self.place[end, active]
-            places[end], quality[end] = step.successor[rows, own], step.quality[rows, own]
-            alike[end] = (start.values[rows, own].imag == 0) == (spectrum.values[rows, places[end]].imag == 0)
+        starts = self.ends[0].at(active).joined(self.ends[1].at(active))
+        ends, own = np.arange(2 * len(active)), self.place[:, active]
+        step = match_modes(starts.joined(spectrum), ends, 2 * len(active) + np.tile(rows, 2))
+        places, quality = (part[ends, own.ravel()].reshape(own.shape) for part in step)
+        real = starts.values[ends, own.ravel()].reshape(own.shape).imag == 0
+        alike = real == (spectrum.values[rows, places].imag == 0)
         beyond = self.onset[active].astype(int)
         better = np.where(quality.max(axis=0) < POOR, beyond, quality.argmax(axis=0))
         clear = np.where(quality[nearer, rows] < POOR, better, nearer)

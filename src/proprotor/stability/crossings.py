@@ -15,11 +15,14 @@ and counts as not beyond the level; a root that is neutral all along crosses not
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from proprotor.stability.matching import match_modes
 from proprotor.stability.parting import where_to_part
 from proprotor.stability.points import Models, Points, Solved, growth_rate, solve_points
+from proprotor.stability.points_ahead import PointsAhead
 from proprotor.stability.root_pairs import MANY, along_scan
 from proprotor.stability.screening import steps_by_values
 from proprotor.stability.steps import Steps, first_steps, parted
@@ -29,6 +32,7 @@ _ROUNDS = 20  # of parting
 _MOST_SOLVES = 1000  # of a line, after which no more of its steps are parted
 _HALVINGS = 6  # of a step at whose other end nothing can be analysed
 _TRUST = 0.5  # in cubics whose slopes are differences
+_LINES_AT_ONCE = 16  # whose steps stay in the cache while they are looked at
 
 
 class Search:
@@ -69,6 +73,7 @@ class Search:
         self._models, self._forgiving, self._states = models, forgiving, states
         # Both ends of steps of lines on which nothing settles, as where the trim jumps back and forth.
         self.unsettled: list[list[float]] = []
+        self._ahead = PointsAhead(self.solve)
         self.scanned = self.solve(line, position, plain=onset_only)
         self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
         if self.scanned.points is not None:
@@ -97,7 +102,7 @@ class Search:
         Differences from point to point stand for derivatives; cubics by differences are trusted half as much.
         """
         points, steps = _with_differences(self.points, self.steps, self.level), self.steps
-        asked = np.isfinite(where_to_part(steps, points, False, self.level, _TRUST, along_scan))
+        asked = np.isfinite(_where_by_differences(steps, points, self.level))
         asked[steps.crossing(points)[0]] = True
         few = np.bincount(points.line) < MANY  # points of a line, for differences to be of use
         asked |= few[points.line[steps.before]]
@@ -142,6 +147,7 @@ class Search:
             chosen = np.isfinite(share) & ~left
             if not chosen.any() or not self._part(wanted[chosen], share[chosen]):
                 break
+        np.add.at(self.solves, self._ahead.lines, 1)
         order = np.lexsort((self.points.position[self.steps.before], self.points.line[self.steps.before]))
         self.steps = self.steps.at(order)
 
@@ -160,14 +166,24 @@ class Search:
         """Put a point into each of some steps; return whether any of these points could be analysed."""
         few, first = self.steps.at(chosen), len(self.points.position)
         line = self.points.line[few.before]
-        at = self.points.position[few.before] + share * few.length(self.points)[:, 0]
-        between = self.solve(line, at)
-        if between.points is None:
+        ends = self.points.position[np.stack([few.before, few.after])]
+        between, works = self._ahead.within(line, ends, share)
+        if between is None:
             return False
-        self.points = self.points.joined(between.points)
-        np.add.at(self.solves, line[between.works], 1)
-        self.steps = parted(self.steps, chosen[between.works], self.points, first)
+        self.points = self.points.joined(between)
+        np.add.at(self.solves, line[works], 1)
+        self.steps = parted(self.steps, chosen[works], self.points, first)
         return True
+
+
+def _where_by_differences(steps: Steps, points: Points, level: float) -> Array:
+    """Return where first steps are to be parted (steps,), by points with differences, some lines at a time."""
+    share = np.full(len(steps.before), np.nan)
+    begins = np.flatnonzero(np.diff(points.line[steps.before], prepend=-1))[::_LINES_AT_ONCE]
+    for ends in pairwise([*begins, len(share)]):
+        some = slice(*ends)
+        share[some] = where_to_part(steps.at(some), points, False, level, _TRUST, along_scan)
+    return share
 
 
 def _with_differences(points: Points, steps: Steps, level: float) -> Points:

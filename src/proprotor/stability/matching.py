@@ -311,9 +311,9 @@ def _distance(start: Array, end: Array, scale: Array) -> Array:
 def way_to_zero(start: Array, end: Array) -> Array:
     """Return the distance from zero to the straight line between two complex numbers."""
     way = end - start
-    length = np.abs(way) ** 2
+    length = way.real**2 + way.imag**2
     at = np.clip(-(start.conj() * way).real / np.where(length > 0, length, 1), 0, 1)
-    return np.asarray(np.abs(start + at * way))
+    return size_of(start + at * way)
 
 
 def chain(successor: Array, start: Array) -> Array:

@@ -73,9 +73,11 @@ def participation(model: LinearModel, held: list[int], left: Array, right: Array
 
 
 def _of_coordinates(held: list[int], n: int, left: Array, right: Array) -> Array:
-    """Return |l r| of the displacement and the rate of each coordinate (n, modes, ...)."""
-    sizes = size_of(left)
-    sizes *= size_of(right)
+    """Return |l r| of the displacement and the rate of each coordinate (n, modes, ...).
+
+    Where two modes fall into one, l may be so large and r so small that the square of neither is a number.
+    """
+    sizes = size_of(left * right)
     sums = sizes[-n:]
     sums[held] += sizes[: len(held)]
     return sums

@@ -149,9 +149,9 @@ def _learn_quality(steps: Steps, points: Points, near: Array) -> None:
     """Set the quality of some states of steps by values alone: 0 where a state may meet another, else 1."""
     row, state = np.nonzero(near & np.isnan(steps.quality))
     if len(row):
-        few = steps.at(row)
-        first, last = few.at_ends(points.spectrum.values)
-        meeting = may_meet(first, last, ways(few, points), state[:, None], points.spectrum.block)
+        first, last = steps.at_ends(points.spectrum.values)
+        way, block = ways(steps, points), points.spectrum.block
+        meeting = may_meet(first[row], last[row], way[row], state[:, None], block)
         steps.quality[row, state] = ~meeting[:, 0].any(axis=1)
 
 

@@ -7,6 +7,7 @@ level. Each root has G and its exact derivative at every point, from matrices a 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,8 @@ from proprotor.stability.matching import Spectrum
 from proprotor.stability.modes import decomposition
 from proprotor.stability.root_error import growth, growth_error, refined_near, roots
 from proprotor.typing import Array
+
+_AT_ONCE = 2000  # points whose matrices are in memory: enough for NumPy's own cost to vanish
 
 Models = Callable[[Array, Array], LinearModel]  # lines (k,) of int and positions (k,) to the models there
 
@@ -45,6 +48,11 @@ class Points(NamedTuple):
     growth: Array
     slope: Array
     error: Array
+
+    def at(self, rows: Array) -> Points:
+        """Return some of the points."""
+        parts = {name: own[rows] for name, own in self._asdict().items() if name != "spectrum"}
+        return Points(spectrum=self.spectrum.at(rows), **parts)
 
     def joined(self, other: Points) -> Points:
         """Return the points of both."""
@@ -81,7 +89,7 @@ def solve_points(
     states: int | None = None,
     plain: bool = False,
 ) -> Solved:
-    """Solve points of lines; a point that cannot be solved spoils no other point.
+    """Solve points of lines, a number of them at once; a point that cannot be solved spoils no other point.
 
     Parameters
     ----------
@@ -105,22 +113,24 @@ def solve_points(
         For an impossible input, unless `forgiving`.
     """
     failures = (np.linalg.LinAlgError, InputError) if forgiving else np.linalg.LinAlgError
-    try:
-        return _solved(models, line, position, level, states, plain)
-    except failures as error:
-        failure = str(error)
-    if len(line) == 1:
-        reason = np.array([" ".join(failure.split("\n"))], dtype=object)
-        nothing = np.array([""], dtype=object)
-        return Solved(None, np.array([False]), reason, nothing, nothing)
-    halves = [
-        solve_points(models, line[half], position[half], level, forgiving, states, plain)
-        for half in np.array_split(np.arange(len(line)), 2)
+    if len(line) <= _AT_ONCE:
+        try:
+            return _solved(models, line, position, level, states, plain)
+        except failures as error:
+            failure = str(error)
+        if len(line) == 1:
+            reason = np.array([" ".join(failure.split("\n"))], dtype=object)
+            nothing = np.array([""], dtype=object)
+            return Solved(None, np.array([False]), reason, nothing, nothing)
+    count = max(2, -(-len(line) // _AT_ONCE))
+    parts = [
+        solve_points(models, line[some], position[some], level, forgiving, states, plain)
+        for some in np.array_split(np.arange(len(line)), count)
     ]
-    counts = {half.points.growth.shape[1] for half in halves if half.points is not None}
-    if len(counts) > 1:  # a shaft holds the azimuth in one half alone
+    counts = {part.points.growth.shape[1] for part in parts if part.points is not None}
+    if len(counts) > 1:  # a shaft holds the azimuth in some parts alone
         return solve_points(models, line, position, level, forgiving, max(counts), plain)
-    return _together(*halves)
+    return reduce(_together, parts)
 
 
 def _together(one: Solved, other: Solved) -> Solved:

@@ -69,10 +69,11 @@ def may_meet(first: Array, last: Array, way: Array, state: Array, block: Array) 
     return np.asarray((near_each_other | within_reach) & others_alone & same_block)
 
 
-def _partners(steps: Steps, points: Points, state: Array) -> Array:
-    """Return the root (m,) that one root of each step, state (m,), may meet, if neither may meet a third; else -1."""
+def _partners(steps: Steps, points: Points, row: Array, state: Array) -> Array:
+    """Return the root (m,) that one root of some steps, state (m,), may meet, if neither may meet a third; else -1."""
     first, last = steps.at_ends(points.spectrum.values)
-    way, block, rows = ways(steps, points), points.spectrum.block, np.arange(len(state))
+    first, last, way = first[row], last[row], ways(steps, points)[row]
+    block, rows = points.spectrum.block, np.arange(len(state))
     meeting = may_meet(first, last, way, state[:, None], block)[:, 0]
     partner = meeting.argmax(axis=1)
     others = may_meet(first, last, way, partner[:, None], block)[:, 0]
@@ -87,10 +88,9 @@ def keep_off(
     found = np.zeros(len(row), dtype=bool)
     if not len(row):
         return found
-    few = steps.at(row)
-    partner = _partners(few, points, state)
-    sides = few.sides(points)
-    own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
+    partner = _partners(steps, points, row, state)
+    sides = steps.sides(points)
+    own, other = (sides[:, row, one] for one in (state, partner))
     side = own[0]
     alike = (np.concatenate([own, other]) == side).all(axis=0)
     asked = np.flatnonzero((partner >= 0) & (np.abs(side) == 1) & alike)
@@ -189,37 +189,37 @@ def along_scan(
     x = points.position[at]
     begin, end = (points.position[part[row]] for part in (steps.before, steps.after))
     wanted = begin[:, None] + _INSIDE * (end - begin)[:, None]
+    every = np.broadcast_to(np.arange(MANY)[:, None], x.shape)
     nearest = np.clip(here - _FEW // 2 + 1, 0, MANY - _FEW) + np.arange(_FEW)[:, None]
+    through = (every, nearest, here + np.array([[0], [1]]))
+    shares = [_lagrange(np.take_along_axis(x, some, 0), wanted) for some in through]
     found = []
     for y in (values[0] + values[1], (values[0] - values[1]) ** 2):
-        value = np.where(enough[:, None], _polynomial(x, y, wanted), np.nan)
-        rough, chord = (
-            _polynomial(np.take_along_axis(x, some, 0), np.take_along_axis(y, some, 0), wanted)
-            for some in (nearest, here + np.array([[0], [1]]))
+        value, rough, chord = (
+            (share * np.take_along_axis(y, some, 0)[:, :, None]).sum(axis=0)
+            for share, some in zip(shares, through, strict=True)
         )
+        value = np.where(enough[:, None], value, np.nan)
         found.append(_Smooth(value, np.abs(value - rough) + _OF_CHORD * np.abs(value - chord)))
     return found[0], found[1]
 
 
 def _places(steps: Steps, chain: Array, here: Array, state: Array) -> Array:
     """Return places (points, m) of states along chains of steps (points - 1, m), known at the step `here`."""
-    rows = np.arange(len(state))
+    before = np.argsort(steps.successor, axis=1)
     places = np.tile(state, (len(chain) + 1, 1))
     for k, step in enumerate(chain):
         places[k + 1] = np.where(k >= here, steps.successor[step, places[k]], places[k + 1])
     for k in range(len(chain) - 1, -1, -1):
-        back = np.argsort(steps.successor[chain[k]], axis=1)
-        places[k] = np.where(k < here, back[rows, places[k + 1]], places[k])
+        places[k] = np.where(k < here, before[chain[k], places[k + 1]], places[k])
     return places
 
 
-def _polynomial(x: Array, y: Array, wanted: Array) -> Array:
-    """Return the values at places (m, any) of polynomials through points (k, m), by Lagrange."""
-    found = np.zeros(wanted.shape, dtype=y.dtype)
+def _lagrange(x: Array, wanted: Array) -> Array:
+    """Return the share (k, m, any) of each of k points, x (k, m), in polynomials through them at places (m, any)."""
+    share = np.ones((len(x), *wanted.shape))
     with np.errstate(all="ignore"):
         for one in range(len(x)):
-            share = np.ones(wanted.shape)
             for other in set(range(len(x))) - {one}:
-                share *= (wanted - x[other][:, None]) / (x[one] - x[other])[:, None]
-            found += share * y[one][:, None]
-    return found
+                share[one] *= (wanted - x[other][:, None]) / (x[one] - x[other])[:, None]
+    return share

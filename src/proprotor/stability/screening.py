@@ -32,10 +32,11 @@ def steps_by_values(values: Array, block: Array, before: Array, after: Array) ->
 
 def _nearest(first: Array, last: Array, block: Array) -> Array:
     """Return places (steps, states) of the nearest root at the later point, a different one for each root."""
-    none, none_later = np.isnan(first)[:, :, None], np.isnan(last)[:, None, :]
     apart = size_of(first[:, :, None] - last[:, None, :])
-    apart = np.where(none & none_later, 0.0, np.where(none | none_later, _NEVER, apart))
-    apart = np.where(block[:, None] == block, apart, _OTHER_BLOCK)
+    none, none_later = np.isnan(first)[:, :, None], np.isnan(last)[:, None, :]
+    if none.any() or none_later.any():
+        apart = np.where(none & none_later, 0.0, np.where(none | none_later, _NEVER, apart))
+    apart[:, block[:, None] != block] = _OTHER_BLOCK
     successor: Array = apart.argmin(axis=2)
     taken_once = (np.sort(successor, axis=1) == np.arange(successor.shape[1])).all(axis=1)
     for step in np.flatnonzero(~taken_once):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.stability.cubic import hermite
-from proprotor.stability.matching import POOR, match_modes
+from proprotor.stability.matching import POOR, Matches, match_modes
 from proprotor.stability.points import Points
 from proprotor.typing import Array
 
@@ -31,8 +31,8 @@ class Steps(NamedTuple):
     depth: Array
     open: Array
 
-    def at(self, rows: Array) -> Steps:
-        """Return some of the steps."""
+    def at(self, rows: Array | slice) -> Steps:
+        """Return some of the steps; those of a slice share their arrays with these steps."""
         return Steps(*(part[rows] for part in self))
 
     def ends(self, points: Points) -> Array:
@@ -83,7 +83,9 @@ def first_steps(before: Array, after: Array, successor: Array, quality: Array) -
 def parted(steps: Steps, rows: Array, points: Points, first: int) -> Steps:
     """Return the steps with some of them, `rows`, parted at the points from `first` on."""
     old, new = steps.at(rows), np.arange(first, first + len(rows))
-    halves = [match_modes(points.spectrum, *ends) for ends in ((old.before, new), (new, old.after))]
+    before, after = np.concatenate([old.before, new]), np.concatenate([new, old.after])
+    both = match_modes(points.spectrum, before, after)
+    halves = [Matches(*(part[half] for part in both)) for half in np.split(np.arange(2 * len(new)), 2)]
     share = (points.position[new] - points.position[old.before])[:, None] / old.length(points)
     seen = np.take_along_axis(points.growth[new], halves[0].successor, 1)
     wrong = np.abs(hermite(share, old.ends(points)) - seen) / _SAFETY

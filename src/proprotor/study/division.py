@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from proprotor.study.request import Request
 
 _MOST_POINTS = 2000  # of a batch: enough for NumPy's own cost to vanish beside LAPACK's
+_MOST_SEARCHED = 4000  # of a batch of searches, which solve a part of their points at a time
 _FEWEST_POINTS = 50
 _BYTES_PER_POINT = 100_000  # while a batch is analysed; the XV-15 takes 30 kB, 46 kB with vectors
 _BYTES_PER_WORKER = 150e6  # of a process with NumPy, SciPy and a case
@@ -62,13 +63,19 @@ def check_needs(request: Request, batch: int | None, workers: int | None, client
 
 
 def points_at_once(request: Request, workers: int | None, client: Client | None) -> int:
-    """Return the points of a batch: the batches of all workers fit into memory and come out even."""
+    """Return the points of a batch: the batches of all workers fit into memory and come out even.
+
+    A search for flutter speeds solves its scan in parts, so that more designs fit into the same memory, and the few
+    points with vectors of all these designs at once, which cost the less the more they are.
+    """
     if client is not None:
         workers, most = threads_of(client), _MOST_POINTS
     else:
         workers = workers or cores()
         fitting = _SHARE_OF_MEMORY * free_memory() / workers / _BYTES_PER_POINT
         most = int(np.clip(fitting, _FEWEST_POINTS, _MOST_POINTS))
+    if most == _MOST_POINTS and set(request.analysis.quantities) == {"flutter"}:
+        most = _MOST_SEARCHED
     points = int(np.prod(request.shape))
     rounds = -(-points // (most * workers))
     return -(-points // (rounds * workers))
