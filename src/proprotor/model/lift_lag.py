@@ -18,17 +18,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, airloads, lift_lag, multiblade
-from proprotor_equations.coordinates import SWASHPLATE, Coordinate
+from proprotor_equations.coordinates import SWASHPLATE
 
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.lift_lag import Circulation, Shapes, circulation
+from proprotor.rotor.lift_lag import Circulation, Shapes, circulation, polynomials
+from proprotor.rotor.motions import LAG_SHAPES, LAGS
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections
 from proprotor.typing import Array
 
 # Jones' approximation of Wagner's function, 1 - Σ A exp(-b s), s in half chords: A and b of each state.
 # NACA Report 681 (1940).
-JONES = {"slow": (0.165, 0.0455), "fast": (0.335, 0.300)}
+JONES = dict(zip(LAGS, ((0.165, 0.0455), (0.335, 0.300)), strict=True))
 _PARTS = ("0", "1c", "1s")
 _ANGLE = BLADE_COORDINATES.index("flap")  # any angle that each blade has for itself
 _ANGLES = np.array([FIXED_COORDINATES.index(f"flap_{part}") for part in _PARTS])
@@ -37,22 +38,12 @@ _CHANGES = (lift_lag.change_by_rates, lift_lag.change_by_displacements, lift_lag
 _NOTHING = np.zeros((len(BLADE_COORDINATES),) * 2)
 
 
-def lag_coordinates(shapes: int) -> tuple[Coordinate, ...]:
-    """Return the coordinates whose rates are the lagging circulation, in m/s, for a number of shape functions."""
-    return tuple(
-        Coordinate(f"{state} lift{f' {shape}' if shape > 1 else ''}_{part}", "lift", int(part[0]), part[1:], "m")
-        for state in JONES
-        for shape in range(1, shapes + 1)
-        for part in _PARTS
-    )
-
-
 def with_lift_lag(
     rotor: Mapping[str, Array],
     sections: BladeSections,
     quantities: Mapping[str, Any],
     options: Options,
-    shapes: Shapes,
+    shapes: Shapes | None = None,
 ) -> dict[str, Array]:
     """Return M, C, K and B of a rotor with the lag of lift added.
 
@@ -65,19 +56,19 @@ def with_lift_lag(
     quantities : mapping
         Quantities of the blade at trim by name, numbers or arrays (points,).
     options : Options
-    shapes : callable
-        Shape functions along the blade.
+    shapes : callable, optional
+        Shape functions along the blade; the first `LAG_SHAPES` polynomials by default.
 
     Returns
     -------
     dict of str to array
-        On the coordinates of Eq. 17, then those of `lag_coordinates`.
+        On the coordinates of Eq. 17, then those of `proprotor.rotor.motions.lag_coordinates`.
     """
     found = circulation(
         sections,
         quantities,
         len(rotor["M"]),
-        shapes,
+        shapes or polynomials(LAG_SHAPES),
         compressibility=options.compressibility,
         lift_slope_only=options.airloads == "lift-slope",
     )

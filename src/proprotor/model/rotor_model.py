@@ -15,7 +15,7 @@ from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
 from proprotor.model.kept import kept
-from proprotor.model.lift_lag import lag_coordinates, with_lift_lag
+from proprotor.model.lift_lag import with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
@@ -24,8 +24,13 @@ from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.lift_lag import polynomials
-from proprotor.rotor.motions import MAST_TWIST, ROTOR_SPEED, reactionless_groups, reactionless_harmonics
+from proprotor.rotor.motions import (
+    MAST_TWIST,
+    ROTOR_SPEED,
+    lag_coordinates,
+    reactionless_groups,
+    reactionless_harmonics,
+)
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -47,7 +52,6 @@ if TYPE_CHECKING:
 
 _PITCH = [place for place, coordinate in enumerate(FIXED) if coordinate.angle == "pitch"]
 _KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}
-LAG_SHAPES = 3  # shape functions of the circulation along a blade
 _BYTES_PER_POINT, _BYTES_PER_ENTRY = 10_000.0, 80.0  # while a rotor is trimmed and its matrices are made
 
 
@@ -97,7 +101,7 @@ def model_of(
     settled = solve_trim(sections, few, quantities, choice, target, points, one=shape == ())
     reactionless = _reactionless(rotor, choice)
     apart = reactionless_groups(reactionless) if reactionless else []
-    lagging = lag_coordinates(LAG_SHAPES) if choice.lift == "lagged" else ()
+    lagging = lag_coordinates() if choice.lift == "lagged" else ()
     coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
     found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
     matrices: dict[str, Any] = {
@@ -204,7 +208,7 @@ def _matrices(
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
         if options.lift == "lagged":
-            found = with_lift_lag(found, sections.take(rows), quantities, options, polynomials(LAG_SHAPES))
+            found = with_lift_lag(found, sections.take(rows), quantities, options)
         if not options.pitch_is_free:
             found["B"] = _without_pitch_equations(found["K"], found["B"])
         if reactionless is not None:

@@ -27,6 +27,7 @@ Loads and trim:
     quadrature           stations along the blade and radial moments
     effective_sections   chord and twist from tables as polynomials between the stations
     section_loads        section loads gathered into radial moments
+    lift_lag             circulation along the blade in shape functions, for lift that lags
     trim                 the trim, and the target that closes it
     fused_balance        the balance of one blade by the fused functions, for batches
     balance_of_one       the same for one point, by plain numbers
@@ -38,7 +39,7 @@ Loads and trim:
     trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
 
-All public names of the modules `fused`, `generated`, `motions`, `options` and `section_loads` belong to the face.
+All public names of the modules `fused`, `generated`, `lift_lag`, `motions`, `options` and `section_loads` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -72,6 +73,7 @@ __all__ = [
     "Warns",
     "fused",
     "generated",
+    "lift_lag",
     "motions",
     "options",
     "section_loads",
