@@ -150,11 +150,12 @@ LIFT_LAG = (
     values("change_of_circulation", lift_lag.change_of_circulation, LATE),
     circulation_matrix("change", lift_lag.change, LATE),
     circulation_loads("load", lift_lag.load, LATE),
+    product("change_by_rates", "Change of a blade's circulation per rate.", lift_lag.products, LATE),
     product(
-        "change_by_rates", "Change of a blade's circulation per rate.", lift_lag.products, LATE
-    ),
-    product(
-        "change_by_displacements", "Change of a blade's circulation per displacement.", lift_lag.products, LATE
+        "change_by_displacements",
+        "Change of a blade's circulation per displacement.",
+        lift_lag.products,
+        LATE,
     ),
     product("change_by_gusts", "Change of a blade's circulation per gust.", lift_lag.products, LATE),
     product("work", "Virtual work of a blade's circulation, one column.", lift_lag.products, LATE),

@@ -50,7 +50,9 @@ CHANGES = {
     for argument in ("ut", "up", "theta", "spin")
 }
 FORCES = {
-    load: s.quantity(f"{load}_circulation", rf"{latex}{{}}_{{,w}}", "N s/m^2", f"{meaning} per unit span and U c_l")
+    load: s.quantity(
+        f"{load}_circulation", rf"{latex}{{}}_{{,w}}", "N s/m^2", f"{meaning} per unit span and U c_l"
+    )
     for load, latex, meaning in (("fx", "f_x", "force along i'"), ("fn", "f_n", "force along n"))
 }
 

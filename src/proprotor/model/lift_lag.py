@@ -147,7 +147,9 @@ def _add_state(
         for change in (-blade.by_rates, -blade.by_displacements, blade.by_gusts)
     )
     whole["C"][:, places, own] = _rows(evaluate(multiblade.damping, quantities, _NOTHING, damping))
-    whole["K"][:, places, own] = _rows(evaluate(multiblade.stiffness, quantities, _NOTHING, damping, stiffness))
+    whole["K"][:, places, own] = _rows(
+        evaluate(multiblade.stiffness, quantities, _NOTHING, damping, stiffness)
+    )
     whole["B"][:, places, len(SWASHPLATE) :] = _rows(evaluate(multiblade.gust_loads, quantities, gusts))
     loads = np.swapaxes(_of_angle(-share * blade.work), -1, -2)
     columns = evaluate(multiblade.damping, quantities, _NOTHING, loads)

@@ -21,7 +21,10 @@ from proprotor.typing import Array
 
 # Values (..., stations, shapes) of the shape functions, from the radii (..., stations) as shares of the blade's radius.
 Shapes = Callable[[Array], Array]
-_MOMENTS = (*keywords(lift_lag.change), *keywords(lift_lag.load))  # a quantity of a section, "_", a power of r
+_MOMENTS = (
+    *keywords(lift_lag.change),
+    *keywords(lift_lag.load),
+)  # a quantity of a section, "_", a power of r
 
 
 class Circulation(NamedTuple):

@@ -22,7 +22,9 @@ _NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning"}  # of the modes of sin
 _PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
 LAGS = ("slow", "fast")  # states of lift that lags
-LAG_SHAPES = 2  # functions of the radius in which lift lags: `tests/model/test_lift_lag.py` has the error of two
+LAG_SHAPES = (
+    2  # functions of the radius in which lift lags: `tests/model/test_lift_lag.py` has the error of two
+)
 _LIFT = re.compile(r"(^| )(slow|fast) lift( \d+)?$")  # stems of their coordinates
 
 
@@ -67,7 +69,9 @@ def reactionless_harmonics(n_blades: int) -> range:
 def lag_coordinates(shapes: int = LAG_SHAPES) -> tuple[Coordinate, ...]:
     """Return the coordinates whose rates are circulation that lags, in m/s, for a number of functions of the radius."""
     return tuple(
-        Coordinate(f"{lag} lift{f' {shape}' if shape > 1 else ''}_{harmonic}{part}", "lift", harmonic, part, "m")
+        Coordinate(
+            f"{lag} lift{f' {shape}' if shape > 1 else ''}_{harmonic}{part}", "lift", harmonic, part, "m"
+        )
         for lag in LAGS
         for shape in range(1, shapes + 1)
         for harmonic, part in ((0, ""), (1, "c"), (1, "s"))
