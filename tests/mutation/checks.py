@@ -13,6 +13,7 @@ from tests.mutation import (
     assembly_checks,
     beam_checks,
     blade_checks,
+    lag_checks,
     rotor_checks,
     section_checks,
 )
@@ -22,7 +23,15 @@ from tests.mutation.comparison import Check, Names
 @functools.cache
 def all_checks() -> tuple[Check, ...]:
     """Every check; to make their expectations takes seconds, to run them milliseconds."""
-    modules = (blade_checks, section_checks, airload_checks, rotor_checks, assembly_checks, beam_checks)
+    modules = (
+        blade_checks,
+        section_checks,
+        airload_checks,
+        lag_checks,
+        rotor_checks,
+        assembly_checks,
+        beam_checks,
+    )
     found = tuple(check for module in modules for check in module.checks())
     for check in found:  # arrays that are kept are made while nothing is a mutant
         check.excess()
