@@ -21,6 +21,10 @@ verify: .venv/verify-installed  ## Check the equations against derivation and an
 verify-versions: .venv/installed  ## Derive the equations under other hash seeds, another Python and another SymPy
 	$(BIN)/python -m tests.verify.determinism
 
+verify-environments: .venv/installed  ## Test the wheels under every Python found, with the newest and the lowest dependencies
+	$(BIN)/python -m pip install --group environments
+	$(BIN)/python -m tests.verify.environments --page $(PARALLEL)
+
 regenerate-equations: .venv/installed  ## Derive the equations again, write generated/, the index of equations and the list of symbols
 	$(BIN)/python -m derive
 	$(BIN)/python -m derive.pages.index
@@ -28,6 +32,7 @@ regenerate-equations: .venv/installed  ## Derive the equations again, write gene
 
 lint: .venv/installed  ## Check the style of the source
 	$(BIN)/ruff check src derive tests benchmarks notebooks docs
+	$(BIN)/ruff check --preview --select PLW1514 src derive tests benchmarks notebooks docs  # text files have an encoding
 	$(BIN)/ruff format --check src derive tests benchmarks notebooks docs
 	$(BIN)/python -m tests.rooms
 
@@ -85,18 +90,18 @@ golden: .venv/installed  ## Accept the modes of every combination of switches as
 	$(BIN)/python -m tests.accept_golden
 
 clean:  ## Remove all that make has made
-	rm -rf .venv .venv-verify .hypothesis .pytest_cache .ruff_cache build dist damping.png figures docs/_build docs/reference/api
+	rm -rf .venv .venv-verify .hypothesis .mypy_cache .pytest_cache .ruff_cache build dist damping.png figures docs/_build docs/reference/api
 
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test test-browser verify verify-versions regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
+.PHONY: demo test test-browser verify verify-versions verify-environments regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
 
-.venv/installed: pyproject.toml
+.venv/installed: pyproject.toml generated/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --upgrade pip  # dependency groups need pip 25.1
-	$(BIN)/python -m pip install --editable . --group dev
+	$(BIN)/python -m pip install --editable generated --editable . --group dev
 	touch $@
 
 .venv/docs-installed: .venv/installed

@@ -1,24 +1,32 @@
 """What a stability boundary and its derivatives cost, and how good they are.
 
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.flutter_cost
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.flutter_cost --against FOLDER    # of another version of the project
 
 An eigen-solve is one airspeed linearised (trim included) and all its eigenvalues and vectors. The derivatives of a
 boundary take one more eigen-solve, for the vectors, and one batch of models a complex step away, one for each input.
 
 Costs of trim, boundary and study are told in eigenvalue problems: one is LAPACK's eigenvalues of one state matrix, by
-processor time, the least of rounds in which all take their turn.
+processor time, the median over rounds in which all take their turn. Against another version, commands and boundaries
+run in processes of their own, in turns, and the ratios of the same round count.
 """
 
 from __future__ import annotations
 
+import argparse
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.fused import versions
 from benchmarks.study import INPUTS
 from proprotor import sampling
 from proprotor.deck.vary import design_inputs
@@ -34,6 +42,40 @@ from proprotor.units import KNOT
 SCANS = (2, 5, 10, 20, 40)  # kt
 REPEATS = 15
 ROUNDS = 5
+# Programs that print their processor time last.
+COMMAND = """import atexit, time
+atexit.register(lambda: print(time.process_time()))
+from proprotor.commands.main import main
+main({words})
+"""
+ANALYSIS = """import time
+import numpy as np
+import proprotor as pp
+case, scan = pp.load_case("xv15-uncoupled"), np.linspace(25, 205, 71)
+for _ in range(2):
+    begin = time.process_time()
+    {call}
+print(time.process_time() - begin)
+"""
+DAMPED = "{'support.modes[chord].damping_ratio': np.linspace(0.005, 0.02, 9)}"
+CALLS = {
+    "flutter_point, 71 airspeeds": "case.flutter_point(scan)",
+    "boundaries along a stiffness": (
+        "case.boundaries(180.0, {'rotor.control_stiffness': np.linspace(1e4, 4e4, 51)})"
+    ),
+    "boundary against 9 damping ratios": f"case.boundary_against({DAMPED}, scan)",
+    "stability map, 9 by 71": f"case.stability_map({{**{DAMPED}, 'airspeed': scan}})",
+    "study of 200 flutter speeds": (
+        "pp.study(case, {'rotor.precone': np.linspace(0.01, 0.06, 200)}, np.linspace(80, 195, 20), 'flutter', "
+        "workers=1, progress=False)"
+    ),
+}
+PROGRAMS = {
+    "proprotor --help": COMMAND.format(words=["--help"]),
+    "proprotor flutter xv15": COMMAND.format(words=["flutter", "xv15"]),
+    "proprotor sweep xv15": COMMAND.format(words=["sweep", "xv15", "--speed", "50:400:5kt"]),
+    **{name: ANALYSIS.format(call=call) for name, call in CALLS.items()},
+}
 SPEEDS = np.linspace(160, 380, 20) * KNOT
 DESIGNS = 200
 
@@ -103,15 +145,38 @@ def in_eigenvalue_problems(console: Console, case: pp.Case) -> None:
             DESIGNS,
         ),
     }
-    least = dict.fromkeys(works, np.inf)
-    for _ in range(ROUNDS):
-        for name, (work, count) in works.items():
-            least[name] = min(least[name], _processor_time(work) / count)
-    table = Table("", "eigenvalue problems", title=f"one eigenvalue problem takes {1e6 * least['']:.0f} µs")
-    for name, spent in least.items():
-        if name:
-            table.add_row(name, f"{spent / least['']:.2f}")
+    rounds = [
+        {name: _processor_time(work) / count for name, (work, count) in works.items()} for _ in range(ROUNDS)
+    ]
+    one = np.median([spent[""] for spent in rounds])
+    table = Table("", "eigenvalue problems", title=f"one eigenvalue problem takes {1e6 * one:.0f} µs")
+    for name in filter(None, works):
+        table.add_row(name, f"{np.median([spent[name] / spent[''] for spent in rounds]):.2f}")
     console.print(table)
+
+
+def against(console: Console, folder: Path) -> None:
+    """Processor time of commands and boundaries, as a ratio to that of the version in another folder."""
+    here = Path(__file__).parents[1]
+    table = Table("", "s", "there, s", "ratio", title=f"against {folder}")
+    for name, code in PROGRAMS.items():
+        rounds = np.array([[_of_process(place, code) for place in (here, folder)] for _ in range(ROUNDS)])
+        own, other = np.median(rounds, axis=0)
+        table.add_row(name, f"{own:.3f}", f"{other:.3f}", f"{np.median(rounds[:, 0] / rounds[:, 1]):.2f}")
+    console.print(table)
+
+
+def _of_process(folder: Path, code: str) -> float:
+    """Processor time that a program says it took with the package of a folder, s."""
+    paths = os.pathsep.join(str(folder / part) for part in ("src", "generated"))
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONPATH": paths},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return float(done.stdout.split()[-1])
 
 
 def _processor_time(work: Callable[[], object]) -> float:
@@ -126,7 +191,14 @@ def fastest(work: Callable[[], object]) -> float:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--against", type=Path, help="folder of another version of the project")
+    folder = parser.parse_args().against
     console, case = Console(width=120), pp.load_case("xv15-uncoupled")
+    console.print(versions())
+    if folder is not None:
+        against(console, folder.resolve())
+        return
     in_eigenvalue_problems(console, case)
     crossings(console, case)
     one_bracket(console, case)

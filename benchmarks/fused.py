@@ -79,14 +79,17 @@ def times(work: Work, count: int) -> dict[str, np.ndarray]:
     return {name: np.array([found[name] for found in rounds]) for name in work}
 
 
+def versions() -> str:
+    """Return the versions of NumPy and Python, the kernel of the linear algebra and the processor."""
+    blas = np.show_config(mode="dicts")["Build Dependencies"]["blas"]
+    kernel = blas.get("openblas configuration", blas.get("name", "unknown"))
+    return f"numpy {np.__version__}, {kernel}; {platform.machine()}, Python {platform.python_version()}"
+
+
 def main() -> None:
     """Print times and ratios."""
     console = Console()
-    blas = np.show_config(mode="dicts")["Build Dependencies"]["blas"]
-    kernel = blas.get("openblas configuration", blas.get("name", "unknown"))
-    console.print(
-        f"numpy {np.__version__}, {kernel}; {platform.machine()}, Python {platform.python_version()}"
-    )
+    console.print(versions())
     table = Table(
         "airloads", "batch", "lambdify", "fused", "readable", "fused / lambdify", "asked", "fused / readable"
     )

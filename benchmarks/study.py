@@ -30,8 +30,8 @@ import proprotor as pp
 from proprotor import sampling
 from proprotor.model import configuration
 from proprotor.model.first_order import state_matrix
+from proprotor.rotor import fused_balance
 from proprotor.rotor import section_loads as blade_airloads
-from proprotor.rotor import trim_balance
 from proprotor.study import workers as study_workers
 from proprotor.study.study import study
 from proprotor.study.variables import DEFAULT_QUANTITIES
@@ -56,7 +56,7 @@ INPUTS = {
 PARTS = {
     "numbers of the deck to rotor and support": [(pp.Case, "vary")],
     "stations along the blade": [(blade_airloads.BladeSections, "of")],
-    "trim: section loads": [(trim_balance, "load_moments")],
+    "trim: section loads": [(fused_balance, "_load_moments")],
     "trim: the rest": [(rotor_model, "solve_trim")],
     "matrices of the rotor": [(rotor_model.fused, "rotor_matrices")],
     "rotor on its support": [(configuration, "mount")],
@@ -102,7 +102,7 @@ def best(*tasks: tuple[Callable[[], Any], Callable[[], float]]) -> list[float]:
 def processor_time_of_workers() -> float:
     """Of the worker processes that wait for a study, s (Linux)."""
     fields = [
-        Path(f"/proc/{worker.process.pid}/stat").read_text().rpartition(")")[2].split()
+        Path(f"/proc/{worker.process.pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
         for worker in study_workers._idle
     ]
     return sum(int(field[11]) + int(field[12]) for field in fields) / os.sysconf("SC_CLK_TCK")
@@ -137,20 +137,19 @@ class Stopwatch:
         return run
 
 
-def evaluations(case: pp.Case, points: int) -> dict[tuple[int, str], list[float]]:
-    """Processor time of each evaluation of the section loads in the trim of one batch, by stations and kind, s."""
+def evaluations(case: pp.Case, points: int) -> list[float]:
+    """Processor time of each evaluation of the section loads in the trim of one batch, s."""
     numbers = plan(points).resolve(pp.design_inputs(case)).values
     airspeed = numbers.pop("airspeed")
-    genuine, found = trim_balance.load_moments, defaultdict(list)
+    genuine, found = fused_balance._load_moments, []
 
-    def timed(sections: Any, segments: Any, **wanted: Any) -> Any:
+    def timed(*given: Any) -> Any:
         start = time.process_time()
-        moments = genuine(sections, segments, **wanted)
-        kind = "steady" if wanted.get("steady_only") else "with derivatives"
-        found[sections.quadrature.stations.shape[-1], kind].append(time.process_time() - start)
+        moments = genuine(*given)
+        found.append(time.process_time() - start)
         return moments
 
-    with mock.patch.object(trim_balance, "load_moments", timed):
+    with mock.patch.object(fused_balance, "_load_moments", timed):
         case.vary(numbers).linearize(airspeed)
     return found
 
@@ -174,8 +173,7 @@ def floors(case: pp.Case, points: int) -> dict[str, float]:
     Of the trim one evaluation of all section loads with their derivatives, which the equations of motion take as well;
     of the state matrix the solution of its linear equations; of the eigenvalues all.
     """
-    loads = evaluations(case, points)
-    full = min(loads[max(stations for stations, _ in loads), "with derivatives"])
+    full = min(evaluations(case, points))
     numbers = plan(points).resolve(pp.design_inputs(case)).values
     airspeed = numbers.pop("airspeed")
     linear = case.vary(numbers).linearize(airspeed)
@@ -241,9 +239,8 @@ def print_profile(console: Console, case: pp.Case, points: int) -> None:
             part, f"{1e6 * spent / points:.1f}", f"{100 * spent / whole:.1f}", f"{spent / lapack:.3f}", floor
         )
     console.print(table)
-    for (stations, kind), spent in evaluations(case, BATCH).items():
-        told = ", ".join(f"{1e6 * one / BATCH:.1f}" for one in spent)
-        console.print(f"section loads in the trim of a batch, {stations} stations, {kind}: {told} µs a point")
+    told = ", ".join(f"{1e6 * one / BATCH:.1f}" for one in evaluations(case, BATCH))
+    console.print(f"section loads in the trim of a batch: {told} µs a point")
 
 
 def main() -> None:

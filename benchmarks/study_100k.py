@@ -57,7 +57,7 @@ def run(designs: int, folder: str, result: str) -> None:
 def started(designs: int, folder: Path, result: Path) -> subprocess.Popen:
     """The study in a process of its own."""
     command = [sys.executable, "-m", "benchmarks.study_100k", str(designs), str(folder), str(result)]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, encoding="utf-8")
 
 
 def bits(found: xr.Dataset) -> str:

@@ -71,7 +71,7 @@ def dimension_of_motion(axis: str) -> Dimension:
 
 
 @functools.cache
-def _cubic() -> tuple[sp.Expr, ...]:
+def cubics() -> tuple[sp.Expr, ...]:
     """Return the cubics of unit displacement and slope at the inner end, then at the outer end."""
     eta, length = element_position, element_length
     factors = sp.symbols("c_0:4")
@@ -89,14 +89,14 @@ def _bent(displacement: str, slope_sign: int, rotation: str) -> sp.Expr:
     """Return the displacement of a section across the axis; a rotation of an end is its slope times the sign."""
     (at_inner, at_outer), turns = _ENDS_OF[displacement], _ENDS_OF[rotation]
     parts = (at_inner, slope_sign * turns[0], at_outer, slope_sign * turns[1])
-    return sum(shape * part for shape, part in zip(_cubic(), parts, strict=True))
+    return sum(shape * part for shape, part in zip(cubics(), parts, strict=True))
 
 
 def _linear(inner: sp.Expr, outer: sp.Expr) -> sp.Expr:
     return (1 - element_position) * inner + element_position * outer
 
 
-def _along(expression: sp.Expr) -> sp.Expr:
+def along(expression: sp.Expr) -> sp.Expr:
     """Return the derivative along the beam."""
     return sp.diff(expression, element_position) / element_length
 
@@ -109,7 +109,7 @@ def section_motion() -> dict[str, sp.Expr]:
     """
     up, forward = _bent("x", -1, "alpha_z"), _bent("z", 1, "alpha_x")
     stretch, twist = _linear(*_ENDS_OF["y"]), _linear(*_ENDS_OF["alpha_y"])
-    turns = (_along(forward), twist, -_along(up))
+    turns = (along(forward), twist, -along(up))
     return dict(zip(AXES, (up, stretch, forward, *turns), strict=True))
 
 
@@ -118,10 +118,10 @@ def strain_energies() -> dict[str, sp.Expr]:
     """Return the strain energy per length of each part of the stiffness."""
     motion = section_motion()
     strains = {
-        "beam": (BEAM_STIFFNESS, _along(_along(motion["x"]))),
-        "chord": (CHORD_STIFFNESS, _along(_along(motion["z"]))),
-        "torsion": (TORSION_STIFFNESS, _along(motion["alpha_y"])),
-        "axial": (AXIAL_STIFFNESS, _along(motion["y"])),
+        "beam": (BEAM_STIFFNESS, along(along(motion["x"]))),
+        "chord": (CHORD_STIFFNESS, along(along(motion["z"]))),
+        "torsion": (TORSION_STIFFNESS, along(motion["alpha_y"])),
+        "axial": (AXIAL_STIFFNESS, along(motion["y"])),
     }
     return {part: _linear(*ends) * strain**2 / 2 for part, (ends, strain) in strains.items()}
 

@@ -13,6 +13,7 @@ import functools
 from derive import (
     airloads,
     beam,
+    blade_element,
     drive_train,
     flap_lag_springs,
     inertia,
@@ -51,6 +52,8 @@ from derive.kinds import (
     product,
     reactionless_matrix,
     rotor_matrix,
+    station_matrix,
+    station_motion,
     transform_matrix,
     trim_velocity,
     values,
@@ -86,6 +89,7 @@ CYCLIC = "separate cyclic and collective flap frequencies, as NASA TN D-7677"
 SHAPES = "Euler-Bernoulli bending as a cubic in two planes, linear twist and extension"
 STRAIN = f"strain energy of {SHAPES}"
 KINETIC = f"kinetic energy of {SHAPES}"
+TURNING = "energies of a slender blade that bends while it turns"
 ENGINE = "energies of engine and shaft on the azimuth of Eq. 17"
 WORK = f"{PAPER}, virtual work of Eqs. 12 and 32"
 OF_BLADE = f"{PAPER}, Eqs. 4-16 and 32-34"
@@ -204,6 +208,13 @@ BEAM = (
     element_matrix("torsion_stiffness", beam.torsion_stiffness, STRAIN, 0),
     element_matrix("axial_stiffness", beam.axial_stiffness, STRAIN, 0),
 )
+BLADE_ELEMENT = (
+    station_motion("motion", blade_element.motion, TURNING),
+    values("tension", blade_element.tension, TURNING),
+    station_matrix("mass", blade_element.mass, TURNING, 2),
+    station_matrix("stiffness", blade_element.stiffness, TURNING, 0),
+    station_matrix("twist_stiffness", blade_element.twist_stiffness, TURNING, 0),
+)
 
 STEPS = {
     step.module: step
@@ -221,6 +232,7 @@ STEPS = {
         Step("drive_train", "Engine and shaft on the rotor's azimuth", DRIVE_TRAIN),
         Step("rotor", "A whole rotor in one call", ROTOR, "rotor.py.jinja"),
         Step("beam", "A beam element, x up, y along it, z forward", BEAM),
+        Step("blade_element", "An element of an elastic blade, per length", BLADE_ELEMENT),
     )
 }
 """Every step by the name of its module."""

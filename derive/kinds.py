@@ -13,7 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive import airloads, beam, function, multiblade
+from derive import airloads, beam, blade_element, function, multiblade
 from derive import kinematics as kin
 from derive.coordinates import (
     LOAD,
@@ -35,7 +35,7 @@ from derive.function import (
     row_dimension,
 )
 from derive.rotor import Assembly, Call, Recipe, made
-from derive.symbols import NUMBER, Dimension
+from derive.symbols import NUMBER, Dimension, dimension_of_unit
 
 Dropped = frozenset[str]
 Derivation = Callable[..., Any]
@@ -334,3 +334,22 @@ def element_motion(name: str, derivation: Derivation, origin: str) -> Line:
         return plus(beam.dimension_of_motion(axis), minus=beam.dimension_of_motion(column))
 
     return matrix(name, derivation, origin, beam.AXES, beam.COORDINATES, dimension)
+
+
+def station_matrix(name: str, derivation: Derivation, origin: str, order: int) -> Line:
+    """Make a matrix of a blade element per length; `order` counts the time derivatives of the column's motion."""
+
+    def dimension(row: str, column: str) -> Dimension:
+        motions = plus(blade_element.dimension_of_motion(row), blade_element.dimension_of_motion(column))
+        return plus(dimension_of_unit("N"), per_time(order), minus=motions)
+
+    return matrix(name, derivation, origin, blade_element.COORDINATES, blade_element.COORDINATES, dimension)
+
+
+def station_motion(name: str, derivation: Derivation, origin: str) -> Line:
+    """Make displacements and slopes of a station of a blade element from the motions of its ends."""
+
+    def dimension(row: str, column: str) -> Dimension:
+        return plus(blade_element.dimension_of_motion(row), minus=blade_element.dimension_of_motion(column))
+
+    return matrix(name, derivation, origin, blade_element.MOTIONS, blade_element.COORDINATES, dimension)

@@ -7,7 +7,7 @@ What a block is follows from its fence, or from its first line:
 | ```python, ```{code-cell} | executed, all blocks of a page in one namespace |
 | ```sh, or indented commands | each command is run in the page's folder |
 | ```text after one of these | compared with what it printed |
-| one that begins with `# name.toml` or `# name.csv` | written to the page's folder; a deck is validated |
+| one that begins with `# name.toml` or `# name.csv` | written to the page's folder; a deck or a study is checked |
 | one that begins with `# in name.toml` | the lines of a file that set the same keys are replaced |
 
 Everything else is a block that nothing runs, unless `NOT_RUN` names it with the reason.
@@ -31,6 +31,7 @@ from click.testing import CliRunner
 from proprotor.commands.main import main
 from proprotor.deck.file import read_tables
 from proprotor.deck.validation import validate
+from proprotor.study import is_study_file, read_study
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -41,6 +42,7 @@ NOT_RUN = {
     "python -m benchmarks": "minutes; writes the tables and figures of pages",
     "proprotor explore": "a server, which its own tests start",
     "proprotor report": "half a minute each; tests/report/test_report.py makes reports",
+    "pip install": "changes the environment; tests/verify/test_packaging.py installs both wheels",
     "source ": "the shell that a reader works in",
     "derive/ ──▶": "a drawing",
     "--- a/": "a change of the derivation, which tests/derive/test_add_a_term.py makes in a copy",
@@ -188,7 +190,9 @@ class Runner:
 
     def _written(self, path: Path, text: str) -> None:
         path.write_text(text, encoding="utf-8")
-        if path.suffix == ".toml":
+        if is_study_file(path):
+            read_study(path)
+        elif path.suffix == ".toml":
             validate(read_tables(path))
 
     def _changed(self, path: Path, text: str) -> None:

@@ -51,7 +51,9 @@ def measure(name: str) -> dict:
     command = [sys.executable, "-m", "benchmarks.peers.measure", *MEASUREMENTS[name]]
     cores = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {max(cores)})  # the child's only core
-    child = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | _ONE_THREAD)
+    child = subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, encoding="utf-8", env=os.environ | _ONE_THREAD
+    )
     os.sched_setaffinity(0, cores)
     used = 0.0
     while child.poll() is None:
@@ -69,7 +71,7 @@ def measure(name: str) -> dict:
 
 def processor_seconds(process: int) -> float:
     """Time a process has had; a limit set by the kernel would coarsen the clock that the process itself reads."""
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
@@ -77,9 +79,9 @@ def main(names: list[str]) -> None:
     RESULTS.mkdir(parents=True, exist_ok=True)
     for name in [name for name in names or MEASUREMENTS if name != "page"]:
         print(name, flush=True)
-        (RESULTS / f"{name}.json").write_text(json.dumps(measure(name), indent=1))
+        (RESULTS / f"{name}.json").write_text(json.dumps(measure(name), indent=1), encoding="utf-8")
     found = {
-        name: json.loads(path.read_text())
+        name: json.loads(path.read_text(encoding="utf-8"))
         for name in MEASUREMENTS
         if (path := RESULTS / f"{name}.json").exists()
     }

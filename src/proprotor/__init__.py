@@ -21,6 +21,7 @@ each room is its map.
 
 from __future__ import annotations
 
+import logging
 import sys
 from importlib import import_module
 from types import ModuleType
@@ -41,6 +42,13 @@ class _Package(ModuleType):
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
         return interface[name]
 
+    @property
+    def __version__(self) -> str:
+        """The version that is installed."""
+        from importlib.metadata import version  # here, because it takes longer to import than this file
+
+        return version("proprotor")
+
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self.__all__})
 
@@ -55,3 +63,4 @@ class _Package(ModuleType):
 
 
 sys.modules[__name__].__class__ = _Package
+logging.getLogger(__name__).addHandler(logging.NullHandler())  # the application says where messages go

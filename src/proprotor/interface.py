@@ -27,6 +27,7 @@ from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet
@@ -45,6 +46,7 @@ __all__ = [
     "Airfoil",
     "AirfoilTable",
     "BladeFrequencies",
+    "BladeStations",
     "Case",
     "DriveTrain",
     "EquationSet",

@@ -58,7 +58,7 @@ def free_memory() -> float:
 def _free_of_group() -> float:
     """Return the memory that the control group of a container or a cluster's job leaves, bytes; inf without a limit."""
     try:
-        lines = _GROUP_OF_PROCESS.read_text().splitlines()
+        lines = _GROUP_OF_PROCESS.read_text(encoding="utf-8").splitlines()
     except OSError:  # not on Linux
         return float("inf")
     free = float("inf")
@@ -75,8 +75,8 @@ def _free_of_group() -> float:
 def _left(group: Path, limit: str, used: str, cached: str) -> float:
     """Return the memory that one control group leaves, bytes; inf without a limit."""
     try:
-        most, taken = (int((group / name).read_text()) for name in (limit, used))
-        stat = dict(line.split() for line in (group / "memory.stat").read_text().splitlines())
+        most, taken = (int((group / name).read_text(encoding="ascii")) for name in (limit, used))
+        stat = dict(line.split() for line in (group / "memory.stat").read_text(encoding="ascii").splitlines())
     except (OSError, ValueError):  # no such group, or "max" for no limit
         return float("inf")
     return max(0.0, float(most - taken + int(stat.get(cached, 0))))

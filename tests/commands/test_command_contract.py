@@ -77,6 +77,8 @@ OUTPUTS = [
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--csv", "x.csv"),
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--plot", "x.png"),
     ("study", STUDY, "--out", "x.nc"),
+    ("study", STUDY, "--csv", "x.csv"),
+    ("study", STUDY, "--save", "x.toml"),
 ]
 
 
@@ -218,7 +220,7 @@ def test_a_file_named_minus_is_standard_output_or_refused(command, arguments, op
         return
     assert (result.exit_code, result.stderr) == (0, "")
     assert run(command, *arguments, "--csv", "x.csv").exit_code == 0
-    assert result.stdout == Path("x.csv").read_text()
+    assert result.stdout == Path("x.csv").read_text(encoding="utf-8")
     result = run(command, *arguments, "--csv", "-", "--json")
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr == "Error: --csv = -: goes without --json: both would be printed\n"
@@ -226,7 +228,7 @@ def test_a_file_named_minus_is_standard_output_or_refused(command, arguments, op
 
 @pytest.mark.parametrize("name", ["my deck.toml", "Rotor-Blätter ψ.toml", 'it\'s "quoted".toml'])
 def test_names_of_files_may_have_spaces_and_any_letters(name):
-    Path(name).write_text('base = "xv15-uncoupled"\n[case]\nname = "my"\n')
+    Path(name).write_text('base = "xv15-uncoupled"\n[case]\nname = "my"\n', encoding="utf-8")
     out = Path(name).with_suffix(".csv")
     assert run("sweep", name, "--speed", "200 kt", "--csv", str(out), *FAST).exit_code == 0
     assert out.stat().st_size > 100

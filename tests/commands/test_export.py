@@ -28,7 +28,7 @@ def test_direct_matrix_input_is_that_of_the_function():
     model = pp.load_case("xv15-uncoupled").linearize("200 kt", pitch="rigid", section_damping=True)
     units = dict(length_unit=0.0254, mass_unit=4.4482216152605 / 0.0254)
     pp.save_dmig(model, "expected.bdf", grid=4001, first_extra_point=9001, **units)
-    assert Path("rotor.bdf").read_text() == Path("expected.bdf").read_text()
+    assert Path("rotor.bdf").read_text(encoding="utf-8") == Path("expected.bdf").read_text(encoding="utf-8")
 
 
 def test_a_file_of_matlab_has_the_model():

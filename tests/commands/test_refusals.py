@@ -241,11 +241,11 @@ def test_a_folder_is_no_file_to_write(tmp_path):
 def test_what_does_not_go_together_on_a_command_line(tmp_path, monkeypatch, arguments, parts):
     monkeypatch.chdir(tmp_path)
     own, text = Path("own.toml"), 'base = "xv15-uncoupled"\n[case]\nname = "own"\n'
-    own.write_text(text)
+    own.write_text(text, encoding="utf-8")
     done = CliRunner().invoke(main, arguments)
     assert done.exit_code == 2 and not done.stdout
     start = 0
     for part in parts:
         assert part in done.stderr[start:], done.stderr
         start = done.stderr.index(part, start)
-    assert own.read_text() == text and os.listdir() == ["own.toml"]
+    assert own.read_text(encoding="utf-8") == text and os.listdir() == ["own.toml"]

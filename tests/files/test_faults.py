@@ -114,7 +114,7 @@ def test_a_figure_on_a_full_disk_leaves_what_was(tmp_path):
 def test_a_full_disk_under_the_standard_output_is_no_traceback():
     code = "from proprotor.commands.main import main; main()"
     command = [sys.executable, "-c", code, *SWEEP, "--json"]
-    with open("/dev/full", "w") as full:
+    with open("/dev/full", "w", encoding="utf-8") as full:
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
     assert done.returncode != 0
     assert "No space left on device" in done.stderr

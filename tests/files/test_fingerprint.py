@@ -425,7 +425,7 @@ def nested(depth):
 REFUSED = {
     "a lock": threading.Lock,
     "a generator": generator,
-    "an open file": lambda: open(os.devnull),  # noqa: SIM115
+    "an open file": lambda: open(os.devnull, encoding="utf-8"),  # noqa: SIM115
     "a lock in an object": lambda: Table(threading.Lock()).curve,
     "a lock in a closure": lambda: closure(threading.Lock()),
     "a lock in a global": lambda: with_globals(threading.Lock()),

@@ -33,6 +33,7 @@ _IMPORTED_LATE = (
     "scipy.sparse.linalg",
     "dask.array",
     "distributed",
+    *(f"encodings.utf_{width}_{order}" for width in (16, 32) for order in ("le", "be")),
 )  # by functions that a warm-up may not meet
 
 

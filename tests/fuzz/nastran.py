@@ -1,4 +1,8 @@
-"""Files of a Nastran run: results in binary and in text, and matrices."""
+"""Files of a Nastran run: results in binary and in text, and matrices.
+
+HDF5 files are left out: among 20,000 spoiled ones the HDF5 library (2.0, of h5py 3.16) damaged its own memory, which a
+process may not survive and no reader can prevent. Files of a wrong content or cut off are in tests/nastran.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +34,6 @@ def seeds() -> dict[str, bytes]:
         for width in (4, 8):
             Op2(width=width).lama(run).vectors(run).other_blocks().save(folder / f"words{width}.op2")
         Op2(order=">").lama(run).vectors_by_point(run).complex_vectors(run).save(folder / "points.op2")
-        written.save_hdf5(folder / "a.h5", [run])
         written.save_punch(folder / "a.pch", [run])
         written.save_printed(folder / "a.f06", [run])
         written.save_dmig(folder / "large.bdf", matrices, _COORDINATES)

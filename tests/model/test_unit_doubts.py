@@ -7,6 +7,8 @@ import proprotor as pp
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.rotor_share import without_rotors
 from proprotor.model.unit_doubts import unit_warnings
+from proprotor.support.matrix_files import support_from_matrices
+from proprotor.support.normal_modes import HUB_AXES
 from tests.nastran.written import HUB, Op2, run_of
 
 UNITS = {  # m and kg of a run
@@ -79,6 +81,16 @@ def test_the_mass_and_the_length_are_those_of_a_pivot(case):
         pp.two_axis_pivot(200.0, (4e6, 4e6), (1e6, 1e6), includes_rotor=False), at_rest
     )
     assert "the hub moves 200 m per radian" in warning
+
+
+def test_a_light_node_at_the_hub_is_no_light_structure():
+    """400 kg on a wing's spring, and 0.1 kg at the hub itself on a mast a thousand times as stiff."""
+    names = [f"{part}_{axis}" for part in ("hub", "wing") for axis in HUB_AXES]
+    soft, stiff, one = 1e6, 1e9, np.eye(6)
+    stiffness = np.block([[stiff * one, -stiff * one], [-stiff * one, (stiff + soft) * one]])
+    mass = np.diag([0.1] * 6 + [400.0] * 6)
+    support = support_from_matrices(mass, stiffness, dofs=names)
+    assert unit_warnings(support, np.diag([100.0] * 3 + [100.0] * 3)) == ()
 
 
 @pytest.mark.parametrize("name", pp.list_cases())

@@ -30,7 +30,7 @@ def _motions(length: NDArray, place: NDArray) -> Iterator[Check]:
     yield matrix_check(("beam", "motion"), "Hermite cubics and straight lines", given, expected, 1.0)
 
 
-def _hermite(length: float, place: float) -> tuple[NDArray, NDArray, NDArray]:
+def hermite(length: float, place: float) -> tuple[NDArray, NDArray, NDArray]:
     """Value, slope and curvature of the cubics of unit displacement and unit slope at the inner and the outer end."""
     x, ell = place, length
     value = [1 - 3 * x**2 + 2 * x**3, ell * (x - 2 * x**2 + x**3), 3 * x**2 - 2 * x**3, ell * (x**3 - x**2)]
@@ -58,7 +58,7 @@ def _line(axis: int, inner: float, outer: float) -> NDArray:
 
 def _section(length: float, place: float) -> NDArray:
     """Motion (6, 12) of a section."""
-    value, slope, _ = _hermite(length, place)
+    value, slope, _ = hermite(length, place)
     return np.array(
         [
             _row(_UP, value),
@@ -73,7 +73,7 @@ def _section(length: float, place: float) -> NDArray:
 
 def _strain(name: str, length: float, place: float) -> NDArray:
     """Strain (12,) that a stiffness resists."""
-    _, _, curvature = _hermite(length, place)
+    _, _, curvature = hermite(length, place)
     return {
         "beam_stiffness": _row(_UP, curvature),
         "chord_stiffness": _row(_FORWARD, curvature),

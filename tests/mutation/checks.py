@@ -13,6 +13,7 @@ from tests.mutation import (
     assembly_checks,
     beam_checks,
     blade_checks,
+    blade_element_checks,
     lag_checks,
     rotor_checks,
     section_checks,
@@ -31,6 +32,7 @@ def all_checks() -> tuple[Check, ...]:
         rotor_checks,
         assembly_checks,
         beam_checks,
+        blade_element_checks,
     )
     found = tuple(check for module in modules for check in module.checks())
     for check in found:  # arrays that are kept are made while nothing is a mutant

@@ -205,6 +205,16 @@ def test_a_byte_that_was_lost_is_damage(tmp_path):
     assert "is damaged" in refusal(path) or "ends early" in refusal(path)
 
 
+def test_lengths_around_a_record_that_differ_are_damage(tmp_path):
+    given = run()
+    content = bytearray(Op2().lama(given).vectors(given).bytes())
+    after = content.index(b"OUGV1   ") + 8
+    content[after] += 4
+    path = tmp_path / "a.op2"
+    path.write_bytes(content)
+    assert refusal(path).endswith("is damaged in the table LAMA: the lengths around a record differ")
+
+
 @pytest.mark.parametrize("content", [b"", b"GRID,1,,0.,0.,0.\n", b"\0" * 400, bytes(range(256)) * 9])
 def test_another_file_is_refused(tmp_path, content):
     path = tmp_path / "a.op2"

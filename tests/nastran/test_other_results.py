@@ -76,7 +76,7 @@ def test_punch_with_two_subcases_and_other_results(tmp_path):
     """Displacements of a static subcase in the same file, and complex vectors, are not the modes."""
     one, two = run(1), run(2, subcase=3)
     parts = [
-        save_punch(tmp_path / "1.pch", [one], kind="DISPLACEMENTS"),
+        save_punch(tmp_path / "1.pch", [run(5)], kind="DISPLACEMENTS"),
         save_punch(tmp_path / "2.pch", [one]),
         save_punch(tmp_path / "3.pch", [two], form="REAL-IMAGINARY"),
         save_punch(tmp_path / "4.pch", [two]),
@@ -125,3 +125,8 @@ def test_print_with_stars_in_place_of_a_number(tmp_path):
     text[place] = text[place][:25] + "  *************" + text[place][40:]
     path.write_text("\n".join(text))
     assert "must be numbers" in refusal(path)
+
+
+def test_text_that_is_not_in_the_encoding_of_its_mark(tmp_path):
+    (tmp_path / "a.pch").write_bytes(b"\xff\xfe" + "$TITLE".encode("utf-16-le") + b"\x00")
+    assert "is damaged: it is not text in utf-16" in refusal(tmp_path / "a.pch")

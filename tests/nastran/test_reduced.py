@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from proprotor.nastran.dmig import read_dmig
+from proprotor.nastran.dmig import read_dmig, write_dmig
 from proprotor.nastran.found import FileFault
 from proprotor.nastran.op4 import read_op4
 from proprotor.nastran.reduced import reduced_from_dmig
@@ -152,6 +152,11 @@ def test_matrices_that_are_no_structure(in_the_run, tmp_path):
     assert "must have a mass MAA or MAAX and a stiffness KAA or KAAX: it has KAAX" in refusal(path)
     path = save_dmig(tmp_path / "b.pch", matrices | {"M2GG": matrices["MAAX"]}, coordinates)
     assert read(path, hub=AXES, modes=2).names == ("mode_1", "mode_2")
+    whole = {"KGG": matrices["KAAX"], "K4GG": matrices["KAAX"], "MGG": matrices["MAAX"]}
+    assert read(save_dmig(tmp_path / "e.pch", whole, coordinates), hub=AXES, modes=2).names == (
+        "mode_1",
+        "mode_2",
+    )
     several = {"K1": matrices["KAAX"], "K2": matrices["KAAX"], "M1": matrices["MAAX"]}
     path = save_dmig(tmp_path / "c.pch", several, coordinates)
     assert "has several matrices that could be its stiffness: K1, K2" in refusal(path)
@@ -206,6 +211,24 @@ def test_complex_and_rectangular_entries_are_passed_over(tmp_path):
     assert found.names == ("1.T1", "2")
     np.testing.assert_array_equal(found.mass, [[0.25, 10.0], [10.0, 0.0]])
     np.testing.assert_array_equal(found.stiffness, [[0.0, 0.0], [0.0, 3.0]])
+
+
+@pytest.mark.parametrize(
+    ("value", "field"),
+    [
+        (1 / 3, ".3333333333333D0"),
+        (-1 / 3, "-.333333333333D0"),
+        (-2e5 / 3, "-6.66666666667D4"),
+        (1e-10 / 3, ".33333333333D-10"),
+        (-2e-101 / 3, "-.666666667D-101"),
+        (1.0, "1.000000000000D0"),
+        (1 - 1e-16, "1.000000000000D0"),
+        (-1e12 / 3, "-3.3333333333D11"),
+    ],
+)
+def test_a_field_has_as_many_digits_as_it_has_room_for(value, field):
+    *_, line = write_dmig("M", np.array([[value]]), [(1, 0)])
+    assert line == f"*{1:23d}{0:16d}{field}"
 
 
 def test_fields_of_eight_characters_hold_two_terms_a_line(tmp_path):

@@ -263,7 +263,9 @@ def test_a_generated_function_says_shapes_units_and_equations(name):
     result = told["Returns"][0]  # rows and columns follow
     record = vars(inspect.getmodule(entry)).get(result.type)
     if record is None:
-        assert re.match(r"Array \(\.\.\., \d+, \d+\)|tuple of \d+ numbers", result.type), result
+        assert re.match(
+            r"Array \(\.\.\., \d+, \d+\)|Array \(\d+, \.\.\.\)|tuple of \d+ numbers", result.type
+        ), result
     for field in getattr(record, "_fields", ()):
         assert re.search(rf"{field}: np.ndarray\n    \"\"\"\[", inspect.getsource(record)), field
 

@@ -219,14 +219,12 @@ def test_a_hinge_at_the_centre_spoils_no_other_point():
         return replace(CASE, rotor=with_hinges(offsets[place], offsets[place]))
 
     both, alone = (case(place) for place in (slice(None), 1))
-    model, alone = both.linearize(AIRSPEED), alone.linearize(AIRSPEED)
+    model, alone = both.linearize(AIRSPEED), alone.linearize(np.array([AIRSPEED]))
     assert list(model.trim.converged) == [False, True]
-    # To rounding: the sum over stations that all points share has another order than that over a blade's own.
-    row = np.abs(alone.K).max(axis=-1, keepdims=True)
-    assert (np.abs(model.K[1] - alone.K) <= 1e-13 * row).all()
+    np.testing.assert_array_equal(model.K[1], alone.K[0])
     modes = model.modes()
     assert "flap_1c" in str(modes.reason[0].values) and np.isnan(modes.eigenvalue[0]).all()
-    np.testing.assert_allclose(modes.eigenvalue[1], alone.modes().eigenvalue, rtol=1e-9)
+    np.testing.assert_array_equal(modes.eigenvalue[1], alone.modes().eigenvalue[0])
     swept = case(0).sweep([90.0, AIRSPEED])
     assert all("without any mass" in reason for reason in swept.reason.values) and not swept.sizes["mode"]
     assert case(0).sweep([90.0, AIRSPEED], locked=["gimbal"], rotor_speed="constant").sizes["mode"] > 10

@@ -10,7 +10,9 @@ from scipy.optimize import linear_sum_assignment
 
 import proprotor as pp
 from benchmarks.tracking import values_of
+from proprotor.errors import InputError
 from proprotor.rotor.motions import motions, name_list
+from proprotor.stability import following
 from proprotor.stability.following import follow
 from proprotor.stability.matching import POOR, match_modes
 from proprotor.stability.mode_names import _assign_names, _groups
@@ -400,3 +402,47 @@ def test_two_motions_with_one_frequency_all_along_do_not_part_a_line_for_ever():
     paths = [follow(line.models(line.positions), line) for line in lines]
     assert max(len(path.points) for path in paths) < 300
     assert min(path.steps.quality.min() for path in paths) < POOR
+
+
+# Points ahead ---------------------------------------------------------------------------------------
+
+
+def veering(positions):
+    """Two oscillators whose frequencies meet and turn away over a narrow stretch."""
+    x = np.asarray(positions, dtype=float)
+    stiffness = np.zeros((len(x), 2, 2))
+    stiffness[:, 0, 0], stiffness[:, 1, 1] = 1.0 + x, 2.0 - x
+    stiffness[:, 0, 1] = stiffness[:, 1, 0] = 2e-3
+    return linear_model(np.eye(2), np.diag([0.01, 0.012]), stiffness)
+
+
+def test_points_solved_ahead_change_no_branch(monkeypatch):
+    """They save batches: the points of the branches, places and trust are those of one halving at a time."""
+    line, found, batches = np.linspace(0.0, 1.0, 4), [], []
+    for ahead in (1, 16):
+        monkeypatch.setattr(following, "_AHEAD", ahead)
+        sizes = []
+
+        def counted(positions, sizes=sizes):
+            sizes.append(len(positions))
+            return veering(positions)
+
+        found.append(follow(veering(line), ParameterLine(line, counted)))
+        batches.append(sizes)
+    one, other = found
+    assert len(one.points) > 8 and len(batches[1]) < len(batches[0])
+    np.testing.assert_array_equal(one.positions[one.points], other.positions[other.points])
+    np.testing.assert_array_equal(one.places, other.places)
+    np.testing.assert_array_equal(one.quality, other.quality)
+
+
+def test_a_point_ahead_that_cannot_be_analysed_stops_nothing():
+    """A point that nobody needs is no reason to fail."""
+    line = np.linspace(0.0, 1.0, 4)
+
+    def picky(positions):
+        if len(positions) > 4:  # more than the steps that need a point
+            raise InputError("x", positions, "is refused")
+        return veering(positions)
+
+    assert len(follow(veering(line), ParameterLine(line, picky)).points) > 8

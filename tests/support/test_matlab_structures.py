@@ -4,14 +4,21 @@ SciPy writes the files as MATLAB does. A file of version 7.3 is HDF5 behind a he
 know it.
 """
 
+import contextlib
+import io
+import struct
+
 import numpy as np
 import pytest
-from scipy.io import savemat
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.io import loadmat, savemat
 from scipy.sparse import csc_array
 
 import proprotor as pp
 from proprotor.errors import InputError
 from proprotor.support.matlab_file import read_matlab
+from proprotor.support.matlab_level5 import MatlabFault, variables_of
 from proprotor.support.matrix_files import support_from_matrices
 from proprotor.support.normal_modes import HUB_AXES
 from tests.support.test_modal_files import FOOT, FREQUENCY, HUB, MASS, NAMES, RATIO, SLUG
@@ -48,6 +55,17 @@ def filed(folder, content, **settings):
     return path
 
 
+def in_memory(content, **settings) -> bytes:
+    file = io.BytesIO()
+    savemat(file, content, **settings)
+    return file.getvalue()
+
+
+GOOD = [
+    in_memory(FILES["sparse matrices in a struct"] | LONG, do_compression=packed) for packed in (False, True)
+]
+
+
 @pytest.mark.parametrize("kind", FILES)
 @pytest.mark.parametrize("compressed", [False, True])
 def test_a_file_of_matlab_is_the_structure(tmp_path, kind, compressed):
@@ -59,9 +77,59 @@ def test_a_file_of_matlab_is_the_structure(tmp_path, kind, compressed):
     np.testing.assert_array_equal(found.hub, HUB)
 
 
-def test_a_file_of_version_4(tmp_path):
-    found = read_matlab(filed(tmp_path, SHORT, format="4"), **ONE)
-    np.testing.assert_array_equal(found.stiffness, K)
+def test_variables_are_those_that_scipy_reads(tmp_path):
+    """Whole, single, complex and sparse numbers, text, cells, structs and arrays of structs."""
+    rng = np.random.default_rng(1)
+    given = {
+        "bytes": np.arange(6, dtype=np.uint8).reshape(2, 3),
+        "large": rng.integers(-(2**60), 2**60, (3, 2)),
+        "single": rng.random((2, 2), dtype=np.float32),
+        "complex": rng.random((2, 3)) + 1j * rng.random((2, 3)),
+        "pages": rng.random((2, 3, 4)),
+        "empty": np.zeros((0, 3)),
+        "yes": np.array([[True, False]]),
+        "text": "Größe",
+        "rows": np.array(["ab", "cde"]),
+        "cells": np.array(["a", np.eye(2), "ccc"], dtype=object),
+        "sparse": csc_array(rng.random((4, 3)) * (rng.random((4, 3)) > 0.5)),
+        "struct": {"a": 1.0, "b": {"c": "x", "d": np.eye(3)}},
+    }
+    for compressed in (False, True):
+        path = filed(tmp_path, given, do_compression=compressed)
+        found = variables_of(path.read_bytes())
+        assert found.keys() == given.keys()
+        theirs = loadmat(path)
+        for name in ("bytes", "large", "single", "complex", "pages", "empty", "yes"):
+            np.testing.assert_array_equal(found[name], theirs[name])
+        np.testing.assert_array_equal(found["sparse"].toarray(), theirs["sparse"].toarray())
+        assert found["text"] == ["Größe"] and found["rows"] == ["ab ", "cde"]
+        assert found["cells"][0] == ["a"] and found["cells"][2] == ["ccc"]
+        np.testing.assert_array_equal(found["cells"][1], np.eye(2))
+        assert found["struct"]["a"] == 1.0 and found["struct"]["b"]["c"] == ["x"]
+        np.testing.assert_array_equal(found["struct"]["b"]["d"], np.eye(3))
+
+
+def test_a_file_of_a_computer_with_the_other_order_of_bytes(tmp_path):
+    """A matrix of doubles, its elements written one after another with the most significant byte first."""
+    values = np.array([[1.5, -2.0], [3.25, 4.0]])
+    flags = struct.pack(">IIII", 6, 8, 6, 0)
+    sizes, name = struct.pack(">IIii", 5, 8, 2, 2), struct.pack(">HH4s", 1, 1, b"M")
+    numbers = struct.pack(">II4d", 9, 32, *values.T.ravel())
+    body = flags + sizes + name + numbers
+    head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack(">H", 0x0100) + b"MI"
+    np.testing.assert_array_equal(variables_of(head + struct.pack(">II", 14, len(body)) + body)["M"], values)
+
+
+@given(st.data())
+@settings(max_examples=300, deadline=None)
+def test_any_damage_is_a_fault_of_the_file(data):
+    """SciPy's reader ends the process at some of these."""
+    content = bytearray(GOOD[data.draw(st.booleans())])
+    for _ in range(data.draw(st.integers(1, 4))):
+        place = data.draw(st.integers(124, len(content) - 1))
+        content[place : place + data.draw(st.integers(0, 4))] = data.draw(st.binary(max_size=4))
+    with contextlib.suppress(MatlabFault):
+        variables_of(bytes(content))
 
 
 def test_one_mode_has_both_axes(tmp_path):
@@ -143,6 +211,7 @@ def test_a_file_of_matlab_that_is_no_support(tmp_path, kind):
         (b"\x89HDF\r\n\x1a\n", "is of version 7.3"),
         (b"MATLAB 5.0 MAT-file", "is damaged, or another kind of file"),
         (b"", "is damaged, or another kind of file"),
+        (in_memory(SHORT, format="4"), "is damaged, or another kind of file: save it with"),
         (None, "no such file"),
     ],
 )

@@ -54,6 +54,21 @@ def test_entries_given_twice_add_up_and_digits_do_no_harm(tmp_path):
     assert read_matrix(tmp_path / "m.mtx").toarray().tolist() == [[1.1234567890123457, 0], [0, 0]]
 
 
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_exponents_of_fortran_tabs_and_comments_between_entries(tmp_path, end):
+    lines = [
+        "%%MatrixMarket matrix coordinate real general",
+        "% made up",
+        "2\t2\t2",
+        "",
+        "1\t1\t1.5D+01",
+        "% d",
+        " 2 2 -2.d-1 ",
+    ]
+    (tmp_path / "m.mtx").write_bytes(end.join(lines).encode())
+    assert read_matrix(tmp_path / "m.mtx").toarray().tolist() == [[15.0, 0], [0, -0.2]]
+
+
 HEAD = "%%MatrixMarket matrix "
 WRONG = {
     "array real symmetric\n3 5\n" + "1\n" * 15: "cannot be symmetric with 3 x 5",

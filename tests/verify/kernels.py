@@ -32,6 +32,7 @@ NUMERICAL = (
     "scaling",
     "sensitivity",
     "stability_map",
+    "stiffness_factors",
     "study",
     "sweep",
     "tracking",

@@ -1,8 +1,10 @@
-"""The wheel and the source distribution, made and used without the repository."""
+"""The wheels and source distributions of both packages, made and used without the repository."""
 
+import os
 import subprocess
 import sys
 import tarfile
+import tomllib
 import venv
 import zipfile
 from pathlib import Path
@@ -12,6 +14,9 @@ import pytest
 pytestmark = pytest.mark.verify
 
 ROOT = Path(__file__).parents[2]
+LOWEST_NUMPY = tomllib.loads((ROOT / "generated" / "pyproject.toml").read_text(encoding="utf-8"))["project"][
+    "dependencies"
+][0].partition(">=")[2]
 NEEDED_OF_SOURCE = (
     "pyproject.toml",
     "README.md",
@@ -21,6 +26,8 @@ NEEDED_OF_SOURCE = (
     "derive/equations.py",
     "templates",
     "generated/proprotor_equations/multiblade.py",
+    "generated/pyproject.toml",
+    "LICENSE",
     "src/proprotor/deck/decks/xv15.toml",
     "tests/derive/test_closed_forms.py",
     "benchmarks/paper_figures/command.py",
@@ -28,34 +35,39 @@ NEEDED_OF_SOURCE = (
 NEEDED_OF_WHEEL = (
     "proprotor/deck/decks/xv15.toml",
     "proprotor/commands/main.py",
-    "proprotor_equations/__init__.py",
-    "proprotor_equations/published/__init__.py",
+    "proprotor/py.typed",
 )
+NEEDED_OF_EQUATIONS = ("proprotor_equations/__init__.py", "proprotor_equations/published/__init__.py")
 ONLY_IN_A_CLONE = ("figures", "audit")  # once commands of the package
 LOCAL = (".venv", ".git/", ".ci", "__pycache__", ".hypothesis")  # what belongs to one machine
 
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """The folder of a source distribution, and of the wheel that was made from it."""
+    """The folder of both source distributions, and of the wheels that were made from them."""
     folder = tmp_path_factory.mktemp("dist")
-    subprocess.run([sys.executable, "-m", "build", "--outdir", folder, ROOT], check=True, capture_output=True)
+    for project in (ROOT / "generated", ROOT):
+        command = [sys.executable, "-m", "build", "--outdir", folder, project]
+        subprocess.run(command, check=True, capture_output=True)
     return folder
+
+
+def new_environment(folder, *wanted):
+    """The interpreter of a new environment that has what is wanted, and what that asks for."""
+    venv.create(folder, with_pip=True)
+    interpreter = folder / ("Scripts" if os.name == "nt" else "bin") / "python"
+    subprocess.run([interpreter, "-m", "pip", "install", "--quiet", *wanted], check=True, capture_output=True)
+    return interpreter
 
 
 @pytest.fixture(scope="module")
 def python(built, tmp_path_factory):
-    """The interpreter of a new environment that has the wheel and what it asks for."""
-    folder = tmp_path_factory.mktemp("environment")
-    venv.create(folder, with_pip=True)
-    interpreter = folder / "bin" / "python"
-    (wheel,) = built.glob("*.whl")
-    subprocess.run([interpreter, "-m", "pip", "install", "--quiet", wheel], check=True, capture_output=True)
-    return interpreter
+    """The interpreter of a new environment that has both wheels, without extras."""
+    return new_environment(tmp_path_factory.mktemp("environment"), *built.glob("*.whl"))
 
 
 def test_the_source_distribution_has_all_that_makes_the_package(built):
-    (archive,) = built.glob("*.tar.gz")
+    (archive,) = built.glob("proprotor-0*.tar.gz")
     with tarfile.open(archive) as file:
         names = [name.partition("/")[2] for name in file.getnames()]
     for needed in NEEDED_OF_SOURCE:
@@ -64,13 +76,72 @@ def test_the_source_distribution_has_all_that_makes_the_package(built):
     assert archive.stat().st_size < 10e6
 
 
-def test_the_wheel_has_both_packages_and_nothing_else(built):
-    (wheel,) = built.glob("*.whl")
+@pytest.mark.parametrize(
+    ("package", "needed"), [("proprotor", NEEDED_OF_WHEEL), ("proprotor_equations", NEEDED_OF_EQUATIONS)]
+)
+def test_a_wheel_has_its_package_and_nothing_else(built, package, needed):
+    """No file is in both: whoever removed one distribution would damage the other."""
+    (wheel,) = built.glob(f"{package}-*.whl")
     names = zipfile.ZipFile(wheel).namelist()
-    assert set(NEEDED_OF_WHEEL) <= set(names)
+    assert set(needed) <= set(names)
     tops = {name.partition("/")[0] for name in names}
-    assert {top for top in tops if not top.endswith(".dist-info")} == {"proprotor", "proprotor_equations"}
+    assert {top for top in tops if not top.endswith(".dist-info")} == {package}
+    assert any(name.endswith("licenses/LICENSE") for name in names)
     assert not [name for name in names if any(part in name for part in ONLY_IN_A_CLONE)]
+
+
+EQUATIONS_ALONE = """
+import sys
+
+before = set(sys.modules)  # such as what setuptools imports as Python starts
+from importlib import import_module
+from pathlib import Path
+
+import proprotor_equations
+
+folder = Path(proprotor_equations.__file__).parent
+for path in folder.rglob("*.py"):
+    import_module(".".join(path.relative_to(folder.parent).with_suffix("").parts))
+print(proprotor_equations.pitch.damping(
+    n_blades=3, flap_damping=1.0, lag_damping=2.0, pitch_damping=3.0, gimbal_damping=6.0
+).sum())
+foreign = {name.partition(".")[0] for name, module in sys.modules.items()
+    if name not in before and "site-packages" in str(getattr(module, "__file__", None))}
+print(*sorted(foreign))
+"""
+
+
+@pytest.mark.parametrize("numpy", ["numpy", f"numpy=={LOWEST_NUMPY}"], ids=["newest", "lowest"])
+def test_the_equations_need_numpy_alone(built, tmp_path, numpy):
+    (wheel,) = built.glob("proprotor_equations-*.whl")
+    python = new_environment(tmp_path / "environment", wheel, numpy)
+    total, foreign = run(python, tmp_path, "python", "-c", EQUATIONS_ALONE).splitlines()
+    assert total == "10.0"  # 1 + 2 + 3, and twice the blade's third of 6
+    assert foreign == "numpy proprotor_equations"
+
+
+def test_the_tutorial_runs_with_what_is_installed(python):
+    """Its blocks of code and what they print, from the page; the package from the environment."""
+    command = [python, "-m", "tests.verify.tutorial"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8", check=False)
+    assert done.returncode == 0, done.stderr
+    assert Path(done.stdout.splitlines()[-1]).is_relative_to(python.parents[1])
+
+
+def test_every_bundled_deck_is_there(python, tmp_path):
+    code = (
+        "import proprotor as pp;"
+        "print(*(name for name in pp.list_cases() if pp.load_case(name).linearize(90.0).M.size))"
+    )
+    decks = {path.stem for path in (ROOT / "src" / "proprotor" / "deck" / "decks").glob("*.toml")}
+    assert set(run(python, tmp_path, "python", "-c", code).split()) == decks
+
+
+def test_every_command_runs_without_an_extra_or_says_which_it_needs(python, tmp_path):
+    """As tests/project/test_extras.py with the extras hidden, here where there are none."""
+    command = [python, "-m", "tests.extras", tmp_path]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8", check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def run(python, folder, *arguments):

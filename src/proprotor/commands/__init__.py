@@ -11,6 +11,7 @@ and show its result; they compute nothing themselves.
     waiting     a spinner while a step takes more than a second
 
     cases new describe                              decks
+    blade                                           a blade of a deck from a table of stations
     sweep flutter stability_map sensitivity attribution study    analyses of a case
     report explore                                  a page on a case, as a file and with sliders
     export                                          the equations of a case for another program
@@ -22,6 +23,7 @@ at once.
 
 __all__ = [
     "attribution",
+    "blade",
     "boundary",
     "cases",
     "describe",

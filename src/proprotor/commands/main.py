@@ -28,6 +28,7 @@ _SUMMARIES = {
     "boundary": "Follow the boundaries over altitude, rotor speed or another input.",
     "map": "Show where in the plane of two inputs a case is stable.",
     "sensitivity": "Show how each input moves the flutter speed or a damping.",
+    "blade": "Make a hinged blade of a table of stations.",
     "attribution": "Show what drives and what damps a mode, by physical origin.",
     "report": "Write all results on a case as one page, HTML or PDF.",
     "explore": "Move sliders on the inputs, and see the modes follow.",

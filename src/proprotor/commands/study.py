@@ -134,10 +134,11 @@ def _check_files(files: Mapping[str, str | None], save: str | None) -> None:
         output.check_writable("--out", files["results"])
         check_path(files["results"], "--out")
     if save:
+        output.check_writable("--save", save)
         check_place(save, ".toml", "--save")
     for name in ("csv", "json"):
         if files.get(name) not in (None, "-"):
-            output.check_writable(name, files[name])
+            output.check_writable(f"--{name}", files[name])
 
 
 def _write(results: Dataset, files: Mapping[str, str | None], save: str | None) -> None:

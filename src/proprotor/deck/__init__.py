@@ -10,6 +10,7 @@ asked for, with the source of every number, or the text of a deck and the descri
     reading            one number: text to SI, with status and source
     reading_lists      lists of numbers: curves, distributions along blade or wing
     stations           distributions in a CSV file
+    blade_file         the stations of an elastic blade in a CSV file
     fields             types of fields: form, unit, bound
     sections           the sections of a deck, their fields and the meaning of each
     support_sections   the section [support], one set of fields for each kind
@@ -44,6 +45,7 @@ __all__ = [
     "FilePath",
     "PerRevolution",
     "as_one_file",
+    "blade_file",
     "check_input",
     "describe",
     "design_inputs",

@@ -13,7 +13,7 @@ from proprotor.deck.left import nested
 from proprotor.deck.per_revolution import per_revolution_of
 from proprotor.deck.written import FileName
 from proprotor.errors import InputError, unknown_name
-from proprotor.files.text import read_text
+from proprotor.files.text import is_file, read_text
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
@@ -89,13 +89,13 @@ def _find(name: str, folder: Path) -> Traversable:
         return bundled[name]
     path = folder / name
     try:
-        if path.is_file():
+        if is_file(path):
             return path.resolve()  # one name for one file, to detect a circle of bases
         if name and path.is_dir():
             raise InputError("deck", name, "must be a file, not a folder")
     except OSError as error:  # a name that is too long, a folder without permission
         raise InputError("deck", name, f"cannot be read ({error.strerror})") from None
-    if name.endswith(".toml") or os.sep in name:
+    if name.endswith(".toml") or Path(name).name != name:
         raise InputError("deck", name, "no such file")
     raise InputError("deck", name, unknown_name(name, list_cases(), "deck"))
 
@@ -106,7 +106,8 @@ def _parse(file: Traversable, name: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except ValueError as error:  # TOMLDecodeError, with the line; or an integer of thousands of digits
-        raise InputError("deck", name, f"is not TOML: {error}") from None
+        path = ": write a path with / or in single quotes" if "'\\'" in str(error) else ""
+        raise InputError("deck", name, f"is not TOML: {error}{path}") from None
     except RecursionError:
         raise InputError("deck", name, "is not a deck: nested too deeply") from None
 

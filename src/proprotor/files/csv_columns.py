@@ -4,8 +4,9 @@
 
     r [ft], twist [deg], chord [inch]
 
-Commas, semicolons or tabs separate the columns; numbers have a decimal point. Empty lines and lines that begin with
-``#`` are ignored. Cells contain numbers or words only: no formula is evaluated.
+Commas, semicolons or tabs separate the columns; a unit stands in brackets or parentheses. Numbers have a decimal point,
+or, between semicolons or tabs, all of them a decimal comma. Empty lines and lines that begin with ``#`` are ignored.
+Cells contain numbers or words only: no formula is evaluated.
 """
 
 from __future__ import annotations
@@ -22,8 +23,11 @@ from proprotor.units import factor_to_si
 Line = tuple[int, list[str]]  # the number of a line in the file, and its cells
 
 _HEAD = re.compile(r"\s*([^\[\]]*?)\s*(?:\[([^\[\]]*)\])?\s*")
+_IN_PARENTHESES = re.compile(r"\s*([^()\[\]]*?)\s*\(([^\[\]]*)\)\s*")
 _NUMBER = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*")
 _DELIMITERS = ",;\t"
+_WITH_COMMA = re.compile(r"(?<![^;\t\s+-])\d+,\d+(?![^;\t\seE])")
+_WITH_POINT = re.compile(r"\d\.\d")
 
 
 class Head(NamedTuple):
@@ -55,7 +59,24 @@ def table_of(text: str) -> tuple[list[Head], Iterator[Line]]:
     for head in heads:
         if names.index(head.name) != head.place:
             raise Fault(f'line {number}, column {head.place + 1}: "{head.name}" is named twice')
-    return heads, _rows(lines[1:], delimiter, len(heads))
+    return heads, _rows(_with_points(lines[1:], delimiter), delimiter, len(heads))
+
+
+def _with_points(lines: list[tuple[int, str]], delimiter: str) -> list[tuple[int, str]]:
+    """Return the lines with decimal points in place of decimal commas; refuse lines that have both."""
+    if delimiter == ",":
+        return lines
+    commas = [number for number, line in lines if _WITH_COMMA.search(line)]
+    points = [number for number, line in lines if _WITH_POINT.search(line)]
+    if commas and points:
+        raise Fault(
+            f"has decimal commas (line {commas[0]}) and decimal points (line {points[0]}); use one of them"
+        )
+    if not commas:
+        return lines
+    return [
+        (number, _WITH_COMMA.sub(lambda found: found[0].replace(",", "."), line)) for number, line in lines
+    ]
 
 
 def _rows(lines: list[tuple[int, str]], delimiter: str, columns: int) -> Iterator[Line]:
@@ -80,7 +101,7 @@ def _cells(number: int, line: str, delimiter: str) -> list[str]:
 
 def _as_head(number: int, place: int, text: str) -> Head:
     """Return the head of a column from its text, name and unit."""
-    match = _HEAD.fullmatch(text)
+    match = _IN_PARENTHESES.fullmatch(text) or _HEAD.fullmatch(text)
     if match is None or not match[1]:
         raise Fault(f'line {number}, column {place + 1}: must be a name and a unit, such as "twist [deg]"')
     return Head(place, text.strip(), match[1], (match[2] or "").strip())

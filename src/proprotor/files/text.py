@@ -50,10 +50,9 @@ def read_text(
     """
     content = None
     try:
-        with suppress(ValueError):  # a name with a null character
-            if file.is_file():
-                with file.open("rb") as stream:
-                    content = stream.read(largest + 1)
+        if is_file(file):
+            with file.open("rb") as stream:
+                content = stream.read(largest + 1)
     except OSError as error:  # such as a name too long, or a folder that this user may not enter
         raise InputError(field, label, f"cannot be read ({error.strerror})") from None
     if content is None:
@@ -67,6 +66,23 @@ def read_text(
         line = content[: mark + error.start].count(b"\n") + 1
         rule = f"must be text in {encoding.upper()}: line {line} is not; save the file in that encoding"
         raise InputError(field, label, rule) from None
+
+
+def is_file(path: Path | Traversable) -> bool:
+    """Return whether there is a file at a path.
+
+    Raises
+    ------
+    OSError
+        When the path cannot be followed, such as a name too long, or a folder that this user may not enter. From Python
+        3.14 on, `pathlib.Path.is_file` takes that for "no file".
+    """
+    if isinstance(path, Path):
+        with suppress(
+            FileNotFoundError, NotADirectoryError, ValueError
+        ):  # the last: a name with a null character
+            path.stat()
+    return path.is_file()
 
 
 def open_text(path: Path, *, encoding: str = "utf-8") -> io.TextIOWrapper:

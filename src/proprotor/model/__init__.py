@@ -10,6 +10,7 @@ configuration, and the stamp that every result has.
     lift_lag             the lag of lift, added to the matrices of a rotor
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
+    blade_comparison     a hinged blade beside the elastic blade that it stands for
     mass_at_rest         the rotor's mass matrix at rest with locked blades
     rotor_share          the rotor's share, taken off a support whose masses include the rotor
     unit_doubts          doubts about the units of a structure from a file
@@ -55,6 +56,7 @@ __all__ = [
     "LinearModel",
     "Side",
     "airload_moments",
+    "blade_comparison",
     "deck_fingerprint",
     "doubts",
     "first_order",

@@ -141,7 +141,7 @@ class LinearModel:
 
     @cached_property
     def finite(self) -> Array:
-        """Points (...) with a mass matrix; failed points have NaN in its place."""
+        """Points (...) whose mass matrix has numbers, SI; failed points have NaN in place of these numbers."""
         return np.asarray(np.isfinite(self.M).all(axis=(-2, -1)))
 
     @cached_property

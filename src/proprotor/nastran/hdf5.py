@@ -44,7 +44,7 @@ def read_hdf5(path: Path, grid: int) -> Found:
             return found
     except FileFault:
         raise
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError) as error:  # of a damaged file
+    except (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError) as error:  # if damaged
         raise FileFault(f"is damaged, or has other tables than MSC Nastran writes ({error})") from None
 
 

@@ -29,7 +29,7 @@ _SUBTITLE, _END = 82, 146  # words of subtitle and label
 _REAL_MODES, _COMPLEX_MODES = 2, 9  # approach codes
 _VECTORS = 7  # table code
 _SORT2 = 2  # bit of the thousands of a table code: rows are modes, not grid points
-_REAL_ROW, _COMPLEX_ROW, _EIGENVALUE_ROW = 8, 14, 7  # words
+_REAL_ROW, _EIGENVALUE_ROW = 8, 7  # words
 
 
 def read_op2(path: Path, grid: int) -> Found:
@@ -79,7 +79,7 @@ def _add(found: Found, heading: Record, record: Record, grid: int) -> None:
     """Add a record to what was found, if it holds eigenvectors or eigenvalues."""
     codes = heading.integers(0, 10)
     approach, (sort, table), row = codes[_APPROACH] // 10, divmod(int(codes[_TABLE]), 1000), codes[_ROW]
-    if table == _VECTORS and (approach == _COMPLEX_MODES or row == _COMPLEX_ROW):
+    if table == _VECTORS and approach == _COMPLEX_MODES:
         found.has_complex = True
     elif table == _VECTORS and approach == _REAL_MODES and row == _REAL_ROW:
         (_add_by_grid if sort & _SORT2 else _add_mode)(found, heading, record, grid)

@@ -5,6 +5,7 @@ round numbers, and the motion of points in a mode.
 
     frequency_and_damping campbell root_locus participation mode_shape    a sweep, or one of its modes
     attribution tornado stability_map boundary_against study_results      what moves a mode or a boundary
+    blade_frequencies   a hinged blade beside an elastic one: frequencies over collective and rotor speed
     points              points of a CSV file, with error bars, on plots
     mode_motion         how wing, mast and blades move in a mode, as points in space
     animation           a mode in motion, as a GIF
@@ -24,6 +25,7 @@ round numbers, and the motion of points in a mode.
 """
 
 from proprotor.plots.attribution import plot_attribution
+from proprotor.plots.blade_frequencies import plot_blade_frequencies
 from proprotor.plots.boundary_against import plot_boundary_against
 from proprotor.plots.campbell import plot_campbell
 from proprotor.plots.canvas import rests_on
@@ -43,6 +45,7 @@ __all__ = [
     "line_of_sweep",
     "mode_motion",
     "plot_attribution",
+    "plot_blade_frequencies",
     "plot_boundary_against",
     "plot_campbell",
     "plot_damping",

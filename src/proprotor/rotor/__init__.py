@@ -15,6 +15,12 @@ What a rotor is:
     drive_train          engine and shaft
     blade_frequencies    frequencies given in tables, in place of springs
 
+A rotor from a blade by stations:
+    blade_stations       a table of stations, and how the pitch is held
+    elastic_blade        rotating modes, flexibility and turn of the elastic blade
+    hinged_blade         the hinged blade that is nearest to it
+    from_stations        the rotor of such blades
+
 How a rotor is used:
     operation            rotor speed, air and target of the trim
     atmosphere           the standard atmosphere
@@ -39,13 +45,15 @@ Loads and trim:
     trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
 
-All public names of the modules `fused`, `generated`, `lift_lag`, `motions`, `options` and `section_loads` belong to the face.
+All public names of the modules `blade_stations`, `elastic_blade`, `hinged_blade`, `from_stations`, `fused`,
+`generated`, `lift_lag`, `motions`, `options` and `section_loads` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import Air, standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
+from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
@@ -62,6 +70,7 @@ __all__ = [
     "Airfoil",
     "AirfoilTable",
     "BladeFrequencies",
+    "BladeStations",
     "DriveTrain",
     "Operation",
     "Rotor",
@@ -71,8 +80,11 @@ __all__ = [
     "Target",
     "Trim",
     "Warns",
+    "elastic_blade",
+    "from_stations",
     "fused",
     "generated",
+    "hinged_blade",
     "lift_lag",
     "motions",
     "options",

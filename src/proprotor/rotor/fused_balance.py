@@ -163,7 +163,7 @@ def _load_moments(
     for rows, here in sections.blocks(points):
         count = len(range(points)[rows]) if isinstance(rows, slice) else len(rows)
         shared = here.quadrature.counts.ndim == 1
-        width = -(-count // _COLUMNS) * _COLUMNS if shared else count
+        width = _full_width(count) if shared else count
         met = {name: _columns(value, rows, width) for name, value in air.items()}
         loads = _loads_at_stations(here, met, width, room, kind)
         if doubts is not None:
@@ -174,6 +174,11 @@ def _load_moments(
         found = _by_product(here, of_loads) if shared else _point_by_point(here, of_loads)
         moments[..., rows] = found[..., :count]
     return moments
+
+
+def _full_width(count: int) -> int:
+    """Return the number of columns of a product that has room for a number of columns."""
+    return -(-count // _COLUMNS) * _COLUMNS
 
 
 def _columns(value: Any, rows: Array | slice, width: int) -> Any:
@@ -249,11 +254,18 @@ def _by_product(sections: BladeSections, loads: Array) -> Array:
 
 
 def _point_by_point(sections: BladeSections, loads: Array) -> Array:
-    """Return the moments (loads, powers, segments, n) by the weights of each point."""
+    """Return the moments (loads, powers, segments, n) by a product with the weights of each point.
+
+    The product has the order of sums of `_by_product`, so that a point has the same bits by either way.
+    """
     quadrature = sections.quadrature
-    found = np.empty((len(loads), POWERS, len(quadrature.slices), loads.shape[-1]), dtype=loads.dtype)
-    for power in range(POWERS):
-        weighted = loads * np.ascontiguousarray(quadrature.weights[..., power].T)
-        for segment, own in enumerate(quadrature.slices):
-            found[:, power, segment] = np.add.reduce(weighted[:, own], axis=1)
-    return found
+    weights, slices = quadrature.weights, quadrature.slices
+    count, stations = weights.shape[:2]
+    whole = np.zeros((count, POWERS, len(slices), stations), dtype=weights.dtype)
+    for segment, own in enumerate(slices):
+        whole[:, :, segment, own] = weights[:, own].swapaxes(1, 2)
+    wide = np.zeros((count, stations, _full_width(len(loads))), dtype=loads.dtype)
+    wide[..., : len(loads)] = loads.T
+    found = whole.reshape(count, -1, stations) @ wide
+    moments = np.moveaxis(found[..., : len(loads)], 0, -1).swapaxes(0, 1)
+    return np.asarray(moments.reshape(len(loads), POWERS, len(slices), count))

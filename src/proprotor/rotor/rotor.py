@@ -13,6 +13,7 @@ from proprotor_equations import inertia
 
 from proprotor.errors import InputError, check_finite, check_number, nowhere_negative
 from proprotor.rotor.airfoil import Airfoil, SectionModel
+from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.effective_sections import EffectiveSections, Line, effective_sections
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.quadrature import Panels, RadialQuadrature, long_panels, short_panels
@@ -201,6 +202,34 @@ class Rotor:
         )
         flat = np.broadcast_arrays(*(entry for row in entries for entry in row))
         return np.stack(flat, axis=-1).reshape(*np.shape(flat[0]), 4, 4)
+
+    @classmethod
+    def from_stations(
+        cls, stations: BladeStations, *, rotor_speed: float, pitch: ArrayLike, **more: Any
+    ) -> Rotor:
+        """Return the rotor whose hinged blades are the nearest to an elastic blade.
+
+        `proprotor.rotor.from_stations.rotor_from_stations` returns what the fit found as well, and
+        `proprotor.model.blade_comparison.compare_blades` how far the hinged blade is from the elastic one.
+
+        Parameters
+        ----------
+        stations : BladeStations
+        rotor_speed : float
+            rad/s.
+        pitch : array (p,)
+            Collectives at 0.75 R for which the blade is fitted, rad; at least 3.
+        **more
+            Further fields, or other values for fields that were found: the number of blades and the airfoil at least.
+
+        Raises
+        ------
+        InputError
+            When the rotor speed or the pitches are not usable, or no rotor can be made of the numbers.
+        """
+        from proprotor.rotor.from_stations import rotor_from_stations  # here: it imports this module
+
+        return rotor_from_stations(stations, rotor_speed=rotor_speed, pitch=pitch, **more).rotor
 
     @functools.cached_property
     def _dependent(self) -> Any:

@@ -199,7 +199,9 @@ class _Search:
         known = ~self.followed[arrived]
         known |= at_end(few, first.of(arrived), last.of(arrived), self.start, self.state, arrived)
         self.ends.put(arrived[known], last.of(arrived[known]))
-        self._follow(few, np.setdiff1d(rows[self.followed[rows]], arrived[known]))
+        lost = np.setdiff1d(rows[self.followed[rows]], arrived[known])
+        if len(lost):
+            self._follow(few, lost)
 
     def _follow(self, balance: Balance, rows: Array) -> Path:
         """Lead points along their path; points whose path ends before all of the loads go back to their start."""

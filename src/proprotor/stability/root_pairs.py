@@ -69,14 +69,15 @@ def may_meet(first: Array, last: Array, way: Array, state: Array, block: Array) 
     return np.asarray((near_each_other | within_reach) & others_alone & same_block)
 
 
-def _partners(steps: Steps, points: Points) -> Array:
-    """Return the root (n, states) that each root of steps may meet, if neither may meet a third; -1 elsewhere."""
+def _partners(steps: Steps, points: Points, state: Array) -> Array:
+    """Return the root (m,) that one root of each step, state (m,), may meet, if neither may meet a third; else -1."""
     first, last = steps.at_ends(points.spectrum.values)
-    every = np.broadcast_to(np.arange(first.shape[1]), first.shape)
-    meeting = may_meet(first, last, ways(steps, points), every, points.spectrum.block)
-    alone = meeting.sum(axis=2) == 1
-    partner = meeting.argmax(axis=2)
-    return np.where(alone & np.take_along_axis(alone, partner, 1), partner, -1)
+    way, block, rows = ways(steps, points), points.spectrum.block, np.arange(len(state))
+    meeting = may_meet(first, last, way, state[:, None], block)[:, 0]
+    partner = meeting.argmax(axis=1)
+    others = may_meet(first, last, way, partner[:, None], block)[:, 0]
+    alone = (meeting.sum(axis=1) == 1) & (others.sum(axis=1) == 1) & others[rows, state]
+    return np.where(alone, partner, -1)
 
 
 def keep_off(
@@ -86,10 +87,9 @@ def keep_off(
     found = np.zeros(len(row), dtype=bool)
     if not len(row):
         return found
-    which, place = np.unique(row, return_inverse=True)
-    few = steps.at(which)
-    partner = _partners(few, points)[place, state]
-    sides = few.sides(points)[:, place]
+    few = steps.at(row)
+    partner = _partners(few, points, state)
+    sides = few.sides(points)
     own, other = (sides[:, np.arange(len(row)), one] for one in (state, partner))
     side = own[0]
     alike = (np.concatenate([own, other]) == side).all(axis=0)

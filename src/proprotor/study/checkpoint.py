@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import logging
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -27,6 +28,7 @@ from proprotor.typing import Array
 
 _FORMAT = 2
 _MANIFEST, _LOCK = "manifest.json", ".held"
+_log = logging.getLogger(__name__)
 _DIGEST = hashlib.sha256().digest_size
 
 
@@ -135,6 +137,7 @@ class Checkpoint:
         payload = content.getbuffer()
         digest = self._digest(number, payload)
         write_whole(self._place(number), lambda file: file.writelines((digest, payload)))
+        _log.info("kept batch %d in %s", number, self.folder)
 
     def _digest(self, number: int, payload: Any) -> bytes:
         digest = hashlib.sha256(self._study)
@@ -157,6 +160,7 @@ class Checkpoint:
                 with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
                     arrays = dict(stored)
                 texts = [name for name, array in arrays.items() if array.dtype.kind == "U"]
+                _log.info("found batch %d of %d in %s", number, count, self.folder)
                 yield number, arrays | {name: arrays[name].astype(object) for name in texts}
             else:
                 warn(f"{place} is damaged: the batch is computed again", stacklevel=2)

@@ -11,6 +11,8 @@ share one BLAS wait for each other.
 from __future__ import annotations
 
 import atexit
+import errno
+import logging
 import os
 import subprocess
 import sys
@@ -38,6 +40,8 @@ _ONE_THREAD = (
     "BLIS_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
+_log = logging.getLogger(__name__)
+_GONE = (errno.EPIPE, errno.EINVAL)  # a pipe whose reader has ended; Windows says the latter, too
 _MOST_DEATHS = 3  # of workers at one batch: then the batch kills them
 _AHEAD = 2  # batches per worker of a cluster, so that no worker waits for its next batch
 
@@ -65,8 +69,10 @@ class Worker:
 
     def __init__(self) -> None:
         environment = os.environ | dict.fromkeys(_ONE_THREAD, "1")
-        environment["PYTHONPATH"] = os.pathsep.join(path or os.getcwd() for path in sys.path)
-        command = [sys.executable, "-c", f"from {main.__module__} import main; main()"]
+        path = [entry or os.getcwd() for entry in sys.path if isinstance(entry, str)]
+        # Not by PYTHONPATH, because a folder may have the separator of paths in its name.
+        code = f"import sys; sys.path[:] = {path!r}; from {main.__module__} import main; main()"
+        command = [sys.executable, "-c", code]
         pipe = subprocess.PIPE
         self.process = subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe)
         assert self.process.stdin is not None and self.process.stdout is not None  # pipes
@@ -83,7 +89,9 @@ class Worker:
         try:
             send(self.questions, message)
             answer = receive(self.answers)
-        except BrokenPipeError:
+        except OSError as error:
+            if error.errno not in _GONE:
+                raise
             raise EOFError from None
         if isinstance(answer, Exception):
             raise answer
@@ -218,6 +226,12 @@ class Processes:
                         worker = None
                         if self.stopped:
                             return
+                        _log.warning(
+                            "batch %d has ended its worker process, %d of %d times",
+                            number,
+                            death,
+                            _MOST_DEATHS,
+                        )
                         if death == _MOST_DEATHS:
                             deaths = f"batch {number} of the study has killed {death} worker processes"
                             raise RuntimeError(f"{deaths}; is memory short?") from None

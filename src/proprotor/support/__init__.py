@@ -19,6 +19,7 @@ This room imports `errors`, `typing`, `needs`, `files`, `nastran` and, for the n
     universal_file     datasets of such a file
     matrix_files       matrices of any finite-element code
     matlab_file        such matrices in a file of MATLAB
+    matlab_level5      variables of such a file
     matrix_market      files of such matrices in the Matrix Market format
 
 All public names of the modules `aircraft_airloads`, `aircraft_structure`, `beam`, `beam_wing`, `free_airframe`,
@@ -32,7 +33,9 @@ from proprotor.support.normal_modes import (
     CARRIES,
     HUB_AXES,
     INCLUDES_ROTOR,
+    ROTATION,
     SHAFT,
+    TRANSLATION,
     NormalModes,
     rigid_support,
     two_axis_pivot,
@@ -42,8 +45,10 @@ __all__ = [
     "CARRIES",
     "HUB_AXES",
     "INCLUDES_ROTOR",
+    "ROTATION",
     "SHAFT",
     "SYMMETRIES",
+    "TRANSLATION",
     "Airframe",
     "NormalModes",
     "StructuralModes",

@@ -1,4 +1,4 @@
-"""Matrices of a structure in a file of MATLAB (.mat up to version 7), as variables or as the fields of a struct.
+"""Matrices of a structure in a file of MATLAB (.mat, versions 5 to 7), as variables or as the fields of a struct.
 
     M, K and perhaps C     or mass, stiffness, damping
     Phi (6 x n)            or hub: the motion of the hub, for modal coordinates
@@ -15,9 +15,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from proprotor.errors import InputError
+from proprotor.support.matlab_level5 import MatlabFault, variables_of
 from proprotor.support.matrix_files import readable, support_from_matrices
 from proprotor.support.normal_modes import NormalModes
 
@@ -41,7 +40,7 @@ def read_matlab(
     Parameters
     ----------
     file : str or path
-        A .mat file of version 4 to 7.
+        A .mat file of version 5 to 7.
     hub : mapping of str to str, optional
         Names of the hub's coordinates, as for `proprotor.support.matrix_files.read_npz`.
     **options
@@ -73,16 +72,15 @@ def read_matlab(
 
 
 def _content(path: Path) -> dict[str, Any]:
-    """Return the variables of a file, a struct as a dictionary."""
-    from scipy.io import loadmat  # here, because it takes long to import
-
-    with path.open("rb") as stream:
-        head = stream.read(_HEAD + len(_HDF5))
-    if head.startswith(_HDF5) or head[_HEAD:] == _HDF5:
+    """Return the variables of a file."""
+    content = path.read_bytes()
+    if content.startswith(_HDF5) or content[_HEAD : _HEAD + len(_HDF5)] == _HDF5:
         rule = "is of version 7.3: save it with save(name, ..., '-v7')"
         raise InputError("file", str(path), rule)
-    content: dict[str, Any] = loadmat(path, simplify_cells=True)
-    return content
+    try:
+        return variables_of(content)
+    except MatlabFault as fault:
+        raise InputError("file", str(path), str(fault)) from None
 
 
 def _structures(content: Mapping[str, Any], place: str, depth: int) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -92,31 +90,22 @@ def _structures(content: Mapping[str, Any], place: str, depth: int) -> Iterator[
         name: by_name[own]
         for name, known in _NAMES.items()
         for own in known
-        if own in by_name and not isinstance(by_name[own], dict)
+        if own in by_name and by_name[own] is not None and not isinstance(by_name[own], dict)
     }
     if {"mass", "stiffness"} <= arrays.keys():
-        yield (
-            place,
-            {name: entry if name == "dofs" else _matrix(name, entry) for name, entry in arrays.items()},
-        )
+        yield place, arrays
     for name, entry in content.items():
         if isinstance(entry, dict) and depth < _DEEPEST:
             yield from _structures(entry, f"{place}.{name}".strip("."), depth + 1)
 
 
-def _matrix(name: str, entry: Any) -> Any:
-    """Return a matrix; one number, or the motion Φ of one mode, has both axes again, which SciPy takes off."""
-    if hasattr(entry, "tocsc"):
-        return entry
-    array = np.asarray(entry)
-    if array.ndim == 1 and name == "hub":
-        return array[:, None]
-    return array.reshape(1, 1) if array.ndim == 0 else array
-
-
 def _texts(path: Path, entry: Any) -> list[str]:
-    """Return the names of coordinates."""
-    names = np.atleast_1d(entry).ravel()
-    if not all(isinstance(name, str) for name in names):
+    """Return the names of coordinates: rows of text, or a cell array of texts."""
+    rows = (
+        [name for row in entry for name in (row if isinstance(row, list) else [row])]
+        if isinstance(entry, list)
+        else []
+    )
+    if not rows or not all(isinstance(name, str) for name in rows):
         raise InputError("file", str(path), "must have names of coordinates as text in dofs")
-    return [str(name).strip() for name in names]
+    return [name.strip() for name in rows]

@@ -98,6 +98,8 @@ def _given(symmetry: str, rows: int, columns: int) -> int:
 def _numbers(body: str, heading: _Heading) -> Array:
     """Return the numbers of each line, (entries, 1) or (entries, 3)."""
     columns = 3 if heading.layout == "coordinate" else 1
+    if "D" in body or "d" in body:  # exponents as Fortran writes them
+        body = body.replace("D", "E").replace("d", "e")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # NumPy warns of a file without entries
         try:

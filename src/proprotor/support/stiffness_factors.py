@@ -24,6 +24,7 @@ _LARGEST_STEP = 1.0  # in ln f
 _FURTHEST = (
     1000.0  # a larger factor, or a smaller one than its inverse, is no correction of a known stiffness
 )
+_DIGITS = 6  # of a sum of shares; what is beyond is rounding, and tells no order from another
 _NONE = 1e-14  # of the strain energy, so that a stiffness without any moves as far as a step may
 _NEAR = 1e-12  # of ω², where the steps end; rounding leaves less
 _FOUND = 1e-10  # of ω², where the frequencies count as those wanted
@@ -78,12 +79,15 @@ def stiffness_factors(
     problem = _Problem.of(wing, pylon, at_hub, frequency)
     real = problem.real
     logs = np.zeros(real.wanted.shape)
+    going = np.ones(logs.shape[:-1], dtype=bool)  # a design that has arrived stays, whatever company it is in
     for _ in range(_STEPS):
         left, step = real.step(logs)
-        if (np.abs(left) < _NEAR).all():
+        going = going & ~(np.abs(left) < _NEAR).all(axis=-1)
+        if not going.any():
             break
         moved = logs + np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
-        logs = np.clip(moved, -np.log(_FURTHEST), np.log(_FURTHEST))
+        clipped = np.clip(moved, -np.log(_FURTHEST), np.log(_FURTHEST))
+        logs = np.where(going[..., None], clipped, logs)
     reasons = real.reasons(logs)
     found = (reasons == "").all(axis=-1, keepdims=True)
     factors = np.exp(logs + np.where(found, problem.step(logs)[1], 0.0))
@@ -181,7 +185,8 @@ class _Problem(NamedTuple):
         """Return the three lowest modes, the place (..., kinds) of each kind's mode, and shares of energy.
 
         The shares (..., 3 kinds, 3 modes) are of the strain energy. The modes belong to the kinds in the order with the
-        largest sum of shares.
+        largest sum of shares; of equal orders, in the one that leaves the highest mode to torsion. Where no mode has
+        any energy of torsion, the torsion mode is above all three.
         """
         more = np.moveaxis(np.exp(logs) - 1, -1, 0)[..., None, None]
         modes = lowest_modes(self.mass, self.stiffness + (more * self.own).sum(axis=0), len(KINDS))
@@ -192,7 +197,7 @@ class _Problem(NamedTuple):
         shares = energies / np.real(modes.frequency)[..., None, :] ** 2
         orders = np.array(list(permutations(range(len(KINDS)))))
         scores = shares[..., np.arange(len(KINDS)), orders].sum(axis=-1)
-        order = orders[scores.argmax(axis=-1)]
+        order = orders[np.round(scores, _DIGITS).argmax(axis=-1)]
         return modes, order[..., [KINDS.index(kind) for kind in self.kinds]], shares
 
 

@@ -11,6 +11,7 @@ study_summary         a study in a few numbers
 study_table           a study as records: one for each design, with its inputs in the units of the deck
 percentiles           percentiles of a sample as text, with bounds where designs lie beyond the airspeeds
 csv_text              records of any kind as CSV
+blade_table           the hinged blade of a table of stations: fields, comparison, lines of a deck
 boundary_table        boundaries against an input: records and lines
 points                points of a CSV file, to stand on plots beside results
 ====================  =========================================================================
@@ -19,6 +20,7 @@ May import the engine, `stability` and `case`.
 """
 
 __all__ = [
+    "blade_table",
     "boundary_table",
     "csv_text",
     "percentiles",

@@ -1,0 +1,129 @@
+"""Read the stations of an elastic blade from CSV, as spreadsheets write it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from proprotor.errors import InputError
+from proprotor.files.csv_columns import Fault, Head, Line, factor_of, fault_at, number_in, table_of
+from proprotor.files.text import read_text
+from proprotor.rotor.blade_stations import BladeStations
+from proprotor.typing import Array
+
+_LARGEST = 1_000_000  # bytes
+_MOST_STATIONS = 10_000
+# Columns by their names in files, with the SI unit and the sign of their values.
+_COLUMNS = {
+    "radius": ("m", "not negative", ("r", "r_over_R", "radius", "station", "x", "x/R", "r/R")),
+    "mass_per_length": ("kg/m", "above zero", ("mass", "m", "mass_per_length")),
+    "flatwise_stiffness": (
+        "N*m**2",
+        "above zero",
+        ("EI_flat", "EI_flatwise", "EI_beam", "EI_beamwise", "EI_flap"),
+    ),
+    "edgewise_stiffness": (
+        "N*m**2",
+        "above zero",
+        ("EI_edge", "EI_edgewise", "EI_chord", "EI_chordwise", "EI_lag"),
+    ),
+    "torsion_stiffness": ("N*m**2", "above zero", ("GJ", "torsion_stiffness")),
+    "twist": ("rad", "", ("twist", "structural_twist", "theta")),
+    "chord": ("m", "above zero", ("chord", "c")),
+    "pitch_inertia_per_length": ("kg*m", "not negative", ("pitch_inertia", "I_theta", "inertia")),
+}
+_OPTIONAL = ("chord", "pitch_inertia_per_length")
+_PER_RADIUS = ("r_over_R", "x/R", "r/R")
+
+
+def read_blade(path: str | os.PathLike[str], *, radius: float | None = None, **held: Any) -> BladeStations:
+    """Return the stations of a blade from a CSV file.
+
+    The first line names the columns with their units, in brackets or parentheses: ``r [in], mass [lb/ft], EI_flat
+    [lbf*in**2], EI_edge [lbf*in**2], GJ [lbf*in**2], twist [deg]``, and perhaps ``chord`` and ``pitch_inertia``. Other
+    columns are left aside. Between semicolons or tabs a number may have a decimal comma.
+
+    Parameters
+    ----------
+    path : str or path
+    radius : float, optional
+        m; needed where the stations are r/R.
+    **held
+        Fields of `BladeStations` that no column has: `pitch_bearing` and `control_stiffness`.
+
+    Returns
+    -------
+    BladeStations
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read or breaks a rule: one line with the file, the line and column in it and the rule.
+    """
+    name = Path(path).name
+    try:
+        heads, rows = table_of(read_text(Path(path), "file", name, _LARGEST))
+        own = _own_columns(heads)
+        columns: dict[str, Any] = _columns(own, rows, _scales(own, radius))
+    except Fault as fault:
+        raise InputError("file", name, str(fault)) from None
+    return BladeStations(**columns, **held)
+
+
+def _own_columns(heads: list[Head]) -> dict[str, Head]:
+    """Return the heads of the columns by field; refuse a table that lacks a column or has it twice."""
+    found: dict[str, Head] = {}
+    for field, (_, _, names) in _COLUMNS.items():
+        known = {name.lower() for name in names}
+        fit = [head for head in heads if head.name.lower() in known]
+        if len(fit) > 1:
+            raise Fault(f"has two columns for {field}: {fit[0].text} and {fit[1].text}")
+        if fit:
+            found[field] = fit[0]
+        elif field not in _OPTIONAL:
+            raise Fault(f"has no column for {field}; name it {' or '.join(names[:3])}, with its unit")
+    return found
+
+
+def _scales(own: dict[str, Head], radius: float | None) -> dict[str, float]:
+    """Return how many SI units one unit of each column is."""
+    found = {field: factor_of(head, _COLUMNS[field][0]) for field, head in own.items() if field != "radius"}
+    head = own["radius"]
+    if head.name not in _PER_RADIUS:
+        return found | {"radius": factor_of(head, "m")}
+    if radius is None:
+        raise Fault(f"column {head.place + 1} ({head.text}): needs the radius of the rotor")
+    return found | {"radius": factor_of(head, "") * radius}
+
+
+def _columns(own: dict[str, Head], rows: Iterator[Line], scales: dict[str, float]) -> dict[str, Array]:
+    """Return the columns in SI; refuse a value that breaks its rule, and stations that do not increase."""
+    import numpy as np
+
+    found: dict[str, list[float]] = {field: [] for field in own}
+    for number, cells in rows:
+        for field, head in own.items():
+            value = number_in(number, cells, head) * scales[field]
+            _check(number, head, _COLUMNS[field][1], value)
+            found[field].append(value)
+        _check_order(number, own["radius"], found["radius"])
+        if len(found["radius"]) > _MOST_STATIONS:
+            raise Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
+    return {field: np.array(values) for field, values in found.items()}
+
+
+def _check(number: int, head: Head, sign: str, value: float) -> None:
+    if (sign == "above zero" and value <= 0) or (sign == "not negative" and value < 0):
+        raise fault_at(number, head, f"must be {sign}" if sign == "above zero" else "must not be negative")
+
+
+def _check_order(number: int, head: Head, radii: list[float]) -> None:
+    """Refuse a station that is not outboard of the one before."""
+    if len(radii) < 2 or radii[-1] > radii[-2]:
+        return
+    rule = "must increase from line to line"
+    if radii[-1] == radii[-2]:
+        rule = "is the station of the line before; set the two sides of a step a little apart"
+    raise fault_at(number, head, rule)

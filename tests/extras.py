@@ -1,0 +1,88 @@
+"""Every command without any extra: it runs, or says which extra it needs before anything is computed.
+
+    python -m tests.extras FOLDER [PACKAGE ...]
+
+Runs the commands in a folder; packages that are named count as not installed. Needs the package and click alone, so
+that it runs in an environment that has no more.
+"""
+
+import os
+import sys
+from collections.abc import Iterable
+
+from click.testing import CliRunner
+
+CASE = "xv15-uncoupled"
+SPEED = ("--speed", "100:200:50kt")
+RANGE = ("--vary", "rotor.precone=1:2:1 deg")
+SAMPLE = ("--vary", "rotor.precone=1:2 deg", "--sample", "saltelli", "--size", "2")
+# Each command as it needs no extra.
+PLAIN = {
+    "cases": (CASE,),
+    "new": ("new.toml",),
+    "describe": ("rotor.precone",),
+    "sweep": (CASE, *SPEED, "--csv", "sweep.csv", "--plot", "sweep.png"),
+    "flutter": (CASE, "--scan", "300:400:50kt"),
+    "boundary": (CASE, "--against", "rotor.precone=1:2:1 deg", "--scan", "300:400:50kt"),
+    "map": (CASE, "--x", "rotor.precone=1:2:1 deg", "--y", "airspeed=300:400:100kt"),
+    "sensitivity": (CASE, "--wrt", "rotor.precone", "--scan", "300:400:50kt"),
+    "attribution": (CASE, "--mode", "chord", "--speed", "200 kt"),
+    "report": (CASE, "--out", "report.html"),
+    "study": (CASE, *RANGE, "--speed", "200 kt", "--out", "study.nc"),
+    "export": (CASE, "rotor.mat", "--speed", "200 kt"),
+    "explore": ("--help",),
+}
+# Each command as it needs one, and the extra.
+NEEDING = {
+    "explore": ("explore", (CASE, "--no-browser")),
+    "report": ("report", (CASE, "--out", "missing.pdf")),
+    "study": ("study", (CASE, *SAMPLE, "--speed", "200 kt")),
+}
+
+
+class _Without:
+    """A finder of modules that does not find some packages."""
+
+    def __init__(self, finder: object, hidden: Iterable[str]) -> None:
+        self.finder, self.hidden = finder, frozenset(hidden)
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self.finder, name)
+
+    def find_spec(self, name: str, *more: object) -> object:
+        hidden = name.partition(".")[0] in self.hidden
+        return None if hidden else self.finder.find_spec(name, *more)
+
+
+def hide(packages: Iterable[str]) -> None:
+    """Let packages count as not installed for the rest of the process."""
+    sys.meta_path[:] = [_Without(finder, packages) for finder in sys.meta_path]
+
+
+def main(folder: str, *hidden: str) -> int:
+    """Run every command; an assertion fails at the first that does something else."""
+    os.environ["MPLBACKEND"] = "Agg"
+    hide(hidden)
+    from proprotor.case import Case
+    from proprotor.commands.main import main as proprotor
+
+    assert set(PLAIN) == set(proprotor.commands), set(PLAIN) ^ set(proprotor.commands)
+    os.chdir(folder)
+    linearize, computed = Case.linearize, []
+    for command, words in PLAIN.items():
+        done = CliRunner().invoke(proprotor, [command, *words])
+        assert done.exit_code == 0, (command, done.output, done.exception)
+    Case.linearize = lambda *given, **more: computed.append(given) or linearize(*given, **more)
+    made = set(os.listdir())
+    for command, (extra, words) in NEEDING.items():
+        done = CliRunner().invoke(proprotor, [command, *words])
+        told = f'pip install "proprotor[{extra}]"'
+        assert done.exit_code == 2 and told in done.stderr, (command, done.output, done.exception)
+        assert len(done.stderr.splitlines()) == 1, done.stderr
+    assert not computed and set(os.listdir()) == made
+    print(f"{len(PLAIN)} commands run without an extra, {len(NEEDING)} say which they need")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
