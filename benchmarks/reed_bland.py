@@ -253,7 +253,7 @@ def rotor_fitted_with_lag(root_cutout: float = ROOT_CUTOUT) -> pp.Rotor:
 
 
 def neutral_with_states(rotor_alone: pp.LinearModel, stiffness_ratio: float) -> NDArray:
-    """g of backward whirl at neutral stability of one rotor with states of its own, by the frequency at which g is real."""
+    """g of backward whirl at neutral stability of a rotor with states of its own: at its frequency g is real."""
     support = pivot(stiffness_ratio)
     model = pp.mount(rotor_alone, support)
     count = len(support.names)

@@ -27,7 +27,7 @@ def change_of_circulation(air, station, motion):
 
 
 def what_lag_adds(air, rotor, trim, s, order=14):
-    """What the lag of lift adds to (s² M + s C + K) on the left, and to the loads of gusts along I, J, K on the right."""
+    """What the lag of lift adds to s² M + s C + K on the left, and to the loads of gusts along I, J, K on the right."""
     station, weight = quadrature(air, rotor, order)
     chord = np.interp(station, *air.chord)
     works, rates, displacements = [], [], []

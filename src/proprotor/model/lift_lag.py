@@ -6,9 +6,9 @@ states of different speed, i = 1 and 2:
 
     G ẋ_i + b_i H x_i = b_i H G⁻¹ f
 
-and the loads lack A_i (G⁻¹ f - x_i) times the work W of circulation, which vanishes in every steady state. x is the rate
-of a coordinate without stiffness. Each blade has its own; the sum over the blades is that of a blade's angle, and the
-generated functions take it in the place of flap.
+and the loads lack A_i (G⁻¹ f - x_i) times the work W of circulation, which vanishes in every steady state. x is the
+rate of a coordinate without stiffness. Each blade has an x of its own, as it has a flap angle, and the sum over the
+blades is the same: the generated functions find x in the place of flap.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from proprotor.typing import Array
 
 # Jones' approximation of Wagner's function, 1 - Σ A exp(-b s), s in half chords: A and b of each state.
 # NACA Report 681 (1940).
-JONES = dict(zip(LAGS, ((0.165, 0.0455), (0.335, 0.300)), strict=True))
+_JONES = dict(zip(LAGS, ((0.165, 0.0455), (0.335, 0.300)), strict=True))
 _PARTS = ("0", "1c", "1s")
 _ANGLE = BLADE_COORDINATES.index("flap")  # any angle that each blade has for itself
 _ANGLES = np.array([FIXED_COORDINATES.index(f"flap_{part}") for part in _PARTS])
@@ -74,9 +74,9 @@ def with_lift_lag(
     )
     blade, own = _blade(found), len(FIXED_COORDINATES)
     states = len(_PARTS) * len(blade.work)
-    whole = _padded(rotor, len(JONES) * states)
+    whole = _padded(rotor, len(_JONES) * states)
     _add_loads_at_once(whole, blade, quantities)
-    for place, (share, rate) in enumerate(JONES.values()):
+    for place, (share, rate) in enumerate(_JONES.values()):
         start = own + place * states
         _add_state(whole, slice(start, start + states), blade, quantities, share, rate)
     return whole
@@ -121,7 +121,7 @@ def _padded(rotor: Mapping[str, Array], more: int) -> dict[str, Array]:
 
 def _add_loads_at_once(whole: dict[str, Array], blade: _Blade, quantities: Mapping[str, Any]) -> None:
     """Take off the share of the loads that comes late, A W G⁻¹ f of both states."""
-    own, late = len(FIXED_COORDINATES), sum(share for share, _ in JONES.values())
+    own, late = len(FIXED_COORDINATES), sum(share for share, _ in _JONES.values())
     damping, stiffness, gusts = (
         late * np.einsum("kpi,kpj->pij", blade.work, change)
         for change in (blade.by_rates, blade.by_displacements, blade.by_gusts)
