@@ -102,13 +102,12 @@ def _blade(found: Circulation) -> _Blade:
     segments = found.segments
     arrays = {name: evaluate(getattr(airloads, name), segments) for name in _MOTIONS}
     arrays |= {name: evaluate(getattr(lift_lag, name), segments) for name in ("change", "load")}
-    changes = [evaluate(function, arrays)[..., 0, :] for function in _CHANGES]
-    return _Blade(
-        np.moveaxis(evaluate(lift_lag.work, arrays)[..., 0], -2, 0),
-        *(np.moveaxis(np.linalg.solve(found.weight, change), -2, 0) for change in changes),
-        found.weight,
-        found.decay,
+    changes = (evaluate(function, arrays)[..., 0, :] for function in _CHANGES)
+    by_rates, by_displacements, by_gusts = (
+        np.moveaxis(np.linalg.solve(found.weight, change), -2, 0) for change in changes
     )
+    work = np.moveaxis(evaluate(lift_lag.work, arrays)[..., 0], -2, 0)
+    return _Blade(work, by_rates, by_displacements, by_gusts, found.weight, found.decay)
 
 
 def _padded(rotor: Mapping[str, Array], more: int) -> dict[str, Array]:

@@ -22,9 +22,7 @@ _NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning"}  # of the modes of sin
 _PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
 LAGS = ("slow", "fast")  # states of lift that lags
-LAG_SHAPES = (
-    2  # functions of the radius in which lift lags: `tests/model/test_lift_lag.py` has the error of two
-)
+LAG_SHAPES = 2  # functions of the radius in which lift lags; tests/model/test_lift_lag.py has their error
 _LIFT = re.compile(r"(^| )(slow|fast) lift( \d+)?$")  # stems of their coordinates
 
 
