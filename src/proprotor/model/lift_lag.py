@@ -34,7 +34,7 @@ _PARTS = ("0", "1c", "1s")
 _ANGLE = BLADE_COORDINATES.index("flap")  # any angle that each blade has for itself
 _ANGLES = np.array([FIXED_COORDINATES.index(f"flap_{part}") for part in _PARTS])
 _MOTIONS = ("virtual_motion", "rate_motion", "displacement_motion", "gust_motion")
-_CHANGES = (lift_lag.change_by_rates, lift_lag.change_by_displacements, lift_lag.change_by_gusts)
+_CHANGES = ("change_by_rates", "change_by_displacements", "change_by_gusts")
 _NOTHING = np.zeros((len(BLADE_COORDINATES),) * 2)
 
 
@@ -102,7 +102,7 @@ def _blade(found: Circulation) -> _Blade:
     segments = found.segments
     arrays = {name: evaluate(getattr(airloads, name), segments) for name in _MOTIONS}
     arrays |= {name: evaluate(getattr(lift_lag, name), segments) for name in ("change", "load")}
-    changes = (evaluate(function, arrays)[..., 0, :] for function in _CHANGES)
+    changes = (evaluate(getattr(lift_lag, name), arrays)[..., 0, :] for name in _CHANGES)
     by_rates, by_displacements, by_gusts = (
         np.moveaxis(np.linalg.solve(found.weight, change), -2, 0) for change in changes
     )
