@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import proprotor_equations
 import pytest
 from numpydoc.docscrape import NumpyDocString
@@ -306,7 +307,24 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "map.stability_map": lambda case, **more: stability_map(case, AXES, **more),
     "sweep.sweep_case": lambda case, **more: sweep_case(case, SPEEDS, **more),
 }
-OTHER_KEYWORDS = {"Rotor.from_mass_distribution"}  # those of Rotor
+STATIONS = pp.BladeStations(
+    radius=np.array([0.0, 0.5, 1.0]),
+    **dict.fromkeys(
+        ("mass_per_length", "flatwise_stiffness", "edgewise_stiffness", "torsion_stiffness", "chord"),
+        np.ones(3),
+    ),
+    twist=np.zeros(3),
+    control_stiffness=1.0,
+)
+# Those of Rotor.
+OTHER_KEYWORDS: dict[str, Callable[..., Any]] = {
+    "Rotor.from_mass_distribution": lambda **more: pp.Rotor.from_mass_distribution(
+        [0, 1], [1.0, 1.0], **more
+    ),
+    "Rotor.from_stations": lambda **more: pp.Rotor.from_stations(
+        STATIONS, rotor_speed=1.0, pitch=[0.1, 0.2, 0.3], **more
+    ),
+}
 
 
 def takes_any_keyword(entry: Callable[..., Any]) -> bool:
@@ -335,7 +353,7 @@ def test_an_unknown_keyword_is_refused(name):
     entry = FUNCTIONS.get(name) or CLASSES[name]
     if name in OTHER_KEYWORDS:
         with pytest.raises(TypeError, match="precne"):
-            pp.Rotor.from_mass_distribution([0, 1], [1.0, 1.0], precne=0.1)
+            OTHER_KEYWORDS[name](precne=0.1)
     elif name == "openmdao.WhirlFlutter":
         with pytest.raises((KeyError, TypeError)):  # options that OpenMDAO keeps
             entry(no_such_keyword=1)

@@ -29,18 +29,24 @@ _PLANES = {"flap": element.OUT_OF_PLANE, "lag": element.IN_PLANE}
 
 
 class Compared(NamedTuple):
-    """One quantity of both blades over the collective range: (p,), SI; whether it counts in the judgement."""
+    """One quantity of both blades over the collective range: (p,), SI.
+
+    counts : whether the quantity counts in the judgement.
+    scale : what differences are parts of, by default the largest value of the elastic blade.
+    """
 
     name: str
     unit: str
     elastic: Array
     hinged: Array
     counts: bool = True
+    scale: float | None = None
 
     @property
     def difference(self) -> float:
-        """Largest difference, as a part of the largest value of the elastic blade."""
-        return float(np.max(np.abs(self.hinged - self.elastic)) / np.max(np.abs(self.elastic)))
+        """Largest difference, as a part of the scale, dimensionless."""
+        scale = np.max(np.abs(self.elastic)) if self.scale is None else self.scale
+        return float(np.max(np.abs(self.hinged - self.elastic)) / scale) if scale else 0.0
 
 
 class BladeComparison(NamedTuple):
@@ -73,7 +79,7 @@ def compare_blades(stations: BladeStations, hinged: HingedBlade) -> BladeCompari
     found = [
         Compared("coning frequency", "rad/s", *_in_order(blade, clamped, collective, "flap")),
         Compared("collective lag frequency", "rad/s", *_in_order(blade, clamped, collective, "lag")),
-        Compared("cyclic lag frequency", "rad/s", tilting.frequency[:, 1], cyclic[:, 1]),
+        Compared("cyclic lag frequency", "rad/s", *(_lag(one, speed) for one in (tilting.frequency, cyclic))),
         Compared("cyclic flap frequency", "rad/s", tilting.frequency[:, 2], cyclic[:, 2], counts=False),
     ]
     for name in _PLANES:
@@ -114,6 +120,12 @@ def _cyclic_frequencies(model: LinearModel) -> Array:
         np.concatenate([np.concatenate([0 * own, own], axis=-1), -forces], axis=-2)
     ).imag
     return np.asarray(np.sort(np.abs(roots - roots.mean(axis=-1, keepdims=True)), axis=-1)[..., ::2])
+
+
+def _lag(cyclic: Array, speed: float) -> Array:
+    """Return of the first two cyclic frequencies the one (p,) that is not the disk's tilt, once per revolution."""
+    away = np.abs(cyclic[:, :2] - speed).argmax(axis=1)
+    return np.asarray(np.take_along_axis(cyclic[:, :2], away[:, None], axis=1)[:, 0])
 
 
 def _place(blade: ElasticBlade, modes: RotatingModes, name: str) -> Array:
@@ -176,9 +188,6 @@ def _couplings(blade: ElasticBlade, hinged: HingedBlade) -> list[Compared]:
         (0, 1): "K_Pβ per radian of lag, K_Pζ of coning",
         (1, 1): "K_Pζ per radian of lag",
     }
-    largest = np.abs(turn).max()
-    # One that is small beside the others turns the blade by little, however wrong it is.
-    return [
-        Compared(name, "", turn[:, i, j], own[:, i, j], bool(np.abs(turn[:, i, j]).max() > GOOD * largest))
-        for (i, j), name in names.items()
-    ]
+    # A trim has coning and lag at once: a coupling counts by its size beside the largest of the three.
+    largest = float(np.abs(turn).max())
+    return [Compared(name, "", turn[:, i, j], own[:, i, j], scale=largest) for (i, j), name in names.items()]

@@ -38,6 +38,7 @@ Loads and trim:
     fused_balance        the balance of one blade by the fused functions, for batches
     balance_of_one       the same for one point, by plain numbers
     trim_balance         the balance of one blade and its slopes
+    elimination          linear equations of a few unknowns at many points
     trim_start           first guess and undeflected blade
     trim_bound           a bound that shows which equilibrium belongs to the undeflected blade
     trim_path            the path from the undeflected blade to the trim

@@ -97,17 +97,41 @@ class BladeStations:
         return float(self.radius[-1])
 
     def at(self, name: str, radius: Array) -> Array:
-        """Return a column at other radii, linear between the stations."""
+        """Return a column at other radii, linear between the stations.
+
+        Parameters
+        ----------
+        name : str
+            Name of the column.
+        radius : array (...)
+            m.
+
+        Returns
+        -------
+        array (...)
+            SI.
+        """
         found: Array = np.interp(radius, self.radius, getattr(self, name))
         return found
 
     def angle(self, radius: Array) -> Array:
-        """Return the angle of the structural axes from those at 0.75 R, rad."""
+        """Return the angle of the structural axes from those at 0.75 R.
+
+        Parameters
+        ----------
+        radius : array (...)
+            m.
+
+        Returns
+        -------
+        array (...)
+            rad.
+        """
         return self.at("twist", radius) - self.at("twist", np.asarray(0.75 * self.tip))
 
     @property
     def nodes(self) -> Array:
-        """Stations, with the pitch bearing among them if it lies between two."""
+        """Radii (nodes,) of the stations, m, with that of the pitch bearing if it lies between two stations."""
         inside = self.radius[0] < self.pitch_bearing
         more = [self.pitch_bearing] if inside else []
         return np.unique(np.concatenate([self.radius, more]))

@@ -24,6 +24,7 @@ from proprotor.rotor.section_loads import LOAD_MOMENTS
 from proprotor.typing import Array
 
 _BLOCK = 1024  # points
+_APART = 8  # places in memory
 OF_SEGMENTS = tuple(
     name
     for name in ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS)
@@ -85,12 +86,10 @@ class Layout:
 
     opposite : places of the results whose negative is needed as well, counted from 1.
     places : by the name of a matrix, the place of each entry among zero, the results, and the negatives.
-    filled : name of the matrix, row, column and place of each entry that is not zero.
     """
 
     opposite: list[int]
     places: dict[str, Array]
-    filled: list[tuple[str, int, int, int]]
 
     @classmethod
     def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> Layout:
@@ -104,12 +103,7 @@ class Layout:
             places[name] = rows.copy()
             negative = rows < 0
             places[name][negative] = behind[np.searchsorted(opposite, -rows[negative])]
-        filled = [
-            (name, i, j, int(rows[i, j]))
-            for name, rows in places.items()
-            for i, j in np.argwhere(rows).tolist()
-        ]
-        return cls(opposite.tolist(), places, filled)
+        return cls(opposite.tolist(), places)
 
 
 @cache
@@ -125,42 +119,60 @@ def _batch(quantities: Quantities, segments: Quantities | None, points: int) -> 
     """Return the matrices of many points, a block of points at a time."""
     numbers = (*quantities.values(), *(segments or {}).values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
-    found = _zeros(_layouts()["in_vacuum"], points, kind)
+    layout = _layouts()["in_vacuum"] if segments is None else _sums()
+    found = _empty(layout, points, kind)
     for start in range(0, points, _BLOCK):
         rows = slice(start, min(start + _BLOCK, points))
-        matrices = {name: matrix[rows] for name, matrix in found.items()}
+        count = rows.stop - start
         here = {name: _of_rows(value, rows) for name, value in quantities.items()}
-        _fill(matrices, evaluate(plans.in_vacuum, here, np.cos, np.sin))
+        values = values_of(evaluate(plans.in_vacuum, here, np.cos, np.sin), _layouts()["in_vacuum"])
         if segments is not None:
             along = {name: _segments_first(value, rows) for name, value in segments.items()}
-            _add_airloads(matrices, _of_airloads(here, along, rows.stop - rows.start, kind))
+            values = _with_airloads(values, _of_airloads(here, along, count, kind))
+        pool = pool_of(values, (count,), kind)
+        for name, places in layout.places.items():
+            np.take(pool, places, axis=1, out=found[name][rows], mode="clip")
     return found
 
 
-def _zeros(layout: Layout, points: int, kind: np.dtype[Any]) -> Matrices:
-    """Return matrices of zeros in one piece of memory, which a large batch gets from the system as zeros."""
+def _empty(layout: Layout, points: int, kind: np.dtype[Any]) -> Matrices:
+    """Return matrices for the entries of a layout, in one piece of memory."""
     sizes = [points * places.size for places in layout.places.values()]
-    parts = np.split(np.zeros(sum(sizes), dtype=kind), np.cumsum(sizes)[:-1])
+    parts = np.split(np.empty(sum(sizes), dtype=kind), np.cumsum(sizes)[:-1])
     return {
         name: part.reshape(points, *places.shape)
         for part, (name, places) in zip(parts, layout.places.items(), strict=True)
     }
 
 
-def _fill(matrices: Matrices, results: Sequence[Any]) -> None:
-    """Put the results of a rotor without airloads, which has many zeros, into matrices of zeros."""
-    layout = _layouts()["in_vacuum"]
-    values = values_of(results, layout)
-    for name, row, column, place in layout.filled:
-        matrices[name][:, row, column] = values[place]
+@cache
+def _pairs() -> tuple[Array, dict[str, Array]]:
+    """Return the different pairs of results that add up to entries, and which pair stands at each entry.
+
+    A pair has a place among the values of the rotor without airloads, and a place among those of the airloads.
+    """
+    places = [_layouts()[name].places for name in ("in_vacuum", "of_airloads")]
+    pairs = {
+        name: np.stack([own, places[1].get(name, np.zeros_like(own))], axis=-1)
+        for name, own in places[0].items()
+    }
+    every = np.concatenate([pair.reshape(-1, 2) for pair in pairs.values()])
+    found, order = np.unique(every, axis=0, return_inverse=True)
+    parts = np.split(order.ravel(), np.cumsum([pair.size // 2 for pair in pairs.values()])[:-1])
+    shaped = {name: part.reshape(pairs[name].shape[:-1]) for name, part in zip(pairs, parts, strict=True)}
+    return found, shaped
 
 
-def _add_airloads(matrices: Matrices, results: Sequence[Any]) -> None:
-    """Add the results of the airloads, which have few zeros."""
-    layout, matrix = _layouts()["of_airloads"], matrices["C"]
-    pool = pool_of(values_of(results, layout), matrix.shape[:1], matrix.dtype)
-    for name, places in layout.places.items():
-        matrices[name] += np.take(pool, places, axis=1)
+@cache
+def _sums() -> Layout:
+    """Return the layout of the sums of the pairs."""
+    return Layout([], _pairs()[1])
+
+
+def _with_airloads(values: Sequence[Any], results: Sequence[Any]) -> list[Any]:
+    """Return the sum of each pair of values without airloads and of airloads."""
+    added = values_of(results, _layouts()["of_airloads"])
+    return [values[one] + added[other] if other else values[one] for one, other in _pairs()[0].tolist()]
 
 
 def _of_rows(value: Any, rows: slice) -> Any:
@@ -206,8 +218,11 @@ def values_of(results: Sequence[Any], layout: Layout) -> list[Any]:
 
 
 def pool_of(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
-    """Return values as one array, with the axes of the shape in reverse and a last axis of values."""
-    pool = np.empty((len(values), *shape), dtype=kind)
+    """Return values as one array, with the axes of the shape in reverse and a last axis of values.
+
+    Between two values stay a few places: a power of two from one to the next would put all into one place of the cache.
+    """
+    pool = np.empty((len(values), *shape[:-1], shape[-1] + _APART), dtype=kind)[..., : shape[-1]]
     for place, value in enumerate(values):
         pool[place] = value
     return np.ascontiguousarray(pool.T)

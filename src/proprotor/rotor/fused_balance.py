@@ -107,10 +107,8 @@ def balanced(
     blade |= _NO_LOADS
     blade |= zip(MOMENTS, moments.reshape(-1, *shape), strict=True)
     work = _matrices("work", evaluate(plans.work, blade), shape)
-    slopes = work["work_slopes"][..., PITCH_TWICE]
-    return _Balanced(
-        structure["residual"][..., 0], structure["slopes"], work["work"][..., 0], slopes, moments
-    )
+    residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
+    return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
 
 
 def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
@@ -121,7 +119,9 @@ def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
 
 @cache
 def _layouts() -> dict[str, Layout]:
-    return {"work": Layout.of(plans.WORK), "balance": Layout.of(plans.BALANCE)}
+    work = Layout.of(plans.WORK)
+    work.places["work_slopes"] = work.places["work_slopes"][:, PITCH_TWICE]
+    return {"work": work, "balance": Layout.of(plans.BALANCE)}
 
 
 def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> dict[str, Array]:

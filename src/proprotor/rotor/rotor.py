@@ -222,6 +222,10 @@ class Rotor:
         **more
             Further fields, or other values for fields that were found: the number of blades and the airfoil at least.
 
+        Returns
+        -------
+        Rotor
+
         Raises
         ------
         InputError

@@ -14,6 +14,7 @@ import numpy as np
 from proprotor_equations import airloads
 from proprotor_equations import trim as equations
 
+from proprotor.rotor.elimination import solve
 from proprotor.rotor.fused_balance import Room, balanced, segments_of, serves_sections
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options
@@ -64,7 +65,7 @@ class Slopes(NamedTuple):
         angles = solve(structure, np.broadcast_to(np.eye(len(sprung)), structure.shape))
         return Slopes(self.full @ angles, self.airloads @ angles)
 
-    def of(self, rows: Array) -> Slopes:
+    def of(self, rows: Array | slice) -> Slopes:
         """Return the slopes at some of the points."""
         return Slopes(self.full[rows], self.airloads[rows])
 
@@ -151,12 +152,12 @@ class Balance:
             residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
             structure, of_airloads = self._slopes(state, rows, quantities, segments)
             along = functools.partial(dict, segments)
-        whole = (structure + of_airloads)[..., self.free]
-        of_airloads = of_airloads[..., self.free]
-        blade = of_airloads[:, self.rows] * self.hinged[:, None]
-        slopes = Slopes(whole[:, self.rows], blade)
+        blade = self._square(of_airloads)
+        slopes = Slopes(self._square(structure) + blade, blade * self.hinged[:, None])
         residual = self._to_target(residual, rows)
-        return Linear(residual[:, self.rows], slopes, work, of_airloads, quantities, along)
+        return Linear(
+            residual[:, self.rows], slopes, work, np.take(of_airloads, self.free, axis=-1), quantities, along
+        )
 
     def left(self, state: State, rows: Array, share: float | None = None) -> Array:
         """Return the residual (n, k) with all of the airloads, without slopes."""
@@ -182,6 +183,12 @@ class Balance:
         """Subtract a step (n, k) from the free unknowns."""
         for column, place in enumerate(self.free):
             state[UNKNOWNS[place]][rows] -= step[:, column]
+
+    def _square(self, slopes: Array) -> Array:
+        """Return the rows that close the free unknowns, and the columns of these unknowns, (n, k, k)."""
+        rows, columns = (np.array(places, dtype=int) for places in (self.rows, self.free))
+        places = slopes.shape[-1] * rows[:, None] + columns
+        return np.take(slopes.reshape(*slopes.shape[:-2], -1), places, axis=-1)
 
     def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
         """Return the quantities of the whole blade at a state and at a share of its precone."""
@@ -248,21 +255,10 @@ class Balance:
         return np.asarray(evaluate(equations.residual, quantities)[..., equations.TRIM].imag / _COMPLEX_STEP)
 
 
-def solve(slopes: Array, right: Array) -> Array:
-    """Return slopes⁻¹ right, (..., k, m); NaN at the points whose slopes have no inverse."""
-    try:
-        return np.linalg.solve(slopes, right)
-    except np.linalg.LinAlgError:  # raised for all points if the slopes of one are singular
-        good = np.isfinite(slopes).all(axis=(-2, -1)) & (np.abs(np.linalg.det(slopes)) > 0)
-        found = np.full(right.shape, np.nan, dtype=np.result_type(slopes, right))
-        found[good] = np.linalg.solve(slopes[good], right[good])
-        return found
-
-
 def newton_step(slopes: Array, residual: Array) -> Array:
     """Return the step (n, k) to subtract from the unknowns; NaN if the slopes have no inverse."""
     step = solve(slopes, residual[..., None])[..., 0]
-    return step if np.iscomplexobj(step) else np.clip(step, -LARGEST_STEP, LARGEST_STEP)
+    return step if np.iscomplexobj(step) else np.minimum(np.maximum(step, -LARGEST_STEP), LARGEST_STEP)
 
 
 def is_last(size: Any, before: Any) -> Any:

@@ -6,26 +6,32 @@ spectral radius below one: then each λ has one equilibrium within reach, and to
 does not turn. The share of the airloads makes J linear in λ, so that the ends of the step hold the extremes. Where the
 blade is, its precone included, J is known at both ends; J is taken to change twice as much within reach of the path as
 between the ends, and the radius may be one half at most.
+
+The bound is computed in blocks of points that stay in the cache, with matrices as arrays (k, k, windows, points).
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from proprotor.rotor.airfoil import Airfoil
+from proprotor.rotor.elimination import eliminate, points_last
 from proprotor.rotor.trim import UNKNOWNS
-from proprotor.rotor.trim_balance import Balance, Slopes, State, solve
+from proprotor.rotor.trim_balance import Balance, Slopes, State
 from proprotor.typing import Array
 
 CONTRACTION = 0.5  # largest spectral radius of N
 # Change of slopes within reach of the path, in multiples of the change between the ends of a step.
 _REACH = 2.0
-_WINDOWS = (3, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
+_WINDOWS = (4, 8, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
 _POWER_STEPS = (2, 2, 4)  # after which the bound is looked at
 _FLOOR = 1e-9
+_BLOCK = 2048  # windows and points whose matrices stay in the cache
+
+_Solution = Callable[[Array, Array], Array]
 
 
 def contraction(
@@ -38,6 +44,7 @@ def contraction(
     windows: int = 1,
     between: Slopes | None = None,
     enough: float = CONTRACTION,
+    solution: _Solution = eliminate,
 ) -> Array:
     """Return the spectral radius (n,) of N in a step; up to `CONTRACTION` the path leads to the other end unturned.
 
@@ -55,13 +62,20 @@ def contraction(
         Slopes half-way, for section models whose slopes may change between the ends in other ways.
     enough : float
         Radius that needs no sharper bound: above it, slopes by moments are tried as well as slopes by angles.
+    solution : callable
+        `eliminate`, or `by_lapack` for one point.
     """
 
     def radius(rows: Array, *slopes: Slopes) -> Array:
         """Return the largest radius among all windows."""
         half = (to - share)[rows] / (2 * windows)
         middles = share[rows] + (2 * np.arange(windows)[:, None] + 1) * half
-        return np.asarray(_radius(_moved(half, middles, *slopes), enough).max(axis=0))
+        found = np.empty(len(rows))
+        for some in _blocks(len(rows), windows):
+            here = (part.of(some) for part in slopes)
+            moved = _moved(half[some], middles[:, some], *here, solution=solution)
+            found[some] = _radius(moved, enough).max(axis=0)
+        return found
 
     slopes = (before, after) if between is None else (before, after, between)
     return _by_angles_or_moments(sprung, radius, *slopes, enough=enough)
@@ -72,12 +86,21 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
 
     def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
         """Return the radius of the relative difference of the slopes."""
-        return _radius(np.abs(solve(expected.full, found.full - expected.full)), CONTRACTION)
+        matrix, right = points_last(expected.full), points_last(found.full - expected.full)
+        return _radius(np.abs(eliminate(matrix, right)), CONTRACTION)
 
     return _by_angles_or_moments(sprung, radius, found, expected) <= CONTRACTION
 
 
-def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state: State, rows: Array) -> Array:
+def at_end(
+    balance: Balance,
+    before: Slopes,
+    after: Slopes,
+    start: State,
+    state: State,
+    rows: Array,
+    solution: _Solution = eliminate,
+) -> Array:
     """Return whether points (n,) with these slopes at the start and here are at the end of the path, by the bound."""
     smooth = isinstance(balance.sections.airfoil, Airfoil)
     half_way = {name: (start[name] + state[name]) / 2 for name in UNKNOWNS}
@@ -87,8 +110,9 @@ def at_end(balance: Balance, before: Slopes, after: Slopes, start: State, state:
     for windows in _WINDOWS:
         ends = np.zeros(len(left)), np.ones(len(left))
         middle = None if between is None else between.of(left)
+        slopes = before.of(left), after.of(left)
         radius = contraction(
-            balance.sprung, before.of(left), after.of(left), *ends, windows=windows, between=middle
+            balance.sprung, *slopes, *ends, windows=windows, between=middle, solution=solution
         )
         found[left] = radius <= CONTRACTION
         left = left[~found[left]]
@@ -110,31 +134,49 @@ def _by_angles_or_moments(
     return found
 
 
-def _moved(half: Array, middle: Array, before: Slopes, after: Slopes, *between: Slopes) -> Array:
-    """Return N (windows, n, k, k) of windows in λ, given by half lengths (n,) and middles (windows, n)."""
-    mean = Slopes(*((a + b) / 2 for a, b in zip(before, after, strict=True)))
-    aside = (Slopes(*(a - b for a, b in zip(part, mean, strict=True))) for part in (after, *between))
-    slopes, size = mean.at(middle), mean.full.shape[-1]
-    right = np.empty((*slopes.shape[:-1], (2 + len(between)) * size))
-    right[..., :size] = half[:, None, None] * mean.airloads
-    for place, part in enumerate(aside, start=1):
-        right[..., place * size : (place + 1) * size] = part.at(middle)
-    moved = np.abs(solve(slopes, right))
-    in_share, *in_place = (moved[..., place : place + size] for place in range(0, moved.shape[-1], size))
+def _blocks(points: int, windows: int) -> Iterator[slice]:
+    """Yield blocks of points."""
+    most = max(1, _BLOCK // windows)
+    return (slice(start, start + most) for start in range(0, points, most))
+
+
+def _moved(
+    half: Array,
+    middle: Array,
+    before: Slopes,
+    after: Slopes,
+    *between: Slopes,
+    solution: _Solution = eliminate,
+) -> Array:
+    """Return N (k, k, windows, n) of windows in λ, given by half lengths (n,) and middles (windows, n)."""
+    ends = [tuple(points_last(matrix)[:, :, None] for matrix in part) for part in (before, after, *between)]
+    first, *others = ends
+    mean = tuple((a + b) / 2 for a, b in zip(first, others[0], strict=True))
+    left_out, size = 1 - middle, len(mean[0])
+    right = np.empty((size, (1 + len(others)) * size, *middle.shape))
+    right[:, :size] = half * mean[1]
+    for place, part in enumerate(others, start=1):
+        full, airloads = (a - b for a, b in zip(part, mean, strict=True))
+        np.subtract(full, left_out * airloads, out=right[:, place * size : (place + 1) * size])
+    moved = solution(mean[0] - left_out * mean[1], right)
+    np.abs(moved, out=moved)
+    in_share, *in_place = (moved[:, place : place + size] for place in range(0, moved.shape[1], size))
     farthest = functools.reduce(np.maximum, in_place)
     return np.asarray(in_share + _REACH * farthest)
 
 
 def _radius(matrix: Array, enough: float) -> Array:
-    """Return a bound (...) of the spectral radius of matrices (..., k, k) without negative entries.
+    """Return a bound (...) of the spectral radius of matrices (k, k, ...) without negative entries.
 
     The bound is that of Collatz and Wielandt, which steps of power iteration make sharper until all bounds are enough.
     """
-    weight = np.ones((*matrix.shape[:-1], 1))
+    positive, diagonal = matrix.copy(), np.arange(len(matrix))
+    positive[diagonal, diagonal] += _FLOOR
+    weight = np.add.reduce(positive, axis=1)
     for steps in _POWER_STEPS:
         for _ in range(steps):
-            weight = matrix @ weight + _FLOOR * weight
-        bound = np.asarray((matrix @ weight / weight)[..., 0].max(axis=-1, initial=0.0))
+            before, weight = weight, np.add.reduce(positive * weight, axis=1)
+        bound = np.asarray((weight / before).max(axis=0, initial=0.0))
         if (bound <= enough).all():
             break
     return bound

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.rotor.balance_of_one import BalanceOfOne, Here, Numbers, Rows, solve, sums_of_minors
+from proprotor.rotor.elimination import by_lapack
 from proprotor.rotor.fused import plain_number
 from proprotor.rotor.section_loads import mark_doubts
 from proprotor.rotor.trim import THRUST, UNKNOWNS
@@ -95,7 +96,8 @@ def _is_end_of_path(balance: Balance, passed: list[Here], start: Numbers, state:
         Slopes(np.array([here.full]), np.array([here.airloads])) for here in (passed[0], passed[-1])
     )
     before, after = ({name: np.array([value]) for name, value in end.items()} for end in (start, state))
-    return bool(at_end(balance, first, last, before, after, np.zeros(1, dtype=int)).all())
+    rows = np.zeros(1, dtype=int)
+    return bool(at_end(balance, first, last, before, after, rows, solution=by_lapack).all())
 
 
 def _is_without_doubt(one: BalanceOfOne, found: Found) -> bool:

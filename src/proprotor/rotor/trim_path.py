@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from proprotor.rotor.trim_balance import Balance, Slopes, State, copy_state, newton_step, solve
+from proprotor.rotor.elimination import solve
+from proprotor.rotor.trim_balance import Balance, Slopes, State, copy_state, newton_step
 from proprotor.rotor.trim_bound import CONTRACTION, contraction
 from proprotor.rotor.trim_start import undeflect
 from proprotor.typing import Array

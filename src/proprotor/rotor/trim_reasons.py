@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from proprotor.rotor.elimination import solve
 from proprotor.rotor.trim import THRUST, Target
-from proprotor.rotor.trim_balance import Balance, Linear, State, solve
+from proprotor.rotor.trim_balance import Balance, Linear, State
 from proprotor.rotor.trim_path import Path
 from proprotor.rotor.trim_start import FARTHEST
 from proprotor.typing import Array

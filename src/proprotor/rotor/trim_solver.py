@@ -166,17 +166,11 @@ class _Search:
         """Points that have not failed."""
         return np.flatnonzero(self.reason == "")
 
-    @property
-    def near(self) -> Array:
-        """Points that have not failed and have come to the end of their path."""
-        known = np.isfinite(self.ends.full).all(axis=(1, 2))
-        return np.flatnonzero((self.reason == "") & known)
-
     def come_near(self, few: Balance) -> None:
         """Run Newton with all loads at once, and follow the path of points that may have missed it."""
         rows, k = self.rows, len(few.free)
         first, last = (Slopes.unknown(len(self.reason), k) for _ in range(2))
-        active, near = rows, [np.empty(0, dtype=int)]
+        active, near = rows, np.zeros(len(self.reason), dtype=bool)
         before = np.full(len(self.reason), np.inf)
         for count in range(_ITERATIONS // 2):
             if not len(active):
@@ -192,14 +186,15 @@ class _Search:
             if few is self.balance:
                 arrived &= is_last(size, before[active]) | (_next(size, before[active]) <= _ALMOST)
             before[active] = size
-            near.append(active[arrived])
+            near[active] = arrived
             active = active[~arrived & ~np.isnan(size)]
-        arrived = np.sort(np.concatenate(near))
-        copy_state(self.start, np.setdiff1d(rows, arrived), onto=self.state)
+        arrived = np.flatnonzero(near)
+        copy_state(self.start, rows[~near[rows]], onto=self.state)
         known = ~self.followed[arrived]
         known |= at_end(few, first.of(arrived), last.of(arrived), self.start, self.state, arrived)
         self.ends.put(arrived[known], last.of(arrived[known]))
-        lost = np.setdiff1d(rows[self.followed[rows]], arrived[known])
+        near[arrived] = known
+        lost = rows[self.followed[rows] & ~near[rows]]
         if len(lost):
             self._follow(few, lost)
 
@@ -215,8 +210,8 @@ class _Search:
 
     def finish(self) -> None:
         """Run full Newton; points that leave the end of their path begin again, on all stations."""
-        without_path = self.rows[~self.followed[self.rows]]
-        done = self._newton_steps(np.union1d(self.near, without_path))
+        near = np.isfinite(self.ends.full).all(axis=(1, 2))
+        done = self._newton_steps(np.flatnonzero((self.reason == "") & (near | ~self.followed)))
         self.reason[(self.reason == "") & ~self.followed & ~done] = not_found(self.balance.target)
         again = np.flatnonzero((self.reason == "") & self.followed & ~done)
         if not len(again):
