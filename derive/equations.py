@@ -70,7 +70,7 @@ FREQUENCIES = f"{PAPER}, nomenclature: flap and lag frequency"
 REFERENCE_LINE = "the blade's reference line with precone, coning and lag, Eq. 2"
 STRIP = "strip theory on a straight segment"
 STRIP_THEORY = "quasi-steady strip theory, as NASA TN D-7677"
-LATE = "lag of circulation on a straight segment, Jones' approximation of Wagner's function (NACA Report 681)"
+LATE = "strip theory whose circulation lags by Jones' approximation of Wagner's function, NACA Report 681"
 CLOSED = (
     "u_T = Omega r and u_P = V, constant chord, no compressibility, as NASA TN D-7677; valid down to V = 0"
 )
