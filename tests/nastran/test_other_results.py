@@ -1,5 +1,6 @@
 """HDF5, punch and print files, and the same modes in each."""
 
+import subprocess
 import sys
 
 import numpy as np
@@ -56,6 +57,29 @@ def test_hdf5_tells_the_output_system_of_the_grid_point(tmp_path):
     path = save_hdf5(tmp_path / "a.h5", [run()], systems={OTHER: 3, HUB: 5})
     assert "grid point 1101 has the output coordinate system 5" in str(read(path, hub=None).warning)
     assert read(save_hdf5(tmp_path / "b.h5", [run()], systems={OTHER: 3, HUB: 0}), hub=None).warning is None
+
+
+AFTER_HDF5 = """
+import subprocess
+import sys
+import h5py
+
+with h5py.File(sys.argv[1], "w") as file:
+    file["x"] = [1.0]
+
+import proprotor as pp
+
+found = pp.load_case("xv15-uncoupled").sweep([80.0, 90.0])
+pp.save_results(found, sys.argv[2])
+print(pp.load_results(sys.argv[2]).equals(found))
+"""
+
+
+def test_results_are_saved_after_an_hdf5_file_was_opened(tmp_path):
+    """The wheels of h5py and of netCDF4 bring an HDF5 library each; not any two of them go together."""
+    command = [sys.executable, "-c", AFTER_HDF5, tmp_path / "modes.h5", tmp_path / "sweep.nc"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.stdout == "True\n", done.stderr
 
 
 def test_without_h5py_the_extra_is_named(tmp_path, monkeypatch):

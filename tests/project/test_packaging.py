@@ -3,13 +3,19 @@
 import re
 import tomllib
 from importlib.metadata import version
+from itertools import chain
 from pathlib import Path
 
 import pytest
 import yaml
+from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
+from packaging.utils import canonicalize_name
+from packaging.version import Version
 
 import proprotor as pp
-from tests.verify import environments
+from tests.verify import environment_page
+from tests.verify.tests_of_dependencies import ALL, SHORT
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -97,12 +103,35 @@ def test_workflows_and_hooks_call_targets_that_exist():
                     assert (ROOT / command).is_file()
 
 
-def test_every_dependency_has_tests_that_run_in_other_environments():
-    declared = [*PROJECT["project"]["dependencies"], *environments.extras(PROJECT["project"])]
-    assert set(environments.TESTS) == {environments.name_of(entry) for entry in declared}
-    for places in environments.TESTS.values():
+@pytest.mark.parametrize("lists", [ALL, SHORT], ids=["all", "short"])
+def test_every_dependency_has_tests_that_run_in_other_environments(lists):
+    assert set(lists) == set(environment_page.bounds())
+    for places in lists.values():
         for place in places:
-            assert (ROOT / "tests" / place.partition("::")[0]).exists(), place
+            file, _, name = place.partition("::")
+            assert (ROOT / "tests" / file).exists(), place
+            assert not name or f"\ndef {name}(" in (ROOT / "tests" / file).read_text(encoding="utf-8"), place
+
+
+def test_the_bounds_are_those_that_were_tested():
+    """Whoever changes a bound, or adds a dependency, tests the lowest versions again."""
+    declared = [
+        *PROJECT["project"]["dependencies"],
+        *chain(*PROJECT["project"]["optional-dependencies"].values()),
+    ]
+    wanted = {canonicalize_name(one.name): one.specifier for one in map(Requirement, declared)}
+    tested = environment_page.recorded()
+    assert tested
+    for one in tested:
+        for name, bound in wanted.items():
+            assert Version(one.versions[name]) in bound, (one.place, name)
+        if one.dependencies == "lowest":
+            assert {name: SpecifierSet(bound) for name, bound in one.bounds.items()} == wanted
+
+
+def test_the_page_of_environments_is_what_was_recorded():
+    page = (ROOT / "docs" / "environments.md").read_text(encoding="utf-8")
+    assert page == environment_page.page(environment_page.recorded())
 
 
 @pytest.mark.parametrize("extra", PROJECT["project"]["optional-dependencies"])

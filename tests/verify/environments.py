@@ -3,8 +3,9 @@
     python -m tests.verify.environments            (make verify-environments)
 
 For each Python and each of the two sets of dependencies a new environment gets both wheels, as `pip install` would
-bring them, with all extras, and runs the tests of `TESTS` against the installed package. A table says what passed.
-`--page` also writes it, with the versions that were installed, to a page of the documentation.
+bring them, with all extras, and runs the tests that use a dependency against the installed package. A table says what
+passed. `--page` also writes each row, with the versions that were installed, to a page of the documentation. `--short`
+runs a few tests of each dependency, for a machine that is busy or has to test many environments.
 
 Pythons are those of `make verify-versions`: this one, those on the path, of pyenv or uv, or named by `--python` or,
 with the system's separator of paths between them, by the variable PROPROTOR_PYTHONS.
@@ -17,61 +18,31 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
+import platform
 import shutil
 import subprocess
 import sys
 import tempfile
-import tomllib
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import NamedTuple
 
 from tests.verify.determinism import ROOT, other_pythons
+from tests.verify.environment_page import (
+    PAGE,
+    RESOLUTIONS,
+    Environment,
+    bounds,
+    extras,
+    name_of,
+    project_tables,
+    record,
+    table,
+)
+from tests.verify.tests_of_dependencies import ALL, SHORT, Tests
 
-PAGE = ROOT / "docs" / "environments.md"
-RESOLUTIONS = {"newest": "highest", "lowest": "lowest-direct"}
-# What uses each dependency, at every place where the package calls it. The other tests ask about the equations, the
-# numbers and the project itself, for which `make test` has one environment, and `make verify` several kernels.
-TESTS = {
-    "bokeh": ("explore",),
-    "click": ("commands/test_command_line.py",),
-    "contourpy": ("stability/test_stability_map.py",),
-    "control": ("model/test_inputs_outputs.py",),
-    "dask": ("study/test_study_distributed.py",),
-    "filelock": ("study/test_study_resume.py",),
-    "fluids": ("rotor/test_atmosphere.py",),
-    "h5py": ("nastran/test_other_results.py",),
-    "jinja2": ("report",),
-    "matplotlib": ("plots",),
-    "netcdf4": ("files/test_output_file.py",),
-    "numpy": ("stability/test_sweep.py", "model/test_frequency_response.py"),
-    "openmdao": ("exchange/test_openmdao.py",),
-    "pillow": ("plots/test_plots_of_motion.py",),
-    "pint": ("units", "deck/test_inputs_with_units.py"),
-    "proprotor-equations": ("derive/test_equations_alone.py",),
-    "psutil": ("project/test_needs.py::test_a_limit_of_a_control_group_counts",),
-    "pydantic": ("deck/test_deck.py",),
-    "rich": ("tables",),
-    "salib": ("study/test_sampling.py", "study/test_uncertainty.py"),
-    "scipy": ("support/test_matrix_market.py", "exchange/test_matlab_file.py"),
-    "tornado": ("explore",),
-    "typst": ("report",),
-    "xarray": ("stability/test_airspeeds.py", "study/test_mode_damping.py"),
-}
 _COUNTED = ("tests", "failures", "errors", "skipped")
-
-
-class Environment(NamedTuple):
-    """One Python with one set of dependencies, and what came of it."""
-
-    python: str
-    dependencies: str
-    versions: dict[str, str]
-    passed: int
-    failed: tuple[str, ...]
-    skipped: int
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -81,20 +52,21 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("--python", action="append", help="a Python to test; may be repeated")
     parser.add_argument("--dependencies", choices=RESOLUTIONS, action="append", help="one set alone")
+    parser.add_argument("--short", action="store_true", help="a few tests of each dependency, not all")
     parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT).as_posix()}")
     given, more = parser.parse_known_args(arguments)
     named = [path for path in os.environ.get("PROPROTOR_PYTHONS", "").split(os.pathsep) if path]
     pythons = given.python or [sys.executable, *other_pythons(), *named]
+    tests = "short" if given.short else "all"
     found = []
     with tempfile.TemporaryDirectory() as wheels:
         build(Path(wheels))
         for python in pythons:
             for dependencies in given.dependencies or RESOLUTIONS:
-                found.append(tested(python, dependencies, Path(wheels), more))
-                print(*rows(found[-1:]), *found[-1].failed, sep="\n", flush=True)
-    print(*table(found), sep="\n")
-    if given.page:
-        PAGE.write_text(page(found), encoding="utf-8", newline="\n")
+                found.append(tested(python, dependencies, Path(wheels), tests, more))
+                print(*table(found), *found[-1].failed, sep="\n", flush=True)
+                if given.page:
+                    record(found[-1])
     return int(any(one.failed or not one.passed for one in found))
 
 
@@ -122,21 +94,37 @@ def build(folder: Path) -> None:
 # One environment ----------------------------------------------------------------------------------
 
 
-def tested(python: str, dependencies: str, wheels: Path, more: Iterable[str]) -> Environment:
+def tested(python: str, dependencies: str, wheels: Path, tests: str, more: Iterable[str]) -> Environment:
     """Make an environment, run the tests in it, and remove it."""
     folder = wheels / "environment"
     uv("venv", "--clear", "--python", python, folder)
     interpreter = folder / ("Scripts" if os.name == "nt" else "bin") / "python"
     try:
         install(interpreter, dependencies, wheels)
-        passed, failed, skipped = run(interpreter, folder, more)
-        versions = dict(
-            line.split("==") for line in uv("pip", "freeze", "--python", interpreter).split() if "==" in line
-        )
+        passed, failed, skipped = run(interpreter, folder, {"all": ALL, "short": SHORT}[tests], more)
         number = subprocess.run([interpreter, "-V"], capture_output=True, text=True, check=True).stdout
-        return Environment(number.split()[1], dependencies, versions, passed, failed, skipped)
+        date = datetime.now(UTC).date().isoformat()
+        return Environment(
+            number.split()[1],
+            platform.system(),
+            dependencies,
+            tests,
+            date,
+            passed,
+            failed,
+            skipped,
+            bounds=bounds(),
+            versions=installed(interpreter),
+        )
     finally:
         shutil.rmtree(folder)
+
+
+def installed(interpreter: Path) -> dict[str, str]:
+    """Return the versions of the packages that the project asks for."""
+    lines = uv("pip", "freeze", "--python", interpreter).split()
+    found = {name_of(line): line.partition("==")[2] for line in lines if "==" in line}
+    return {name: found[name] for name in bounds() if name in found}
 
 
 def install(interpreter: Path, dependencies: str, wheels: Path) -> None:
@@ -155,34 +143,18 @@ def install(interpreter: Path, dependencies: str, wheels: Path) -> None:
     uv("pip", "install", *from_where, "--requirements", pinned, package)
 
 
-def project_tables() -> tuple[dict, dict]:
-    """Return the tables of the project and of its dependency groups, groups within the tests' put in their place."""
-    read = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    groups = read["dependency-groups"]
-    inner = [groups[entry["include-group"]] for entry in groups["test"] if isinstance(entry, dict)]
-    return read["project"], groups | {"test": [*groups["test"], *(one for group in inner for one in group)]}
-
-
-def extras(project: dict) -> list[str]:
-    """Return what all extras bring."""
-    return [entry for extra in project["optional-dependencies"].values() for entry in extra]
-
-
 def derivation(project: dict, groups: dict) -> Iterator[str]:
     """Yield the pinned packages that tests import the derivation with, but for those whose bound is tested here."""
     own = {name_of(entry) for entry in project["dependencies"]}
     return (entry for entry in groups["derive"] if name_of(entry) not in own)
 
 
-def name_of(requirement: str) -> str:
-    """Return the name of a package, as indexes write it."""
-    return re.split(r"[\[<>=!~; ]", requirement)[0].lower().replace("_", "-")
-
-
-def run(interpreter: Path, folder: Path, more: Iterable[str]) -> tuple[int, tuple[str, ...], int]:
+def run(
+    interpreter: Path, folder: Path, tests: Tests, more: Iterable[str]
+) -> tuple[int, tuple[str, ...], int]:
     """Run the tests; return how many passed, those that failed, and how many were passed over."""
     report = folder / "tests.xml"
-    files = sorted({f"tests/{place}" for places in TESTS.values() for place in places})
+    files = sorted({f"tests/{place}" for places in tests.values() for place in places})
     command = [
         interpreter,
         "-m",
@@ -211,56 +183,6 @@ def result(report: Path) -> tuple[int, tuple[str, ...], int]:
         if case.find("failure") is not None or case.find("error") is not None
     )
     return total - failures - errors - skipped, failed, skipped
-
-
-# The table ----------------------------------------------------------------------------------------
-
-_HEAD = ("Python", "dependencies", "passed", "failed", "passed over")
-
-
-def rows(found: Iterable[Environment]) -> Iterator[str]:
-    """Yield a row for each environment."""
-    for one in found:
-        cells = (one.python, one.dependencies, one.passed, len(one.failed), one.skipped)
-        yield f"| {' | '.join(map(str, cells))} |"
-
-
-def table(found: Iterable[Environment]) -> Iterator[str]:
-    """Yield the lines of the table of results."""
-    yield f"| {' | '.join(_HEAD)} |"
-    yield "|---" * len(_HEAD) + "|"
-    yield from rows(found)
-
-
-def table_of_versions(found: list[Environment]) -> Iterator[str]:
-    """Yield the lines of a table of the packages that the project asks for, with the version in each environment."""
-    project, _ = project_tables()
-    yield f"| package, bound | {' | '.join(f'{one.python}, {one.dependencies}' for one in found)} |"
-    yield "|---" * (len(found) + 1) + "|"
-    for entry in (*project["dependencies"], *extras(project)):
-        name = name_of(entry)
-        known = [{name_of(key): value for key, value in one.versions.items()}.get(name, "") for one in found]
-        yield f"| {entry} | {' | '.join(known)} |"
-
-
-def page(found: list[Environment]) -> str:
-    """Return the text of the page."""
-    return f"""\
-# Environments
-
-Written by `make verify-environments`.
-
-In each environment below, both wheels were installed with all extras, and {len(TESTS)} dependencies were tried by the
-tests that use them (`tests/verify/environments.py` lists which). Newest is what `pip install` brings; lowest is the
-lowest version that a bound of `pyproject.toml` allows and that has a wheel for that Python, which shows that the bounds
-are true.
-
-{os.linesep.join(table(found))}
-
-## Versions
-
-{os.linesep.join(table_of_versions(found))}
-""".replace(os.linesep, "\n")
 
 
 if __name__ == "__main__":

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import errno
 import os
-from pathlib import Path
 from threading import Lock
 
 import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.files.output import check_place, write_whole
+from proprotor.files.text import check_file
 from proprotor.needs import need
 from proprotor.typing import Dataset
 
@@ -80,8 +80,7 @@ def load_results(path: str | os.PathLike[str]) -> Dataset:
     """
     import xarray  # here, because it takes long to import
 
-    if not Path(path).is_file():
-        raise InputError("path", path, "must be a file that exists")
+    check_file("path", path)
     need("netCDF4", "path", "netCDF files")
     try:
         with _ONE_AT_A_TIME, xarray.open_dataset(path, engine="netcdf4") as stored:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import codecs
 import io
+import os
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -83,6 +84,22 @@ def is_file(path: Path | Traversable) -> bool:
         ):  # the last: a name with a null character
             path.stat()
     return path.is_file()
+
+
+def check_file(field: str, path: str | os.PathLike[str]) -> None:
+    """Refuse a path at which there is no file.
+
+    Raises
+    ------
+    InputError
+        When there is none, or the path cannot be followed.
+    """
+    try:
+        there = is_file(Path(path))
+    except OSError as error:
+        raise InputError(field, str(path), f"cannot be read ({error.strerror or error})") from None
+    if not there:
+        raise InputError(field, str(path), "no such file")
 
 
 def open_text(path: Path, *, encoding: str = "utf-8") -> io.TextIOWrapper:

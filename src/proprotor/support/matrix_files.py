@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, unknown_name
-from proprotor.files.text import read_text
+from proprotor.files.text import check_file, read_text
 from proprotor.support.matrix_market import MatrixMarketError, read_matrix
 from proprotor.support.modal_reduction import on_modes
 from proprotor.support.normal_modes import (
@@ -318,9 +318,8 @@ def _matrix_market(field: str, path: str | os.PathLike[str]) -> Any:
 def readable(field: str, file: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield the path of a file that is not too large, and turn any error of its reader into an `InputError`."""
     path = Path(file)
+    check_file(field, path)
     try:
-        if not path.is_file():
-            raise InputError(field, str(path), "no such file")
         if path.stat().st_size > _LARGEST:
             raise InputError(field, str(path), f"must not be larger than {_LARGEST // 10**6} MB")
         with warnings.catch_warnings():

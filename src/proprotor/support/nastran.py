@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, check_finite, unknown_name
+from proprotor.files.text import check_file
 from proprotor.nastran.found import COMPONENTS, FileFault, Found
 from proprotor.nastran.kinds_of_file import DMIG, OP4, kind_of, read_modes
 from proprotor.nastran.reduced import ReducedStructure, reduced_from_dmig, reduced_from_op4
@@ -161,9 +162,8 @@ def _refuse_beside_matrices(**given: Any) -> None:
 
 def _unless_faulty(path: Path, read: Callable[..., _Result], *arguments: Any) -> _Result:
     """Return what is read from a file, and turn its faults into errors about the input."""
+    check_file("file", path)
     try:
-        if not path.is_file():
-            raise InputError("file", str(path), "no such file")
         return read(path, *arguments)
     except FileFault as fault:
         raise InputError("file", str(path), str(fault)) from None
@@ -270,8 +270,7 @@ def _reduced(path: Path, kind: str, coordinates: str | os.PathLike[str] | None) 
         rule = "is missing: an .op4 file needs the file of bulk data that EXTSEOUT wrote beside it (.pch or .asm)"
         raise InputError("coordinates", None, rule)
     beside = Path(coordinates)
-    if not beside.is_file():
-        raise InputError("coordinates", str(coordinates), "no such file")
+    check_file("coordinates", beside)
     return _unless_faulty(path, reduced_from_op4, beside)
 
 
