@@ -110,8 +110,6 @@ def limp_rotors(draw, radius, hinges):
         flap_outboard_fraction=draw(fraction),
         lag_outboard_fraction=draw(fraction),
         pitch_gimbal_coupling=draw(zero_or(between(-0.6, 0.6))),
-        kinematic_pitch_flap_coupling=draw(zero_or(between(-0.6, 0.6))),
-        kinematic_pitch_lag_coupling=draw(zero_or(between(-0.6, 0.6))),
         structural_pitch_offset=draw(zero_or(between(-0.5, 0.5))),
         propeller_moment=draw(st.booleans()),
         chord=draw(chords(radius)),
