@@ -224,6 +224,65 @@ def fitted_rotor(unsteady: bool, root_cutout: float = ROOT_CUTOUT) -> pp.Rotor:
     return bladed_rotor(brentq(excess, 0.01 * RADIUS, RADIUS), root_cutout)
 
 
+def with_lag(rotor: pp.Rotor, advance_ratio: ArrayLike) -> pp.LinearModel:
+    """The locked rotor whose sections' lift lags with states of the package, on its hub coordinates."""
+    return rotor_on_hub(rotor, advance_ratio, lift="lagged")
+
+
+def at_one_per_turn(model: pp.LinearModel) -> pp.LinearModel:
+    """The same for a hub that moves so slowly that the lag is that of one change a turn, as the report has it."""
+    own, lag = slice(None, len(HUB)), slice(len(HUB), None)
+    late = model.C[..., own, lag] @ np.linalg.inv(model.C[..., lag, lag])
+    C, K = (part[..., own, own] - late @ part[..., lag, own] for part in (model.C, model.K))
+    return replace(model.submodel(HUB), C=C, K=K)
+
+
+def rotor_fitted_with_lag(root_cutout: float = ROOT_CUTOUT) -> pp.Rotor:
+    """The rotor whose C_Zθ, with the lag of its sections, is the report's at the first blade angle, by its chord."""
+    first = ADVANCE_RATIOS[0]
+    wanted = reported_derivatives(first).z_theta
+
+    def excess(chord: float) -> float:
+        rotor = bladed_rotor(chord, root_cutout)
+        still = rotor_on_hub(rotor, first, airloads="none")
+        moving = at_one_per_turn(with_lag(rotor, first))
+        found = whirl_derivatives(moving.C - still.C, moving.K - still.K, AIRSPEED, RADIUS, DENSITY)
+        return float(found.z_theta - wanted)
+
+    return bladed_rotor(brentq(excess, 0.05 * RADIUS, 0.5 * RADIUS), root_cutout)
+
+
+def neutral_with_states(rotor_alone: pp.LinearModel, stiffness_ratio: float) -> NDArray:
+    """g of backward whirl at neutral stability of a rotor with states of its own: at its frequency g is real."""
+    support = pivot(stiffness_ratio)
+    model = pp.mount(rotor_alone, support)
+    count = len(support.names)
+    own, lag = slice(None, count), slice(count, None)
+
+    def dampings(omega: float) -> NDArray:
+        s = 1j * omega
+        whole = s**2 * model.M + s * model.C + model.K
+        condensed = whole[own, own] - whole[own, lag] @ np.linalg.solve(whole[lag, lag], whole[lag, own])
+        found = np.linalg.eigvals(1j * np.linalg.solve(support.stiffness, condensed))
+        return found[np.argsort(found.real)]
+
+    start = neutral(at_one_per_turn(rotor_alone), stiffness_ratio).frequency[0]
+    return dampings(brentq(lambda omega: dampings(omega)[-1].imag, 0.9 * start, 1.1 * start))[-1].real
+
+
+def chart_with_lag(root_cutout: float = ROOT_CUTOUT) -> dict[float, NDArray]:
+    """g with the lag of one change a turn, from the states of the package."""
+    rotor = rotor_fitted_with_lag(root_cutout)
+    return chart_of(at_one_per_turn(with_lag(rotor, CHART_ADVANCE_RATIOS)))
+
+
+def chart_with_states(root_cutout: float = ROOT_CUTOUT) -> dict[float, NDArray]:
+    """g with the lag at the frequencies of the whirl, as seen from the blades."""
+    rotor = rotor_fitted_with_lag(root_cutout)
+    models = [with_lag(rotor, j) for j in CHART_ADVANCE_RATIOS]
+    return {ratio: np.array([neutral_with_states(model, ratio) for model in models]) for ratio in CHART}
+
+
 def chart_of(rotor_alone: pp.LinearModel) -> dict[float, NDArray]:
     """g at the points of the report's chart."""
     return {ratio: neutral(rotor_alone, ratio).damping[:, 0] for ratio in CHART}
@@ -247,6 +306,9 @@ def print_charts(console: Console) -> None:
     for unsteady, kind in KINDS.items():
         for cutout in (0.1, ROOT_CUTOUT, 0.3):
             charts[f"{kind} from {cutout:g} R"] = chart_of_blades(unsteady, cutout)
+    for cutout in (0.15, ROOT_CUTOUT, 0.25):
+        charts[f'lift="lagged" from {cutout:g} R, lag of one change a turn'] = chart_with_lag(cutout)
+        charts[f'lift="lagged" from {cutout:g} R'] = chart_with_states(cutout)
     for ratio, chart in CHART.items():
         title = f"g of backward whirl at neutral stability, S_ψ/S_θ = {ratio:g}"
         table = Table("J", *(f"{j:g}" for j in CHART_ADVANCE_RATIOS), title=title)

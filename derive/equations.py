@@ -17,6 +17,7 @@ from derive import (
     drive_train,
     flap_lag_springs,
     inertia,
+    lift_lag,
     lift_slope,
     multiblade,
     pitch,
@@ -41,6 +42,8 @@ from derive.kinds import (
     Step,
     assembly,
     blade_matrix,
+    circulation_loads,
+    circulation_matrix,
     column,
     element_matrix,
     element_motion,
@@ -67,6 +70,7 @@ FREQUENCIES = f"{PAPER}, nomenclature: flap and lag frequency"
 REFERENCE_LINE = "the blade's reference line with precone, coning and lag, Eq. 2"
 STRIP = "strip theory on a straight segment"
 STRIP_THEORY = "quasi-steady strip theory, as NASA TN D-7677"
+LATE = "strip theory whose circulation lags by Jones' approximation of Wagner's function, NACA Report 681"
 CLOSED = (
     "u_T = Omega r and u_P = V, constant chord, no compressibility, as NASA TN D-7677; valid down to V = 0"
 )
@@ -148,6 +152,20 @@ AIRLOADS = (
     motion_matrix("gust_motion", airloads.gust_motion, MOVING_AIR, names(BLADE_GUSTS), drops=True),
     work_matrix("geometric_stiffness", airloads.geometric_stiffness, BEYOND, BLADE, BLADE, drops=True),
 )
+LIFT_LAG = (
+    values("change_of_circulation", lift_lag.change_of_circulation, LATE),
+    circulation_matrix("change", lift_lag.change, LATE),
+    circulation_loads("load", lift_lag.load, LATE),
+    product("change_by_rates", "Change of a blade's circulation per rate.", lift_lag.products, LATE),
+    product(
+        "change_by_displacements",
+        "Change of a blade's circulation per displacement.",
+        lift_lag.products,
+        LATE,
+    ),
+    product("change_by_gusts", "Change of a blade's circulation per gust.", lift_lag.products, LATE),
+    product("work", "Virtual work of a blade's circulation, one column.", lift_lag.products, LATE),
+)
 LIFT_SLOPE = (values("load_moments", lift_slope.load_moments, CLOSED, MOMENTS),)
 TRIM = (
     column("residual", trim.residual, STEADY, ROWS, ROW_EQUATION),
@@ -209,6 +227,7 @@ STEPS = {
         Step("pitch", "Blade pitch, control system, dampers and gimbal restraint", PITCH),
         Step("section", "Loads of a blade section", SECTION),
         Step("airloads", "Airloads of one blade, segment by segment", AIRLOADS),
+        Step("lift_lag", "Lag of lift, in shape functions along the blade", LIFT_LAG),
         Step("lift_slope", "Lift-slope airloads of the published set in closed form", LIFT_SLOPE),
         Step("trim", "Trim balance of one blade", TRIM),
         Step("multiblade", "From one blade to N blades in the fixed frame", MULTIBLADE),

@@ -240,10 +240,32 @@ def work_matrix(
     return matrix(name, derivation, origin, rows, columns, force_per(0), equation, drops)
 
 
-def product(name: str, summary: str) -> Line:
+def product(
+    name: str,
+    summary: str,
+    products: Callable[[], Mapping[str, sp.MatrixExpr]] = airloads.products,
+    origin: str = "virtual work of Eqs. 12 and 32",
+) -> Line:
     """Make the sum over the segments of a blade that gives one of the blade's matrices."""
-    origin = "virtual work of Eqs. 12 and 32"
-    return Line(name, False, lambda _: Function("", name, summary, origin, product=airloads.products()[name]))
+    return Line(name, False, lambda _: Function("", name, summary, origin, product=products()[name]))
+
+
+def circulation_matrix(name: str, derivation: Derivation, origin: str) -> Line:
+    """Make the change of a segment's circulation in one shape function, per unit of the segment's motions."""
+
+    def dimension(_: str, motion: str) -> Dimension:
+        return plus((0, 4, -2), minus=MOTION[motion].dimension)
+
+    return matrix(name, derivation, origin, ("circulation",), names(SEGMENT_MOTIONS), dimension)
+
+
+def circulation_loads(name: str, derivation: Derivation, origin: str) -> Line:
+    """Make the generalised loads of a segment per unit of U c_l in one shape function."""
+
+    def dimension(load: str, _: str) -> Dimension:
+        return plus(LOAD[load].dimension, minus=(0, 1, -1))
+
+    return matrix(name, derivation, origin, names(SEGMENT_LOADS), ("circulation",), dimension)
 
 
 def reactionless_matrix(name: str, kind: str, order: int, motions: tuple[Coordinate, ...]) -> Line:

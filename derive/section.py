@@ -123,7 +123,7 @@ def incidence_of_turn() -> sp.Expr:
     return section_damping * s.chord * section_spin / (2 * section_speed)
 
 
-def _coefficient(name: str) -> sp.Expr:
+def coefficient(name: str) -> sp.Expr:
     """A coefficient as it depends on the air, in polar components, and the pitch; for lift the turn is held."""
     return sp.Function(name)(section_speed, inflow_angle, section_pitch)
 
@@ -131,7 +131,7 @@ def _coefficient(name: str) -> sp.Expr:
 @functools.cache
 def loads() -> dict[str, sp.Expr]:
     """f_x, f_n, f_d and m in speed, inflow angle, radial velocity, pitch and rotation."""
-    lift, drag, moment = (_coefficient(name) for name in COEFFICIENTS)
+    lift, drag, moment = (coefficient(name) for name in COEFFICIENTS)
     cosine, sine = sp.cos(inflow_angle), sp.sin(inflow_angle)
     spin_moment = sp.pi / 2 * section_speed * incidence_of_turn()
     return {
@@ -150,22 +150,22 @@ def load_derivatives() -> dict[sp.Symbol, sp.Expr]:
     """Each load and each derivative: those with speed and inflow angle, and from them those with u_T and u_P."""
     steps = {}
     for load, expression in loads().items():
-        steps[SECTION_LOADS[load, ""]] = _named(expression)
+        steps[SECTION_LOADS[load, ""]] = named(expression)
         along, across = POLAR_LOADS[load, "speed"], POLAR_LOADS[load, "inflow"]
-        steps[along] = _derivative(expression, section_speed)
-        steps[across] = _named(sp.diff(expression, inflow_angle) / section_speed)
+        steps[along] = derivative(expression, section_speed)
+        steps[across] = named(sp.diff(expression, inflow_angle) / section_speed)
         steps[SECTION_LOADS[load, "_ut"]] = along * inflow_cosine - across * inflow_sine
         steps[SECTION_LOADS[load, "_up"]] = along * inflow_sine + across * inflow_cosine
         for argument, variable in _DIRECT.items():
-            steps[SECTION_LOADS[load, argument]] = _derivative(expression, variable)
+            steps[SECTION_LOADS[load, argument]] = derivative(expression, variable)
     return steps
 
 
-def _derivative(expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+def derivative(expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
     """Derivative of a load by speed, radial velocity, pitch or rotation: its own, and by the incidence of the turn."""
-    by_turn = sp.diff(expression, _coefficient("lift")) * sp.diff(incidence_of_turn(), variable)
+    by_turn = sp.diff(expression, coefficient("lift")) * sp.diff(incidence_of_turn(), variable)
     by_turn = by_turn.subs(section_spin, 2 * section_speed * turn_incidence / (section_damping * s.chord))
-    return _named(sp.diff(expression, variable)) + _named(by_turn) * COEFFICIENT["lift", "alpha"]
+    return named(sp.diff(expression, variable)) + named(by_turn) * COEFFICIENT["lift", "alpha"]
 
 
 def load_derivative(load: str, motion: str) -> sp.Expr:
@@ -173,8 +173,8 @@ def load_derivative(load: str, motion: str) -> sp.Expr:
 
     An entry is a radial moment, or zero where the section has no such derivative.
     """
-    derivative = SECTION_LOADS[LOAD[load].section_load, f"_{MOTION[motion].argument}"]
-    return sp.Integer(0) if load_derivatives()[derivative] == 0 else airloads.load_derivative(load, motion)
+    of_section = SECTION_LOADS[LOAD[load].section_load, f"_{MOTION[motion].argument}"]
+    return sp.Integer(0) if load_derivatives()[of_section] == 0 else airloads.load_derivative(load, motion)
 
 
 def force_coefficients() -> dict[sp.Symbol, sp.Expr]:
@@ -227,17 +227,17 @@ def in_airfoil_coefficients(expression: sp.Expr) -> sp.Expr:
 _INFLOW = {inflow_cosine: tangential_velocity / section_speed, inflow_sine: axial_velocity / section_speed}
 
 
-def _named(expression: sp.Expr) -> sp.Expr:
+def named(expression: sp.Expr) -> sp.Expr:
     """Coefficients and their derivatives by name, lift and drag as force coefficients."""
     names = {}
     for name in COEFFICIENTS:
-        function = _coefficient(name)
+        function = coefficient(name)
         # c = c(pitch - inflow angle, U / a_s): the chain rule, with 1 / a_s = M / U
         names[sp.diff(function, section_pitch)] = COEFFICIENT[name, "alpha"]
         names[sp.diff(function, inflow_angle)] = -COEFFICIENT[name, "alpha"]
         names[sp.diff(function, section_speed)] = COEFFICIENT[name, "mach"] * mach / section_speed
     expression = expression.subs(names)
-    expression = expression.subs({_coefficient(name): COEFFICIENT[name, ""] for name in COEFFICIENTS})
+    expression = expression.subs({coefficient(name): COEFFICIENT[name, ""] for name in COEFFICIENTS})
     expression = expression.subs({sp.cos(inflow_angle): inflow_cosine, sp.sin(inflow_angle): inflow_sine})
     if expression.has(inflow_cosine):
         expression = _in_force_coefficients(expression)

@@ -137,7 +137,8 @@ def test_an_airfoil_table(tmp_path):
     with pytest.raises(InputError) as caught:
         altered(tmp_path, text + "[rotor]\nlock_number = 3.83\n")
     assert (
-        str(caught.value) == "rotor.lock_number = 3.83: needs a lift_slope; with an airfoil table give chord"
+        str(caught.value)
+        == "rotor.lock_number = 3.83: needs one lift_slope; with airfoil tables or regions give chord"
     )
 
 

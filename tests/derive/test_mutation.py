@@ -42,6 +42,7 @@ OPTIONS = (
     {"section_damping": True, "drive_train": pp.DriveTrain(drive_inertia=20.0), "reactionless": True},
     {"pitch": "coupling"},
     {"airloads": "none"},
+    {"lift": "lagged"},
     {
         "structure": "tabulated",
         "frequencies": pp.BladeFrequencies(at_rotor_speed=40.0, flap=1.1, lag=1.6, cyclic_flap=1.3),

@@ -208,6 +208,7 @@ OTHERWISE = {
     "airloads": "lift-slope",
     "compressibility": False,
     "section_damping": False,
+    "lift": "lagged",
     "rotor_speed": "constant",
     "reactionless": True,
     "locked": ("gimbal", "lag"),

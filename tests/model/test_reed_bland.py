@@ -9,6 +9,7 @@ from scipy.integrate import quad
 import proprotor as pp
 from benchmarks import reed_bland as report
 from proprotor.errors import InputError
+from proprotor.model.first_order import state_matrix
 from proprotor.model.mount import mount
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.model.structural_damping import neutral_damping
@@ -269,3 +270,43 @@ def test_the_rotor_mounts_as_the_propeller_does():
     np.testing.assert_allclose(
         mounted.M, np.broadcast_to(report.PIVOT_INERTIA * np.eye(2), mounted.M.shape), rtol=1e-12, atol=1e-9
     )
+
+
+# Lift that lags with states of its own ----------------------------------------------------------------------
+
+
+def test_with_lag_of_one_change_a_turn_every_point_is_within_nine_per_cent():
+    """The report's derivatives are those of a slow hub. The cutout, 0.2 R, was fixed before; the chord fits C_Zθ."""
+    found = report.chart_with_lag()
+    for ratio, chart in report.CHART.items():
+        assert np.all(np.abs(found[ratio] / chart - 1) < 0.09)
+
+
+@pytest.fixture(scope="module")
+def with_states():
+    return report.chart_with_states()
+
+
+def test_the_lag_at_the_frequencies_of_the_whirl_takes_off_more(with_states):
+    """Blades see the whirl at Ω ± ω, no longer near Ω where the rotor turns slowly: one point is beyond 9 per cent."""
+    slow = report.chart_with_lag()
+    for ratio, chart in report.CHART.items():
+        assert np.all(with_states[ratio] < slow[ratio])
+        assert np.all(np.abs(with_states[ratio][:-1] / chart[:-1] - 1) < 0.09)
+    assert 0.15 < 1 - with_states[1.96][-1] / report.CHART[1.96][-1] < 0.2
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_neutral_with_states_among_all_modes(ratio, with_states):
+    """With a viscous damping that is the structural one at the frequency of the whirl, a root lies on the axis."""
+    rotor = report.rotor_fitted_with_lag()
+    for place, j in enumerate(J):
+        alone = report.with_lag(rotor, j)
+        omega = report.PITCH_FREQUENCY
+        for _ in range(6):
+            model = mount(alone, report.pivot(ratio, with_states[ratio][place], omega))
+            roots = np.linalg.eigvals(state_matrix(model))
+            slow = roots[(roots.imag > 0) & (np.abs(roots.imag - omega) < 6)]
+            least = slow[np.abs(slow.real).argmin()]
+            omega = least.imag
+        assert abs(least.real) < 1e-5 * omega

@@ -14,6 +14,7 @@ from tests.mutation import (
     beam_checks,
     blade_checks,
     blade_element_checks,
+    lag_checks,
     rotor_checks,
     section_checks,
 )
@@ -27,6 +28,7 @@ def all_checks() -> tuple[Check, ...]:
         blade_checks,
         section_checks,
         airload_checks,
+        lag_checks,
         rotor_checks,
         assembly_checks,
         beam_checks,

@@ -31,7 +31,7 @@ def checks() -> Iterator[Check]:
     yield _loads_by_plan()
 
 
-def _some_air() -> Air:
+def some_air() -> Air:
     rng = np.random.default_rng(5)
     return Air(
         tangential=rng.uniform(60, 180, _COUNT),
@@ -45,7 +45,7 @@ def _some_air() -> Air:
     )
 
 
-def _quantities(air: Air) -> dict[str, NDArray]:
+def quantities_of(air: Air) -> dict[str, NDArray]:
     """By the names of the derivation."""
     speed, angle, alpha = inflow(air)
     return coefficients_of(POLYNOMIAL, air) | {
@@ -69,8 +69,8 @@ def _quantities(air: Air) -> dict[str, NDArray]:
 
 
 def _sections() -> Iterator[Check]:
-    air = _some_air()
-    quantities, loads = _quantities(air), section_derivatives(POLYNOMIAL, air)
+    air = some_air()
+    quantities, loads = quantities_of(air), section_derivatives(POLYNOMIAL, air)
     names = ("section_speed", "inflow_cosine", "inflow_sine", "angle_of_attack", "mach")
     names += ("turn_incidence", "lift_incidence")
     expected = {name: quantities[name] for name in names}
@@ -100,7 +100,7 @@ def _sizes(air: Air, names: Iterable[str]) -> dict[str, NDArray]:
 
 def _loads_by_plan() -> Check:
     """Loads of a section with a straight lift line, and powers of the chord with values of their own."""
-    air, airfoil, powers = _some_air(), StraightAirfoil(), (1.07, 1.21)
+    air, airfoil, powers = some_air(), StraightAirfoil(), (1.07, 1.21)
     found = section_derivatives(airfoil, air, powers=powers)
     expected = {name: load for name, load in found.items() if name in plans.SECTION_LOADS}
     size = _sizes(air, expected) | dict.fromkeys(("lift_incidence", "mach"), 1.0)
@@ -109,7 +109,7 @@ def _loads_by_plan() -> Check:
         "lift_incidence": alpha + powers[0] * turn_incidence(air),
         "mach": speed / air.speed_of_sound,
     }
-    quantities = _quantities(air) | {
+    quantities = quantities_of(air) | {
         "lift_slope": airfoil.lift_slope,
         "zero_lift_angle": airfoil.zero_lift_angle,
         "drag_coefficient": airfoil.drag,

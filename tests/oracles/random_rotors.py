@@ -12,6 +12,7 @@ from tests.oracles.nonlinear_rotor import NonlinearRotor, trim_coordinates
 from tests.oracles.virtual_work import Aerodynamics
 
 SPEED_OF_SOUND = 340.3
+NO_LINKAGES = dict.fromkeys(("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling"), 0.0)
 
 
 @dataclass(frozen=True)

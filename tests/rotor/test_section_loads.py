@@ -16,7 +16,7 @@ def test_no_points_have_no_loads(scales, plain):
     deck = pp.load_case("xv15-uncoupled")
     rotor = deck.vary({"rotor.flap_hinge_offset": deck.given["rotor.flap_hinge_offset"].si * scales}).rotor
     sections = BladeSections.of(rotor, np.shape(scales)).take(np.zeros(0, dtype=int))
-    segments = {name: np.zeros((0, 1)) for name in section_loads._needed(airloads)}
+    segments = {name: np.zeros((0, 1)) for name in section_loads.quantities_of_air(airloads)}
     segments |= dict.fromkeys(list(segments)[:plain], np.float64(1.0))
     found = section_loads.load_moments(sections, segments, compressibility=True)
     assert {np.shape(moment)[:1] for moment in found.values()} <= {(), (0,)}

@@ -7,6 +7,7 @@ configuration, and the stamp that every result has.
     kept                 results that are kept as long as the objects live from which they were made
     batches              shapes of batches, and their points a few at a time
     quantities           the numbers of rotor, operation and options by the names of the derivation
+    lift_lag             the lag of lift, added to the matrices of a rotor
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
     blade_comparison     a hinged blade beside the elastic blade that it stands for
@@ -40,6 +41,7 @@ deferred import goes down: `LinearModel.modes` calls `stability`.
 
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
+from proprotor.model.lift_lag import with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
@@ -81,6 +83,7 @@ __all__ = [
     "state_space",
     "structural_damping",
     "unit_doubts",
+    "with_lift_lag",
     "with_mast",
     "with_reasons",
 ]

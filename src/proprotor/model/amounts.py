@@ -207,18 +207,20 @@ def _blade(case: Configuration) -> Iterator[tuple[str, Any, str, str]]:
     rotor, operation = case.rotor, case.operation
     r, weights = rotor.quadrature.stations, rotor.quadrature.weights[..., 0]
     chord = np.broadcast_to(rotor.sections.chord, r.shape)
-    mean, by_cube = (np.sum(weights * chord * r**n) / np.sum(weights * r**n) for n in (0, 3))
-    still = np.zeros(1)
-    slope = np.broadcast_to(rotor.airfoil.coefficients(still, still + _SLOW).lift_coefficient_alpha, (1,))[0]
+    still = np.zeros((1, r.shape[-1]))
+    coefficients = rotor.airfoil_at(r, ()).coefficients(still, still + _SLOW)
+    slope = np.broadcast_to(coefficients.lift_coefficient_alpha, still.shape)[0]
+    mean = np.sum(weights * chord) / np.sum(weights)
+    lift = np.sum(weights * slope * chord * r**3) / np.sum(weights * r**3)
     yield "precone", rotor.precone, "rad", ""
     yield "mean chord", mean, "m", "c = ∫ c dr / ∫ dr from the root cutout to the tip"
     yield "solidity", rotor.n_blades * mean / (np.pi * rotor.radius), "", "σ = N c / (π R)"
     yield (
         "Lock number",
-        operation.density * slope * by_cube * rotor.radius**4 / rotor.blade_inertia,
+        operation.density * lift * rotor.radius**4 / rotor.blade_inertia,
         "",
         (
-            "γ = ρ c_lα c R⁴ / I_b, with c = ∫ c r³ dr / ∫ r³ dr and c_lα at zero incidence without compressibility"
+            "γ = ρ c_lα c R⁴ / I_b, with c_lα c = ∫ c_lα c r³ dr / ∫ r³ dr and c_lα at zero incidence and low speed"
         ),
     )
     yield "density", operation.density, "kg/m³", ""

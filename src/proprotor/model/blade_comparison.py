@@ -79,7 +79,7 @@ def compare_blades(stations: BladeStations, hinged: HingedBlade) -> BladeCompari
     found = [
         Compared("coning frequency", "rad/s", *_in_order(blade, clamped, collective, "flap")),
         Compared("collective lag frequency", "rad/s", *_in_order(blade, clamped, collective, "lag")),
-        Compared("cyclic lag frequency", "rad/s", *(_lag(one, speed) for one in (tilting.frequency, cyclic))),
+        Compared("cyclic lag frequency", "rad/s", _lag(tilting.frequency, speed), _lag(cyclic, speed)),
         Compared("cyclic flap frequency", "rad/s", tilting.frequency[:, 2], cyclic[:, 2], counts=False),
     ]
     for name in _PLANES:

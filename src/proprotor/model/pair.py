@@ -148,7 +148,7 @@ def rotors_on(
         left=left,
         mass_at_rest=None,
         shapes=_shapes_by_half(airframe, at_points(airframe.shapes, shape, 2)),
-        rates=airframe.rates,
+        rates=(*airframe.rates, *(in_half(half, name) for half in halves for name in right.rates)),
         rigid_body=airframe.rigid_body,
         symmetry=(*airframe.symmetry, *(half for half in halves for _ in own)),
         inputs=tuple(in_half(half, name) for half in halves for name in INPUTS),

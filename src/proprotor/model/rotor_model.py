@@ -15,6 +15,7 @@ from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
 from proprotor.model.kept import kept
+from proprotor.model.lift_lag import with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
@@ -23,7 +24,13 @@ from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.motions import MAST_TWIST, ROTOR_SPEED, reactionless_groups, reactionless_harmonics
+from proprotor.rotor.motions import (
+    MAST_TWIST,
+    ROTOR_SPEED,
+    lag_coordinates,
+    reactionless_groups,
+    reactionless_harmonics,
+)
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -94,7 +101,8 @@ def model_of(
     settled = solve_trim(sections, few, quantities, choice, target, points, one=shape == ())
     reactionless = _reactionless(rotor, choice)
     apart = reactionless_groups(reactionless) if reactionless else []
-    coordinates = (*FIXED, *(coordinate for group in apart for coordinate in group))
+    lagging = lag_coordinates() if choice.lift == "lagged" else ()
+    coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
     found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
     matrices: dict[str, Any] = {
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in found.items()
@@ -106,6 +114,7 @@ def model_of(
         airspeed=speed if speed.shape == shape else np.broadcast_to(speed, shape),
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
+        rates=tuple(coordinate.name for coordinate in lagging),
         apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
     )
     if choice.drive_train is not None and choice.drive_train.mast_stiffness is not None:
@@ -202,6 +211,8 @@ def _matrices(
             found = fused.rotor_matrices(quantities, in_air, len(rows), one)
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
+        if options.lift == "lagged":
+            found = with_lift_lag(found, sections.take(rows), quantities, options)
         if not options.pitch_is_free:
             found["B"] = _without_pitch_equations(found["K"], found["B"])
         if reactionless is not None:

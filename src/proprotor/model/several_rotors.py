@@ -98,6 +98,7 @@ def mount_rotors(rotors: Mapping[str, MountedRotor], support: NormalModes) -> Li
         rotor=None,
         mass_at_rest=None,
         shapes=None,
+        rates=tuple(f"{name} {rate}" for name, model in models.items() for rate in model.rates),
         apart=tuple(
             tuple(f"{name} {dof}" for dof in group) for name, model in models.items() for group in model.apart
         ),

@@ -34,6 +34,7 @@ Loads and trim:
     quadrature           stations along the blade and radial moments
     effective_sections   chord and twist from tables as polynomials between the stations
     section_loads        section loads gathered into radial moments
+    lift_lag             circulation along the blade in shape functions, for lift that lags
     trim                 the trim, and the target that closes it
     fused_balance        the balance of one blade by the fused functions, for batches
     balance_of_one       the same for one point, by plain numbers
@@ -47,7 +48,7 @@ Loads and trim:
     trim_solver          Newton's method for all points
 
 All public names of the modules `blade_stations`, `elastic_blade`, `hinged_blade`, `from_stations`, `fused`,
-`generated`, `motions`, `options` and `section_loads` belong to the face.
+`generated`, `lift_lag`, `motions`, `options` and `section_loads` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -88,6 +89,7 @@ __all__ = [
     "fused",
     "generated",
     "hinged_blade",
+    "lift_lag",
     "motions",
     "options",
     "section_loads",

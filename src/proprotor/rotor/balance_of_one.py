@@ -104,11 +104,11 @@ class _Stations:
         segment = np.repeat(np.arange(count), quadrature.counts)
         weights = np.zeros((len(segment), count, POWERS))
         weights[np.arange(len(segment)), segment] = quadrature.weights
-        airfoil = vars(cast(Airfoil, sections.airfoil))
+        airfoil = cast(Airfoil, sections.airfoil)
         chords = {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
         given = {name: part.item() if part.size == 1 else part for name, part in chords.items()}
         given |= {
-            name: np.broadcast_to(np.ravel(airfoil[field]), segment.shape).astype(float)
+            name: np.broadcast_to(np.ravel(getattr(airfoil, field)), segment.shape).astype(float)
             for field, name in OF_AIRFOIL.items()
         }
         numbers = zip(*(side.tolist() for side in sections.sides.values()), strict=True)

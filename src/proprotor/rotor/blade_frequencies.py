@@ -53,7 +53,7 @@ class BladeFrequencies:
         Whether a bent blade turns in pitch. With "none" the springs do not turn with the pitch, and no deflection makes
         a pitching moment. With "springs" elastic pitch and the yoke's roll change the stiffness as they change that of
         the rotor's own springs, so that pitch equations and K_Pβ, K_Pζ keep their couplings; flap and lag are uncoupled
-        at zero elastic pitch.
+        at zero elastic pitch and where no linkage turns the blade.
 
     Raises
     ------

@@ -21,6 +21,9 @@ HALVES = ("symmetric", "antisymmetric")  # of the motion of an aircraft with two
 _NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning"}  # of the modes of single coordinates
 _PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
+LAGS = ("slow", "fast")  # states of lift that lags
+LAG_SHAPES = 2  # functions of the radius in which lift lags; tests/model/test_lift_lag.py has their error
+_LIFT = re.compile(r"(^| )(slow|fast) lift( \d+)?$")  # stems of their coordinates
 
 
 class Motion(NamedTuple):
@@ -29,7 +32,8 @@ class Motion(NamedTuple):
     Attributes
     ----------
     names : tuple of str
-        One name, or the names of the regressive and the progressive mode.
+        One name, or the names of the regressive and the progressive mode. A cyclic pair of which only the rates are
+        states, of lift that lags, has one mode.
     places : tuple of int
         Places of the coordinate, or of the cosine and the sine part, among the coordinates of the model.
     """
@@ -58,6 +62,28 @@ def reactionless_groups(n_blades: int) -> list[tuple[Coordinate, ...]]:
 def reactionless_harmonics(n_blades: int) -> range:
     """Return the harmonics of the reactionless pairs of coordinates, 2 to below N/2."""
     return range(2, (n_blades + 1) // 2)
+
+
+def lag_coordinates(shapes: int = LAG_SHAPES) -> tuple[Coordinate, ...]:
+    """Return the coordinates whose rates are circulation that lags, in m/s, for a number of functions of the radius."""
+    return tuple(
+        Coordinate(
+            f"{lag} lift{f' {shape}' if shape > 1 else ''}_{harmonic}{part}", "lift", harmonic, part, "m"
+        )
+        for lag in LAGS
+        for shape in range(1, shapes + 1)
+        for harmonic, part in ((0, ""), (1, "c"), (1, "s"))
+    )
+
+
+def is_lift(name: str) -> bool:
+    """Return whether a coordinate is one of those of lift that lags, of any rotor."""
+    return bool(_LIFT.search(name.rpartition("_")[0]))
+
+
+def is_of_rotor(name: str) -> bool:
+    """Return whether a coordinate or mode of a model is one of a rotor, and not of its support."""
+    return re.sub(r"\d+", "2", half_of(name)[1]) in _names_of_rotors()
 
 
 def motions(dofs: tuple[str, ...]) -> list[Motion]:
@@ -89,9 +115,11 @@ def _is_cosine(dof: str) -> bool:
     return bool(stem) and part.endswith("c") and part[:-1].isdigit()
 
 
-def _cyclic_names(dof: str) -> tuple[str, str]:
-    """Return the names of the two modes of a cyclic motion, by its cosine part."""
+def _cyclic_names(dof: str) -> tuple[str, ...]:
+    """Return the names of the modes of a cyclic motion, by its cosine part."""
     half, own = half_of(dof)
+    if is_lift(own):
+        return (f"{half} cyclic {own.rpartition('_')[0]}".lstrip(),)
     stem, _, part = own.rpartition("_")
     motion = stem if part == "1c" else f"{stem} {part[:-1]}"
     regressive, progressive = (f"{half} {way} {motion}".lstrip() for way in ("regressive", "progressive"))
@@ -156,5 +184,6 @@ def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
 def _names_of_rotors() -> frozenset[str]:
     """Return the coordinates and modes of rotors with any number of blades, each harmonic written as 2."""
     reactionless = (coordinate.name for coordinate in reactionless_coordinates(6))
-    dofs = (*FIXED_COORDINATES[len(HUB) :], MAST_TWIST, *reactionless)
+    lift = (coordinate.name for coordinate in lag_coordinates())
+    dofs = (*FIXED_COORDINATES[len(HUB) :], MAST_TWIST, *lift, *reactionless)
     return frozenset(re.sub(r"\d+", "2", name) for name in (*dofs, *name_list(dofs)))

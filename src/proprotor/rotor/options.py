@@ -25,6 +25,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "airloads": ("full", "lift-slope", "none"),
     "compressibility": (True, False),
     "section_damping": (None, True, False),
+    "lift": ("quasi-steady", "lagged"),
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
 }
@@ -70,6 +71,9 @@ class Options:
         Quasi-steady damping of turning sections (lift by the incidence at 3/4 chord, and the moment about the quarter
         chord), in the trim too. When not given, the damping is on, but off with equations="published"; True adds the
         damping to these equations. Lift-slope airloads keep the lift of the damping alone.
+    lift : "quasi-steady" or "lagged"
+        Lift of blade sections that follows air and pitch at once, or that their shed vortices hold back, with states of
+        its own (consistent equations with airloads; no reactionless motions). The trim is the same.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional
@@ -94,6 +98,7 @@ class Options:
     airloads: str = "full"
     compressibility: bool = True
     section_damping: bool | None = None
+    lift: str = "quasi-steady"
     rotor_speed: str = "windmilling"
     drive_train: DriveTrain | None = None
     reactionless: bool = False
@@ -127,6 +132,17 @@ class Options:
             raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
         if self.drive_train is not None and self.rotor_speed == "constant":
             raise InputError("drive_train", self.drive_train, 'goes with rotor_speed="windmilling"')
+        if self.lift == "lagged":
+            self._check_lag()
+
+    def _check_lag(self) -> None:
+        """Refuse options without equations for the lag of lift."""
+        if self.equation_set != EQUATION_SETS["consistent"]:
+            raise InputError("lift", self.lift, 'goes with equations="consistent"')
+        if self.airloads == "none":
+            raise InputError("lift", self.lift, 'goes with airloads="full" or "lift-slope"')
+        if self.reactionless:
+            raise InputError("lift", self.lift, "goes with reactionless=False")
 
     @property
     def equation_set(self) -> EquationSet:

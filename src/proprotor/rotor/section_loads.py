@@ -183,13 +183,10 @@ def load_moments(
     numbers = (sections.quadrature.stations, *sections.along, *segments.values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
     moments: defaultdict[str, Array] = defaultdict(lambda: np.zeros(shape, dtype=kind))
-    needed = {name: segments[name] for name in _needed(equations)}
+    needed = {name: segments[name] for name in quantities_of_air(equations)}
     for rows, here in sections.blocks(points):
-        block = {
-            name: value[rows] if np.ndim(value) > 1 and len(value) > 1 else value
-            for name, value in needed.items()
-        }
-        air, coefficients, spins = _aerodynamics(here, block, compressibility, equations)
+        block = at_rows_of_points(needed, rows)
+        air, coefficients, spins = aerodynamics(here, block, compressibility, equations)
         if doubts is not None:
             of_stations = air["lift_incidence"], air["mach"]
             mark_doubts(doubts, here, block["radius"], of_stations, rows, points)
@@ -204,15 +201,23 @@ def load_moments(
     return dict.fromkeys(LOAD_MOMENTS, 0.0) | found
 
 
+def at_rows_of_points(quantities: _Quantities, rows: Array | slice) -> dict[str, Any]:
+    """Return quantities of the segments, (segments,) or (points, segments), at some of the points."""
+    return {
+        name: value[rows] if np.ndim(value) > 1 and len(value) > 1 else value
+        for name, value in quantities.items()
+    }
+
+
 @functools.cache
-def _needed(equations: ModuleType) -> tuple[str, ...]:
+def quantities_of_air(equations: ModuleType = airloads) -> tuple[str, ...]:
     """Return the names of the quantities of a segment that the section loads need."""
     others = ("density", "speed_of_sound", "section_damping", "pitch", "radius")
     return tuple(dict.fromkeys((*keywords(equations.trim_velocity), *others)))
 
 
-def _aerodynamics(
-    sections: BladeSections, segments: _Quantities, compressibility: bool, equations: ModuleType
+def aerodynamics(
+    sections: BladeSections, segments: _Quantities, compressibility: bool, equations: ModuleType = airloads
 ) -> tuple[dict[str, Any], SectionCoefficients, bool]:
     """Return air and coefficients at the stations, and whether the rotation of the sections is damped.
 

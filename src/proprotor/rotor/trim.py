@@ -153,13 +153,13 @@ def _springs_of_frequencies(frequencies: BladeFrequencies, quantities: dict[str,
     springs: dict[str, Any] = evaluate(flap_lag_springs.stiffness_of_frequencies, stated)._asdict()
     if frequencies.pitch_coupling == "none":
         return dict.fromkeys(flap_lag_springs.EffectiveStiffness._fields, 0.0) | springs
-    turned = _turned_by_elastic_pitch(quantities)
+    turned = _turned_from_collective(quantities)
     return turned | {name: stiffness + turned.get(name, 0.0) for name, stiffness in springs.items()}
 
 
-def _turned_by_elastic_pitch(quantities: dict[str, Any]) -> dict[str, Any]:
-    """Return what elastic pitch adds to the stiffness of the rotor's own springs, and the derivatives with pitch."""
+def _turned_from_collective(quantities: dict[str, Any]) -> dict[str, Any]:
+    """Return what elastic pitch and linkages add to the stiffness of the rotor's own springs, with its derivatives."""
     turned = effective_stiffness(quantities)
-    rigid = quantities["structural_pitch"] - quantities["elastic_pitch"]
+    rigid = quantities["collective"] + quantities["structural_pitch_offset"]
     before = effective_stiffness(quantities | {"structural_pitch": rigid})
     return turned | {name: turned[name] - before[name] for name in turned if name.endswith("_stiffness")}

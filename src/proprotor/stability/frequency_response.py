@@ -12,7 +12,7 @@ from proprotor.errors import InputError, check_known
 from proprotor.model.linear_model import SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
 from proprotor.needs import check_memory
-from proprotor.rotor.motions import HUB, half_of
+from proprotor.rotor.motions import HUB, half_of, is_lift
 from proprotor.stability.modes import doubt_and_failure, leading_dims
 from proprotor.stability.root_error import roots
 from proprotor.typing import Array, Dataset
@@ -175,4 +175,5 @@ def _unit_of(output: str) -> str:
     if name in LOADS:
         return "N" if name.startswith("force") else "N*m"
     per = next((unit for ending, unit in _PER.items() if name.endswith(ending)), "")
-    return ("m" if name.split(" ")[0] in HUB[:3] else "rad") + per
+    length = name.split(" ")[0] in HUB[:3] or is_lift(name.removesuffix(" rate"))
+    return ("m" if length else "rad") + per

@@ -17,7 +17,8 @@ from proprotor_equations import rotor as whole_rotor
 
 from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
-from proprotor.model.linear_model import LinearModel
+from proprotor.model.lift_lag import with_lift_lag
+from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
 from proprotor.model.mount import mount
@@ -29,7 +30,7 @@ from proprotor.model.rotor_share import without_rotors
 from proprotor.model.stamp import of_model
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.motions import MAST_TWIST
+from proprotor.rotor.motions import MAST_TWIST, lag_coordinates
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -150,6 +151,8 @@ def _rotor_parts(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dic
         _airloads(BladeSections.of(own.rotor, shape), quantities, own.choice)
     )
     found = {name: _in_fixed_frame(part, quantities) for name, part in blade.items()}
+    if own.choice.lift == "lagged":
+        found["lag of lift"] = _lag_of_lift(BladeSections.of(own.rotor, shape), quantities, own.choice, shape)
     return found | _other_parts(quantities, own.choice)
 
 
@@ -227,6 +230,16 @@ def _airloads(
             yield origin, _Part(zero, *(coupled - alone))
 
 
+def _lag_of_lift(
+    sections: BladeSections, quantities: dict[str, Any], choice: Options, shape: tuple[int, ...]
+) -> _Part:
+    """Return what the lag of lift adds, on the rotor's coordinates and its own."""
+    own, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
+    nothing = {name: np.zeros((points, own, len(INPUTS) if name == "B" else own)) for name in "MCKB"}
+    found = with_lift_lag(nothing, sections, quantities, choice)
+    return _Part(*(found[name] for name in "MCK"))
+
+
 def _moments(
     sections: BladeSections,
     quantities: dict[str, Any],
@@ -274,21 +287,27 @@ def _alone(
     name: str, part: _Part, choice: Options, model: LinearModel, shape: tuple[int, ...]
 ) -> LinearModel:
     """Return a part of a rotor as a rotor alone, with the twist of its mast; the drive train with its engine."""
-    n, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
+    lagging = lag_coordinates() if choice.lift == "lagged" else ()
+    dofs = (*FIXED_COORDINATES, *(coordinate.name for coordinate in lagging))
+    n, points = len(dofs), int(np.prod(shape, dtype=int))
     matrices: dict[str, Any] = {
-        kind: np.broadcast_to(matrix, (points, n, n)).reshape(*shape, n, n)
+        kind: np.broadcast_to(_padded(matrix, n), (points, n, n)).reshape(*shape, n, n)
         for kind, matrix in zip("MCK", part, strict=True)
     }
-    alone = LinearModel(**matrices, dofs=FIXED_COORDINATES, trim=model.trim, airspeed=model.airspeed)
+    alone = LinearModel(**matrices, dofs=dofs, trim=model.trim, airspeed=model.airspeed)
     train = choice.drive_train
     if train is None or train.mast_stiffness is None:
         return alone
     if name == "drive train":
         return with_mast(alone, train)
-    padded: dict[str, Any] = {
-        kind: np.pad(matrix, [(0, 0)] * len(shape) + [(0, 1), (0, 1)]) for kind, matrix in matrices.items()
-    }
-    return replace(alone, **padded, dofs=(*FIXED_COORDINATES, MAST_TWIST))
+    padded: dict[str, Any] = {kind: _padded(matrix, n + 1) for kind, matrix in matrices.items()}
+    return replace(alone, **padded, dofs=(*dofs, MAST_TWIST))
+
+
+def _padded(matrix: Array, n: int) -> Array:
+    """Return a matrix with zeros for further coordinates, (..., n, n)."""
+    more = (0, n - matrix.shape[-1])
+    return np.pad(matrix, [(0, 0)] * (matrix.ndim - 2) + [more, more])
 
 
 def _mounted(

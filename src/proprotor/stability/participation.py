@@ -21,7 +21,7 @@ from proprotor.typing import Array
 class _Participation(NamedTuple):
     """Parts of motions in modes of points, 0 to 1; the parts of coordinates sum to 1, and those of names.
 
-    coordinates (n, modes, points) : of each coordinate; names (n, modes, points) : of the motion of each name of
+    coordinates (n, modes, points) : of each coordinate; names (names, modes, points) : of the motion of each name of
     `proprotor.rotor.motions.name_list`.
     """
 
@@ -44,6 +44,8 @@ class _Cyclic(NamedTuple):
     sine_states: Array
     others: Array
     singles: Array
+    paired: Array
+    partners: Array
 
 
 def participation(model: LinearModel, held: list[int], left: Array, right: Array) -> _Participation:
@@ -60,8 +62,9 @@ def participation(model: LinearModel, held: list[int], left: Array, right: Array
     """
     n, cyclic = len(model.dofs), _cyclic_motions(model.dofs, tuple(held))
     sums = _of_coordinates(held, n, left, right)
-    named = np.empty(sums.shape)
+    named = np.empty((2 * len(cyclic.name) + len(cyclic.others), *sums.shape[1:]))
     named[cyclic.others] = sums[cyclic.singles]
+    named[cyclic.paired] += sums[cyclic.partners]
     if len(cyclic.name):
         whole = whirling(model.dofs, held, left, right).sum(axis=0)
         progressive = _progressive_part(model, cyclic, left, right)
@@ -117,13 +120,15 @@ def _turning(c: Array, s: Array) -> tuple[Array, Array]:
 @lru_cache(maxsize=16)  # of the models of an analysis, which has many batches
 def _cyclic_motions(dofs: tuple[str, ...], held: tuple[int, ...]) -> _Cyclic:
     """Return the cyclic motions of a model with some coordinates whose displacement is a state."""
-    names = [(motion, place) for motion in motions(dofs) for place in range(len(motion.places))]
-    first = [at for at, (motion, place) in enumerate(names) if len(motion.places) == 2 and place == 0]
-    others = [at for at, (motion, _) in enumerate(names) if len(motion.places) == 1]
+    names = [(motion, place) for motion in motions(dofs) for place in range(len(motion.names))]
+    first = [at for at, (motion, place) in enumerate(names) if len(motion.names) == 2 and place == 0]
+    others = [at for at, (motion, _) in enumerate(names) if len(motion.names) == 1]
+    paired = [at for at in others if len(names[at][0].places) == 2]
     places = np.array([names[at][0].places for at in first], dtype=int).reshape(-1, 2).T
     states = np.concatenate([np.searchsorted(held, places), len(held) + places], axis=1)
     singles = [names[at][0].places[0] for at in others]
-    ends = np.array(others, dtype=int), np.array(singles, dtype=int)
+    partners = [names[at][0].places[1] for at in paired]
+    ends = (np.array(some, dtype=int) for some in (others, singles, paired, partners))
     return _Cyclic(np.array(first, dtype=int), places[0], places[1], states[0], states[1], *ends)
 
 

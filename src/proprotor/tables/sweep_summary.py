@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from proprotor_equations import FIXED_COORDINATES
 
+from proprotor.rotor.motions import is_of_rotor
 from proprotor.typing import Array, Dataset
 
 # Shares of the way that both roots go, and of a root: the line of a name goes on where the name passes no farther.
@@ -110,7 +110,7 @@ def leaps(sweep: Dataset) -> Array:
 
 def support_coordinates(sweep: Dataset) -> list[str]:
     """Return the coordinates of the support, which are all but the rotor's."""
-    return [name for name in sweep.dof.values.tolist() if name not in FIXED_COORDINATES]
+    return [name for name in sweep.dof.values.tolist() if not is_of_rotor(name)]
 
 
 def support_share(sweep: Dataset) -> Array:
