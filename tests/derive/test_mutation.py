@@ -86,6 +86,14 @@ def test_every_generated_function_is_of_the_model(monkeypatch):
     soft = dataclasses.replace(case.rotor, control_stiffness=case.rotor.control_stiffness / 50)
     pp.rotor_model(soft, case.operation, 10.0)  # a trim that starts by a search for the rigid blade's pitch
     pp.load_case("xv15-wing")
+    ones = dict.fromkeys(
+        ("mass_per_length", "flatwise_stiffness", "edgewise_stiffness", "torsion_stiffness", "chord"),
+        np.ones(3),
+    )
+    blade = pp.BladeStations(
+        radius=np.linspace(0, 1, 3), twist=np.linspace(0.3, 0, 3), control_stiffness=1.0, **ones
+    )
+    pp.Rotor.from_stations(blade, rotor_speed=1.0, pitch=[0.1, 0.2, 0.3], n_blades=3, airfoil=airfoil)
     assert set(generated_functions()) - called == FOR_USE_ALONE
 
 
