@@ -57,7 +57,6 @@ OPTIONS = (
 FOR_USE_ALONE = {
     ("rotor", "matrices"),
     ("coordinates", "transform"),
-    ("flap_lag_springs", "effective_stiffness"),
 }
 
 
