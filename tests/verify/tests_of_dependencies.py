@@ -33,8 +33,8 @@ ALL = {
     "xarray": ("stability/test_airspeeds.py", "study/test_mode_damping.py"),
 }
 
-# A few tests of each dependency, which still pass through every module of the package that calls it. What is left out
-# asks again, with other inputs, for numbers and messages that are the package's own.
+# A few tests of each dependency, which call what the package uses of it. What is left out asks again, with other
+# inputs, for numbers and messages that are the package's own.
 _EXPLORE, _COMMANDS, _RESUME = (
     "explore/test_explore.py",
     "commands/test_command_line.py",
