@@ -9,6 +9,7 @@ that it runs in an environment that has no more.
 import os
 import sys
 from collections.abc import Iterable
+from pathlib import Path
 
 from click.testing import CliRunner
 
@@ -16,9 +17,17 @@ CASE = "xv15-uncoupled"
 SPEED = ("--speed", "100:200:50kt")
 RANGE = ("--vary", "rotor.precone=1:2:1 deg")
 SAMPLE = ("--vary", "rotor.precone=1:2 deg", "--sample", "saltelli", "--size", "2")
+STATIONS = """r [m],mass [kg/m],EI_flat [N*m**2],EI_edge [N*m**2],GJ [N*m**2],twist [deg],chord [m],pitch_inertia [kg*m]
+0.2,12,2e7,2e7,2e5,28,0.35,0.09
+0.28,12,3e3,1.2e4,2e5,28,0.35,0.09
+0.36,12,2e7,2e7,2e5,27,0.35,0.09
+3.8,12,2e7,2e7,2e5,0,0.35,0.09
+"""
+BLADE = ("--rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
 # Each command as it needs no extra.
 PLAIN = {
     "cases": (CASE,),
+    "blade": ("stations.csv", *BLADE),
     "new": ("new.toml",),
     "describe": ("rotor.precone",),
     "sweep": (CASE, *SPEED, "--csv", "sweep.csv", "--plot", "sweep.png"),
@@ -68,6 +77,7 @@ def main(folder: str, *hidden: str) -> int:
 
     assert set(PLAIN) == set(proprotor.commands), set(PLAIN) ^ set(proprotor.commands)
     os.chdir(folder)
+    Path("stations.csv").write_text(STATIONS, encoding="utf-8")
     linearize, computed = Case.linearize, []
     for command, words in PLAIN.items():
         done = CliRunner().invoke(proprotor, [command, *words])

@@ -6,6 +6,7 @@ from click.testing import CliRunner
 
 import proprotor as pp
 from proprotor.commands.main import main
+from proprotor.model.amounts import amounts
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from tests.c81_files import as_c81, made_up_tables
 
@@ -147,3 +148,14 @@ def test_the_left_rotor_may_have_airfoils_of_its_own(deck):
     assert [part.moment for part in case.left.rotor.airfoil.airfoils] == [-0.075, -0.02]
     assert case.rotor.airfoil.moment == 0 and case.given["left.rotor.airfoil.moment"].si == (-0.075, -0.02)
     assert case.linearize(120.0).trim.converged
+
+
+def test_the_lock_number_has_the_lift_slope_of_each_radius(deck):
+    """With a constant chord: the mean of the lift slopes, weighed by r³ between the cutout and the tip."""
+    case = pp.load_case(deck(THREE))
+    edges = np.array([float(case.rotor.root_cutout / case.rotor.radius), 0.55, 0.8, 1.0])
+    share = np.diff(edges**4) / (1 - edges[0] ** 4)
+    rotor = case.rotor
+    unit = case.operation.density * rotor.chord * rotor.radius**4 / rotor.blade_inertia
+    found = next(one for one in amounts(case) if one.name == "Lock number")
+    np.testing.assert_allclose(found.value, unit * (share @ [6.1, 5.8, 6.5]), rtol=1e-12)

@@ -23,6 +23,7 @@ _ADDED = {
     "drive_damping": 7.0,
     "shaft_stiffness": 5e4,
     "cyclic_flap_stiffness_excess": 2.3e3,
+    "cyclic_control_stiffness_excess": 900.0,
 }
 _NAMES = ("mass", "damping", "stiffness")
 
@@ -64,6 +65,7 @@ def _transform() -> Check:
 def _swashplate() -> Iterator[Check]:
     given = {name: blade_quantities()[name] for name in ("control_stiffness", "pitch_damping", "rotor_speed")}
     given["n_blades"] = _n_blades()
+    given["cyclic_control_stiffness_excess"] = _ADDED["cyclic_control_stiffness_excess"]
     expected = np.array([_pulled(place) for place in range(len(points()))])
     size = (given["n_blades"] * given["control_stiffness"])[:, None, None]
     told = "springs and dampers between blades and swashplate"
@@ -75,7 +77,10 @@ def _n_blades() -> NDArray:
 
 
 def _pulled(place: int) -> NDArray:
-    """Loads (18, 3) on a rotor: each blade's pitch is pulled towards a + b cos ψ + c sin ψ by spring and damper."""
+    """Loads (18, 3) on a rotor: each blade's pitch is pulled towards a + b cos ψ + c sin ψ by spring and damper.
+
+    Where the swashplate tilts, b and c, the spring has another stiffness.
+    """
     spring, damper, omega = (
         blade_quantities()[name][place] for name in ("control_stiffness", "pitch_damping", "rotor_speed")
     )
@@ -85,7 +90,8 @@ def _pulled(place: int) -> NDArray:
         own = seen_from_blade(FIXED_COORDINATES, azimuth)[0][BLADE_COORDINATES.index("pitch")]
         asked = np.array([1.0, np.cos(azimuth), np.sin(azimuth)])
         rate = omega * np.array([0.0, -np.sin(azimuth), np.cos(azimuth)])
-        loads += np.outer(own, spring * asked + damper * rate)
+        springs = spring + _ADDED["cyclic_control_stiffness_excess"] * np.array([0.0, 1.0, 1.0])
+        loads += np.outer(own, springs * asked + damper * rate)
     return loads
 
 
@@ -134,14 +140,12 @@ def _rotor(blade: dict[str, NDArray], size: dict[str, NDArray]) -> tuple[dict[st
 
 
 def _other(n_blades: int) -> list[NDArray]:
-    """M, C, K of engine and shaft, and of springs that collective flapping does not feel."""
+    """M, C, K of engine and shaft, and of springs that collective motion does not feel."""
     azimuth, turn = (np.array(FIXED_COORDINATES) == name for name in ("azimuth", "alpha_z"))
     mass = _ADDED["drive_inertia"] * np.outer(azimuth | turn, azimuth | turn)
     damping = _ADDED["drive_damping"] * np.outer(azimuth, azimuth)
     stiffness = _ADDED["shaft_stiffness"] * np.outer(azimuth, azimuth)
-    cyclic = np.isin(FIXED_COORDINATES, ["flap_1c", "flap_1s"])
-    return [
-        mass,
-        damping,
-        stiffness + n_blades / 2 * _ADDED["cyclic_flap_stiffness_excess"] * np.diag(cyclic),
-    ]
+    for angle, excess in (("flap", "cyclic_flap"), ("pitch", "cyclic_control")):
+        cyclic = np.isin(FIXED_COORDINATES, [f"{angle}_1c", f"{angle}_1s"])
+        stiffness = stiffness + n_blades / 2 * _ADDED[f"{excess}_stiffness_excess"] * np.diag(cyclic)
+    return [mass, damping, stiffness]

@@ -84,7 +84,8 @@ def _springs() -> Iterator[Check]:
     flap, lag, pitch = (BLADE_COORDINATES.index(name) for name in ("flap", "lag", "pitch"))
     kept = np.zeros((len(BLADE_COORDINATES),) * 2)
     kept[np.ix_((flap, lag, pitch), (flap, lag))] = 1.0  # springs that stay at the pitch of trim
-    published = [tuple(matrix * kept for matrix in three) for three in matrices]
+    alone = (one_blade.spring_matrices(one_blade.without_linkages(p)) for p in points())
+    published = [tuple(matrix * kept for matrix in three) for three in alone]
     names = (None, None, ("published.flap_lag_springs", "stiffness"))
     yield from _of_matrices(names, f"{told} at the pitch of trim", quantities, published)
 
@@ -95,8 +96,8 @@ def _pitch() -> Iterator[Check]:
     yield from _of_matrices(names, told, blade_quantities(), map(one_blade.pitch_matrices, points()))
     names = (("published.pitch", "mass"), None, ("published.pitch", "stiffness"))
     absent = ("propeller_moment", "pitch_gimbal_coupling")
-    matrices = (one_blade.pitch_matrices(p, *absent) for p in points())
-    told = f"{told} without propeller moment and pitch-gimbal coupling"
+    matrices = (one_blade.pitch_matrices(one_blade.without_linkages(p), *absent) for p in points())
+    told = f"{told} without propeller moment and linkages"
     yield from _of_matrices(names, told, blade_quantities(), matrices)
 
 

@@ -103,7 +103,7 @@ def quantities(point: Point) -> dict[str, float]:
     given = {k: v for k, v in point.pair.fields.items() if k not in ("airfoil", "chord", "twist")}
     given |= point.state | hub_couplings(point)
     given["propeller_moment"] = float(given["propeller_moment"])
-    given["pitch"] = given["collective"] + given["elastic_pitch"]
+    given["pitch"] = given["collective"] + given["elastic_pitch"] - turned_by_linkages(point)
     given["structural_pitch"] = given["pitch"] + given["structural_pitch_offset"]
     return given | {
         "rotor_speed": point.rotor.rotor_speed,
@@ -114,6 +114,20 @@ def quantities(point: Point) -> dict[str, float]:
         "pitch_flap_coupling": point.pitch_flap_coupling,
         "pitch_lag_coupling": point.pitch_lag_coupling,
     }
+
+
+def turned_by_linkages(point: Point) -> float:
+    """Angle, nose down, by which the linkages of the hinges turn the blade at its steady coning and lag."""
+    rotor = point.rotor
+    of_coning = rotor.kinematic_pitch_flap_coupling * point.trim[FLAP]
+    return float(of_coning + rotor.kinematic_pitch_lag_coupling * point.trim[LAG])
+
+
+def without_linkages(point: Point) -> Point:
+    """The same blade at the same steady pitch, which its hinges do not turn."""
+    gone = {"kinematic_pitch_flap_coupling": 0.0, "kinematic_pitch_lag_coupling": 0.0}
+    collective = point.rotor.collective - turned_by_linkages(point)
+    return replace(point, rotor=replace(point.rotor, collective=collective, **gone))
 
 
 def arms(point: Point) -> tuple[NDArray, NDArray, NDArray]:

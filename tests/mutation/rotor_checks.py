@@ -53,14 +53,22 @@ def _rotor(n_blades: int) -> Iterator[Check]:
 
 
 def _cyclic_restraint(n_blades: int) -> Check:
-    """A spring on every blade that collective flapping does not feel: Σ k (β_C cos ψ + β_S sin ψ)²."""
+    """Springs on every blade that collective motion does not feel: Σ k (β_C cos ψ + β_S sin ψ)², and of pitch alike."""
     azimuth = _SHAFT + 2 * np.pi * np.arange(n_blades) / n_blades
-    seen = np.zeros((n_blades, len(FIXED_COORDINATES)))
-    seen[:, FIXED_COORDINATES.index("flap_1c")] = np.cos(azimuth)
-    seen[:, FIXED_COORDINATES.index("flap_1s")] = np.sin(azimuth)
-    given = {"n_blades": n_blades, "cyclic_flap_stiffness_excess": 2.3}
+    springs = {"flap": 2.3, "pitch": 3.7}
+    expected = np.zeros((len(FIXED_COORDINATES),) * 2)
+    for angle, spring in springs.items():
+        seen = np.zeros((n_blades, len(FIXED_COORDINATES)))
+        seen[:, FIXED_COORDINATES.index(f"{angle}_1c")] = np.cos(azimuth)
+        seen[:, FIXED_COORDINATES.index(f"{angle}_1s")] = np.sin(azimuth)
+        expected += spring * seen.T @ seen
+    given = {
+        "n_blades": n_blades,
+        "cyclic_flap_stiffness_excess": springs["flap"],
+        "cyclic_control_stiffness_excess": springs["pitch"],
+    }
     sees, told = ("multiblade", "cyclic_restraint"), "the sum over the blades"
-    return matrix_check(sees, told, given, 2.3 * seen.T @ seen, n_blades)
+    return matrix_check(sees, told, given, expected, n_blades)
 
 
 def _drive_train() -> Iterator[Check]:

@@ -32,9 +32,9 @@ Rows = list[list[float]]
 _NO_LOADS = dict.fromkeys(LOAD_MOMENTS, 0.0)
 _LINES = plans.LINE.index("ut_0")
 # What the plan `work` takes besides line and moments: of the blade, and moments that a straight lift line has not.
-_LINKAGES = ("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling")
-_OF_BLADE = ("rotor_speed", "airspeed", "lag_hinge_offset", *_LINKAGES)
+_SIDES = ("beyond_flap_hinge", "beyond_lag_hinge")
 _IDLE = {name: 0.0 for name in keywords(plans.work) if name in LOAD_MOMENTS}
+_OF_BLADE = tuple(name for name in keywords(plans.work) if name not in (*_IDLE, *_SIDES))
 
 
 class Here(NamedTuple):
