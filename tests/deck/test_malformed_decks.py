@@ -23,6 +23,7 @@ VARIANT = 'base = "xv15-uncoupled"\n[case]\nname = "my"\n'
 SPEED = ("--speed", "300 kt")
 COMMANDS = {
     "cases": (),
+    "export": ("a.mat", "--speed", "250 kt"),
     "sweep": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
     "flutter": ("--csv", "a.csv"),
     "map": (
