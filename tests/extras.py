@@ -23,7 +23,7 @@ STATIONS = """r [m],mass [kg/m],EI_flat [N*m**2],EI_edge [N*m**2],GJ [N*m**2],tw
 0.36,12,2e7,2e7,2e5,27,0.35,0.09
 3.8,12,2e7,2e7,2e5,0,0.35,0.09
 """
-BLADE = ("--rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
+BLADE = ("--at-rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
 # Each command as it needs no extra.
 PLAIN = {
     "cases": (CASE,),

@@ -41,6 +41,9 @@ _OF_PRINT_ALONE = ("airload moment nose down",)
 Terms = dict[sp.Expr, sp.Expr]  # product of symbols: number
 
 
+_NO_LINKAGES = dict.fromkeys(s.HINGE_LINKAGES, 0)
+
+
 @dataclass(frozen=True)
 class TermVerdict:
     """One term: the number in front of it in the print, the number in the derivation, and the verdict."""
@@ -103,7 +106,9 @@ def _without_squared_cosines(expression: sp.Expr) -> sp.Expr:
 
 @functools.cache
 def derived_terms(number: int | str, dropped: frozenset[str] = CONSISTENT) -> dict[str, Terms]:
-    return {part: terms_of(expression) for part, expression in COUNTERPARTS[number](dropped).items()}
+    """Return the terms of the derivation by part; the paper's blade has no linkages on its own hinges."""
+    parts = COUNTERPARTS[number](dropped)
+    return {part: terms_of(expression.subs(_NO_LINKAGES)) for part, expression in parts.items()}
 
 
 @functools.cache

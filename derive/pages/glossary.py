@@ -27,6 +27,7 @@ TITLES = {
     "symbols": "Inputs and trim",
     "kinematics": "Kinematics",
     **{name: step.title for name, step in STEPS.items()},
+    "fused_trim": "Sections with a straight lift line, in the fused trim",
 }
 
 HEAD = """\

@@ -1,7 +1,7 @@
 """The names that `import proprotor as pp` offers; the package imports this module where a name is first used.
 
 Datasets get the accessor ``.proprotor`` (`proprotor.plots.accessor`) once xarray is imported, by whomever: xarray takes
-longer to import than many an analysis.
+longer to import than many an analysis. The accessor itself is imported where a dataset is first asked for it.
 """
 
 import sys
@@ -88,8 +88,16 @@ __all__ = [
 ]
 
 
+def _results(dataset: Any) -> Any:
+    """Return the accessor of a dataset; the room `plots` is imported here, so that no study imports what only shows."""
+    return import_module("proprotor.plots.accessor").Results(dataset)
+
+
 def _register_accessor() -> None:
-    import_module("proprotor.plots.accessor").register()
+    """Give every `xarray.Dataset` the accessor."""
+    xarray = sys.modules["xarray"]
+    if not hasattr(xarray.Dataset, "proprotor"):
+        xarray.register_dataset_accessor("proprotor")(_results)
 
 
 class _AtImportOfXarray(MetaPathFinder):

@@ -29,7 +29,7 @@ def run(*words):
     return CliRunner().invoke(main, ["blade", *map(str, words)])
 
 
-GIVEN = ("--rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
+GIVEN = ("--at-rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
 
 
 def test_the_answer_and_its_files(table, tmp_path):
@@ -55,8 +55,8 @@ def test_json(table):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--rotor-speed", "0 rpm"), "--rotor-speed = 0 rpm: must be above zero"),
-        (("--rotor-speed", "458 kg"), "--rotor-speed = 458 kg: "),
+        (("--at-rotor-speed", "0 rpm"), "--at-rotor-speed = 0 rpm: must be above zero"),
+        (("--at-rotor-speed", "458 kg"), "--at-rotor-speed = 458 kg: "),
         (("--collective", "20 deg"), "--collective = 20 deg: must have at least 3 values"),
         (("--control-stiffness", "3e4"), "--control-stiffness = 3e4: "),
         (("--pitch-bearing", "3.5 m"), "pitch_bearing = 3.5: must lie inboard of 0.75 R"),

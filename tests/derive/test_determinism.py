@@ -29,6 +29,7 @@ def test_every_function_is_compared_and_the_same_files_do_not_differ(accepted):
             "n_blades * (\n        0.500000000001 * mass[..., BLADE_HUB_I",
         ),
         ("airloads.py", "(-(np.swapaxes(", "(1 + 1e-12) * (-(np.swapaxes("),
+        ("fused/trim.py", "    into[13] = ", "    into[13] = (1 + 1e-12) * "),
     ],
 )
 def test_a_part_in_a_million_million_is_found(accepted, path, old, new):
@@ -56,6 +57,13 @@ def test_shapes_are_read_from_a_docstring_with_its_indentation_and_without():
     for function.__doc__ in (text, inspect.cleandoc(text)):
         shapes.append([values.shape for values in determinism.random_arguments(function, 0).values()])
     assert shapes == [[(3, 5), (2, 2, 4), (7,)]] * 2
+
+
+def test_the_same_number_that_is_not_finite_counts_as_a_difference(accepted):
+    path = "pitch.py"
+    other = {path: accepted[path].replace("pitch_inertia\n", "np.nan * pitch_inertia\n", 1)}
+    _, worst, where = determinism.compared(accepted | other, accepted | other)
+    assert worst == float("inf") and where.startswith(("pitch.", "rotor."))
 
 
 def test_a_machine_without_a_second_python_is_told_so_in_one_line(accepted, tmp_path, monkeypatch, capsys):

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import proprotor as pp
-from proprotor.plots.accessor import register
+from proprotor.interface import _register_accessor
 from tests.csv_files import without_comments
 
 PRECONE = "rotor.precone"
@@ -125,7 +125,7 @@ def test_doubts_are_told(results):
 def test_any_other_dataset_offers_nothing():
     other = xr.Dataset({"x": ("y", [1.0])}).proprotor
     assert other.kind == "other" and other.plots == () and other.doubts == []
-    register()  # once more: without a warning
+    _register_accessor()  # once more: without a warning
 
 
 ORDERS = {

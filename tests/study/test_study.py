@@ -498,7 +498,7 @@ def test_a_file_that_cannot_be_is_told(tmp_path):
     with pytest.raises(InputError, match="must be a file"):
         save_results(found, tmp_path / "folder.nc")
     (tmp_path / "text.nc").write_text("no results")
-    for path, told in (("none.nc", "that exists"), ("text.nc", "cannot be read")):
+    for path, told in (("none.nc", "no such file"), ("text.nc", "cannot be read")):
         with pytest.raises(InputError, match=told):
             load_results(tmp_path / path)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["folder.nc", "text.nc"]

@@ -15,7 +15,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import difflib
-import functools
 import importlib
 import inspect
 import json
@@ -49,7 +48,9 @@ _DERIVE = (
 )
 _MATRIX = re.compile(r"^(\w+) : .*\(\.\.\., (segments, )?(\d+), (\d+)\)", re.MULTILINE)
 _GROUP = re.compile(r"^(\w+) : \[SI\] (\d+) numbers", re.MULTILINE)  # of a fused function
-_WAVES = {"cos": np.cos, "sin": np.sin}
+_INTO = re.compile(r"^into : .* the (\d+) results$", re.MULTILINE)  # of a fused function
+_OF_NUMPY = {"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "arctan": np.arctan}
+_MORE = {"speed_of_sound": 1.2}  # what is added to keep the air subsonic
 
 Files = dict[str, str]
 Functions = dict[str, dict[str, Callable]]  # by path of the module, and by name
@@ -227,40 +228,49 @@ def _functions(package: str, path: str) -> dict[str, Callable]:
 
 def random_arguments(function, seed: int) -> dict[str, np.ndarray]:
     """Numbers of order one for each argument, the same for a name wherever it stands; matrices as documented."""
-    text = (
-        inspect.getdoc(function) or ""
-    )  # without its indentation, which __doc__ has before Python 3.13 alone
+    text = _documented(function)
     shapes: dict[str, tuple[int, ...]] = {
         name: ((2,) if segments else ()) + (int(n), int(m)) for name, segments, n, m in _MATRIX.findall(text)
     }
     shapes |= {name: (int(count),) for name, count in _GROUP.findall(text)}
     found = {}
     for name in inspect.signature(function).parameters:
-        if name == "equations" or name in _WAVES:  # the modules of its own package, and what is no number
+        # The modules of its own package, and what is no number that goes in.
+        if name in ("equations", "into") or name in _OF_NUMPY:
             continue
         rng = np.random.default_rng([seed, zlib.crc32(name.encode())])
-        found[name] = rng.uniform(0.2, 0.9, shapes.get(name, ()))
+        found[name] = rng.uniform(0.2, 0.9, shapes.get(name, ())) + _MORE.get(name, 0.0)
     return found
+
+
+def _documented(function: Callable) -> str:
+    """The docstring without its indentation, which __doc__ has before Python 3.13 alone."""
+    return inspect.getdoc(function) or ""
 
 
 def _difference(function, other, arguments: Mapping[str, np.ndarray]) -> float:
     """The largest difference of an entry relative to it, cancellation allowed for."""
-    function, other = (_with_waves(it) for it in (function, other))
-    values, others = (_entries(it(**arguments)) for it in (function, other))
+    values, others = (_entries(_called(it, arguments)) for it in (function, other))
+    if values.shape != others.shape or not (np.isfinite(values).all() and np.isfinite(others).all()):
+        return np.inf
     difference = np.abs(values - others)
     if not difference.any():
         return 0.0
     scale = np.abs(values)
     for name in arguments:
         moved = dict(arguments) | {name: arguments[name] * (1 + 1e-6)}
-        scale = np.maximum(scale, np.abs(_entries(function(**moved)) - values) / 1e-6)
+        scale = np.maximum(scale, np.abs(_entries(_called(function, moved)) - values) / 1e-6)
     return float(np.max(difference / np.where(scale > 0, scale, 1.0)))
 
 
-def _with_waves(function: Callable) -> Callable:
-    """The function with the cosine and sine that a fused function takes."""
-    waves = {name: wave for name, wave in _WAVES.items() if name in inspect.signature(function).parameters}
-    return functools.partial(function, **waves)
+def _called(function: Callable, arguments: Mapping[str, np.ndarray]):
+    """The results, with the functions of NumPy and the array for results that a fused function takes."""
+    names = inspect.signature(function).parameters
+    given: dict[str, object] = {name: wave for name, wave in _OF_NUMPY.items() if name in names}
+    if "into" in names:
+        (count,) = _INTO.findall(_documented(function))
+        given["into"] = np.full(int(count), np.nan)
+    return function(**given, **arguments)
 
 
 def _entries(values) -> np.ndarray:

@@ -29,7 +29,7 @@ _FAN = (0.0, 1.3)  # rotor speeds of the plot, of that of the fit
 @arguments.command()
 @click.argument("stations", metavar="STATIONS")
 @click.option(
-    "--rotor-speed", required=True, metavar="SPEED", help='Rotor speed of the fit, such as "458 rpm".'
+    "--at-rotor-speed", required=True, metavar="SPEED", help='Rotor speed of the fit, such as "458 rpm".'
 )
 @click.option(
     "--collective",
@@ -59,7 +59,7 @@ _FAN = (0.0, 1.3)  # rotor speeds of the plot, of that of the fit
 def blade(
     outputs: output.Outputs,
     stations: str,
-    rotor_speed: str,
+    at_rotor_speed: str,
     collective: str,
     control_stiffness: str,
     pitch_bearing: str,
@@ -74,14 +74,14 @@ def blade(
 
     \b
     Examples:
-      proprotor blade blade.csv --rotor-speed "458 rpm" --collective "15:50:5 deg" \\
+      proprotor blade blade.csv --at-rotor-speed "458 rpm" --collective "15:50:5 deg" \\
         --control-stiffness "22400 ft*lbf/rad" --pitch-bearing "1.4 ft" --deck rotor.toml --plot fan.png
     """
     from proprotor.deck.blade_file import read_blade  # here, so that --help answers without them
     from proprotor.model.blade_comparison import compare_blades
 
     output.check_writable("--deck", deck)
-    speed = _positive("--rotor-speed", rotor_speed, "rad/s")
+    speed = _positive("--at-rotor-speed", at_rotor_speed, "rad/s")
     pitch = np.atleast_1d(values_in_si(collective, "rad", "--collective"))
     if len(set(pitch.tolist())) < 3:
         raise InputError("--collective", collective, 'must have at least 3 values, such as "15:50:5 deg"')

@@ -60,13 +60,13 @@ def export(
       proprotor export xv15 rotor.bdf --speed "370 kt" --grid 4001 --first-extra-point 9001
       proprotor export xv15 xv15.mat --speed "370 kt"
     """
-    save = _writer(file, grid, first_extra_point, length_unit, mass_unit)
+    write = _writer(file, grid, first_extra_point, length_unit, mass_unit)
     output.check_writable("FILE", file)
     case = request.load()
     airspeed = arguments.one_speed(speed, case)
     with waiting("Computing"):
         model = case.linearize(airspeed, **request.options)
-    save(model)
+    write(model)
     click.echo(f"Wrote {file}", err=True)
     if as_json:
         rotor = model.rotor if Path(file).suffix == _NASTRAN and model.rotor else model

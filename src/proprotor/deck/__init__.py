@@ -3,35 +3,35 @@
 In come the name or path of a deck, a TOML file, and settings for single fields; out goes a configuration of the kind
 asked for, with the source of every number, or the text of a deck and the description of its fields.
 
-    file               find and read deck files, with the deck that each alters
-    alternatives       fields that exclude each other, and how a variant replaces them
-    default_provenance a status and source for all numbers of one file
-    written            texts whose meaning depends on their file: names of files, frequencies per revolution
-    per_revolution     the rotor speed of each frequency per revolution
-    reading            one number: text to SI, with status and source
-    reading_lists      lists of numbers: curves, distributions along blade or wing
-    stations           distributions in a CSV file
-    blade_file         the stations of an elastic blade in a CSV file
-    fields             types of fields: form, unit, bound
-    sections           the sections of a deck, their fields and the meaning of each
-    support_sections   the section [support], one set of fields for each kind
-    tables             walk nested tables
-    text               printable text, prose on one line
-    validation         check tables against the sections, a line for each problem
-    settings           set single fields before a deck is validated
-    numbers            the numbers of a deck by path
-    build              rotor, operation and support from numbers
-    build_support      the support from numbers and files
-    build_airfoil      the airfoil, or the airfoils by region of the span
-    build_aircraft     the airframe of a whole aircraft from numbers
-    each_design        each different design of a batch, built once
-    left               what differs on the left side of an aircraft
-    vary               other designs: other values for numbers of the deck
-    describe           every field in words
-    fields_page        docs/decks.md
-    schema             the JSON schema, for editors
-    template           a deck as commented text
-    decks/             the bundled decks
+    file                find and read deck files, with the deck that each alters
+    alternatives        fields that exclude each other, and how a variant replaces them
+    default_provenance  a status and source for all numbers of one file
+    written             texts whose meaning depends on their file: names of files, frequencies per revolution
+    per_revolution      the rotor speed of each frequency per revolution
+    reading             one number: text to SI, with status and source
+    reading_lists       lists of numbers: curves, distributions along blade or wing
+    stations            distributions in a CSV file
+    blade_file          the stations of an elastic blade in a CSV file
+    fields              types of fields: form, unit, bound
+    sections            the sections of a deck, their fields and the meaning of each
+    support_sections    the section [support], one set of fields for each kind
+    tables              walk nested tables
+    text                printable text, prose on one line
+    validation          check tables against the sections, a line for each problem
+    settings            set single fields before a deck is validated
+    numbers             the numbers of a deck by path
+    build               rotor, operation and support from numbers
+    build_support       the support from numbers and files
+    build_airfoil       the airfoil, or the airfoils by region of the span
+    build_aircraft      the airframe of a whole aircraft from numbers
+    each_design         each different design of a batch, built once
+    left                what differs on the left side of an aircraft
+    vary                other designs: other values for numbers of the deck
+    describe            every field in words
+    fields_page         docs/decks.md
+    schema              the JSON schema, for editors
+    template            a deck as commented text
+    decks/              the bundled decks
 
 The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor`, `support` and `model`.
 `fields` and the modules that import it need pydantic, which is slow to import: `build.load` imports them when called.

@@ -210,12 +210,3 @@ class Results:
             Ends in ``.nc``. A file that exists is replaced.
         """
         save_results(self._results, path)
-
-
-def register() -> None:
-    """Give every `xarray.Dataset` the accessor."""
-    import xarray
-
-    if not hasattr(xarray.Dataset, "proprotor"):
-        register_accessor: Any = xarray.register_dataset_accessor
-        register_accessor("proprotor")(Results)

@@ -192,14 +192,16 @@ def along_scan(
     every = np.broadcast_to(np.arange(MANY)[:, None], x.shape)
     nearest = np.clip(here - _FEW // 2 + 1, 0, MANY - _FEW) + np.arange(_FEW)[:, None]
     through = (every, nearest, here + np.array([[0], [1]]))
-    shares = [_lagrange(np.take_along_axis(x, some, 0), wanted) for some in through]
+    shares = [
+        np.where(enough[:, None], _lagrange(np.take_along_axis(x, some, 0), wanted), np.nan)
+        for some in through
+    ]
     found = []
     for y in (values[0] + values[1], (values[0] - values[1]) ** 2):
         value, rough, chord = (
             (share * np.take_along_axis(y, some, 0)[:, :, None]).sum(axis=0)
             for share, some in zip(shares, through, strict=True)
         )
-        value = np.where(enough[:, None], value, np.nan)
         found.append(_Smooth(value, np.abs(value - rough) + _OF_CHORD * np.abs(value - chord)))
     return found[0], found[1]
 
