@@ -26,6 +26,7 @@ from proprotor.rotor.elastic_blade import ElasticBlade
 from proprotor.rotor.hinged_blade import HingedBlade, hinged_blade
 from proprotor.tables.blade_table import comparison_rows, number_rows, verdict
 from proprotor.typing import Array
+from proprotor.units import KNOT
 
 FOOT, SLUG, POUND = 0.3048, 14.593902937206, 4.4482216152605
 RADIUS = 12.5 * FOOT
@@ -90,9 +91,8 @@ def boundaries(stiffness: list[float]) -> Iterator[str]:
     """Yield the first boundary of the semispan wing, kt, for control stiffnesses in ft lbf/rad."""
     case = pp.load_case("xv15")
     for one in stiffness:
-        found = case.vary({"rotor.control_stiffness": one * FT_LBF}).boundaries("50:500:10kt")
-        first = found.flutter
-        yield "none to 500" if first is None else f"{first.airspeed / 0.514444444:.1f} {first.mode}"
+        found = case.vary({"rotor.control_stiffness": one * FT_LBF}).flutter_point("50:500:10kt")
+        yield f"{found.speed / KNOT:.1f} {found.mode}" if found.mode else "none to 500"
 
 
 def spreads(found: HingedBlade) -> dict[str, float]:
