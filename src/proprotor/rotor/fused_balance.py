@@ -16,7 +16,7 @@ from proprotor_equations.fused import trim as plans
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import Layout, pool_of, values_of
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.quadrature import POWERS
+from proprotor.rotor.quadrature import POWERS, RadialQuadrature
 from proprotor.rotor.section_loads import LOAD_MOMENTS, BladeSections, mark_doubts
 from proprotor.typing import Array
 
@@ -249,14 +249,35 @@ def _along(
     return found
 
 
+def _weights(quadrature: RadialQuadrature) -> tuple[Array, list[int]]:
+    """Return weights (..., powers of the segments with stations, stations), and which segments have stations.
+
+    A blade among others may have segments without stations, which it would not have alone. They have no rows: then the
+    product has the size, and so the order of sums, that it has for the blade alone.
+    """
+    weights, slices = quadrature.weights, quadrature.slices
+    filled = [segment for segment, own in enumerate(slices) if own.start < own.stop]
+    *leading, stations, _ = weights.shape
+    whole = np.zeros((*leading, POWERS, len(filled), stations), dtype=weights.dtype)
+    for place, segment in enumerate(filled):
+        whole[..., place, slices[segment]] = weights[..., slices[segment], :].swapaxes(-1, -2)
+    return whole.reshape(*leading, -1, stations), filled
+
+
+def _of_all_segments(found: Array, filled: list[int], segments: int) -> Array:
+    """Return moments (loads, powers, segments, n) from those (loads, powers of the filled segments, n)."""
+    own = found.reshape(len(found), POWERS, len(filled), -1)
+    if len(filled) == segments:
+        return own
+    whole = np.zeros((len(found), POWERS, segments, own.shape[-1]), dtype=own.dtype)
+    whole[:, :, filled] = own
+    return whole
+
+
 def _by_product(sections: BladeSections, loads: Array) -> Array:
     """Return the moments (loads, powers, segments, width) by a product with the weights that all points share."""
-    weights, slices = sections.quadrature.weights, sections.quadrature.slices
-    whole = np.zeros((POWERS, len(slices), len(weights)), dtype=weights.dtype)
-    for segment, own in enumerate(slices):
-        whole[:, segment, own] = weights[own].T
-    found = whole.reshape(-1, len(weights)) @ loads
-    return np.asarray(found.reshape(len(loads), POWERS, len(slices), -1))
+    weights, filled = _weights(sections.quadrature)
+    return _of_all_segments(weights @ loads, filled, len(sections.quadrature.slices))
 
 
 def _point_by_point(sections: BladeSections, loads: Array) -> Array:
@@ -264,14 +285,8 @@ def _point_by_point(sections: BladeSections, loads: Array) -> Array:
 
     The product has the order of sums of `_by_product`, so that a point has the same bits by either way.
     """
-    quadrature = sections.quadrature
-    weights, slices = quadrature.weights, quadrature.slices
-    count, stations = weights.shape[:2]
-    whole = np.zeros((count, POWERS, len(slices), stations), dtype=weights.dtype)
-    for segment, own in enumerate(slices):
-        whole[:, :, segment, own] = weights[:, own].swapaxes(1, 2)
-    wide = np.zeros((count, stations, _full_width(len(loads))), dtype=loads.dtype)
+    weights, filled = _weights(sections.quadrature)
+    wide = np.zeros((len(weights), weights.shape[-1], _full_width(len(loads))), dtype=loads.dtype)
     wide[..., : len(loads)] = loads.T
-    found = whole.reshape(count, -1, stations) @ wide
-    moments = np.moveaxis(found[..., : len(loads)], 0, -1).swapaxes(0, 1)
-    return np.asarray(moments.reshape(len(loads), POWERS, len(slices), count))
+    found = np.moveaxis((weights @ wide)[..., : len(loads)], 0, -1).swapaxes(0, 1)
+    return _of_all_segments(found, filled, len(sections.quadrature.slices))
