@@ -20,7 +20,8 @@ from proprotor.model.stamp import line, of_model
 from proprotor.nastran.dmig import Coordinate, write_dmig
 from proprotor.nastran.found import COMPONENTS
 from proprotor.rotor.motions import HUB
-from proprotor.support.nastran import hub_components
+from proprotor.support import hub_components
+from proprotor.support.nastran import AIRCRAFT_AXES
 from proprotor.typing import Array
 
 MATRICES = {"M": "MROTOR", "C": "BROTOR", "K": "KROTOR"}  # names of the file by those of the model
@@ -102,7 +103,7 @@ def _coordinates(
     rotor: LinearModel, grid: int, first: int, hub: Mapping[str, str] | None, length_unit: float
 ) -> tuple[list[Coordinate], Array]:
     """Return point and component of each coordinate, and the coordinate in SI per unit of Nastran's."""
-    components = hub_components(hub)
+    components = hub_components(AIRCRAFT_AXES if hub is None else hub, COMPONENTS)
     if len({name for name, _, _ in components}) < len(components):
         raise InputError("hub", None, "must name six different components")
     places = [(grid, COMPONENTS.index(name) + 1) for name, _, _ in components]

@@ -19,6 +19,7 @@ What a rotor is:
 A rotor from a blade by stations:
     blade_stations       a table of stations, and how the pitch is held
     elastic_blade        rotating modes, flexibility and turn of the elastic blade
+    element_chain        the sum of elements that follow one another
     hinged_blade         the hinged blade that is nearest to it
     from_stations        the rotor of such blades
 
@@ -47,8 +48,8 @@ Loads and trim:
     trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
 
-All public names of the modules `blade_stations`, `elastic_blade`, `hinged_blade`, `from_stations`, `fused`,
-`generated`, `lift_lag`, `motions`, `options` and `section_loads` belong to the face.
+All public names of the modules `blade_stations`, `elastic_blade`, `element_chain`, `hinged_blade`, `from_stations`,
+`fused`, `generated`, `lift_lag`, `motions`, `options` and `section_loads` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -85,6 +86,7 @@ __all__ = [
     "Trim",
     "Warns",
     "elastic_blade",
+    "element_chain",
     "from_stations",
     "fused",
     "generated",

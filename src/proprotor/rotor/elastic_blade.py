@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from proprotor_equations import blade_element as element
 
 from proprotor.rotor.blade_stations import BladeStations
+from proprotor.rotor.element_chain import assembled
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.quadrature import gauss
 from proprotor.typing import Array
@@ -114,13 +115,7 @@ class ElasticBlade:
 
     def _assembled(self, per_length: Array) -> Array:
         """Return the sum (..., motions, motions) over all points of matrices (..., elements, points, 8, 8)."""
-        of_elements = np.einsum("...epij,ep->...eij", per_length, self.weight)
-        size = PER_NODE * len(self.stations.nodes)
-        total = np.zeros((*of_elements.shape[:-3], size, size))
-        for place in range(len(self.length)):
-            own = slice(PER_NODE * place, PER_NODE * (place + 2))
-            total[..., own, own] += of_elements[..., place, :, :]
-        return total
+        return assembled(np.einsum("...epij,ep->...eij", per_length, self.weight))
 
     def stiffness(self, rotor_speed: ArrayLike, pitch: ArrayLike) -> Array:
         """Return the stiffness (..., motions, motions) at rotor speeds (rad/s) and pitches (rad) that broadcast."""

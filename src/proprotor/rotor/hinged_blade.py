@@ -114,7 +114,7 @@ def hinged_blade(stations: BladeStations, rotor_speed: float, pitch: Array) -> H
 def mass_integrals(blade: ElasticBlade, offsets: tuple[float, float]) -> dict[str, float]:
     """Return the integrals of the mass by the names of `Rotor`, with hinge offsets, radius and pitch inertia."""
     mass = blade.stations.at("mass_per_length", blade.radius) * blade.weight
-    found = {"radius": blade.stations.tip, "root_cutout": 0.0}
+    found = {"radius": blade.stations.tip}
     found["flap_hinge_offset"], found["lag_hinge_offset"] = offsets
     found |= {"blade_mass": mass.sum()}
     for name, offset in (("blade", 0.0), ("flap", offsets[0]), ("lag", offsets[1])):

@@ -37,6 +37,7 @@ from proprotor.support.normal_modes import (
     SHAFT,
     TRANSLATION,
     NormalModes,
+    hub_components,
     rigid_support,
     two_axis_pivot,
 )
@@ -57,6 +58,7 @@ __all__ = [
     "beam",
     "beam_wing",
     "free_airframe",
+    "hub_components",
     "lowest_modes",
     "matlab_file",
     "matrix_files",

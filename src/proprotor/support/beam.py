@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from proprotor_equations import beam as element
 
 from proprotor.errors import InputError, check_finite
+from proprotor.rotor.element_chain import assembled
 from proprotor.rotor.generated import evaluate
 from proprotor.support.normal_modes import HUB_AXES, ROTATION, TRANSLATION
 from proprotor.typing import Array, Numbers
@@ -129,7 +130,7 @@ def beam_chain(
     given = {"element_length": length} | _at_both_ends(properties.at_nodes(positions.shape[-2]))
 
     def whole(function: Callable[..., Array]) -> Array:
-        return _assembled(np.swapaxes(motion, -1, -2) @ evaluate(function, given) @ motion)
+        return assembled(np.swapaxes(motion, -1, -2) @ evaluate(function, given) @ motion)
 
     return whole(element.mass), {part: whole(getattr(element, f"{part}_stiffness")) for part in _PARTS}
 
@@ -198,14 +199,3 @@ def _at_both_ends(at_nodes: Mapping[str, Array]) -> dict[str, Array]:
     """Return values (..., k) of properties (..., k + 1) at the inner and at the outer ends of the elements."""
     inner = {f"inner_{name}": values[..., :-1] for name, values in at_nodes.items()}
     return inner | {f"outer_{name}": values[..., 1:] for name, values in at_nodes.items()}
-
-
-def _assembled(elements: Array) -> Array:
-    """Return the sum (..., 6k + 6, 6k + 6) of the matrices (..., k, 12, 12) of elements that follow one another."""
-    count = elements.shape[-3]
-    size = PER_NODE * (count + 1)
-    total = np.zeros((*elements.shape[:-3], size, size), dtype=elements.dtype)
-    for place in range(count):
-        own = slice(PER_NODE * place, PER_NODE * (place + 2))
-        total[..., own, own] += elements[..., place, :, :]
-    return total

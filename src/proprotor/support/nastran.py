@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, check_finite, unknown_name
+from proprotor.errors import InputError, check_finite
 from proprotor.files.text import check_file
 from proprotor.nastran.found import COMPONENTS, FileFault, Found
 from proprotor.nastran.kinds_of_file import DMIG, OP4, kind_of, read_modes
@@ -19,7 +19,7 @@ from proprotor.nastran.reduced import ReducedStructure, reduced_from_dmig, reduc
 from proprotor.nastran.selection import chosen_set, is_in_output_system, rows_of, table_of
 from proprotor.support.matrix_files import support_from_matrices
 from proprotor.support.modal_reduction import per_mode
-from proprotor.support.normal_modes import TRANSLATION, NormalModes, signed_names
+from proprotor.support.normal_modes import TRANSLATION, NormalModes, hub_components, motion_of_hub
 from proprotor.typing import Array
 
 # The hub axes (I up, J outboard, K forward) in Nastran's usual aircraft axes: X aft, Y to the right, Z up.
@@ -122,7 +122,7 @@ def nastran_modes(
         raise InputError("coordinates", str(coordinates), "must be given with an .op4 file only")
     read = _unless_faulty(path, read_modes, kind, grid)
     found = _kept(_modes(read, grid, file, subcase, generalized_mass), modes, file)
-    motion = _turned(found.motion, hub)
+    motion = motion_of_hub(found.motion, AIRCRAFT_AXES if hub is None else hub, COMPONENTS)
     # The coordinate of a mode is a number without unit: a translation counts lengths in the run's unit.
     motion[TRANSLATION] *= length_unit
     support = NormalModes.from_frequencies(
@@ -238,28 +238,6 @@ def _kept(found: _Modes, modes: int | None, file: Any) -> _Modes:
     return kept
 
 
-def hub_components(hub: Mapping[str, str] | None) -> list[tuple[str, float, str]]:
-    """Return component, sign and axis of the hub for each of x … αz; see `nastran_modes`.
-
-    Raises
-    ------
-    InputError
-        For an axis or a component that is missing or unknown.
-    """
-    hub = AIRCRAFT_AXES if hub is None else hub
-    found = []
-    for axis, name, sign in signed_names(hub, "motions"):
-        if name not in COMPONENTS:
-            raise InputError(f"hub.{axis}", hub[axis], unknown_name(name, COMPONENTS, "component"))
-        found.append((name, sign, axis))
-    return found
-
-
-def _turned(motion: Array, hub: Mapping[str, str] | None) -> Array:
-    """Return the rows x … αz from the rows T1 … R3."""
-    return np.array([sign * motion[COMPONENTS.index(name)] for name, sign, _ in hub_components(hub)])
-
-
 def _reduced(path: Path, kind: str, coordinates: str | os.PathLike[str] | None) -> ReducedStructure:
     """Return the reduced structure in a file of matrices."""
     if kind == DMIG:
@@ -283,7 +261,10 @@ def _of_matrices(
 ) -> NormalModes:
     """Return a reduced structure as a support; structural damping of its elements is left out, and said so."""
     signs = {1.0: "", -1.0: "-"}
-    at_hub = {axis: f"{signs[sign]}{grid}.{name}" for name, sign, axis in hub_components(hub)}
+    at_hub = {
+        axis: f"{signs[sign]}{grid}.{name}"
+        for name, sign, axis in hub_components(AIRCRAFT_AXES if hub is None else hub, COMPONENTS)
+    }
     if missing := [name for name in at_hub.values() if name.lstrip("-") not in structure.names]:
         rule = f"has no coordinate {missing[0].lstrip('-')} in the matrices: the hub's grid point must be kept (ASET)"
         raise InputError("grid", grid, rule)

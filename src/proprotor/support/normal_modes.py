@@ -319,3 +319,32 @@ def _finite(field: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
 def _diagonal(values: Array) -> Array:
     """Return diagonal matrices (..., n, n) of values (..., n)."""
     return values[..., None] * np.eye(values.shape[-1])
+
+
+def hub_components(hub: Mapping[str, str], components: Sequence[str]) -> list[tuple[str, float, str]]:
+    """Return component, sign and axis of the hub for each of x … αz.
+
+    Parameters
+    ----------
+    hub : mapping of str to str
+        As for `signed_names`.
+    components : sequence of str
+        Names of the motions of a point in the file, displacements first.
+
+    Raises
+    ------
+    InputError
+        For an axis or a component that is missing or unknown.
+    """
+    found = []
+    for axis, name, sign in signed_names(hub, "motions"):
+        if name not in components:
+            raise InputError(f"hub.{axis}", hub[axis], unknown_name(name, components, "component"))
+        found.append((name, sign, axis))
+    return found
+
+
+def motion_of_hub(motion: Array, hub: Mapping[str, str], components: Sequence[str]) -> Array:
+    """Return the rows x … αz of motions whose rows are the components of a file; see `hub_components`."""
+    named = hub_components(hub, components)
+    return np.array([sign * motion[components.index(name)] for name, sign, _ in named])

@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError
 from proprotor.files.text import read_text
 from proprotor.support.matrix_files import LARGEST_UNIT
 from proprotor.support.modal_reduction import per_mode
-from proprotor.support.normal_modes import TRANSLATION, NormalModes, signed_names
+from proprotor.support.normal_modes import TRANSLATION, NormalModes, motion_of_hub
 from proprotor.support.universal_file import Mode, UniversalFault, UniversalFile, universal_file
 from proprotor.typing import Array
 
@@ -85,7 +85,8 @@ def universal_modes(
         raise InputError("file", str(file), str(fault)) from None
     length, mass = _units(found, length_unit, mass_unit)
     chosen = _lowest(found, modes, file)
-    motion = _turned(np.array([_motion(mode, node, rigid_nodes, found) for mode in chosen]).T, hub)
+    at_node = np.array([_motion(mode, node, rigid_nodes, found) for mode in chosen]).T
+    motion = motion_of_hub(at_node, AIRCRAFT_AXES if hub is None else hub, _COMPONENTS)
     # The coordinate of a mode is a number without unit: a translation counts lengths in the file's unit.
     motion[TRANSLATION] *= length
     measured = [mode.viscous + mode.hysteretic / 2 for mode in chosen]
@@ -183,13 +184,3 @@ def _of_rigid_body(mode: Mode, node: int, rigid_nodes: Sequence[int], found: Uni
         rule = f"must move as one rigid body; {share:.0%} of their motion in mode {mode.number} does not"
         raise InputError("rigid_nodes", list(rigid_nodes), rule)
     return np.concatenate([motion[:3], motion[3:] / size])
-
-
-def _turned(motion: Array, hub: Mapping[str, str] | None) -> Array:
-    """Return the rows x … αz from the rows X … RZ."""
-    rows = []
-    for axis, name, sign in signed_names(AIRCRAFT_AXES if hub is None else hub, "motions"):
-        if name not in _COMPONENTS:
-            raise InputError(f"hub.{axis}", name, unknown_name(name, _COMPONENTS, "component"))
-        rows.append(sign * motion[_COMPONENTS.index(name)])
-    return np.array(rows)

@@ -13,7 +13,6 @@ from proprotor.rotor.hinged_blade import HingedBlade
 
 _UNITS = {
     "radius": "m",
-    "root_cutout": "m",
     "flap_hinge_offset": "m",
     "lag_hinge_offset": "m",
     "blade_mass": "kg",
@@ -31,7 +30,6 @@ _SPREAD = {
     "propeller_moment": "as the propeller moment",
     "even": "evenly",
 }
-_ROOT = "root_cutout"  # the airloads', which no structure tells
 
 
 def unit_of(name: str) -> str:
@@ -48,8 +46,7 @@ def _shown(name: str, value: float) -> float:
 def number_rows(found: HingedBlade) -> Iterator[tuple[str, str, str]]:
     """Yield field, value and unit of each number of the hinged blade."""
     for name, value in found.numbers.items():
-        if name != _ROOT:
-            yield name, f"{_shown(name, value):.5g}", unit_of(name)
+        yield name, f"{_shown(name, value):.5g}", unit_of(name)
 
 
 def pitch_stiffness_rows(found: HingedBlade) -> Iterator[tuple[str, str]]:
@@ -117,8 +114,6 @@ def deck_lines(found: HingedBlade, file: str) -> str:
     source = source.replace("\\", "/").replace('"', "'")
     lines = ["[rotor]"]
     for name, value in found.numbers.items():
-        if name == _ROOT:
-            continue
         unit = unit_of(name)
         text = f'"{_shown(name, value):.10g} {unit}"' if unit else f"{value:.10g}"
         lines.append(f'{name} = {{ value = {text}, status = "derived", source = "{source}" }}')
