@@ -89,12 +89,10 @@ class Layout:
 
     opposite : places of the results whose negative is needed as well, counted from 1.
     places : by the name of a matrix, the place of each entry among zero, the results, and the negatives.
-    entries : place of each entry of all matrices, one after the other, among zero, the results, and all negatives.
     """
 
     opposite: list[int]
     places: dict[str, Array]
-    entries: Array
 
     @classmethod
     def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> Layout:
@@ -108,14 +106,15 @@ class Layout:
             places[name] = rows.copy()
             negative = rows < 0
             places[name][negative] = behind[np.searchsorted(opposite, -rows[negative])]
-        entries = np.where(every < 0, np.abs(every).max() - every, every)
-        return cls(opposite.tolist(), places, entries)
+        return cls(opposite.tolist(), places)
+
+
+_TABLES = {"in_vacuum": plans.IN_VACUUM, "of_airloads": plans.OF_AIRLOADS, "segment": plans.SEGMENT}
 
 
 @cache
 def _layouts() -> dict[str, Layout]:
-    tables = {"in_vacuum": plans.IN_VACUUM, "of_airloads": plans.OF_AIRLOADS, "segment": plans.SEGMENT}
-    return {name: Layout.of(table) for name, table in tables.items()}
+    return {name: Layout.of(table) for name, table in _TABLES.items()}
 
 
 # Batches
@@ -172,8 +171,7 @@ def _pairs() -> tuple[Array, dict[str, Array]]:
 @cache
 def _sums() -> Layout:
     """Return the layout of the sums of the pairs."""
-    places = _pairs()[1]
-    return Layout([], places, np.concatenate([part.ravel() for part in places.values()]))
+    return Layout([], _pairs()[1])
 
 
 def _with_airloads(values: Sequence[Any], results: Sequence[Any]) -> list[Any]:
@@ -241,14 +239,14 @@ def pool_of(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) 
 def _one_point(quantities: Quantities, segments: Quantities | None) -> Matrices:
     """Return the matrices of one point by plain numbers, with an axis of one point."""
     blade = {name: plain_number(value) for name, value in quantities.items()}
-    found = _matrices([evaluate(plans.in_vacuum, blade, _cos, _sin)], _layouts()["in_vacuum"])
+    found = _matrices([evaluate(plans.in_vacuum, blade, _cos, _sin)], "in_vacuum")
     if segments is None:
         return found
     rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in _one_by_one(segments)]
-    arrays = _matrices(rows, _layouts()["segment"])
+    arrays = _matrices(rows, "segment")
     geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
     results = evaluate(plans.of_airloads, blade, _work(arrays).ravel().tolist(), geometric)
-    added = _matrices([results], _layouts()["of_airloads"])
+    added = _matrices([results], "of_airloads")
     return found | {name: matrix + found[name] for name, matrix in added.items()}
 
 
@@ -281,15 +279,22 @@ def _one_by_one(segments: Quantities) -> list[dict[str, Any]]:
     return [dict(zip(segments, numbers, strict=True)) for numbers in zip(*lists, strict=True)]
 
 
-def _matrices(rows: Sequence[Sequence[Any]], layout: Layout) -> Matrices:
-    """Return the matrices (rows, ...) of some rows of results."""
+@cache
+def _entries(plan: str) -> Array:
+    """Return the place of each entry of all matrices of a plan among zero, the results, and all negatives."""
+    every = np.concatenate([np.ravel(rows) for rows in _TABLES[plan].values()])
+    return np.where(every < 0, np.abs(every).max() - every, every)
+
+
+def _matrices(rows: Sequence[Sequence[Any]], plan: str) -> Matrices:
+    """Return the matrices (rows, ...) of some rows of results of a plan."""
     results = np.array(rows)
     count = results.shape[1]
     pool = np.zeros((len(rows), 1 + 2 * count), dtype=results.dtype)
     pool[:, 1 : 1 + count] = results
     np.negative(results, out=pool[:, 1 + count :])
-    entries, start, found = pool.take(layout.entries, axis=1), 0, {}
-    for name, places in layout.places.items():
+    entries, start, found = pool.take(_entries(plan), axis=1), 0, {}
+    for name, places in _layouts()[plan].places.items():
         found[name] = entries[:, start : start + places.size].reshape(len(rows), *places.shape)
         start += places.size
     return found
