@@ -28,6 +28,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "lift": ("quasi-steady", "lagged"),
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
+    "backend": ("numpy", "compiled", "auto"),
 }
 _FURTHER = ("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling", "drive_train")
 LOCKABLE = ("flap", "lag", "pitch", "gimbal")
@@ -80,6 +81,10 @@ class Options:
         Engine and shaft on the rotor's azimuth.
     reactionless : bool
         Keep the blade motions that make no load at the hub, for more than three blades.
+    backend : "numpy", "compiled" or "auto"
+        What solves the eigenvalue problems: NumPy with LAPACK, or compiled functions for whole batches (see
+        `proprotor.compiled`), to rounding the same. "auto" takes these where there is a C compiler, and results say
+        which of both it took.
     locked : collection of "flap", "lag", "pitch", "gimbal"
         Coordinates that are removed; they stay at zero in the trim too.
 
@@ -102,6 +107,7 @@ class Options:
     rotor_speed: str = "windmilling"
     drive_train: DriveTrain | None = None
     reactionless: bool = False
+    backend: str = "numpy"
     locked: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -111,6 +117,8 @@ class Options:
                 raise InputError(name, value, f"must be one of {', '.join(map(str, choices))}")
         if self.section_damping is None:
             object.__setattr__(self, "section_damping", default_choice("section_damping", vars(self)))
+        if self.backend != "numpy":
+            object.__setattr__(self, "backend", _backend(self.backend))
         locked = (self.locked,) if isinstance(self.locked, str) else tuple(self.locked)
         for name in locked:
             if name not in LOCKABLE:
@@ -153,6 +161,16 @@ class Options:
     def pitch_is_free(self) -> bool:
         """Whether the pitch equations are part of the model."""
         return self.pitch == "dynamic" and "pitch" not in self.locked
+
+
+def _backend(wanted: str) -> str:
+    """Return the backend that is there: "auto" stands for the compiled one, or for NumPy without a compiler."""
+    from proprotor.compiled.library import why_not  # here, because most results need no compiler
+
+    reason = why_not()
+    if reason and wanted == "compiled":
+        raise InputError("backend", wanted, f'needs the compiled functions: {reason}; "auto" takes NumPy then')
+    return "numpy" if reason else "compiled"
 
 
 def parse_options(options: Mapping[str, Any]) -> Options:

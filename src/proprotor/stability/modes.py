@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.compiled import eigenvalues as compiled_eigenvalues
 from proprotor.model import stamp
 from proprotor.model.first_order import (
     blocks,
@@ -64,7 +65,7 @@ def eigenvalues(model: LinearModel) -> Array:
     places = blocks(model, held)
     for points, part in _alike(model):
         for (_, columns), own in zip(places, part.blocks, strict=True):
-            found = np.linalg.eigvals(first_order(_of_block(part, own)))
+            found = _roots(first_order(_of_block(part, own)), is_compiled(model))
             found = np.where(_pairs_of_noise(found), 0, found)
             values[points, columns.start : columns.start + found.shape[-1]] = found
     return values
@@ -88,12 +89,14 @@ def _by_block(model: LinearModel) -> Spectrum:
     held = held_coordinates(model)
     places = blocks(model, held)
     if len(places) == 1:
-        return Spectrum(*_solved(first_order(model)), model.shapes, tuple(held), places)
+        return Spectrum(*_solved(first_order(model), is_compiled(model)), model.shapes, tuple(held), places)
     states = len(held) + len(model.dofs)
     values = np.empty((*model.M.shape[:-2], states), dtype=complex)
     right = np.zeros((*values.shape, states), dtype=complex)
     for (rows, columns), own in zip(places, model.blocks, strict=True):
-        values[..., columns], right[..., rows, columns] = _solved(first_order(_of_block(model, own)))
+        values[..., columns], right[..., rows, columns] = _solved(
+            first_order(_of_block(model, own)), is_compiled(model)
+        )
     return Spectrum(values, right, model.shapes, tuple(held), places)
 
 
@@ -146,9 +149,19 @@ def with_azimuths(spectrum: Spectrum, model: LinearModel, states: int) -> Spectr
     return Spectrum(found, whole, spectrum.shapes, tuple(held), later)
 
 
-def _solved(matrix: Array) -> tuple[Array, Array]:
+def is_compiled(model: LinearModel) -> bool:
+    """Return whether compiled functions solve the eigenvalue problem of a model."""
+    return model.origin is not None and model.origin.options.backend == "compiled"
+
+
+def _roots(matrix: Array, compiled: bool) -> Array:
+    """Return eigenvalues, by the compiled functions or by LAPACK."""
+    return compiled_eigenvalues.eigvals(matrix) if compiled else np.linalg.eigvals(matrix)
+
+
+def _solved(matrix: Array, compiled: bool) -> tuple[Array, Array]:
     """Return eigenvalues and right vectors as complex numbers, also where all of them are real."""
-    values, right = np.linalg.eig(matrix)
+    values, right = compiled_eigenvalues.eig(matrix) if compiled else np.linalg.eig(matrix)
     values, right = values.astype(complex, copy=False), right.astype(complex, copy=False)
     if not (noise := _pairs_of_noise(values)).any():
         return values, right

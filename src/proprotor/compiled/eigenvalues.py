@@ -1,0 +1,90 @@
+"""Eigenvalues and right vectors of many small real matrices by the compiled functions.
+
+Each matrix is checked: sums of its eigenvalues and of their squares against traces, and with vectors one combination of
+these against the matrix. LAPACK takes every matrix that is not finite, that does not converge or that fails its check.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any
+
+import numpy as np
+
+from proprotor.compiled.library import library
+from proprotor.typing import Array
+
+MOST_STATES = 256  # of eigen.h
+_WIDEST = 64  # bytes of a vector register
+
+
+def eigvals(matrices: Array) -> Array:
+    """Return the eigenvalues (..., n) of real matrices (..., n, n), as `numpy.linalg.eigvals` does.
+
+    Raises
+    ------
+    Unavailable
+        Without a library; `proprotor.compiled.library.why_not` says why.
+    LinAlgError
+        For a matrix that is not finite, as NumPy does.
+    """
+    flat = _flat(matrices)
+    if flat.shape[-1] > MOST_STATES:
+        return np.linalg.eigvals(matrices)
+    values, _, rest = _solved(flat, vectors=False)
+    if rest.any():
+        values[rest] = np.linalg.eigvals(flat[rest])
+    return values.reshape(matrices.shape[:-1])
+
+
+def eig(matrices: Array) -> tuple[Array, Array]:
+    """Return eigenvalues (..., n) and right vectors (..., n, n) of length one, as `numpy.linalg.eig` does.
+
+    Raises
+    ------
+    Unavailable, LinAlgError
+        As `eigvals`.
+    """
+    flat = _flat(matrices)
+    if flat.shape[-1] > MOST_STATES:
+        values, right = np.linalg.eig(matrices)
+        return values.astype(complex, copy=False), right.astype(complex, copy=False)
+    values, right, rest = _solved(flat, vectors=True)
+    if rest.any():
+        values[rest], right[rest] = np.linalg.eig(flat[rest])
+    return values.reshape(matrices.shape[:-1]), right.reshape(matrices.shape)
+
+
+def handed_over(matrices: Array, vectors: bool = False) -> Array:
+    """Return which of the matrices (..., n, n) the compiled functions hand over to LAPACK."""
+    return _solved(_flat(matrices), vectors)[2].reshape(matrices.shape[:-2])
+
+
+def _flat(matrices: Array) -> Array:
+    """Return matrices (points, n, n) side by side in memory."""
+    n = matrices.shape[-1]
+    return np.ascontiguousarray(matrices.reshape(-1, n, n), dtype=float)
+
+
+def _solved(matrices: Array, vectors: bool) -> tuple[Array, Array, Array]:
+    """Return values (points, n), right vectors (points, n, n) or nothing, and which points LAPACK must take (points,)."""
+    count, n, _ = matrices.shape
+    values = np.empty((count, n), dtype=complex)
+    right = np.empty((count, n, n) if vectors else 0, dtype=complex)
+    rest = np.zeros(count, dtype=bool)
+    room = np.empty((4 * n * n + 4 * n + 1) * _WIDEST, dtype=np.uint8)
+    start = -room.ctypes.data % _WIDEST
+    library().eigenvalues(
+        ctypes.c_int(n),
+        ctypes.c_ssize_t(count),
+        _address(matrices),
+        _address(values),
+        _address(right) if vectors else None,
+        _address(rest),
+        _address(room[start:]),
+    )
+    return values, right, rest
+
+
+def _address(array: Array) -> Any:
+    return ctypes.c_void_p(array.ctypes.data)
