@@ -21,7 +21,7 @@ import jinja2
 import sympy as sp
 from sympy.printing.numpy import NumPyPrinter
 
-from derive import coordinates, multiblade
+from derive import c_code, coordinates, multiblade
 from derive.coordinates import PARTNER, SAME_TURN
 from derive.equations import REDUCED_MODULES, STEPS, consistent_functions, reduced_functions
 from derive.files import write_whole
@@ -300,6 +300,17 @@ def render_fused(module: str) -> str:
     return _rendered("fused.py.jinja", f"fused/{module}.py", **given)
 
 
+def _all_plans() -> list[FusedFunction]:
+    return [function for _, _, made in _FUSED.values() for function in made()]
+
+
+def render_c() -> str:
+    """Text of a header of C with all plans."""
+    plans = _all_plans()
+    given = {"quantities": c_code.places(plans), "functions": [c_code.described(plan) for plan in plans]}
+    return _environment().get_template("plans.h.jinja").render(**given, **_header())
+
+
 def _rendered(template: str, name: str, **given: Any) -> str:
     """Text of a template, formatted."""
     return formatted(_environment().get_template(template).render(**given, **_header()), name)
@@ -417,7 +428,10 @@ def render() -> Iterator[tuple[str, str]]:
         yield f"published/{module}.py", render_module(reduced_functions(module), title)
     for module in _FUSED:
         yield f"fused/{module}.py", render_fused(module)
-    yield "fused/__init__.py", _rendered("fused_package.py.jinja", "__init__.py")
+    yield "fused/plans.h", render_c()
+    yield "fused/__init__.py", _rendered(
+        "fused_package.py.jinja", "__init__.py", quantities=c_code.places(_all_plans())
+    )
     yield "__init__.py", _rendered("package.py.jinja", "__init__.py", modules=list(STEPS))
     terms = [{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()]
     text = _rendered("published.py.jinja", "__init__.py", modules=REDUCED_MODULES, terms=terms)
@@ -426,7 +440,7 @@ def render() -> Iterator[tuple[str, str]]:
 
 def derive_files(progress: Progress = print) -> dict[str, str]:
     """All generated files, with a progress line per step."""
-    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 5
+    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 6
     start = time.perf_counter()
     for count, (name, text) in enumerate(render(), start=1):
         files[name] = text

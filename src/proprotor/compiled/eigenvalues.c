@@ -1,6 +1,7 @@
 /* Eigenvalues and right vectors of many small real matrices at once: one matrix in each lane of a vector register. */
 
 #include "eigen.h"
+#include "motion.h"
 
 #define LARGEST 1e300 /* matrices with larger or smaller entries are handed over */
 #define SMALLEST 1e-290
@@ -45,52 +46,95 @@ static unsigned char miss_matrix(int n, const double *matrix, const double *valu
     return !(worst <= 1e-13 * n * norm * fmax(size, 1.0));
 }
 
+/* Room for one matrix in each lane. */
+struct room {
+    lanes *h, *z, *x, *real, *imaginary, *v;
+};
+
+static struct room room_of(int n, lanes *work, int vectors)
+{
+    ptrdiff_t size = (ptrdiff_t)n * n;
+    lanes *values = work + 4 * size;
+    return (struct room){work, vectors ? work + size : NULL, work + 2 * size, values, values + n, values + 2 * n};
+}
+
+/* Solve for the matrices h in the lanes, which are overwritten, and return the lanes that are handed over. */
+static whole solve(int n, struct room room, lanes *scale)
+{
+    lanes *h = room.h, most = {0}, square = {0}, trace = {0}, trace_of_square = {0};
+    ptrdiff_t size = (ptrdiff_t)n * n;
+    whole finite = every(-1);
+    for (ptrdiff_t k = 0; k < size; k++) {
+        most = larger(magnitude(h[k]), most);
+        finite &= magnitude(h[k]) <= LARGEST; /* false for NaN */
+    }
+    finite &= (most >= SMALLEST) | (most == 0.0);
+    *scale = power_of_two(exponent(choose((most > 0.0) & finite, most, all(1.0))));
+    lanes inverse = 1.0 / *scale;
+    for (ptrdiff_t k = 0; k < size; k++) {
+        h[k] = choose(finite, h[k] * inverse, all(0.0));
+        square += h[k] * h[k];
+    }
+    for (int i = 0; i < n; i++) {
+        trace += AT(i, i);
+        for (int j = 0; j < n; j++) trace_of_square += AT(i, j) * AT(j, i);
+    }
+    for (int i = 0; i < n; i++) room.real[i] = room.imaginary[i] = all(0.0);
+    whole failed = schur(n, h, room.z, room.real, room.imaginary, ~finite);
+    if (room.z) triangular_vectors(n, h, room.real, room.imaginary, room.x);
+    return failed | miss_traces(n, room.real, room.imaginary, trace, trace_of_square, root(square));
+}
+
+/* Store eigenvalues as complex numbers, and which lanes are handed over. */
+static void store_values(int n, struct room room, lanes scale, whole failed, ptrdiff_t left, double *values, unsigned char *handed_over)
+{
+    for (int lane = 0; lane < LANES && lane < left; lane++) {
+        for (int i = 0; i < n; i++) {
+            values[2 * (lane * n + i)] = room.real[i][lane] * scale[lane];
+            values[2 * (lane * n + i) + 1] = room.imaginary[i][lane] * scale[lane];
+        }
+        handed_over[lane] = failed[lane] != 0;
+    }
+}
+
 /* Find the eigenvalues of `count` matrices of n rows, one after the other in memory, as complex numbers, and their right
    vectors as columns unless `vectors` is null. `work` has room for 4 * n * n + 4 * n vectors of lanes. A matrix that is
    not finite, or whose iteration or check fails, is marked in `handed_over`: another solver should take it. */
 void eigenvalues(int n, ptrdiff_t count, const double *matrices, double *values, double *vectors, unsigned char *handed_over, lanes *work)
 {
     ptrdiff_t size = (ptrdiff_t)n * n;
-    lanes *h = work, *z = vectors ? h + size : NULL, *x = h + 2 * size, *wr = h + 4 * size, *wi = wr + n, *v = wi + n;
+    struct room room = room_of(n, work, vectors != NULL);
     for (ptrdiff_t first = 0; first < count; first += LANES) {
         for (int lane = 0; lane < LANES; lane++) {
             const double *matrix = matrices + size * (first + lane < count ? first + lane : first);
-            for (ptrdiff_t k = 0; k < size; k++) ((double *)h)[k * LANES + lane] = matrix[k];
+            for (ptrdiff_t k = 0; k < size; k++) ((double *)room.h)[k * LANES + lane] = matrix[k];
         }
-        lanes most = {0}, square = {0};
-        whole finite = every(-1);
-        for (ptrdiff_t k = 0; k < size; k++) {
-            most = larger(magnitude(h[k]), most);
-            finite &= magnitude(h[k]) <= LARGEST; /* false for NaN */
-        }
-        finite &= (most >= SMALLEST) | (most == 0.0);
-        whole failed = ~finite;
-        lanes scale = power_of_two(-exponent(choose((most > 0.0) & finite, most, all(1.0))));
-        lanes trace = {0}, trace_of_square = {0};
-        for (ptrdiff_t k = 0; k < size; k++) {
-            h[k] = choose(finite, h[k] * scale, all(0.0));
-            square += h[k] * h[k];
-        }
-        for (int i = 0; i < n; i++) {
-            trace += AT(i, i);
-            for (int j = 0; j < n; j++) trace_of_square += AT(i, j) * AT(j, i);
-        }
-        for (int i = 0; i < n; i++) wr[i] = wi[i] = all(0.0);
-        failed = schur(n, h, z, wr, wi, failed);
-        failed |= miss_traces(n, wr, wi, trace, trace_of_square, root(square));
-        lanes back = 1.0 / scale;
-        for (int lane = 0; lane < LANES && first + lane < count; lane++) {
-            for (int i = 0; i < n; i++) {
-                values[2 * ((first + lane) * n + i)] = wr[i][lane] * back[lane];
-                values[2 * ((first + lane) * n + i) + 1] = wi[i][lane] * back[lane];
-            }
-            handed_over[first + lane] = failed[lane] != 0;
-        }
+        lanes scale;
+        whole failed = solve(n, room, &scale);
+        store_values(n, room, scale, failed, count - first, values + 2 * first * n, handed_over + first);
         if (!vectors) continue;
-        ptrdiff_t matrices_left = count - first;
-        triangular_vectors(n, h, wr, wi, x);
-        store_vectors(n, z, x, v, vectors + 2 * first * size, matrices_left);
+        store_vectors(n, room.z, room.x, room.v, vectors + 2 * first * size, count - first);
         for (ptrdiff_t k = first; k < first + LANES && k < count; k++)
-            handed_over[k] |= miss_matrix(n, matrices + k * size, values + 2 * k * n, vectors + 2 * k * size, (double *)v);
+            handed_over[k] |= miss_matrix(n, matrices + k * size, values + 2 * k * n, vectors + 2 * k * size, (double *)room.v);
+    }
+}
+
+/* Find the eigenvalues of equations of motion M, C, K (count, n, n) in first order. `held` are the coordinates whose
+   displacement is a state. A mass matrix that elimination in the order of its rows would not solve well is handed over. */
+void roots_of_motion(int n, int count_held, const int32_t *held, ptrdiff_t count, const double *const *matrices, double *values, unsigned char *handed_over, lanes *work)
+{
+    int states = n + count_held, wide = 2 * n + count_held;
+    struct room room = room_of(states, work, 0);
+    lanes *h = room.h, *equations = work + 4 * (ptrdiff_t)states * states + 4 * states;
+    for (ptrdiff_t first = 0; first < count; first += LANES) {
+        load_equations(n, count_held, held, first, count, matrices, equations);
+        whole failed = eliminate(n, wide, equations);
+        for (int i = 0; i < count_held; i++)
+            for (int j = 0; j < states; j++) h[i * states + j] = all(j == count_held + held[i] ? 1.0 : 0.0);
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < states; j++) h[(count_held + i) * states + j] = -equations[i * wide + n + j];
+        lanes scale;
+        failed |= solve(states, room, &scale);
+        store_values(states, room, scale, failed, count - first, values + 2 * first * states, handed_over + first);
     }
 }

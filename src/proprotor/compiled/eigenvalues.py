@@ -7,6 +7,7 @@ these against the matrix. LAPACK takes every matrix that is not finite, that doe
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -55,6 +56,31 @@ def eig(matrices: Array) -> tuple[Array, Array]:
     return values.reshape(matrices.shape[:-1]), right.reshape(matrices.shape)
 
 
+def roots_of_motion(mass: Array, damping: Array, stiffness: Array, held: Sequence[int]) -> tuple[Array, Array]:
+    """Return the eigenvalues (points, states) of real equations of motion (points, n, n), and which points have none.
+
+    `held` are the coordinates whose displacement is a state. A point without eigenvalues has a mass matrix that takes
+    exchanges of rows, or is one that the compiled functions hand over: its numbers mean nothing.
+    """
+    count, n, _ = mass.shape
+    states, wide = n + len(held), 2 * n + len(held)
+    parts = [np.ascontiguousarray(part, dtype=float) for part in (mass, damping, stiffness)]
+    places = np.array(held, dtype=np.int32)
+    values, rest = np.empty((count, states), dtype=complex), np.zeros(count, dtype=bool)
+    room = _room(4 * states * states + 4 * states + n * wide)
+    library().roots_of_motion(
+        ctypes.c_int(n),
+        ctypes.c_int(len(held)),
+        _address(places),
+        ctypes.c_ssize_t(count),
+        (ctypes.c_void_p * 3)(*(part.ctypes.data for part in parts)),
+        _address(values),
+        _address(rest),
+        _address(room),
+    )
+    return values, rest
+
+
 def handed_over(matrices: Array, vectors: bool = False) -> Array:
     """Return which of the matrices (..., n, n) the compiled functions hand over to LAPACK."""
     return _solved(_flat(matrices), vectors)[2].reshape(matrices.shape[:-2])
@@ -72,8 +98,7 @@ def _solved(matrices: Array, vectors: bool) -> tuple[Array, Array, Array]:
     values = np.empty((count, n), dtype=complex)
     right = np.empty((count, n, n) if vectors else 0, dtype=complex)
     rest = np.zeros(count, dtype=bool)
-    room = np.empty((4 * n * n + 4 * n + 1) * _WIDEST, dtype=np.uint8)
-    start = -room.ctypes.data % _WIDEST
+    room = _room(4 * n * n + 4 * n)
     library().eigenvalues(
         ctypes.c_int(n),
         ctypes.c_ssize_t(count),
@@ -81,9 +106,16 @@ def _solved(matrices: Array, vectors: bool) -> tuple[Array, Array, Array]:
         _address(values),
         _address(right) if vectors else None,
         _address(rest),
-        _address(room[start:]),
+        _address(room),
     )
     return values, right, rest
+
+
+def _room(vectors: int) -> Array:
+    """Return memory for vectors of lanes, at a place where they may begin."""
+    memory = np.empty((vectors + 1) * _WIDEST, dtype=np.uint8)
+    start = -memory.ctypes.data % _WIDEST
+    return memory[start:]
 
 
 def _address(array: Array) -> Any:

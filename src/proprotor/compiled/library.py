@@ -17,10 +17,13 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
+from proprotor_equations import fused
+
 from proprotor.errors import InputError
 from proprotor.files.output import write_whole
 
 _SOURCES = Path(__file__).parent
+_GENERATED = Path(fused.__file__).parent
 # One product and one sum at a time, as NumPy does: every width of vector has the same bits then.
 _FLAGS = ("-O3", "-std=gnu11", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
 _OWN_PROCESSOR = ("-march=native", "-mcpu=native")  # by GCC and Clang on most processors, and on some
@@ -95,7 +98,7 @@ def _own_processor(compiler: tuple[str, ...]) -> tuple[str, ...]:
 def _key(compiler: tuple[str, ...], flags: tuple[str, ...]) -> str:
     """Return the name of the library: a digest of all that makes it."""
     digest = hashlib.sha256()
-    for source in _sources("*"):
+    for source in (*_sources("h"), *_sources("c"), *_GENERATED.glob("*.h")):
         digest.update(source.name.encode() + source.read_bytes())
     digest.update(_output_of((*compiler, "--version"), "there is no C compiler"))
     # The compiler's own constants name the instructions that it may use.
@@ -106,7 +109,7 @@ def _key(compiler: tuple[str, ...], flags: tuple[str, ...]) -> str:
 
 def _sources(ending: str) -> list[Path]:
     """Return the files of C with an ending, in their order."""
-    return sorted(path for path in _SOURCES.glob(f"*.{ending}") if path.suffix in (".c", ".h"))
+    return sorted(_SOURCES.glob(f"*.{ending}"))
 
 
 def _build(compiler: tuple[str, ...], flags: tuple[str, ...], place: Path) -> None:
@@ -114,7 +117,7 @@ def _build(compiler: tuple[str, ...], flags: tuple[str, ...], place: Path) -> No
     with tempfile.TemporaryDirectory(prefix="proprotor-") as folder:
         built = Path(folder) / "library.so"
         sources = map(str, _sources("c"))
-        _output_of((*compiler, *flags, "-o", str(built), *sources, "-lm"), "the C compiler fails")
+        _output_of((*compiler, *flags, f"-I{_GENERATED}", f"-I{_SOURCES}", "-o", str(built), *sources, "-lm"), "the C compiler fails")
         content = built.read_bytes()
     try:
         place.parent.mkdir(parents=True, exist_ok=True)

@@ -208,7 +208,8 @@ def _matrices(
             blade = evaluate(whole_rotor.blade_matrices, given)
         if served:
             in_air = None if options.airloads == "none" else segments
-            found = fused.rotor_matrices(quantities, in_air, len(rows), one)
+            compiled = options.backend == "compiled" and not one
+            found = fused.rotor_matrices(quantities, in_air, len(rows), one, compiled)
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
         if options.lift == "lagged":

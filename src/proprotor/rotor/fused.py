@@ -19,6 +19,7 @@ import numpy as np
 from proprotor_equations.fused import rotor as plans
 from proprotor_equations.fused import trim as trim_plans
 
+from proprotor.compiled import plans as compiled_plans
 from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate, keywords
 from proprotor.rotor.section_loads import LOAD_MOMENTS
 from proprotor.typing import Array
@@ -56,7 +57,7 @@ def trim_integrals(quantities: Quantities) -> dict[str, Any]:
 
 
 def rotor_matrices(
-    quantities: Quantities, segments: Quantities | None, points: int, one: bool = False
+    quantities: Quantities, segments: Quantities | None, points: int, one: bool = False, compiled: bool = False
 ) -> Matrices:
     """Return M, C, K (points, 18, 18) and B (points, 18, 6) of a rotor.
 
@@ -73,6 +74,9 @@ def rotor_matrices(
     """
     blade = {name: quantities[name] for name in _names(segments is not None) if name in quantities}
     along = None if segments is None else {name: segments[name] for name in OF_SEGMENTS}
+    if compiled:
+        shapes = {name: places.shape for name, places in _layouts()["in_vacuum"].places.items()}
+        return compiled_plans.matrices_of_rotor(points, blade, along, shapes)
     return _one_point(blade, along) if one else _batch(blade, along, points)
 
 

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from proprotor_equations.fused import trim as plans
 
+from proprotor.compiled import plans as compiled_plans
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import Layout, pool_of, values_of
 from proprotor.rotor.generated import evaluate
@@ -84,6 +85,7 @@ def balanced(
     compressibility: bool,
     room: Room,
     doubts: dict[str, Array] | None = None,
+    compiled: bool = False,
 ) -> _Balanced:
     """Return the balance of a blade at trim states.
 
@@ -98,6 +100,8 @@ def balanced(
         Filled with the reasons to doubt the airfoil's coefficients outboard, masks (n,) by reason.
     """
     points = len(quantities["coning"])
+    if compiled and sections.quadrature.counts.ndim == 1:
+        return _compiled(sections, quantities, compressibility, doubts)
     blade = dict(quantities) | {name: side[:, None] for name, side in sections.sides.items()}
     line = evaluate(plans.line, blade, np.cos, np.sin)
     air = _air(sections, blade | dict(zip(plans.LINE, line, strict=True)), compressibility)
@@ -108,6 +112,35 @@ def balanced(
     work = _matrices("work", of_loads, shape)
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
+
+
+def _compiled(
+    sections: BladeSections, quantities: _Quantities, compressibility: bool, doubts: dict[str, Array] | None
+) -> _Balanced:
+    """Return the balance by the compiled plans."""
+    points, quadrature, airfoil = len(quantities["coning"]), sections.quadrature, vars(sections.airfoil)
+    met = quantities if compressibility else dict(quantities) | {"speed_of_sound": np.inf}
+    slices, along = quadrature.slices, sections.along
+    names = ("lift_slope", "zero_lift_angle", "drag", "moment")
+    own = {"radius": quadrature.stations, "chord": along.chord, "twist": along.twist}
+    own |= {"square_ratio": along.square, "cube_ratio": along.cube} | {name: airfoil[name] for name in names}
+    found = compiled_plans.balance_of_blade(
+        points, met, sections.sides, [0, *(one.stop for one in slices)], own, quadrature.weights, doubts is not None
+    )
+    if doubts is not None:
+        mark_doubts(doubts, sections, quantities["radius"], found.doubts, slice(0, points), points)
+    structure, work = (_at_places(name, results) for name, results in (("balance", found.structure), ("work", found.work)))
+    residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
+    return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], found.moments)
+
+
+def _at_places(plan: str, results: Array) -> dict[str, Array]:
+    """Return the matrices (n, rows, columns) of a plan from its results (n, results)."""
+    layout = _layouts()[plan]
+    whole = np.empty((len(results), 1 + results.shape[1] + len(layout.opposite)))
+    whole[:, 0], whole[:, 1 : 1 + results.shape[1]] = 0.0, results
+    np.negative(results[:, np.array(layout.opposite, dtype=int) - 1], out=whole[:, 1 + results.shape[1] :])
+    return {name: np.take(whole, places, axis=1) for name, places in layout.places.items()}
 
 
 def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:

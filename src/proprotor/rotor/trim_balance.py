@@ -142,7 +142,10 @@ class Balance:
         quantities = self._at(state, rows, share)
         if self.fused:
             sections = self._sections(rows)
-            found = balanced(sections, quantities, self.options.compressibility, self.room, doubts)
+            compiled = self.options.backend == "compiled"
+            found = balanced(
+                sections, quantities, self.options.compressibility, self.room, doubts, compiled
+            )
             residual, structure, work, of_airloads, moments = found
             residual -= work
             along = functools.partial(segments_of, moments, sections)

@@ -65,7 +65,7 @@ def eigenvalues(model: LinearModel) -> Array:
     places = blocks(model, held)
     for points, part in _alike(model):
         for (_, columns), own in zip(places, part.blocks, strict=True):
-            found = _roots(first_order(_of_block(part, own)), is_compiled(model))
+            found = _roots(_of_block(part, own))
             found = np.where(_pairs_of_noise(found), 0, found)
             values[points, columns.start : columns.start + found.shape[-1]] = found
     return values
@@ -154,9 +154,18 @@ def is_compiled(model: LinearModel) -> bool:
     return model.origin is not None and model.origin.options.backend == "compiled"
 
 
-def _roots(matrix: Array, compiled: bool) -> Array:
-    """Return eigenvalues, by the compiled functions or by LAPACK."""
-    return compiled_eigenvalues.eigvals(matrix) if compiled else np.linalg.eigvals(matrix)
+def _roots(model: LinearModel) -> Array:
+    """Return eigenvalues of a model all of whose points have the same states, by the compiled functions or by LAPACK."""
+    if not is_compiled(model):
+        return np.linalg.eigvals(first_order(model))
+    n, shape = len(model.dofs), model.M.shape[:-2]
+    flat = (part.reshape(-1, n, n) for part in (model.M, model.C, model.K))
+    found, rest = compiled_eigenvalues.roots_of_motion(*flat, held_coordinates(model))
+    found = found.reshape(*shape, -1)
+    if rest.any():
+        points = rest.reshape(shape)
+        found[points] = np.linalg.eigvals(first_order(some_points(model, points)))
+    return found
 
 
 def _solved(matrix: Array, compiled: bool) -> tuple[Array, Array]:

@@ -1,0 +1,202 @@
+"""The plans of the derivation for many points by the compiled functions: a blade's balance, and a rotor's matrices."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from proprotor_equations import fused
+
+from proprotor.compiled.library import library
+from proprotor.typing import Array
+
+_PLACES = {name: place for place, name in enumerate(fused.QUANTITIES)}
+_POWERS = 3
+_LOADS = len(fused.trim.SECTION_LOADS) - 2  # the last two say whether the loads are in doubt
+_ALONG = ("radius", "chord", "twist", "square_ratio", "cube_ratio", "lift_slope", "zero_lift_angle", "drag", "moment")
+
+
+class _Column(ctypes.Structure):
+    """Numbers in memory, see columns.h."""
+
+    _fields_ = (("at", ctypes.c_void_p), ("point", ctypes.c_ssize_t), ("along", ctypes.c_ssize_t))
+
+
+class _Blade(ctypes.Structure):
+    """A blade at many points, see plans.c."""
+
+    _fields_ = (
+        ("segments", ctypes.c_ssize_t),
+        ("ends", ctypes.c_void_p),
+        ("quantities", _Column * len(fused.QUANTITIES)),
+        *((name, _Column) for name in _ALONG),
+        ("weights", _Column * _POWERS),
+    )
+
+
+class _Layout(ctypes.Structure):
+    """Places of the results of a plan in a matrix, see plans.c."""
+
+    _fields_ = (("rows", ctypes.c_ssize_t), ("columns", ctypes.c_ssize_t), ("places", ctypes.c_void_p))
+
+
+class _Layouts(ctypes.Structure):
+    """All layouts of a rotor, see plans.c."""
+
+    _fields_ = (
+        ("in_vacuum", _Layout * 4),
+        ("of_airloads", _Layout * 3),
+        ("segment", _Layout * 4),
+    )
+
+
+class Balanced(NamedTuple):
+    """Balance of a blade at n points.
+
+    structure : array (n, results)
+        Different results of the plan `balance`.
+    work : array (n, results)
+        Different results of the plan `work`, summed over the segments.
+    moments : array (loads, powers of r, segments, n)
+        Radial moments of the section loads.
+    doubts : array (2, n, stations) or None
+        Angle of attack and Mach number of the stations.
+    """
+
+    structure: Array
+    work: Array
+    moments: Array
+    doubts: Array | None
+
+
+def balance_of_blade(
+    points: int,
+    quantities: Mapping[str, Any],
+    sides: Mapping[str, Array],
+    ends: Sequence[int],
+    along: Mapping[str, Any],
+    weights: Array,
+    doubts: bool,
+) -> Balanced:
+    """Return the balance of a blade at trim states.
+
+    Parameters
+    ----------
+    points : int
+    quantities : mapping
+        Numbers or arrays (n,) by name.
+    sides : mapping
+        Quantities of the segments, (segments,).
+    ends : sequence of int
+        The first station of each segment, and one behind the last.
+    along : mapping
+        Numbers, or arrays (stations,) or (n, stations), of radius, chord, twist, the ratios of chords, and the numbers
+        of the airfoil.
+    weights : array (stations, 3) or (n, stations, 3)
+    doubts : bool
+        Whether to return angles of attack and Mach numbers.
+    """
+    blade, kept = _blade(quantities, sides)
+    places = np.array(ends, dtype=np.intp)
+    blade.ends, blade.segments = places.ctypes.data, len(ends) - 1
+    for name in _ALONG:
+        setattr(blade, name, _column(along[name], kept))
+    for power in range(_POWERS):
+        blade.weights[power] = _column(weights[..., power], kept)
+    structure = np.empty((points, len(_results(fused.trim.BALANCE))))
+    work = np.empty((points, len(_results(fused.trim.WORK))))
+    moments = np.empty((_LOADS, _POWERS, len(ends) - 1, points))
+    found = np.empty((2, points, ends[-1])) if doubts else None
+    library().balance_of_blade(
+        ctypes.c_ssize_t(points),
+        ctypes.byref(blade),
+        *map(_address, (structure, work, moments)),
+        None if found is None else _address(found),
+    )
+    return Balanced(structure, work, moments, found)
+
+
+def matrices_of_rotor(
+    points: int, quantities: Mapping[str, Any], segments: Mapping[str, Any] | None, shapes: Mapping[str, tuple[int, int]]
+) -> dict[str, Array]:
+    """Return M, C, K and B (n, rows, columns) of a rotor from its quantities and those of its segments in the air."""
+    blade, kept = _blade(quantities, segments or {})
+    blade.segments = 0 if segments is None else len(segments["beyond_flap_hinge"])
+    found = {name: np.empty((points, *shape)) for name, shape in shapes.items()}
+    addresses = (ctypes.c_void_p * len(found))(*(matrix.ctypes.data for matrix in found.values()))
+    library().matrices_of_rotor(
+        ctypes.c_ssize_t(points), ctypes.byref(blade), ctypes.byref(_layouts()), ctypes.byref(addresses)
+    )
+    del kept
+    return found
+
+
+def _blade(quantities: Mapping[str, Any], segments: Mapping[str, Any]) -> tuple[_Blade, list[Array]]:
+    """Return a blade with its quantities, and the arrays that it points at."""
+    blade, kept = _Blade(), []
+    for name, place in _PLACES.items():
+        if name in segments:
+            value = np.asarray(segments[name], dtype=float)
+            blade.quantities[place] = _column(value, kept)
+        elif name in quantities:
+            value = np.asarray(quantities[name], dtype=float)
+            blade.quantities[place] = _column(value[..., None] if value.ndim else value, kept)
+    return blade, kept
+
+
+def _column(value: Any, kept: list[Array]) -> _Column:
+    """Return a number, or an array (along,), (points, along) or (1, along), as a column."""
+    array = np.asarray(value, dtype=float)
+    kept.append(array)
+    strides = [stride // array.itemsize if size > 1 else 0 for stride, size in zip(array.strides, array.shape, strict=True)]
+    point, along = (0,) * (2 - array.ndim) + tuple(strides)
+    return _Column(array.ctypes.data, point, along)
+
+
+@cache
+def _layouts() -> _Layouts:
+    rotor, airloads, segment = fused.rotor.IN_VACUUM, fused.rotor.OF_AIRLOADS, fused.rotor.SEGMENT
+    found = _Layouts()
+    for of, tables in (("in_vacuum", rotor), ("of_airloads", airloads), ("segment", segment)):
+        for place, table in enumerate(tables.values()):
+            getattr(found, of)[place] = _layout(table)
+    return found
+
+
+_TABLES: list[Array] = []  # stay in memory with the layouts
+
+
+def _layout(table: Sequence[Sequence[int]]) -> _Layout:
+    places = np.array(table, dtype=np.int32)
+    _TABLES.append(places)
+    return _Layout(*places.shape, places.ctypes.data)
+
+
+def _results(table: Mapping[str, Sequence[Sequence[int]]]) -> range:
+    """Return the numbers of the different results of a plan."""
+    return range(max(abs(number) for rows in table.values() for row in rows for number in row))
+
+
+def _address(array: Array) -> Any:
+    return ctypes.c_void_p(array.ctypes.data)
+
+
+def on_support(matrix: Array, hub: Array, addition: Array) -> Array:
+    """Return Tᵀ (...) T of matrices (points, size, size), T = diag(Φ, 1), plus a matrix of the support's coordinates.
+
+    Φ, `hub`, and the addition are of all points, or (points, ...).
+    """
+    points, size, _ = matrix.shape
+    modes = hub.shape[-1]
+    n = modes + size - 6
+    found, kept = np.empty((points, n, n)), [np.ascontiguousarray(matrix)]
+    columns = [
+        _column(part.reshape(*part.shape[:-2], -1), kept) for part in (hub, addition)
+    ]
+    library().on_support(
+        ctypes.c_ssize_t(points), ctypes.c_int(size), ctypes.c_int(modes), _address(kept[0]), *map(ctypes.byref, columns), _address(found)
+    )
+    return found
