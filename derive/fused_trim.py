@@ -178,6 +178,13 @@ def balance(rotors: Catalogue) -> FusedFunction:
     return FusedFunction("balance", _summary(balance), made, arguments(made, []))
 
 
+def precone_load(rotors: Catalogue) -> FusedFunction:
+    """Precone's part in the steady balance of the undeflected blade."""
+    function = rotors.function("trim", "precone_load")
+    made = plan([], {"precone_load": Matrix(function.rows, function.columns, entries_of(function))})
+    return FusedFunction("precone_load", _summary(precone_load), made, arguments(made, []))
+
+
 def _matrix(columns: Sequence[str], entries: dict[Place, sp.Expr]) -> Matrix:
     return Matrix(STEADY_ROWS, tuple(columns), {place: sp.sympify(value) for place, value in entries.items()})
 
@@ -194,4 +201,5 @@ def functions_of_trim(rotors: Catalogue) -> list[FusedFunction]:
         section_loads(rotors),
         work(rotors),
         balance(rotors),
+        precone_load(rotors),
     ]

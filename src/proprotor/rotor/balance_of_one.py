@@ -10,11 +10,11 @@ import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import add, neg
 from types import ModuleType
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from proprotor_equations import trim as equations
 
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import plain_number
@@ -178,6 +178,7 @@ class BalanceOfOne:
 
     rows, free, hinged : as of `Balance`.
     places : of the entries of the rows and columns of the free unknowns.
+    of_work : what the plan `work` takes of the blade and of each segment, by name.
     """
 
     balance: Balance
@@ -189,6 +190,7 @@ class BalanceOfOne:
     free: list[int]
     hinged: list[bool]
     places: _Places
+    of_work: list[Numbers]
 
     @classmethod
     def of(cls, balance: Balance) -> BalanceOfOne:
@@ -197,12 +199,17 @@ class BalanceOfOne:
         stations, load = _Stations.of(balance.sections), plain_number(balance.target.load)
         rows, free, hinged = balance.rows, balance.free, balance.hinged.tolist()
         places = _Places.of(balance.plans, tuple(rows), tuple(free))
-        return cls(balance, balance.plans, quantities, stations, load, rows, free, hinged, places)
+        of_blade = {name: quantities[name] for name in _of_blade(balance.plans)}
+        of_work = [{**of_blade, **side} for side in stations.sides]
+        return cls(balance, balance.plans, quantities, stations, load, rows, free, hinged, places, of_work)
 
     def precone_load(self) -> list[float]:
         """Return the part of precone in the residual of the undeflected blade."""
-        loads = evaluate(equations.precone_load, self.quantities)[:, equations.TRIM].tolist()
-        return [loads[row] if hinged else 0.0 for row, hinged in zip(self.rows, self.hinged, strict=True)]
+        loads = _signed(evaluate(self.plans.precone_load, self.quantities, math.cos, math.sin))
+        places = [place for place, *_ in self.plans.PRECONE_LOAD["precone_load"]]
+        return [
+            loads[places[row]] if hinged else 0.0 for row, hinged in zip(self.rows, self.hinged, strict=True)
+        ]
 
     def at(self, state: Numbers, precone: float | None = None) -> Here:
         """Return the balance at a state, with a precone of its own if one is given."""
@@ -226,11 +233,12 @@ class BalanceOfOne:
 
     def _work(self, lines: list[tuple[float, ...]], moments: Array) -> Sequence[float]:
         """Return the results of the plan `work`, summed over the segments."""
-        of_blade, parts = {name: self.quantities[name] for name in _of_blade(self.plans)}, []
-        for place, (line, side) in enumerate(zip(lines, self.stations.sides, strict=True)):
-            own = moments[:, POWERS * place : POWERS * (place + 1)].ravel().tolist()
-            parts.append(self.plans.work(line, own, **of_blade, **side))
-        return parts[0] if len(parts) == 1 else list(map(sum, zip(*parts, strict=True)))
+        own = moments.reshape(len(moments), len(lines), POWERS).swapaxes(0, 1).reshape(len(lines), -1).tolist()
+        first, *others = (
+            self.plans.work(line, of_loads, **given)
+            for line, of_loads, given in zip(lines, own, self.of_work, strict=True)
+        )
+        return functools.reduce(_sum, others, first)
 
     def _linear(
         self, structure: Sequence[float], work: Sequence[float]
@@ -250,6 +258,10 @@ class BalanceOfOne:
         return residual, full, airloads, done
 
 
+def _sum(one: Sequence[float], other: Sequence[float]) -> Sequence[float]:
+    return list(map(add, one, other))
+
+
 @functools.cache
 def _of_blade(plans: ModuleType) -> tuple[str, ...]:
     """Return the quantities of the whole blade that the plan `work` takes."""
@@ -258,7 +270,7 @@ def _of_blade(plans: ModuleType) -> tuple[str, ...]:
 
 def _signed(results: Sequence[float]) -> list[float]:
     """Return results so that a layout's numbers are their places: zero first, the negatives from the end."""
-    return [0.0, *results, *(-result for result in reversed(results))]
+    return [0.0, *results, *map(neg, reversed(results))]
 
 
 def solve(matrix: Rows, right: list[float]) -> list[float] | None:
