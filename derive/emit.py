@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import functools
 import hashlib
 import itertools
 import re
@@ -28,6 +29,7 @@ from derive.files import write_whole
 from derive.function import Function
 from derive.fused import FusedFunction, functions_of_rotor
 from derive.fused_trim import functions_of_trim
+from derive.plain import ALL_ROTORS, PLAIN_ROTORS, Catalogue
 from derive.plan import print_line
 from derive.published import DROPPED_TERMS
 from derive.rotor import OF_SEGMENTS, OPTIONAL, Assembly, Call
@@ -279,35 +281,48 @@ def _lines_of(function: FusedFunction) -> Iterator[tuple[str, sp.Expr]]:
 
 
 _FUSED = {
-    "rotor": (
-        "A whole rotor as plans of few operations",
-        "`proprotor_equations.rotor`",
-        functions_of_rotor,
-    ),
-    "trim": (
-        "The trim of a blade as plans of few operations",
-        "`proprotor_equations.trim`, `section` and `airloads`",
-        functions_of_trim,
-    ),
+    "plain": ("Plain rotors, without linkages and drive train, as plans of few operations", PLAIN_ROTORS),
+    "general": ("All rotors as plans of few operations", ALL_ROTORS),
 }
 
 
 def render_fused(module: str) -> str:
-    """Text of a module of fused functions."""
-    title, readable, functions = _FUSED[module]
-    described = [_describe_fused(function) for function in functions()]
-    given = {"title": title, "readable": readable, "functions": described}
+    """Text of a module of fused functions; functions that are those of plain rotors are taken from these."""
+    title, rotors = _FUSED[module]
+    functions, plain = (_fused_functions(kind) for kind in (rotors, PLAIN_ROTORS))
+    shared = [] if rotors is PLAIN_ROTORS else [one for one in functions if one in plain]
+    given = {
+        "title": title,
+        "module": module,
+        "functions": [_describe_fused(function) for function in functions if function not in shared],
+        "shared": _names_of(shared),
+        "names": _names_of(functions),
+        "quantities": [quantity["name"] for quantity in c_code.places(functions)],
+        "absent": [symbol.name for symbol in QUANTITIES if symbol in rotors.absent],
+    }
     return _rendered("fused.py.jinja", f"fused/{module}.py", **given)
 
 
-def _all_plans() -> list[FusedFunction]:
-    return [function for _, _, made in _FUSED.values() for function in made()]
+def _names_of(functions: list[FusedFunction]) -> list[str]:
+    """Names of functions and of their tables."""
+    return sorted(name for function in functions for name in (function.name.upper(), function.name))
 
 
-def render_c() -> str:
-    """Text of a header of C with all plans."""
-    plans = _all_plans()
-    given = {"quantities": c_code.places(plans), "functions": [c_code.described(plan) for plan in plans]}
+@functools.cache
+def _fused_functions(rotors: Catalogue) -> list[FusedFunction]:
+    return [*functions_of_rotor(rotors), *functions_of_trim(rotors)]
+
+
+def render_c(module: str) -> str:
+    """Text of a header of C with the plans of a module."""
+    title, rotors = _FUSED[module]
+    functions = _fused_functions(rotors)
+    given = {
+        "title": title,
+        "module": module,
+        "quantities": c_code.places(functions),
+        "functions": [c_code.described(function) for function in functions],
+    }
     return _environment().get_template("plans.h.jinja").render(**given, **_header())
 
 
@@ -428,10 +443,8 @@ def render() -> Iterator[tuple[str, str]]:
         yield f"published/{module}.py", render_module(reduced_functions(module), title)
     for module in _FUSED:
         yield f"fused/{module}.py", render_fused(module)
-    yield "fused/plans.h", render_c()
-    yield "fused/__init__.py", _rendered(
-        "fused_package.py.jinja", "__init__.py", quantities=c_code.places(_all_plans())
-    )
+        yield f"fused/{module}.h", render_c(module)
+    yield "fused/__init__.py", _rendered("fused_package.py.jinja", "__init__.py")
     yield "__init__.py", _rendered("package.py.jinja", "__init__.py", modules=list(STEPS))
     terms = [{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()]
     text = _rendered("published.py.jinja", "__init__.py", modules=REDUCED_MODULES, terms=terms)

@@ -5,17 +5,15 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Mapping, Sequence
 from functools import cache
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from proprotor_equations import fused
 
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
-_PLACES = {name: place for place, name in enumerate(fused.QUANTITIES)}
 _POWERS = 3
-_LOADS = len(fused.trim.SECTION_LOADS) - 2  # the last two say whether the loads are in doubt
 _ALONG = ("radius", "chord", "twist", "square_ratio", "cube_ratio", "lift_slope", "zero_lift_angle", "drag", "moment")
 
 
@@ -25,26 +23,27 @@ class _Column(ctypes.Structure):
     _fields_ = (("at", ctypes.c_void_p), ("point", ctypes.c_ssize_t), ("along", ctypes.c_ssize_t))
 
 
-class _Blade(ctypes.Structure):
-    """A blade at many points, see plans.c."""
-
-    _fields_ = (
+@cache
+def _blade_of(plans: ModuleType) -> type[ctypes.Structure]:
+    """Return the type of a blade at many points, see points.h, with the quantities of some plans."""
+    fields = (
         ("segments", ctypes.c_ssize_t),
         ("ends", ctypes.c_void_p),
-        ("quantities", _Column * len(fused.QUANTITIES)),
+        ("quantities", _Column * len(plans.QUANTITIES)),
         *((name, _Column) for name in _ALONG),
         ("weights", _Column * _POWERS),
     )
+    return type("Blade", (ctypes.Structure,), {"_fields_": fields})
 
 
 class _Layout(ctypes.Structure):
-    """Places of the results of a plan in a matrix, see plans.c."""
+    """Places of the results of a plan in a matrix, see points.h."""
 
     _fields_ = (("rows", ctypes.c_ssize_t), ("columns", ctypes.c_ssize_t), ("places", ctypes.c_void_p))
 
 
 class _Layouts(ctypes.Structure):
-    """All layouts of a rotor, see plans.c."""
+    """All layouts of a rotor, see points.h."""
 
     _fields_ = (
         ("in_vacuum", _Layout * 4),
@@ -73,6 +72,7 @@ class Balanced(NamedTuple):
 
 
 def balance_of_blade(
+    plans: ModuleType,
     points: int,
     quantities: Mapping[str, Any],
     sides: Mapping[str, Array],
@@ -85,6 +85,8 @@ def balance_of_blade(
 
     Parameters
     ----------
+    plans : module
+        The fused functions of the rotor.
     points : int
     quantities : mapping
         Numbers or arrays (n,) by name.
@@ -99,18 +101,18 @@ def balance_of_blade(
     doubts : bool
         Whether to return angles of attack and Mach numbers.
     """
-    blade, kept = _blade(quantities, sides)
+    blade, kept = _blade(plans, quantities, sides)
     places = np.array(ends, dtype=np.intp)
     blade.ends, blade.segments = places.ctypes.data, len(ends) - 1
     for name in _ALONG:
         setattr(blade, name, _column(along[name], kept))
     for power in range(_POWERS):
         blade.weights[power] = _column(weights[..., power], kept)
-    structure = np.empty((points, len(_results(fused.trim.BALANCE))))
-    work = np.empty((points, len(_results(fused.trim.WORK))))
-    moments = np.empty((_LOADS, _POWERS, len(ends) - 1, points))
+    structure = np.empty((points, len(_results(plans.BALANCE))))
+    work = np.empty((points, len(_results(plans.WORK))))
+    moments = np.empty((len(plans.SECTION_LOADS) - 2, _POWERS, len(ends) - 1, points))
     found = np.empty((2, points, ends[-1])) if doubts else None
-    library().balance_of_blade(
+    _function(plans, "balance_of_blade")(
         ctypes.c_ssize_t(points),
         ctypes.byref(blade),
         *map(_address, (structure, work, moments)),
@@ -120,24 +122,33 @@ def balance_of_blade(
 
 
 def matrices_of_rotor(
-    points: int, quantities: Mapping[str, Any], segments: Mapping[str, Any] | None, shapes: Mapping[str, tuple[int, int]]
+    plans: ModuleType,
+    points: int,
+    quantities: Mapping[str, Any],
+    segments: Mapping[str, Any] | None,
+    shapes: Mapping[str, tuple[int, int]],
 ) -> dict[str, Array]:
     """Return M, C, K and B (n, rows, columns) of a rotor from its quantities and those of its segments in the air."""
-    blade, kept = _blade(quantities, segments or {})
+    blade, kept = _blade(plans, quantities, segments or {})
     blade.segments = 0 if segments is None else len(segments["beyond_flap_hinge"])
     found = {name: np.empty((points, *shape)) for name, shape in shapes.items()}
     addresses = (ctypes.c_void_p * len(found))(*(matrix.ctypes.data for matrix in found.values()))
-    library().matrices_of_rotor(
-        ctypes.c_ssize_t(points), ctypes.byref(blade), ctypes.byref(_layouts()), ctypes.byref(addresses)
+    _function(plans, "matrices_of_rotor")(
+        ctypes.c_ssize_t(points), ctypes.byref(blade), ctypes.byref(_layouts(plans)), ctypes.byref(addresses)
     )
     del kept
     return found
 
 
-def _blade(quantities: Mapping[str, Any], segments: Mapping[str, Any]) -> tuple[_Blade, list[Array]]:
+def _function(plans: ModuleType, name: str) -> Any:
+    """Return a function of the library for some plans."""
+    return getattr(library(), f"{plans.__name__.rpartition('.')[2]}_{name}")
+
+
+def _blade(plans: ModuleType, quantities: Mapping[str, Any], segments: Mapping[str, Any]) -> tuple[Any, list[Array]]:
     """Return a blade with its quantities, and the arrays that it points at."""
-    blade, kept = _Blade(), []
-    for name, place in _PLACES.items():
+    blade, kept = _blade_of(plans)(), []
+    for place, name in enumerate(plans.QUANTITIES):
         if name in segments:
             value = np.asarray(segments[name], dtype=float)
             blade.quantities[place] = _column(value, kept)
@@ -157,8 +168,8 @@ def _column(value: Any, kept: list[Array]) -> _Column:
 
 
 @cache
-def _layouts() -> _Layouts:
-    rotor, airloads, segment = fused.rotor.IN_VACUUM, fused.rotor.OF_AIRLOADS, fused.rotor.SEGMENT
+def _layouts(plans: ModuleType) -> _Layouts:
+    rotor, airloads, segment = plans.IN_VACUUM, plans.OF_AIRLOADS, plans.SEGMENT
     found = _Layouts()
     for of, tables in (("in_vacuum", rotor), ("of_airloads", airloads), ("segment", segment)):
         for place, table in enumerate(tables.values()):

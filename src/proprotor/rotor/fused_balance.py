@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from types import ModuleType
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from proprotor_equations.fused import trim as plans
 
 from proprotor.compiled import plans as compiled_plans
 from proprotor.rotor.airfoil import Airfoil
@@ -23,8 +23,6 @@ from proprotor.typing import Array
 
 _Quantities = Mapping[str, Any]
 
-LOADS = plans.SECTION_LOADS[:-2]  # the last two results say if the loads are in doubt
-MOMENTS = tuple(f"{load}_{power}" for load in LOADS for power in range(POWERS))
 # A product of matrices has the same bits in each column if the number of columns is a multiple of this: no kernel of
 # BLAS then has columns left over, which it would add up in another order.
 _COLUMNS = 16
@@ -79,7 +77,20 @@ def serves_sections(sections: BladeSections) -> bool:
     return type(sections.airfoil) is Airfoil
 
 
+@cache
+def loads_of(plans: ModuleType) -> tuple[str, ...]:
+    """Return the names of the loads of `section_loads`; its last two results say if the loads are in doubt."""
+    return tuple(plans.SECTION_LOADS[:-2])
+
+
+@cache
+def moments_of(plans: ModuleType) -> tuple[str, ...]:
+    """Return the names of the radial moments of these loads."""
+    return tuple(f"{load}_{power}" for load in loads_of(plans) for power in range(POWERS))
+
+
 def balanced(
+    plans: ModuleType,
     sections: BladeSections,
     quantities: _Quantities,
     compressibility: bool,
@@ -91,6 +102,8 @@ def balanced(
 
     Parameters
     ----------
+    plans : module
+        The fused functions, see `proprotor.rotor.fused.plans_of`.
     sections : BladeSections
     quantities : mapping
         Numbers or arrays (n,) of the blade at trim by name.
@@ -101,21 +114,21 @@ def balanced(
     """
     points = len(quantities["coning"])
     if compiled and sections.quadrature.counts.ndim == 1:
-        return _compiled(sections, quantities, compressibility, doubts)
+        return _compiled(plans, sections, quantities, compressibility, doubts)
     blade = dict(quantities) | {name: side[:, None] for name, side in sections.sides.items()}
     line = evaluate(plans.line, blade, np.cos, np.sin)
     air = _air(sections, blade | dict(zip(plans.LINE, line, strict=True)), compressibility)
-    moments = _load_moments(sections, air, quantities["radius"], room, points, doubts)
+    moments = _load_moments(plans, sections, air, quantities["radius"], room, points, doubts)
     shape = moments.shape[2:]
-    structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
-    of_loads = evaluate(plans.work, blade | _NO_LOADS, line, moments.reshape(-1, *shape))
-    work = _matrices("work", of_loads, shape)
+    structure = _matrices(plans, "balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
+    of_loads = evaluate(plans.work, blade, line, moments.reshape(-1, *shape))
+    work = _matrices(plans, "work", of_loads, shape)
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
 
 
 def _compiled(
-    sections: BladeSections, quantities: _Quantities, compressibility: bool, doubts: dict[str, Array] | None
+    plans: ModuleType, sections: BladeSections, quantities: _Quantities, compressibility: bool, doubts: dict[str, Array] | None
 ) -> _Balanced:
     """Return the balance by the compiled plans."""
     points, quadrature, airfoil = len(quantities["coning"]), sections.quadrature, vars(sections.airfoil)
@@ -125,40 +138,42 @@ def _compiled(
     own = {"radius": quadrature.stations, "chord": along.chord, "twist": along.twist}
     own |= {"square_ratio": along.square, "cube_ratio": along.cube} | {name: airfoil[name] for name in names}
     found = compiled_plans.balance_of_blade(
-        points, met, sections.sides, [0, *(one.stop for one in slices)], own, quadrature.weights, doubts is not None
+        plans, points, met, sections.sides, [0, *(one.stop for one in slices)], own, quadrature.weights, doubts is not None
     )
     if doubts is not None:
         mark_doubts(doubts, sections, quantities["radius"], found.doubts, slice(0, points), points)
-    structure, work = (_at_places(name, results) for name, results in (("balance", found.structure), ("work", found.work)))
+    structure, work = (_at_places(plans, name, results) for name, results in (("balance", found.structure), ("work", found.work)))
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], found.moments)
 
 
-def _at_places(plan: str, results: Array) -> dict[str, Array]:
+def _at_places(plans: ModuleType, plan: str, results: Array) -> dict[str, Array]:
     """Return the matrices (n, rows, columns) of a plan from its results (n, results)."""
-    layout = _layouts()[plan]
+    layout = _layouts(plans)[plan]
     whole = np.empty((len(results), 1 + results.shape[1] + len(layout.opposite)))
     whole[:, 0], whole[:, 1 : 1 + results.shape[1]] = 0.0, results
     np.negative(results[:, np.array(layout.opposite, dtype=int) - 1], out=whole[:, 1 + results.shape[1] :])
     return {name: np.take(whole, places, axis=1) for name, places in layout.places.items()}
 
 
-def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
+def segments_of(plans: ModuleType, moments: Array, sections: BladeSections) -> dict[str, Any]:
     """Return sides of the hinges (segments,) and radial moments (n, segments) by name and power of r."""
-    named = zip(MOMENTS, moments.reshape(-1, *moments.shape[2:]).swapaxes(1, 2), strict=True)
+    named = zip(moments_of(plans), moments.reshape(-1, *moments.shape[2:]).swapaxes(1, 2), strict=True)
     return _NO_LOADS | sections.sides | dict(named)
 
 
 @cache
-def _layouts() -> dict[str, Layout]:
+def _layouts(plans: ModuleType) -> dict[str, Layout]:
     work = Layout.of(plans.WORK)
     work.places["work_slopes"] = work.places["work_slopes"][:, PITCH_TWICE]
     return {"work": work, "balance": Layout.of(plans.BALANCE)}
 
 
-def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> dict[str, Array]:
+def _matrices(
+    plans: ModuleType, plan: str, results: tuple[Any, ...], shape: tuple[int, ...]
+) -> dict[str, Array]:
     """Return the matrices (n, rows, columns) of a plan from results of a shape (n,), or (segments, n) to be summed."""
-    layout = _layouts()[plan]
+    layout = _layouts(plans)[plan]
     kind = np.result_type(float, *results)
     pool = np.empty((len(results), *shape), dtype=kind)
     for place, result in enumerate(results):
@@ -179,6 +194,7 @@ def _air(sections: BladeSections, blade: _Quantities, compressibility: bool) -> 
 
 
 def _load_moments(
+    plans: ModuleType,
     sections: BladeSections,
     air: _Quantities,
     radius: Any,
@@ -189,21 +205,22 @@ def _load_moments(
     """Return the radial moments (loads, powers, segments, n) of the section loads, a block of points at a time."""
     numbers = (*air.values(), *vars(sections.airfoil).values())
     kind = np.result_type(float, *(np.asarray(value).dtype for value in numbers))
-    shape = len(LOADS), POWERS, len(sections.quadrature.beyond_lag_hinge), points
+    count = len(loads_of(plans))
+    shape = count, POWERS, len(sections.quadrature.beyond_lag_hinge), points
     moments = np.empty(shape, dtype=kind)
     for rows, here in sections.blocks(points):
-        count = len(range(points)[rows]) if isinstance(rows, slice) else len(rows)
+        n = len(range(points)[rows]) if isinstance(rows, slice) else len(rows)
         shared = here.quadrature.counts.ndim == 1
-        width = _full_width(count) if shared else count
+        width = _full_width(n) if shared else n
         met = {name: _columns(value, rows, width) for name, value in air.items()}
-        loads = _loads_at_stations(here, met, width, room, kind)
+        loads = _loads_at_stations(plans, here, met, width, room, kind)
         if doubts is not None:
-            of_stations = loads[-2, :, :count].T, loads[-1, :, :count].T
+            of_stations = loads[-2, :, :n].T, loads[-1, :, :n].T
             own = radius[rows] if np.ndim(radius) and len(radius) > 1 else radius
             mark_doubts(doubts, here, own, of_stations, rows, points)
-        of_loads = loads[: len(LOADS)]
+        of_loads = loads[:count]
         found = _by_product(here, of_loads) if shared else _point_by_point(here, of_loads)
-        moments[..., rows] = found[..., :count]
+        moments[..., rows] = found[..., :n]
     return moments
 
 
@@ -231,7 +248,12 @@ def _widened(some: Array, width: int) -> Array:
 
 
 def _loads_at_stations(
-    sections: BladeSections, air: dict[str, Any], width: int, room: Room, kind: np.dtype[Any]
+    plans: ModuleType,
+    sections: BladeSections,
+    air: dict[str, Any],
+    width: int,
+    room: Room,
+    kind: np.dtype[Any],
 ) -> Array:
     """Return the results (results, stations, width) of the plan `section_loads`."""
     r = _stations_first(sections.quadrature.stations, width)

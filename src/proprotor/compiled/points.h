@@ -1,12 +1,13 @@
-/* The plans of the derivation for many points: the balance of a blade at trim, and the matrices of a rotor. */
+/* The plans of the derivation for many points: the balance of a blade at trim, and the matrices of a rotor.
+
+   `plain.c` and `general.c` include this file once for each set of plans, which FOR tells apart in the names. */
 
 #include "columns.h"
-#include "plans.h"
 
 #define LOADS (SECTION_LOADS_RESULTS - 2) /* the last two results say whether the loads are in doubt */
 #define POWERS 3
 
-/* A blade at many points: quantities by their places in plans.h, with a stride along the segments; radii, chord, twist,
+/* A blade at many points: quantities by their places in the header of the plans, with a stride along the segments; radii, chord, twist,
    ratios of chords, the airfoil's numbers and three weights of each station. */
 struct blade {
     ptrdiff_t segments;
@@ -60,7 +61,7 @@ static void add_moments(const struct blade *blade, ptrdiff_t point, ptrdiff_t po
 
 /* Balance of a blade at trim states, as `proprotor.rotor.fused_balance.balanced`. Rows of 20 and 20 numbers a point are the
    different results of the plans `balance` and `work`; moments have the axes load and power, segment, point. */
-void balance_of_blade(ptrdiff_t points, const struct blade *blade, double *structure, double *virtual_work, double *all_moments, double *doubts)
+void FOR(balance_of_blade)(ptrdiff_t points, const struct blade *blade, double *structure, double *virtual_work, double *all_moments, double *doubts)
 {
     ptrdiff_t segments = blade->segments, stations = blade->ends[segments];
     for (ptrdiff_t point = 0; point < points; point += LANES) {
@@ -120,7 +121,7 @@ struct layouts {
 #define MOST_WORK 256
 
 /* Matrices M, C, K (points, n, n) and B (points, n, inputs) of a rotor, as `proprotor.rotor.fused.rotor_matrices`. */
-void matrices_of_rotor(ptrdiff_t points, const struct blade *blade, const struct layouts *layouts, double *const *matrices)
+void FOR(matrices_of_rotor)(ptrdiff_t points, const struct blade *blade, const struct layouts *layouts, double *const *matrices)
 {
     const struct layout *w = &layouts->virtual_motion, *l = &layouts->load_derivatives, *u = &layouts->motion;
     for (ptrdiff_t point = 0; point < points; point += LANES) {
