@@ -9,12 +9,14 @@
 #include <math.h>
 #include <stdint.h>
 
+#ifndef LANES /* as wide as the registers of the processor; -DLANES=4 asks for another width */
 #if defined(__AVX512F__)
 #define LANES 8
 #elif defined(__AVX2__)
 #define LANES 4
 #else
 #define LANES 2
+#endif
 #endif
 
 #define EPSILON 2.220446049250313e-16

@@ -7,7 +7,7 @@ void triangular_vectors(int n, const lanes *h, const lanes *real, const lanes *i
     lanes smallest = {0};
     for (int i = 0; i < n; i++)
         for (int j = i > 0 ? i - 1 : 0; j < n; j++) smallest = larger(smallest, magnitude(AT(i, j)));
-    smallest = larger(EPSILON * smallest, all(TINY));
+    smallest = larger(EPSILON * smallest, all(1e-70)); /* the fourth power must be a number */
     for (int k = 0; k < n; k++) {
         lanes *a = x + (ptrdiff_t)k * n, *b = a + (ptrdiff_t)n * n; /* real and imaginary part */
         lanes wr = real[k], wi = imaginary[k];

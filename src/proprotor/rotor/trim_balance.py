@@ -112,6 +112,16 @@ class Balance:
         return serves_sections(self.sections) and self.options.frequencies is None
 
     @functools.cached_property
+    def compiled(self) -> bool:
+        """Whether compiled functions evaluate the plans: for real numbers, not for derivatives by a complex step."""
+        numbers = (*self.quantities.values(), *vars(self.sections.airfoil).values())
+        return (
+            self.options.backend == "compiled"
+            and not self.sections.is_complex
+            and not any(map(np.iscomplexobj, numbers))
+        )
+
+    @functools.cached_property
     def plans(self) -> ModuleType:
         """The fused functions for this rotor."""
         return plans_of(self.quantities)
@@ -156,7 +166,7 @@ class Balance:
                 self.options.compressibility,
                 self.room,
                 doubts,
-                self.options.backend == "compiled",
+                self.compiled,
             )
             residual, structure, work, of_airloads, moments = found
             residual -= work
