@@ -20,7 +20,7 @@ static inline lanes load(const struct column *column, ptrdiff_t point, ptrdiff_t
     if (!column->at) return all(0.0);
     const double *at = column->at + place * column->along;
     if (!column->point) return all(*at);
-    lanes found;
+    lanes found = {0};
     for (int lane = 0; lane < LANES; lane++)
         found[lane] = at[column->point * (point + lane < points ? point + lane : points - 1)];
     return found;
@@ -30,6 +30,13 @@ static inline lanes load(const struct column *column, ptrdiff_t point, ptrdiff_t
 static inline void store(lanes value, double *at, ptrdiff_t stride, ptrdiff_t point, ptrdiff_t points)
 {
     for (int lane = 0; lane < LANES && point + lane < points; lane++) at[stride * (point + lane)] = value[lane];
+}
+
+/* The same for the lanes in which a condition holds. */
+static inline void store_where(whole where, lanes value, double *at, ptrdiff_t stride, ptrdiff_t point, ptrdiff_t points)
+{
+    for (int lane = 0; lane < LANES && point + lane < points; lane++)
+        if (where[lane]) at[stride * (point + lane)] = value[lane];
 }
 
 #endif

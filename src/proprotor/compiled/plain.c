@@ -4,4 +4,7 @@
 
 #define FOR(name) plain_##name
 
+/* Pitch that the linkages of the hinges take off. */
+#define BY_HINGES(q) all(0.0)
+
 #include "points.h"

@@ -6,6 +6,7 @@
 
 #define LOADS (SECTION_LOADS_RESULTS - 2) /* the last two results say whether the loads are in doubt */
 #define POWERS 3
+#define MOST_SEGMENTS 8
 
 /* A blade at many points: quantities by their places in the header of the plans, with a stride along the segments; radii, chord, twist,
    ratios of chords, the airfoil's numbers and three weights of each station. */
@@ -31,9 +32,10 @@ static void load_segment(const struct blade *blade, ptrdiff_t point, ptrdiff_t p
 }
 
 /* Add the radial moments of the loads of a segment, and note the angle of attack and Mach number of each station. */
-static void add_moments(const struct blade *blade, ptrdiff_t point, ptrdiff_t points, ptrdiff_t segment, const lanes *line, lanes *q, lanes *moments, double *doubts, ptrdiff_t stations)
+static void add_moments(const struct blade *blade, ptrdiff_t point, ptrdiff_t points, ptrdiff_t segment, const lanes *line, lanes *q, lanes *moments, whole where, double *doubts)
 {
     lanes loads[SECTION_LOADS_RESULTS];
+    ptrdiff_t stations = blade->ends[blade->segments];
     for (ptrdiff_t k = blade->ends[segment]; k < blade->ends[segment + 1]; k++) {
         lanes r = load(&blade->radius, point, points, k);
         q[Q_CHORD] = load(&blade->chord, point, points, k);
@@ -55,33 +57,7 @@ static void add_moments(const struct blade *blade, ptrdiff_t point, ptrdiff_t po
         }
         if (doubts)
             for (int result = 0; result < 2; result++)
-                store(loads[LOADS + result], doubts + result * points * stations + k, stations, point, points);
-    }
-}
-
-/* Balance of a blade at trim states, as `proprotor.rotor.fused_balance.balanced`. Rows of 20 and 20 numbers a point are the
-   different results of the plans `balance` and `work`; moments have the axes load and power, segment, point. */
-void FOR(balance_of_blade)(ptrdiff_t points, const struct blade *blade, double *structure, double *virtual_work, double *all_moments, double *doubts)
-{
-    ptrdiff_t segments = blade->segments, stations = blade->ends[segments];
-    for (ptrdiff_t point = 0; point < points; point += LANES) {
-        lanes q[QUANTITIES], results[BALANCE_RESULTS], total[WORK_RESULTS], of_segment[WORK_RESULTS], along[LINE_RESULTS];
-        load_quantities(blade, point, points, q);
-        balance(q, results);
-        for (int k = 0; k < BALANCE_RESULTS; k++) store(results[k], structure + k, BALANCE_RESULTS, point, points);
-        for (int k = 0; k < WORK_RESULTS; k++) total[k] = all(0.0);
-        for (ptrdiff_t segment = 0; segment < segments; segment++) {
-            lanes moments[LOADS * POWERS];
-            for (int k = 0; k < LOADS * POWERS; k++) moments[k] = all(0.0);
-            load_segment(blade, point, points, segment, q);
-            line(q, along);
-            add_moments(blade, point, points, segment, along, q, moments, doubts, stations);
-            work(q, along, moments, of_segment);
-            for (int k = 0; k < WORK_RESULTS; k++) total[k] += of_segment[k];
-            for (int k = 0; k < LOADS * POWERS; k++)
-                store(moments[k], all_moments + (k * segments + segment) * points, 1, point, points);
-        }
-        for (int k = 0; k < WORK_RESULTS; k++) store(total[k], virtual_work + k, WORK_RESULTS, point, points);
+                store_where(where, loads[LOADS + result], doubts + result * points * stations + k, stations, point, points);
     }
 }
 
@@ -101,6 +77,41 @@ static void fill(const struct layout *layout, const lanes *results, lanes *matri
 {
     for (ptrdiff_t k = 0; k < layout->rows * layout->columns; k++) matrix[k] = entry(layout, results, k);
 }
+
+/* Evaluate the balance of a blade at trim: different results of the plans `balance` and `work`, and the radial moments of
+   the section loads, of load and power and then of segment. */
+static void evaluate(const struct blade *blade, ptrdiff_t point, ptrdiff_t points, lanes *q, lanes *structure, lanes *done, lanes *moments, whole where, double *doubts)
+{
+    lanes along[LINE_RESULTS], of_segment[WORK_RESULTS], own[LOADS * POWERS];
+    balance(q, structure);
+    for (int k = 0; k < WORK_RESULTS; k++) done[k] = all(0.0);
+    for (ptrdiff_t segment = 0; segment < blade->segments; segment++) {
+        for (int k = 0; k < LOADS * POWERS; k++) own[k] = all(0.0);
+        load_segment(blade, point, points, segment, q);
+        line(q, along);
+        add_moments(blade, point, points, segment, along, q, own, where, doubts);
+        work(q, along, own, of_segment);
+        for (int k = 0; k < WORK_RESULTS; k++) done[k] += of_segment[k];
+        for (int k = 0; k < LOADS * POWERS; k++) moments[k * blade->segments + segment] = own[k];
+    }
+}
+
+/* Balance of a blade at trim states, as `proprotor.rotor.fused_balance.balanced`: rows of different results of the plans,
+   and moments with the axes load and power, segment, point. */
+void FOR(balance_of_blade)(ptrdiff_t points, const struct blade *blade, double *structure, double *virtual_work, double *all_moments, double *doubts)
+{
+    ptrdiff_t count = LOADS * POWERS * blade->segments;
+    for (ptrdiff_t point = 0; point < points; point += LANES) {
+        lanes q[QUANTITIES], results[BALANCE_RESULTS], total[WORK_RESULTS], moments[LOADS * POWERS * MOST_SEGMENTS];
+        load_quantities(blade, point, points, q);
+        evaluate(blade, point, points, q, results, total, moments, every(-1), doubts);
+        for (int k = 0; k < BALANCE_RESULTS; k++) store(results[k], structure + k, BALANCE_RESULTS, point, points);
+        for (int k = 0; k < WORK_RESULTS; k++) store(total[k], virtual_work + k, WORK_RESULTS, point, points);
+        for (ptrdiff_t k = 0; k < count; k++) store(moments[k], all_moments + k * points, 1, point, points);
+    }
+}
+
+#include "trim.h"
 
 /* Store the sum of two matrices, the second of which may be missing. */
 static void store_sum(const struct layout *one, const lanes *of_one, const struct layout *other, const lanes *of_other, double *matrices, ptrdiff_t point, ptrdiff_t points)

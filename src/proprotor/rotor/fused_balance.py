@@ -127,22 +127,34 @@ def balanced(
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
 
 
-def _compiled(
-    plans: ModuleType, sections: BladeSections, quantities: _Quantities, compressibility: bool, doubts: dict[str, Array] | None
-) -> _Balanced:
-    """Return the balance by the compiled plans."""
-    points, quadrature, airfoil = len(quantities["coning"]), sections.quadrature, vars(sections.airfoil)
+def compiled_blades(
+    sections: BladeSections, quantities: _Quantities, compressibility: bool
+) -> compiled_plans.Blades:
+    """Return blades at many points for the compiled plans."""
+    quadrature, airfoil, along = sections.quadrature, vars(sections.airfoil), sections.along
     met = quantities if compressibility else dict(quantities) | {"speed_of_sound": np.inf}
-    slices, along = quadrature.slices, sections.along
     names = ("lift_slope", "zero_lift_angle", "drag", "moment")
     own = {"radius": quadrature.stations, "chord": along.chord, "twist": along.twist}
     own |= {"square_ratio": along.square, "cube_ratio": along.cube} | {name: airfoil[name] for name in names}
-    found = compiled_plans.balance_of_blade(
-        plans, points, met, sections.sides, [0, *(one.stop for one in slices)], own, quadrature.weights, doubts is not None
-    )
+    ends = [0, *(one.stop for one in quadrature.slices)]
+    return compiled_plans.Blades(met, sections.sides, ends, own, quadrature.weights)
+
+
+def _compiled(
+    plans: ModuleType,
+    sections: BladeSections,
+    quantities: _Quantities,
+    compressibility: bool,
+    doubts: dict[str, Array] | None,
+) -> _Balanced:
+    """Return the balance by the compiled plans."""
+    points = len(quantities["coning"])
+    blades = compiled_blades(sections, quantities, compressibility)
+    found = compiled_plans.balance_of_blade(plans, points, blades, doubts is not None)
     if doubts is not None:
         mark_doubts(doubts, sections, quantities["radius"], found.doubts, slice(0, points), points)
-    structure, work = (_at_places(plans, name, results) for name, results in (("balance", found.structure), ("work", found.work)))
+    parts = {"balance": found.structure, "work": found.work}
+    structure, work = (_at_places(plans, name, results) for name, results in parts.items())
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], found.moments)
 

@@ -156,9 +156,9 @@ class Balance:
         doubts: dict[str, Array] | None = None,
     ) -> Linear:
         """Return residual and slopes at a state and a share of the precone, with the quantities behind both."""
-        quantities = self._at(state, rows, share)
+        quantities = self.at(state, rows, share)
         if self.fused:
-            sections = self._sections(rows)
+            sections = self.sections_at(rows)
             found = balanced(
                 self.plans,
                 sections,
@@ -186,7 +186,7 @@ class Balance:
 
     def left(self, state: State, rows: Array, share: float | None = None) -> Array:
         """Return the residual (n, k) with all of the airloads, without slopes."""
-        quantities = self._at(state, rows, share)
+        quantities = self.at(state, rows, share)
         work = self._work(self._loads(quantities, rows, steady_only=True))
         residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
         return self._to_target(residual, rows)[:, self.rows]
@@ -215,14 +215,14 @@ class Balance:
         places = slopes.shape[-1] * rows[:, None] + columns
         return np.asarray(np.take(slopes.reshape(*slopes.shape[:-2], -1), places, axis=-1))
 
-    def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
+    def at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
         """Return the quantities of the whole blade at a state and at a share of its precone."""
         given = dict(self.quantities) if self._is_all(rows) else take(self.quantities, rows)
         if share is not None:
             given["precone"] = share * given["precone"]
         return with_trim(given, self.options, take(state, rows))
 
-    def _sections(self, rows: Array) -> BladeSections:
+    def sections_at(self, rows: Array) -> BladeSections:
         """Return the sections at some of the points."""
         return self.sections if self._is_all(rows) else self.sections.take(rows)
 
@@ -232,7 +232,7 @@ class Balance:
 
     def _loads(self, quantities: Mapping[str, Any], rows: Array, **wanted: Any) -> dict[str, Any]:
         """Return the quantities of each segment and the radial moments of the section loads."""
-        sections = self._sections(rows)
+        sections = self.sections_at(rows)
         segments = segment_quantities(sections, quantities)
         return segments | load_moments(
             sections, segments, compressibility=self.options.compressibility, **wanted
