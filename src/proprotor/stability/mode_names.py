@@ -143,14 +143,16 @@ def _assign_names(groups: tuple[_Group, ...], values: Array, upper: Array, share
     gain = np.take_along_axis(rank, upper, 1).T * (_TIE * of_name)[:, None, None]
     gain += shares
     best: Array = gain.argmax(axis=0)
-    states_of_mode = np.where(np.take_along_axis(values, upper, 1).T.imag > 0, 2, 1)
-    counts = np.array([(states_of_mode * (best == name)).sum(axis=0) for name in range(len(shares))])
+    is_pair = np.take_along_axis(values, upper, 1).T.imag > 0
+    points = np.arange(len(values))
+    counts = np.bincount(
+        (best * len(points) + points).ravel(), (1 + is_pair).ravel(), minlength=len(shares) * len(points)
+    ).reshape(len(shares), -1)
     for one in groups:
         for point in np.flatnonzero((counts[one.names] != one.counts[:, None]).any(axis=0)):
-            mode = mode_of_states(values[[point]], upper[[point]])[0, one.states]
-            fit = shares[one.names[:, None], mode, point].T
-            fit = fit + _TIE * (rank[point, one.states, None] * of_name[one.names])
-            best[mode, point] = one.names[_assigned(fit, one.slots, values[point, one.states])]
+            modes = np.flatnonzero((upper[point] >= one.states.start) & (upper[point] < one.states.stop))
+            fit = gain[one.names, modes[:, None], point]
+            best[modes, point] = one.names[_assigned(fit, one.counts, is_pair[modes, point])]
     return best
 
 
@@ -164,11 +166,6 @@ class _Group(NamedTuple):
     names: Array
     states: slice
     counts: Array
-
-    @property
-    def slots(self) -> Array:
-        """The names, by their place in the group, in as many places as the group has states."""
-        return np.repeat(np.arange(len(self.counts)), self.counts)
 
 
 @lru_cache(maxsize=16)  # of the models of an analysis, which has many batches
@@ -228,28 +225,40 @@ def _ranks(values: Array) -> Array:
     return rank
 
 
-def _assigned(gain: Array, slots: Array, values: Array) -> Array:
-    """Return the best assignment (states,) of one point that gives both states of a pair one name."""
-    upper, real = np.flatnonzero(values.imag > 0), np.flatnonzero(values.imag == 0)
-    given: Array = slots[best_assignment(gain[:, slots])]
-    if (given[upper] == given[upper + 1]).all():
-        return given
-    # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
-    counts = np.bincount(slots)
+def _assigned(gain: Array, counts: Array, is_pair: Array) -> Array:
+    """Return the best assignment of names to the modes (modes,) of one point, by their place among the names.
+
+    Parameters
+    ----------
+    gain : array (modes, names)
+    counts : array (names,) of int
+        Number of states that have each name: 2 for a pair, or for two real roots.
+    is_pair : array (modes,) of bool
+        Whether a mode is a pair, which has both of its states under one name, or a real root.
+    """
     whole, half = np.flatnonzero(counts == 2), np.flatnonzero(counts == 1)
-    if len(upper) > len(whole):  # two rates swing as one pair, which has one of their names
-        given[upper + 1] = given[upper]
-        return given
-    largest = -np.inf
-    for left in combinations(whole.tolist(), len(whole) - len(upper)):
-        of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)
-        pairs, roots = (
-            best_assignment(gain[np.ix_(upper, of_pairs)]),
-            best_assignment(gain[np.ix_(real, of_real)]),
+    pairs, real = np.flatnonzero(is_pair), np.flatnonzero(~is_pair)
+    if len(pairs) != len(whole):
+        states, slots = (
+            np.repeat(np.arange(len(gain)), 1 + is_pair),
+            np.repeat(np.arange(len(counts)), counts),
         )
-        total = 2 * gain[upper, of_pairs[pairs]].sum() + gain[real, of_real[roots]].sum()
+        of_states = slots[best_assignment(gain[np.ix_(states, slots)])]
+        first = np.searchsorted(states, np.arange(len(gain)))
+        given: Array = of_states[first]
+        # Of two rates that swing as one pair, the pair has one of their names.
+        if len(pairs) > len(whole) or (of_states[first[pairs] + 1] == given[pairs]).all():
+            return given
+    # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
+    given, largest = np.empty(len(gain), dtype=int), -np.inf
+    for left in combinations(whole.tolist(), len(whole) - len(pairs)):
+        of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)
+        parts = ((pairs, of_pairs, 2), (real, of_real, 1))
+        names = [some[best_assignment(gain[np.ix_(modes, some)])] for modes, some, _ in parts]
+        total = sum(
+            count * gain[modes, own].sum() for (modes, _, count), own in zip(parts, names, strict=True)
+        )
         if total > largest:
             largest = total
-            given[upper] = given[upper + 1] = of_pairs[pairs]
-            given[real] = of_real[roots]
+            given[pairs], given[real] = names
     return given
