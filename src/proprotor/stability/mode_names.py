@@ -152,7 +152,7 @@ def _assign_names(groups: tuple[_Group, ...], values: Array, upper: Array, share
         for point in np.flatnonzero((counts[one.names] != one.counts[:, None]).any(axis=0)):
             modes = np.flatnonzero((upper[point] >= one.states.start) & (upper[point] < one.states.stop))
             fit = gain[one.names, modes[:, None], point]
-            best[modes, point] = one.names[_assigned(fit, one.counts, is_pair[modes, point])]
+            best[modes, point] = one.names[_assigned(one, fit, is_pair[modes, point])]
     return best
 
 
@@ -160,12 +160,15 @@ class _Group(NamedTuple):
     """Names and states of coordinates that do not couple with others.
 
     names (k,) : places of the names in `name_list`; states : place of the states in the spectrum; counts (k,) : number
-    of states that have each name.
+    of states that have each name; whole, half : the names of two states, a pair or two real roots, and those of one, by
+    their place in `names`.
     """
 
     names: Array
     states: slice
     counts: Array
+    whole: list[int]
+    half: list[int]
 
 
 @lru_cache(maxsize=16)  # of the models of an analysis, which has many batches
@@ -179,7 +182,8 @@ def _groups(
         names = [(known.index(name), motion.places) for motion in some for name in motion.names]
         counts = [1 if len(places) == 1 and own[places[0]] not in held else 2 for _, places in names]
         states = slice(first, first := first + sum(counts))
-        found.append(_Group(np.array([name for name, _ in names]), states, np.array(counts)))
+        whole, half = ([place for place, one in enumerate(counts) if one == count] for count in (2, 1))
+        found.append(_Group(np.array([name for name, _ in names]), states, np.array(counts), whole, half))
     return tuple(found)
 
 
@@ -225,40 +229,39 @@ def _ranks(values: Array) -> Array:
     return rank
 
 
-def _assigned(gain: Array, counts: Array, is_pair: Array) -> Array:
-    """Return the best assignment of names to the modes (modes,) of one point, by their place among the names.
+def _assigned(group: _Group, gain: Array, is_pair: Array) -> Array:
+    """Return the best assignment of names to the modes (modes,) of one point, by their place in the group.
+
+    Both states of a pair have one name.
 
     Parameters
     ----------
+    group : _Group
     gain : array (modes, names)
-    counts : array (names,) of int
-        Number of states that have each name: 2 for a pair, or for two real roots.
     is_pair : array (modes,) of bool
-        Whether a mode is a pair, which has both of its states under one name, or a real root.
+        Whether a mode is a pair, or a real root.
     """
-    whole, half = np.flatnonzero(counts == 2), np.flatnonzero(counts == 1)
-    pairs, real = np.flatnonzero(is_pair), np.flatnonzero(~is_pair)
-    if len(pairs) != len(whole):
-        states, slots = (
-            np.repeat(np.arange(len(gain)), 1 + is_pair),
-            np.repeat(np.arange(len(counts)), counts),
-        )
-        of_states = slots[best_assignment(gain[np.ix_(states, slots)])]
-        first = np.searchsorted(states, np.arange(len(gain)))
+    pairs, real = is_pair.nonzero()[0], (~is_pair).nonzero()[0]
+    if len(pairs) != len(group.whole):
+        modes = np.repeat(np.arange(len(gain)), 1 + is_pair)
+        slots = np.repeat(np.arange(len(group.counts)), group.counts)
+        of_states = slots[best_assignment(gain[modes[:, None], slots])]
+        first = np.searchsorted(modes, np.arange(len(gain)))
         given: Array = of_states[first]
         # Of two rates that swing as one pair, the pair has one of their names.
-        if len(pairs) > len(whole) or (of_states[first[pairs] + 1] == given[pairs]).all():
+        if len(pairs) > len(group.whole) or (of_states[first[pairs] + 1] == given[pairs]).all():
             return given
     # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
     given, largest = np.empty(len(gain), dtype=int), -np.inf
-    for left in combinations(whole.tolist(), len(whole) - len(pairs)):
-        of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)
-        parts = ((pairs, of_pairs, 2), (real, of_real, 1))
-        names = [some[best_assignment(gain[np.ix_(modes, some)])] for modes, some, _ in parts]
-        total = sum(
-            count * gain[modes, own].sum() for (modes, _, count), own in zip(parts, names, strict=True)
-        )
+    for left in combinations(group.whole, len(group.whole) - len(pairs)):
+        of_pairs = [name for name in group.whole if name not in left]
+        total, chosen = 0.0, []
+        for modes, names, states in ((pairs, of_pairs, 2), (real, [*left, *left, *group.half], 1)):
+            fit = gain[modes[:, None], names]
+            best = best_assignment(fit)
+            total += states * fit[np.arange(len(modes)), best].sum()
+            chosen.append(np.array(names, dtype=int)[best])
         if total > largest:
             largest = total
-            given[pairs], given[real] = names
+            given[pairs], given[real] = chosen
     return given
