@@ -9,7 +9,7 @@ other.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import lru_cache
 from typing import Any
 
@@ -125,6 +125,20 @@ def some_points(model: LinearModel, points: Any) -> LinearModel:
     shapes = None if model.shapes is None else model.shapes[points]
     none: dict[str, Any] = dict.fromkeys(("B", "hub", "rotor", "left", "left_hub"))
     return replace(model, **parts, **none, shapes=shapes)
+
+
+def in_one_axis(model: LinearModel) -> LinearModel:
+    """Return the model with one axis of points, with M, C and K only."""
+    if model.airspeed.ndim == 1:
+        return model
+    n, trim = len(model.dofs), model.trim
+    parts: dict[str, Any] = {name: getattr(model, name).reshape(-1, n, n) for name in "MCK"}
+    shapes = None if model.shapes is None else model.shapes.reshape(-1, *model.shapes.shape[-2:])
+    flat = {one.name: getattr(trim, one.name).reshape(-1) for one in fields(trim)}
+    none: dict[str, Any] = dict.fromkeys(("B", "rotor", "left", "left_hub"))
+    return replace(
+        model, **parts, **none, shapes=shapes, trim=replace(trim, **flat), airspeed=model.airspeed.reshape(-1)
+    )
 
 
 def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]:
