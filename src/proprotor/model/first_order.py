@@ -128,16 +128,25 @@ def some_points(model: LinearModel, points: Any) -> LinearModel:
 
 
 def in_one_axis(model: LinearModel) -> LinearModel:
-    """Return the model with one axis of points, with M, C and K only."""
-    if model.airspeed.ndim == 1:
+    """Return the model with one axis of points in place of two; it then has M, C, K and the motion of the hub only."""
+    if model.airspeed.ndim != 2:
         return model
     n, trim = len(model.dofs), model.trim
     parts: dict[str, Any] = {name: getattr(model, name).reshape(-1, n, n) for name in "MCK"}
     shapes = None if model.shapes is None else model.shapes.reshape(-1, *model.shapes.shape[-2:])
     flat = {one.name: getattr(trim, one.name).reshape(-1) for one in fields(trim)}
+    hub = model.hub
+    if hub is not None and hub.ndim > 2:
+        hub = np.broadcast_to(hub, (*model.M.shape[:-2], *hub.shape[-2:])).reshape(-1, *hub.shape[-2:])
     none: dict[str, Any] = dict.fromkeys(("B", "rotor", "left", "left_hub"))
     return replace(
-        model, **parts, **none, shapes=shapes, trim=replace(trim, **flat), airspeed=model.airspeed.reshape(-1)
+        model,
+        **parts,
+        **none,
+        hub=hub,
+        shapes=shapes,
+        trim=replace(trim, **flat),
+        airspeed=model.airspeed.reshape(-1),
     )
 
 
