@@ -59,7 +59,10 @@ def test_a_softer_swashplate_tilt_changes_only_cyclic_pitch(case: pp.Case) -> No
     rotor = case.rotor
     softer = linked(case, cyclic_control_stiffness=0.6 * rotor.control_stiffness)
     ours, theirs = softer.linearize(SPEED), case.linearize(SPEED)
-    for name in ("collective", "coning"):  # by the plans for all rotors, and by those for rotors without linkages
+    for name in (
+        "collective",
+        "coning",
+    ):  # by the plans for all rotors, and by those for rotors without linkages
         assert getattr(ours.trim, name) == pytest.approx(getattr(theirs.trim, name), abs=ROUNDING)
     changed = ours.K - theirs.K
     places = [ours.dofs.index(name) for name in ("pitch_1c", "pitch_1s")]
