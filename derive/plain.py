@@ -1,7 +1,7 @@
 """The functions of the catalogue as fused functions take them: for all rotors, or for plain rotors.
 
-A plain rotor has nothing of `OPTIONAL` of derive/rotor.py: no linkages, no drive train. In its functions these quantities
-are zero from the start, so that a plan has no operation for them.
+A plain rotor has nothing of `OPTIONAL` of derive/rotor.py: no linkages, no drive train. In its functions these
+quantities are zero from the start, so that a plan has no operation for them.
 """
 
 from __future__ import annotations

@@ -281,7 +281,7 @@ def _loads_at_stations(
     given["section_pitch"] = air["pitch"] + along.twist
     given |= {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
     loads = room.array((len(plans.SECTION_LOADS), *shape), kind)
-    evaluate(plans.section_loads, given, np.sqrt, np.arctan, loads)
+    evaluate(plans.section_loads, given, loads)
     return loads
 
 

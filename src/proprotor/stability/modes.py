@@ -19,9 +19,11 @@ import numpy as np
 
 from proprotor.compiled import eigenvalues as compiled_eigenvalues
 from proprotor.model import stamp
+from proprotor.model.batches import few_at_once
 from proprotor.model.first_order import (
     blocks,
     first_order,
+    first_order_at,
     have_modes,
     held_coordinates,
     lack_azimuths,
@@ -30,7 +32,7 @@ from proprotor.model.first_order import (
 )
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
-from proprotor.stability.matching import Modes, Spectrum, size_of
+from proprotor.stability.matching import Modes, Spectrum
 from proprotor.stability.participation import coordinate_shares
 from proprotor.typing import Array, Dataset
 
@@ -58,6 +60,17 @@ def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum
     return Spectrum(values, right, model.shapes, tuple(held), blocks(model, held))
 
 
+def few_spectra(model: LinearModel) -> Iterator[tuple[LinearModel, Spectrum]]:
+    """Yield the points of a batch a few at a time, with M, C and K only, and their eigenvalues and right vectors.
+
+    The vectors of all points of a large batch would not stay in the cache.
+    """
+    held = held_coordinates(model)
+    for rows in few_at_once(model.M.shape[:-2]):
+        some = some_points(model, rows)
+        yield some, decomposition(some, held)
+
+
 def eigenvalues(model: LinearModel) -> Array:
     """Return the eigenvalues (..., states) alone, in no particular order; NaN where `decomposition` has NaN."""
     held, shape = held_coordinates(model), model.M.shape[:-2]
@@ -65,10 +78,26 @@ def eigenvalues(model: LinearModel) -> Array:
     places = blocks(model, held)
     for points, part in _alike(model):
         for (_, columns), own in zip(places, part.blocks, strict=True):
-            found = _roots(_of_block(part, own))
-            found = np.where(_pairs_of_noise(found), 0, found)
+            found = _eigenvalues(_of_block(part, own))
             values[points, columns.start : columns.start + found.shape[-1]] = found
     return values
+
+
+def _eigenvalues(model: LinearModel) -> Array:
+    """Return the eigenvalues (..., states) of points with the same states, whose coordinates may all couple."""
+    found = _compiled_roots(model) if is_compiled(model) else _roots(model)
+    if (noise := _pairs_of_noise(found)).any():
+        found[noise] = 0
+    return found
+
+
+def _roots(model: LinearModel) -> Array:
+    """Return eigenvalues by LAPACK."""
+    states = len(held_coordinates(model)) + len(model.dofs)
+    found = np.empty((*model.M.shape[:-2], states), dtype=complex)
+    for rows in few_at_once(model.M.shape[:-2]):  # the matrices of all points would not stay in the cache
+        found[rows] = np.linalg.eigvals(first_order_at(model, rows))
+    return found
 
 
 def _alike(model: LinearModel) -> Iterator[tuple[Array | EllipsisType, LinearModel]]:
@@ -154,10 +183,8 @@ def is_compiled(model: LinearModel) -> bool:
     return model.origin is not None and model.origin.options.backend == "compiled"
 
 
-def _roots(model: LinearModel) -> Array:
-    """Return eigenvalues of a model all of whose points have the same states, by the compiled functions or by LAPACK."""
-    if not is_compiled(model):
-        return np.linalg.eigvals(first_order(model))
+def _compiled_roots(model: LinearModel) -> Array:
+    """Return eigenvalues by the compiled functions, and by LAPACK where they hand over."""
     n, shape = len(model.dofs), model.M.shape[:-2]
     flat = (part.reshape(-1, n, n) for part in (model.M, model.C, model.K))
     found, rest = compiled_eigenvalues.roots_of_motion(*flat, held_coordinates(model))
@@ -185,9 +212,9 @@ def _pairs_of_noise(values: Array) -> Array:
 
     Coordinates that have a rate alone have such roots, as many as nothing damps.
     """
-    size = size_of(values)
-    noise = _ROUNDING * size.max(axis=-1, keepdims=True, initial=0)
-    return np.asarray((values.imag != 0) & (size <= noise))
+    square = values.real**2 + values.imag**2
+    noise = square <= _ROUNDING**2 * square.max(axis=-1, keepdims=True, initial=0)
+    return np.asarray(noise & (values.imag != 0))
 
 
 def _real(model: LinearModel) -> LinearModel:
