@@ -7,7 +7,7 @@ from proprotor.compiled import eigenvalues as compiled
 from proprotor.compiled.library import why_not
 from tests.compiled.matrices import FAMILIES, backward_error, residual
 
-pytestmark = pytest.mark.skipif(bool(why_not()), reason=f"no compiled functions here: {why_not()}")
+pytestmark = pytest.mark.skipif("there is no C compiler" in why_not(), reason="there is no C compiler")
 SIZES = (1, 2, 3, 4, 5, 8, 13, 29, 40, 64)
 BACKWARD = 1e-14  # of the norm
 
