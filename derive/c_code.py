@@ -73,5 +73,7 @@ def _is_named(function: FusedFunction) -> bool:
 
 def _code(value: sp.Expr) -> str:
     """Return the code of an expression; a number by itself fills all lanes."""
-    code = re.sub(r"\b(?:np\.)?(sqrt|cos|sin|arctan)\(", lambda found: f"{_OF_C[found[1]]}(", CPrinter().doprint(value))
+    code = re.sub(
+        r"\b(?:np\.)?(sqrt|cos|sin|arctan)\(", lambda found: f"{_OF_C[found[1]]}(", CPrinter().doprint(value)
+    )
     return f"all({code})" if value.is_number else code
