@@ -1,7 +1,8 @@
 """C of a plan: the same lines as in Python, for numbers in the lanes of a vector register.
 
-All plans read their quantities from one array, in which each quantity has the place that `places` gives it, and groups of
-numbers from arrays of their own. Plans of named values put these back among the quantities, for the plans that follow.
+All plans read their quantities from one array, in which each quantity has the place that `places` gives it, and groups
+of numbers from arrays of their own. Plans of named values put these back among the quantities, for the plans that
+follow.
 """
 
 from __future__ import annotations
@@ -73,5 +74,7 @@ def _is_named(function: FusedFunction) -> bool:
 
 def _code(value: sp.Expr) -> str:
     """Return the code of an expression; a number by itself fills all lanes."""
-    code = re.sub(r"\b(?:np\.)?(sqrt|cos|sin|arctan)\(", lambda found: f"{_OF_C[found[1]]}(", CPrinter().doprint(value))
+    code = re.sub(
+        r"\b(?:np\.)?(sqrt|cos|sin|arctan)\(", lambda found: f"{_OF_C[found[1]]}(", CPrinter().doprint(value)
+    )
     return f"all({code})" if value.is_number else code

@@ -124,8 +124,29 @@ def _of_motion(rng, count, n):
 FAMILIES = {
     function.__name__.strip("_").replace("_", " "): function
     for function in (
-        *(_random, _companion, _of_whole_roots, _defective, _graded, _badly_scaled, _block, _twins, _triangular),
-        *(_rank_one, _skew, _permutations, _whole_numbers, _zero, _one, _small, _large, _denormal, _almost_split),
+        *(
+            _random,
+            _companion,
+            _of_whole_roots,
+            _defective,
+            _graded,
+            _badly_scaled,
+            _block,
+            _twins,
+            _triangular,
+        ),
+        *(
+            _rank_one,
+            _skew,
+            _permutations,
+            _whole_numbers,
+            _zero,
+            _one,
+            _small,
+            _large,
+            _denormal,
+            _almost_split,
+        ),
         *(_with_noise, _of_motion),
     )
 }

@@ -1,4 +1,4 @@
-"""The compiled solver of eigenvalue problems: matrices of all kinds, by singular values and residuals, beside LAPACK."""
+"""The compiled solver of eigenvalue problems: all kinds of matrices, by singular values and residuals."""
 
 import numpy as np
 import pytest
@@ -71,7 +71,11 @@ def test_what_is_not_finite_spoils_no_other_and_is_refused_as_by_numpy(bad):
 def test_shapes_are_those_of_numpy():
     matrices = FAMILIES["random"](np.random.default_rng(6), 12, 5).reshape(3, 4, 5, 5)
     values, right = compiled.eig(matrices)
-    assert values.shape == (3, 4, 5) and right.shape == (3, 4, 5, 5) and compiled.eigvals(matrices).shape == (3, 4, 5)
+    assert (
+        values.shape == (3, 4, 5)
+        and right.shape == (3, 4, 5, 5)
+        and compiled.eigvals(matrices).shape == (3, 4, 5)
+    )
     assert compiled.eigvals(matrices[:0]).shape == (0, 4, 5)
     large = FAMILIES["random"](np.random.default_rng(7), 1, compiled.MOST_STATES + 1)
     assert (np.sort(compiled.eigvals(large)) == np.sort(np.linalg.eigvals(large))).all()

@@ -16,7 +16,11 @@ SPEEDS = "[100.0, 150.0]"
 def answer(code, **environment):
     """What a process of its own prints, with the files of its cache."""
     done = subprocess.run(
-        [sys.executable, "-c", code], env=os.environ | environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", code],
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert not done.returncode, done.stderr
     return json.loads(done.stdout)
@@ -73,12 +77,17 @@ def test_without_a_compiler_numpy_computes_and_the_refusal_is_one_line(tmp_path)
     assert "there is no C compiler" in answer(REASON, **none)
     taken, refusal = answer(OPTIONS, **none)
     assert taken == "numpy"
-    assert refusal.startswith("backend = compiled:") and "there is no C compiler" in refusal and "\n" not in refusal
+    assert (
+        refusal.startswith("backend = compiled:")
+        and "there is no C compiler" in refusal
+        and "\n" not in refusal
+    )
 
 
 def test_a_compiler_that_fails_says_why(tmp_path):
     script = tmp_path / "cc"
-    script.write_text('#!/bin/sh\ncase "$*" in *-shared*) echo "no room on the disk" >&2; exit 1;; esac\nexec cc "$@"\n')
+    fails = 'case "$*" in *-shared*) echo "no room on the disk" >&2; exit 1;; esac'
+    script.write_text(f'#!/bin/sh\n{fails}\nexec cc "$@"\n')
     script.chmod(0o755)
     reason = answer(REASON, CC=str(script), PROPROTOR_CACHE=str(tmp_path / "cache"))
     assert "no room on the disk" in reason or "there is no C compiler" in reason

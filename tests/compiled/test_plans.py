@@ -56,7 +56,9 @@ def test_cases_have_the_same_models_and_roots(name):
     assert other.origin.options.backend == "compiled"
 
 
-@pytest.mark.parametrize("options", OPTIONS, ids=lambda options: ", ".join(map(str, options.values())) or "usual")
+@pytest.mark.parametrize(
+    "options", OPTIONS, ids=lambda options: ", ".join(map(str, options.values())) or "usual"
+)
 def test_every_option_has_the_same_model(options):
     assert_alike(*both(pp.load_case("xv15"), SPEEDS, **options))
 

@@ -5,12 +5,18 @@ functions hand over. Nothing needs this room: without a compiler everything is c
 `errors`, `typing`, `needs` and `files`.
 
     library      builds, keeps and loads the library; says why there is none
-    eigenvalues  eigenvalues and right vectors of many matrices
-    lanes.h      vectors of numbers, one lane for each problem
+    eigenvalues  eigenvalues and right vectors of many matrices, roots of equations of motion
+    plans        trims of blades and matrices of rotors by the plans of the derivation
+    lanes.h, columns.h
+                 vectors of numbers, one lane for each problem, and how they are read and written
     eigen.h, schur.c, vectors.c, eigenvalues.c
                  the QR iteration in lanes, and vectors by substitution
+    motion.h, motion.c
+                 equations of motion: on a support, and solved for the accelerations
+    points.h, trim.h, plain.c, general.c
+                 the plans at many points, and Newton's method for the trim, for each set of plans
 
-The public names of `eigenvalues` and `library` are the room's face.
+The public names of these three modules are the room's face.
 """
 
-__all__ = ["eigenvalues", "library"]
+__all__ = ["eigenvalues", "library", "plans"]

@@ -56,7 +56,9 @@ def eig(matrices: Array) -> tuple[Array, Array]:
     return values.reshape(matrices.shape[:-1]), right.reshape(matrices.shape)
 
 
-def roots_of_motion(mass: Array, damping: Array, stiffness: Array, held: Sequence[int]) -> tuple[Array, Array]:
+def roots_of_motion(
+    mass: Array, damping: Array, stiffness: Array, held: Sequence[int]
+) -> tuple[Array, Array]:
     """Return the eigenvalues (points, states) of real equations of motion (points, n, n), and which points have none.
 
     `held` are the coordinates whose displacement is a state. A point without eigenvalues has a mass matrix that takes
@@ -93,7 +95,7 @@ def _flat(matrices: Array) -> Array:
 
 
 def _solved(matrices: Array, vectors: bool) -> tuple[Array, Array, Array]:
-    """Return values (points, n), right vectors (points, n, n) or nothing, and which points LAPACK must take (points,)."""
+    """Return values (points, n), right vectors (points, n, n) or nothing, and which are handed over."""
     count, n, _ = matrices.shape
     values = np.empty((count, n), dtype=complex)
     right = np.empty((count, n, n) if vectors else 0, dtype=complex)

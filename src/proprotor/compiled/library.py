@@ -25,7 +25,15 @@ from proprotor.files.output import write_whole
 _SOURCES = Path(__file__).parent
 _GENERATED = Path(fused.__file__).parent
 # One product and one sum at a time, as NumPy does: every width of vector has the same bits then.
-_FLAGS = ("-O3", "-std=gnu11", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
+_FLAGS = (
+    "-O2",
+    "-std=gnu11",
+    "-fPIC",
+    "-shared",
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+)
 _OWN_PROCESSOR = ("-march=native", "-mcpu=native")  # by GCC and Clang on most processors, and on some
 _PATIENCE = 300  # s, for the compiler
 _CACHE = "PROPROTOR_CACHE"
@@ -102,7 +110,8 @@ def _key(compiler: tuple[str, ...], flags: tuple[str, ...]) -> str:
         digest.update(source.name.encode() + source.read_bytes())
     digest.update(_output_of((*compiler, "--version"), "there is no C compiler"))
     # The compiler's own constants name the instructions that it may use.
-    digest.update(_output_of((*compiler, *flags[len(_FLAGS) :], "-dM", "-E", "-x", "c", os.devnull), "the compiler fails"))
+    constants = (*flags[len(_FLAGS) :], "-dM", "-E", "-x", "c", os.devnull)
+    digest.update(_output_of((*compiler, *constants), "the C compiler fails"))
     digest.update(" ".join(flags).encode())
     return digest.hexdigest()[:24]
 
@@ -116,14 +125,16 @@ def _build(compiler: tuple[str, ...], flags: tuple[str, ...], place: Path) -> No
     """Compile the sources into the cache."""
     with tempfile.TemporaryDirectory(prefix="proprotor-") as folder:
         built = Path(folder) / "library.so"
-        sources = map(str, _sources("c"))
-        _output_of((*compiler, *flags, f"-I{_GENERATED}", f"-I{_SOURCES}", "-o", str(built), *sources, "-lm"), "the C compiler fails")
+        sources = (f"-I{_GENERATED}", f"-I{_SOURCES}", "-o", str(built), *map(str, _sources("c")), "-lm")
+        _output_of((*compiler, *flags, *sources), "the C compiler fails")
         content = built.read_bytes()
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
         write_whole(place, lambda file: file.write(content))
     except (OSError, InputError) as error:
-        raise Unavailable(f"the compiled library cannot be kept in {place.parent}: {error}; set {_CACHE}") from None
+        raise Unavailable(
+            f"the compiled library cannot be kept in {place.parent}: {error}; set {_CACHE}"
+        ) from None
 
 
 def _output_of(command: tuple[str, ...], failure: str) -> bytes:

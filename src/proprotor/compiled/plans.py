@@ -15,7 +15,17 @@ from proprotor.compiled.library import library
 from proprotor.typing import Array
 
 _POWERS = 3
-_ALONG = ("radius", "chord", "twist", "square_ratio", "cube_ratio", "lift_slope", "zero_lift_angle", "drag", "moment")
+_ALONG = (
+    "radius",
+    "chord",
+    "twist",
+    "square_ratio",
+    "cube_ratio",
+    "lift_slope",
+    "zero_lift_angle",
+    "drag",
+    "moment",
+)
 
 
 class _Column(ctypes.Structure):
@@ -202,7 +212,8 @@ def search_trim(
     found = Searched(
         arrived,
         np.full((4, points), np.nan),
-        *np.full((2, 2, points, k, k), np.nan),
+        np.full((2, points, k, k), np.nan),
+        np.full((2, points, k, k), np.nan),
         np.full((points, 5), np.nan),
         np.full((len(plans.SECTION_LOADS) - 2, _POWERS, len(blades.ends) - 1, points), np.nan),
         np.full((2, points, blades.ends[-1]), np.nan),
@@ -210,7 +221,9 @@ def search_trim(
     places = {name: getattr(found, name).ctypes.data for name in ("first", "last")}
     if full:
         places |= {name: getattr(found, name).ctypes.data for name in ("before", "work", "moments", "doubts")}
-    results = _Found(state=state.ctypes.data, iterations=iterations.ctypes.data, active=arrived.ctypes.data, **places)
+    results = _Found(
+        state=state.ctypes.data, iterations=iterations.ctypes.data, active=arrived.ctypes.data, **places
+    )
     _function(plans, "search_trim")(
         ctypes.c_ssize_t(points), ctypes.byref(blade), ctypes.byref(given), ctypes.byref(results)
     )
@@ -273,9 +286,11 @@ def _function(plans: ModuleType, name: str) -> Any:
     return getattr(library(), f"{plans.__name__.rpartition('.')[2]}_{name}")
 
 
-def _blade(plans: ModuleType, quantities: Mapping[str, Any], segments: Mapping[str, Any]) -> tuple[Any, list[Array]]:
+def _blade(
+    plans: ModuleType, quantities: Mapping[str, Any], segments: Mapping[str, Any]
+) -> tuple[Any, list[Array]]:
     """Return a blade with its quantities, and the arrays that it points at."""
-    blade, kept = _blade_of(plans)(), []
+    blade, kept = _blade_of(plans)(), list[Array]()
     for place, name in enumerate(plans.QUANTITIES):
         if name in segments:
             value = np.asarray(segments[name], dtype=float)
@@ -290,7 +305,10 @@ def _column(value: Any, kept: list[Array]) -> _Column:
     """Return a number, or an array (along,), (points, along) or (1, along), as a column."""
     array = np.asarray(value, dtype=float)
     kept.append(array)
-    strides = [stride // array.itemsize if size > 1 else 0 for stride, size in zip(array.strides, array.shape, strict=True)]
+    strides = [
+        stride // array.itemsize if size > 1 else 0
+        for stride, size in zip(array.strides, array.shape, strict=True)
+    ]
     point, along = (0,) * (2 - array.ndim) + tuple(strides)
     return _Column(array.ctypes.data, point, along)
 
@@ -307,7 +325,12 @@ def _layouts(plans: ModuleType) -> _Layouts:
 
 @cache
 def _layouts_of_trim(plans: ModuleType) -> dict[str, _Layout]:
-    tables = {"residual": plans.BALANCE, "slopes": plans.BALANCE, "work": plans.WORK, "work_slopes": plans.WORK}
+    tables = {
+        "residual": plans.BALANCE,
+        "slopes": plans.BALANCE,
+        "work": plans.WORK,
+        "work_slopes": plans.WORK,
+    }
     found = {name: _layout(table[name]) for name, table in tables.items()}
     (precone,) = plans.PRECONE_LOAD.values()
     return found | {"precone": _layout(precone)}
@@ -340,10 +363,13 @@ def on_support(matrix: Array, hub: Array, addition: Array) -> Array:
     modes = hub.shape[-1]
     n = modes + size - 6
     found, kept = np.empty((points, n, n)), [np.ascontiguousarray(matrix)]
-    columns = [
-        _column(part.reshape(*part.shape[:-2], -1), kept) for part in (hub, addition)
-    ]
+    columns = [_column(part.reshape(*part.shape[:-2], -1), kept) for part in (hub, addition)]
     library().on_support(
-        ctypes.c_ssize_t(points), ctypes.c_int(size), ctypes.c_int(modes), _address(kept[0]), *map(ctypes.byref, columns), _address(found)
+        ctypes.c_ssize_t(points),
+        ctypes.c_int(size),
+        ctypes.c_int(modes),
+        _address(kept[0]),
+        *map(ctypes.byref, columns),
+        _address(found),
     )
     return found

@@ -209,7 +209,9 @@ def _matrices(
         if served:
             in_air = None if options.airloads == "none" else segments
             compiled = (
-                options.backend == "compiled" and not one and not any(map(np.iscomplexobj, quantities.values()))
+                options.backend == "compiled"
+                and not one
+                and not any(map(np.iscomplexobj, quantities.values()))
             )
             found = fused.rotor_matrices(quantities, in_air, len(rows), one, compiled)
         else:

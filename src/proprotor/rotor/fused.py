@@ -85,7 +85,11 @@ def trim_integrals(quantities: Quantities) -> dict[str, Any]:
 
 
 def rotor_matrices(
-    quantities: Quantities, segments: Quantities | None, points: int, one: bool = False, compiled: bool = False
+    quantities: Quantities,
+    segments: Quantities | None,
+    points: int,
+    one: bool = False,
+    compiled: bool = False,
 ) -> Matrices:
     """Return M, C, K (points, 18, 18) and B (points, 18, 6) of a rotor.
 

@@ -169,7 +169,9 @@ def _backend(wanted: str) -> str:
 
     reason = why_not()
     if reason and wanted == "compiled":
-        raise InputError("backend", wanted, f'needs the compiled functions: {reason}; "auto" takes NumPy then')
+        raise InputError(
+            "backend", wanted, f'needs the compiled functions: {reason}; "auto" takes NumPy then'
+        )
     return "numpy" if reason else "compiled"
 
 

@@ -184,7 +184,9 @@ class _Search:
     def come_near(self, few: Balance) -> None:
         """Run Newton with all loads at once, and follow the path of points that may have missed it."""
         rows = self.rows
-        near, first, last = self._compiled_near(few, rows) if trim_compiled.serves(few) else self._near(few, rows)
+        near, first, last = (
+            self._compiled_near(few, rows) if trim_compiled.serves(few) else self._near(few, rows)
+        )
         arrived = np.flatnonzero(near)
         copy_state(self.start, rows[~near[rows]], onto=self.state)
         known = ~self.followed[arrived]
@@ -221,7 +223,9 @@ class _Search:
 
     def _compiled_near(self, few: Balance, rows: Array) -> tuple[Array, Slopes, Slopes]:
         """Return the same by the compiled functions."""
-        found = trim_compiled.searched(few, self.state, rows, self.iterations, _ITERATIONS // 2, come_near=True)
+        found = trim_compiled.searched(
+            few, self.state, rows, self.iterations, _ITERATIONS // 2, come_near=True
+        )
         return found.arrived, Slopes(*found.first), Slopes(*found.last)
 
     def _follow(self, balance: Balance, rows: Array) -> Path:
@@ -290,7 +294,9 @@ class _Search:
     def _compiled_steps(self, rows: Array) -> tuple[Array, Slopes, _Loads | None]:
         """Return the same by the compiled functions."""
         balance = self.balance
-        found = trim_compiled.searched(balance, self.state, rows, self.iterations, _ITERATIONS, come_near=False)
+        found = trim_compiled.searched(
+            balance, self.state, rows, self.iterations, _ITERATIONS, come_near=False
+        )
         for name, values in zip(UNKNOWNS, found.before, strict=True):
             self.before[name][rows] = values[rows]
         done, slopes = found.arrived, Slopes(*found.last)
