@@ -7,8 +7,7 @@ functions hand over. Nothing needs this room: without a compiler everything is c
     library      builds, keeps and loads the library; says why there is none
     eigenvalues  eigenvalues and right vectors of many matrices, roots of equations of motion
     plans        trims of blades and matrices of rotors by the plans of the derivation
-    lanes.h, columns.h
-                 vectors of numbers, one lane for each problem, and how they are read and written
+    columns.h    how vectors of numbers, one lane for each problem, are read and written
     eigen.h, schur.c, vectors.c, eigenvalues.c
                  the QR iteration in lanes, and vectors by substitution
     motion.h, motion.c
