@@ -1,7 +1,8 @@
 """C of a plan: the same lines as in Python, for numbers in the lanes of a vector register.
 
-All plans read their quantities from one array, in which each quantity has the place that `places` gives it, and groups of
-numbers from arrays of their own. Plans of named values put these back among the quantities, for the plans that follow.
+All plans read their quantities from one array, in which each quantity has the place that `places` gives it, and groups
+of numbers from arrays of their own. Plans of named values put these back among the quantities, for the plans that
+follow.
 """
 
 from __future__ import annotations

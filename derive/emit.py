@@ -465,6 +465,7 @@ def render() -> Iterator[tuple[str, str]]:
     for module in _FUSED:
         yield f"fused/{module}.py", render_fused(module)
         yield f"fused/{module}.h", render_c(module)
+    yield "fused/lanes.h", _environment().get_template("lanes.h.jinja").render(**_header())
     yield "fused/__init__.py", _rendered("fused_package.py.jinja", "__init__.py")
     yield "__init__.py", _rendered("package.py.jinja", "__init__.py", modules=list(STEPS))
     terms = [{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()]
@@ -474,7 +475,7 @@ def render() -> Iterator[tuple[str, str]]:
 
 def derive_files(progress: Progress = print) -> dict[str, str]:
     """All generated files, with a progress line per step."""
-    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 6
+    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 2 * len(_FUSED) + 4
     start = time.perf_counter()
     for count, (name, text) in enumerate(render(), start=1):
         files[name] = text

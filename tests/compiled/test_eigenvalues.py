@@ -1,4 +1,4 @@
-"""The compiled solver of eigenvalue problems: matrices of all kinds, by singular values and residuals, beside LAPACK."""
+"""The compiled solver of eigenvalue problems: all kinds of matrices, by singular values and residuals."""
 
 import numpy as np
 import pytest

@@ -86,9 +86,8 @@ def test_without_a_compiler_numpy_computes_and_the_refusal_is_one_line(tmp_path)
 
 def test_a_compiler_that_fails_says_why(tmp_path):
     script = tmp_path / "cc"
-    script.write_text(
-        '#!/bin/sh\ncase "$*" in *-shared*) echo "no room on the disk" >&2; exit 1;; esac\nexec cc "$@"\n'
-    )
+    fails = 'case "$*" in *-shared*) echo "no room on the disk" >&2; exit 1;; esac'
+    script.write_text(f'#!/bin/sh\n{fails}\nexec cc "$@"\n')
     script.chmod(0o755)
     reason = answer(REASON, CC=str(script), PROPROTOR_CACHE=str(tmp_path / "cache"))
     assert "no room on the disk" in reason or "there is no C compiler" in reason

@@ -94,7 +94,7 @@ def _flat(matrices: Array) -> Array:
 
 
 def _solved(matrices: Array, vectors: bool) -> tuple[Array, Array, Array]:
-    """Return values (points, n), right vectors (points, n, n) or nothing, and which points LAPACK must take (points,)."""
+    """Return values (points, n), right vectors (points, n, n) or nothing, and which are handed over."""
     count, n, _ = matrices.shape
     values = np.empty((count, n), dtype=complex)
     right = np.empty((count, n, n) if vectors else 0, dtype=complex)

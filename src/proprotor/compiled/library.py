@@ -26,7 +26,7 @@ _SOURCES = Path(__file__).parent
 _GENERATED = Path(fused.__file__).parent
 # One product and one sum at a time, as NumPy does: every width of vector has the same bits then.
 _FLAGS = (
-    "-O3",
+    "-O2",
     "-std=gnu11",
     "-fPIC",
     "-shared",
@@ -110,11 +110,8 @@ def _key(compiler: tuple[str, ...], flags: tuple[str, ...]) -> str:
         digest.update(source.name.encode() + source.read_bytes())
     digest.update(_output_of((*compiler, "--version"), "there is no C compiler"))
     # The compiler's own constants name the instructions that it may use.
-    digest.update(
-        _output_of(
-            (*compiler, *flags[len(_FLAGS) :], "-dM", "-E", "-x", "c", os.devnull), "the compiler fails"
-        )
-    )
+    constants = (*flags[len(_FLAGS) :], "-dM", "-E", "-x", "c", os.devnull)
+    digest.update(_output_of((*compiler, *constants), "the C compiler fails"))
     digest.update(" ".join(flags).encode())
     return digest.hexdigest()[:24]
 
@@ -128,11 +125,8 @@ def _build(compiler: tuple[str, ...], flags: tuple[str, ...], place: Path) -> No
     """Compile the sources into the cache."""
     with tempfile.TemporaryDirectory(prefix="proprotor-") as folder:
         built = Path(folder) / "library.so"
-        sources = map(str, _sources("c"))
-        _output_of(
-            (*compiler, *flags, f"-I{_GENERATED}", f"-I{_SOURCES}", "-o", str(built), *sources, "-lm"),
-            "the C compiler fails",
-        )
+        sources = (f"-I{_GENERATED}", f"-I{_SOURCES}", "-o", str(built), *map(str, _sources("c")), "-lm")
+        _output_of((*compiler, *flags, *sources), "the C compiler fails")
         content = built.read_bytes()
     try:
         place.parent.mkdir(parents=True, exist_ok=True)

@@ -207,7 +207,8 @@ def search_trim(
     found = Searched(
         arrived,
         np.full((4, points), np.nan),
-        *np.full((2, 2, points, k, k), np.nan),
+        np.full((2, points, k, k), np.nan),
+        np.full((2, points, k, k), np.nan),
         np.full((points, 5), np.nan),
         np.full((len(plans.SECTION_LOADS) - 2, _POWERS, len(blades.ends) - 1, points), np.nan),
         np.full((2, points, blades.ends[-1]), np.nan),
@@ -284,7 +285,7 @@ def _blade(
     plans: ModuleType, quantities: Mapping[str, Any], segments: Mapping[str, Any]
 ) -> tuple[Any, list[Array]]:
     """Return a blade with its quantities, and the arrays that it points at."""
-    blade, kept = _blade_of(plans)(), []
+    blade, kept = _blade_of(plans)(), list[Array]()
     for place, name in enumerate(plans.QUANTITIES):
         if name in segments:
             value = np.asarray(segments[name], dtype=float)

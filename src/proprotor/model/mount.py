@@ -162,7 +162,9 @@ def _compiled(matrix: Array, hub: Array, addition: Array) -> Array:
     """Return the same as `_on_support` by compiled functions."""
     shape = matrix.shape[:-2]
     of_support = (
-        part if part.ndim == 2 else at_points(part, shape, 2).reshape(-1, *part.shape[-2:])
+        part
+        if part.ndim == 2
+        else np.broadcast_to(part, (*shape, *part.shape[-2:])).reshape(-1, *part.shape[-2:])
         for part in (hub, addition)
     )
     found = on_support(matrix.reshape(-1, *matrix.shape[-2:]), *of_support)

@@ -151,8 +151,9 @@ def _compiled(
     points = len(quantities["coning"])
     blades = compiled_blades(sections, quantities, compressibility)
     found = compiled_plans.balance_of_blade(plans, points, blades, doubts is not None)
-    if doubts is not None:
-        mark_doubts(doubts, sections, quantities["radius"], found.doubts, slice(0, points), points)
+    if doubts is not None and found.doubts is not None:
+        angle, mach = found.doubts
+        mark_doubts(doubts, sections, quantities["radius"], (angle, mach), slice(0, points), points)
     parts = {"balance": found.structure, "work": found.work}
     structure, work = (_at_places(plans, name, results) for name, results in parts.items())
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]

@@ -1,4 +1,4 @@
-"""Newton's method for the trim of many points by the compiled functions: the stages of `trim_solver`, all steps in one call."""
+"""Newton's method for the trim of many points by the compiled functions: all steps of a stage in one call."""
 
 from __future__ import annotations
 

@@ -181,8 +181,8 @@ def with_azimuths(spectrum: Spectrum, model: LinearModel, states: int) -> Spectr
 def _compiled_roots(model: LinearModel) -> Array:
     """Return eigenvalues by the compiled functions, and by LAPACK where they hand over."""
     n, shape = len(model.dofs), model.M.shape[:-2]
-    flat = (part.reshape(-1, n, n) for part in (model.M, model.C, model.K))
-    found, rest = compiled_eigenvalues.roots_of_motion(*flat, held_coordinates(model))
+    mass, damping, stiffness = (part.reshape(-1, n, n) for part in (model.M, model.C, model.K))
+    found, rest = compiled_eigenvalues.roots_of_motion(mass, damping, stiffness, held_coordinates(model))
     found = found.reshape(*shape, -1)
     if rest.any():
         points = rest.reshape(shape)
