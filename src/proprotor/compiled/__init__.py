@@ -7,15 +7,20 @@ functions hand over. Nothing needs this room: without a compiler everything is c
     library      builds, keeps and loads the library; says why there is none
     eigenvalues  eigenvalues and right vectors of many matrices, roots of equations of motion
     plans        trims of blades and matrices of rotors by the plans of the derivation
-    columns.h    how vectors of numbers, one lane for each problem, are read and written
+    bounds       the bound on the path to a trim
+    motion       equations of motion on a support, and whether every motion has mass
+    columns, columns.h
+                 how vectors of numbers, one lane for each problem, are read and written; their memory
     eigen.h, schur.c, vectors.c, eigenvalues.c
                  the QR iteration in lanes, and vectors by substitution
     motion.h, motion.c
                  equations of motion: on a support, and solved for the accelerations
+    bounds.c, rows.h
+                 the bound; linear equations of a few rows
     points.h, trim.h, plain.c, general.c
                  the plans at many points, and Newton's method for the trim, for each set of plans
 
-The public names of these three modules are the room's face.
+The public names of these modules, but for `columns`, are the room's face.
 """
 
-__all__ = ["eigenvalues", "library", "plans"]
+__all__ = ["bounds", "eigenvalues", "library", "motion", "plans"]

@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
+from proprotor.compiled.columns import address, lane_room
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
 MOST_STATES = 256  # of eigen.h
-_WIDEST = 64  # bytes of a vector register
 
 
 def eigvals(matrices: Array) -> Array:
@@ -69,16 +68,16 @@ def roots_of_motion(
     parts = [np.ascontiguousarray(part, dtype=float) for part in (mass, damping, stiffness)]
     places = np.array(held, dtype=np.int32)
     values, rest = np.empty((count, states), dtype=complex), np.zeros(count, dtype=bool)
-    room = _room(4 * states * states + 4 * states + n * wide)
+    room = lane_room(4 * states * states + 4 * states + n * wide)
     library().roots_of_motion(
         ctypes.c_int(n),
         ctypes.c_int(len(held)),
-        _address(places),
+        address(places),
         ctypes.c_ssize_t(count),
         (ctypes.c_void_p * 3)(*(part.ctypes.data for part in parts)),
-        _address(values),
-        _address(rest),
-        _address(room),
+        address(values),
+        address(rest),
+        address(room),
     )
     return values, rest
 
@@ -100,25 +99,14 @@ def _solved(matrices: Array, vectors: bool) -> tuple[Array, Array, Array]:
     values = np.empty((count, n), dtype=complex)
     right = np.empty((count, n, n) if vectors else 0, dtype=complex)
     rest = np.zeros(count, dtype=bool)
-    room = _room(4 * n * n + 4 * n)
+    room = lane_room(4 * n * n + 4 * n)
     library().eigenvalues(
         ctypes.c_int(n),
         ctypes.c_ssize_t(count),
-        _address(matrices),
-        _address(values),
-        _address(right) if vectors else None,
-        _address(rest),
-        _address(room),
+        address(matrices),
+        address(values),
+        address(right) if vectors else None,
+        address(rest),
+        address(room),
     )
     return values, right, rest
-
-
-def _room(vectors: int) -> Array:
-    """Return memory for vectors of lanes, at a place where they may begin."""
-    memory = np.empty((vectors + 1) * _WIDEST, dtype=np.uint8)
-    start = -memory.ctypes.data % _WIDEST
-    return memory[start:]
-
-
-def _address(array: Array) -> Any:
-    return ctypes.c_void_p(array.ctypes.data)

@@ -4,6 +4,7 @@
 
 #include "columns.h"
 
+#define CLEARLY_MASS 1e-6 /* of massless.py: a pivot of M + its transpose, in its diagonal */
 #define LARGEST_FACTOR 10.0 /* of a row that is taken off another, rows scaled to a largest entry of one */
 
 void load_equations(int n, int count_held, const int32_t *held, ptrdiff_t first, ptrdiff_t count, const double *const *matrices, lanes *equations)
@@ -81,5 +82,35 @@ void on_support(ptrdiff_t points, int size, int modes, const double *rotor, cons
                 for (int k = 0; k < HUB; k++) sum += motion[k * modes + i] * columns[k * MOST + j];
                 store(sum, found + (ptrdiff_t)i * n + j, (ptrdiff_t)n * n, point, points);
             }
+    }
+}
+
+/* Find in which mass matrices (points, n, n) every motion has mass for certain, by the pivots of M + its transpose. `rows`
+   has room for n * n. */
+void have_mass(ptrdiff_t points, int n, const double *mass, unsigned char *found, lanes *rows)
+{
+    struct column own = {mass, (ptrdiff_t)n * n, 1};
+    for (ptrdiff_t point = 0; point < points; point += LANES) {
+        whole certain = every(-1);
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j <= i; j++)
+                rows[i * n + j] = load(&own, point, points, i * n + j) + load(&own, point, points, j * n + i);
+        for (int k = 0; k < n; k++) {
+            /* Row k of the factor: its entries times their pivots, then divided by these. */
+            lanes pivot = rows[k * n + k];
+            for (int j = 0; j < k; j++) {
+                lanes sum = rows[k * n + j];
+                for (int i = 0; i < j; i++) sum -= rows[k * n + i] * rows[j * n + i];
+                rows[k * n + j] = sum;
+            }
+            for (int j = 0; j < k; j++) {
+                lanes factor = rows[k * n + j] * rows[j * n + j];
+                pivot -= factor * rows[k * n + j];
+                rows[k * n + j] = factor;
+            }
+            certain &= pivot > CLEARLY_MASS * rows[k * n + k]; /* false for NaN */
+            rows[k * n + k] = 1.0 / pivot;
+        }
+        for (int lane = 0; lane < LANES && point + lane < points; lane++) found[point + lane] = certain[lane] != 0;
     }
 }

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from proprotor.compiled.columns import Column, address, column
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
@@ -28,21 +29,15 @@ _ALONG = (
 )
 
 
-class _Column(ctypes.Structure):
-    """Numbers in memory, see columns.h."""
-
-    _fields_ = (("at", ctypes.c_void_p), ("point", ctypes.c_ssize_t), ("along", ctypes.c_ssize_t))
-
-
 @cache
 def _blade_of(plans: ModuleType) -> type[ctypes.Structure]:
     """Return the type of a blade at many points, see points.h, with the quantities of some plans."""
     fields = (
         ("segments", ctypes.c_ssize_t),
         ("ends", ctypes.c_void_p),
-        ("quantities", _Column * len(plans.QUANTITIES)),
-        *((name, _Column) for name in _ALONG),
-        ("weights", _Column * _POWERS),
+        ("quantities", Column * len(plans.QUANTITIES)),
+        *((name, Column) for name in _ALONG),
+        ("weights", Column * _POWERS),
     )
     return type("Blade", (ctypes.Structure,), {"_fields_": fields})
 
@@ -61,8 +56,8 @@ class _Search(ctypes.Structure):
         ("unknowns", ctypes.c_void_p),
         ("rows", ctypes.c_void_p),
         *((name, ctypes.c_int32) for name in ("target", "diagonal", "unloaded", "most", "ends_near")),
-        ("load", _Column),
-        ("structural_offset", _Column),
+        ("load", Column),
+        ("structural_offset", Column),
         *((name, _Layout) for name in ("residual", "slopes", "work", "work_slopes", "precone")),
     )
 
@@ -134,9 +129,9 @@ class Blades:
         kept.append(places)
         blade.ends, blade.segments = places.ctypes.data, len(self.ends) - 1
         for name in _ALONG:
-            setattr(blade, name, _column(self.along[name], kept))
+            setattr(blade, name, column(self.along[name], kept))
         for power in range(_POWERS):
-            blade.weights[power] = _column(self.weights[..., power], kept)
+            blade.weights[power] = column(self.weights[..., power], kept)
         return blade, kept
 
 
@@ -204,7 +199,7 @@ def search_trim(
         setattr(given, name, int(getattr(search, name)))
     for name in ("load", "structural_offset"):
         value = np.asarray(getattr(search, name), dtype=float)
-        setattr(given, name, _column(value[..., None] if value.ndim else value, kept))
+        setattr(given, name, column(value[..., None] if value.ndim else value, kept))
     for name, table in _layouts_of_trim(plans).items():
         setattr(given, name, table)
     arrived = wanted.copy()
@@ -255,8 +250,8 @@ def balance_of_blade(
     _function(plans, "balance_of_blade")(
         ctypes.c_ssize_t(points),
         ctypes.byref(blade),
-        *map(_address, (structure, work, moments)),
-        None if found is None else _address(found),
+        *map(address, (structure, work, moments)),
+        None if found is None else address(found),
     )
     del kept
     return Balanced(structure, work, moments, found)
@@ -294,23 +289,11 @@ def _blade(
     for place, name in enumerate(plans.QUANTITIES):
         if name in segments:
             value = np.asarray(segments[name], dtype=float)
-            blade.quantities[place] = _column(value, kept)
+            blade.quantities[place] = column(value, kept)
         elif name in quantities:
             value = np.asarray(quantities[name], dtype=float)
-            blade.quantities[place] = _column(value[..., None] if value.ndim else value, kept)
+            blade.quantities[place] = column(value[..., None] if value.ndim else value, kept)
     return blade, kept
-
-
-def _column(value: Any, kept: list[Array]) -> _Column:
-    """Return a number, or an array (along,), (points, along) or (1, along), as a column."""
-    array = np.asarray(value, dtype=float)
-    kept.append(array)
-    strides = [
-        stride // array.itemsize if size > 1 else 0
-        for stride, size in zip(array.strides, array.shape, strict=True)
-    ]
-    point, along = (0,) * (2 - array.ndim) + tuple(strides)
-    return _Column(array.ctypes.data, point, along)
 
 
 @cache
@@ -348,28 +331,3 @@ def _layout(table: Sequence[Sequence[int]]) -> _Layout:
 def _results(table: Mapping[str, Sequence[Sequence[int]]]) -> range:
     """Return the numbers of the different results of a plan."""
     return range(max(abs(number) for rows in table.values() for row in rows for number in row))
-
-
-def _address(array: Array) -> Any:
-    return ctypes.c_void_p(array.ctypes.data)
-
-
-def on_support(matrix: Array, hub: Array, addition: Array) -> Array:
-    """Return Tᵀ (...) T of matrices (points, size, size), T = diag(Φ, 1), plus a matrix of the support's coordinates.
-
-    Φ, `hub`, and the addition are of all points, or (points, ...).
-    """
-    points, size, _ = matrix.shape
-    modes = hub.shape[-1]
-    n = modes + size - 6
-    found, kept = np.empty((points, n, n)), [np.ascontiguousarray(matrix)]
-    columns = [_column(part.reshape(*part.shape[:-2], -1), kept) for part in (hub, addition)]
-    library().on_support(
-        ctypes.c_ssize_t(points),
-        ctypes.c_int(size),
-        ctypes.c_int(modes),
-        _address(kept[0]),
-        *map(ctypes.byref, columns),
-        _address(found),
-    )
-    return found

@@ -3,6 +3,7 @@
    `plain.c` and `general.c` include this file once for each set of plans, which FOR tells apart in the names. */
 
 #include "columns.h"
+#include "rows.h"
 
 #define LOADS (SECTION_LOADS_RESULTS - 2) /* the last two results say whether the loads are in doubt */
 #define POWERS 3

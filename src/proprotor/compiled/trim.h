@@ -67,31 +67,17 @@ static void linearise(const struct search *search, const lanes *structure, const
 }
 
 /* Solve for Newton's step with exchanges of rows in each lane; NaN without an inverse. */
-static void solve_step(int count, struct linear at, lanes *step)
+static void solve_step(int count, const struct linear *at, lanes *step)
 {
-    for (int k = 0; k < count; k++) {
-        for (int i = k + 1; i < count; i++) {
-            whole better = magnitude(at.full[i][k]) > magnitude(at.full[k][k]);
-            for (int j = k; j < count; j++) {
-                lanes upper = at.full[k][j], lower = at.full[i][j];
-                at.full[k][j] = choose(better, lower, upper), at.full[i][j] = choose(better, upper, lower);
-            }
-            lanes upper = at.residual[k], lower = at.residual[i];
-            at.residual[k] = choose(better, lower, upper), at.residual[i] = choose(better, upper, lower);
-        }
-        for (int i = k + 1; i < count; i++) {
-            lanes factor = at.full[i][k] / at.full[k][k];
-            for (int j = k + 1; j < count; j++) at.full[i][j] -= factor * at.full[k][j];
-            at.residual[i] -= factor * at.residual[k];
-        }
+    lanes rows[UNKNOWNS * (UNKNOWNS + 1)];
+    for (int i = 0; i < count; i++) {
+        for (int j = 0; j < count; j++) rows[i * (count + 1) + j] = at->full[i][j];
+        rows[i * (count + 1) + count] = at->residual[i];
     }
-    for (int k = count - 1; k >= 0; k--) {
-        lanes left = at.residual[k];
-        for (int j = k + 1; j < count; j++) left -= at.full[k][j] * step[j];
-        step[k] = left / at.full[k][k];
-    }
+    solve_rows(count, count + 1, rows);
     for (int k = 0; k < count; k++) {
-        lanes within = choose(step[k] > LARGEST_STEP, all(LARGEST_STEP), step[k]);
+        lanes newton = rows[k * (count + 1) + count];
+        lanes within = choose(newton > LARGEST_STEP, all(LARGEST_STEP), newton);
         step[k] = choose(within < -LARGEST_STEP, all(-LARGEST_STEP), within);
     }
 }
@@ -151,7 +137,7 @@ void FOR(search_trim)(ptrdiff_t points, const struct blade *blade, const struct 
                 for (int i = 0; i < search->count; i++)
                     if (search->unknowns[i] != COLLECTIVE) at.residual[i] += own[search->rows[i]];
             }
-            solve_step(search->count, at, step);
+            solve_step(search->count, &at, step);
             if (found->first && count == 0) store_slopes(search, &at, active, found->first, point, points);
             store_slopes(search, &at, active, found->last, point, points);
             if (found->before) {

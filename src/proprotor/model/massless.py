@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from proprotor.compiled.motion import have_mass
 from proprotor.model.batches import few_at_once
 from proprotor.typing import Array
 
@@ -22,8 +23,15 @@ _NO_INERTIA = 1e13  # condition number of the scaled matrix, above which the mat
 _TAKES_PART = 0.01  # component of a unit vector
 
 
-def massless(mass: Array) -> Array:
-    """Return which mass matrices of a batch (..., n, n) have no inverse, (...); False at failed points."""
+def massless(mass: Array, compiled: bool = False) -> Array:
+    """Return which mass matrices of a batch (..., n, n) have no inverse, (...); False at failed points.
+
+    Compiled functions may find those that have one for certain.
+    """
+    if compiled and not np.iscomplexobj(mass):
+        left = ~have_mass(mass.reshape(-1, *mass.shape[-2:])).reshape(mass.shape[:-2])
+        left[left] = massless(mass[left])
+        return np.asarray(left)
     mass, found = np.real(mass), np.zeros(mass.shape[:-2], dtype=bool)
     for rows in few_at_once(found.shape):
         if _clearly_positive(some := mass[rows]):  # which matrices with NaN are not

@@ -257,7 +257,7 @@ class _Search:
         """Run full Newton and return which points converged; points with a path must converge near its end."""
         steps = self._compiled_steps if trim_compiled.serves(self.balance) else self._steps
         done, found, loads = steps(rows)
-        near = near_each_other(self.balance.sprung, found.of(rows), self.ends.of(rows))
+        near = near_each_other(self.balance, found.of(rows), self.ends.of(rows))
         done[rows] &= ~self.followed[rows] | near
         self.last = loads if done[rows].all() else None
         return done

@@ -85,7 +85,7 @@ def eigenvalues(model: LinearModel) -> Array:
 
 def _eigenvalues(model: LinearModel) -> Array:
     """Return the eigenvalues (..., states) of points with the same states, whose coordinates may all couple."""
-    found = _compiled_roots(model) if is_compiled(model) else _roots(model)
+    found = _compiled_roots(model) if model.is_compiled else _roots(model)
     if (noise := _pairs_of_noise(found)).any():
         found[noise] = 0
     return found
@@ -118,13 +118,13 @@ def _by_block(model: LinearModel) -> Spectrum:
     held = held_coordinates(model)
     places = blocks(model, held)
     if len(places) == 1:
-        return Spectrum(*_solved(first_order(model), is_compiled(model)), model.shapes, tuple(held), places)
+        return Spectrum(*_solved(first_order(model), model.is_compiled), model.shapes, tuple(held), places)
     states = len(held) + len(model.dofs)
     values = np.empty((*model.M.shape[:-2], states), dtype=complex)
     right = np.zeros((*values.shape, states), dtype=complex)
     for (rows, columns), own in zip(places, model.blocks, strict=True):
         values[..., columns], right[..., rows, columns] = _solved(
-            first_order(_of_block(model, own)), is_compiled(model)
+            first_order(_of_block(model, own)), model.is_compiled
         )
     return Spectrum(values, right, model.shapes, tuple(held), places)
 
@@ -176,11 +176,6 @@ def with_azimuths(spectrum: Spectrum, model: LinearModel, states: int) -> Spectr
                 )
                 whole[..., held.index(place), next(free)] = 1
     return Spectrum(found, whole, spectrum.shapes, tuple(held), later)
-
-
-def is_compiled(model: LinearModel) -> bool:
-    """Return whether compiled functions solve the eigenvalue problem of a model."""
-    return model.origin is not None and model.origin.options.backend == "compiled"
 
 
 def _compiled_roots(model: LinearModel) -> Array:
