@@ -67,7 +67,9 @@ def roots_of_motion(
     states, wide = n + len(held), 2 * n + len(held)
     parts = [np.ascontiguousarray(part, dtype=float) for part in (mass, damping, stiffness)]
     places = np.array(held, dtype=np.int32)
-    values, rest = np.empty((count, states), dtype=complex), np.zeros(count, dtype=bool)
+    values, rest = np.empty((count, states), dtype=complex), np.full(count, states > MOST_STATES)
+    if states > MOST_STATES:
+        return values, rest
     room = lane_room(4 * states * states + 4 * states + n * wide)
     library().roots_of_motion(
         ctypes.c_int(n),

@@ -152,10 +152,10 @@ def _on_support(matrix: Array, hub: Array, addition: Array, compiled: bool) -> A
     return whole
 
 
-def _are_served(*parts: Array) -> bool:
+def _are_served(matrix: Array, hub: Array, addition: Array) -> bool:
     """Return whether compiled functions put such matrices on a support: real ones of many points."""
-    few = all(part.shape[-1] <= MOST_ROWS for part in parts)
-    return few and parts[0].ndim > 2 and not any(map(np.iscomplexobj, parts))
+    few = hub.shape[-1] + matrix.shape[-1] - len(HUB) <= MOST_ROWS
+    return few and matrix.ndim > 2 and not any(map(np.iscomplexobj, (matrix, hub, addition)))
 
 
 def _compiled(matrix: Array, hub: Array, addition: Array) -> Array:
