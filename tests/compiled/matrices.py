@@ -69,7 +69,7 @@ def _skew(rng, count, n):
 
 
 def _permutations(rng, count, n):
-    return np.eye(n)[np.array([rng.permutation(n) for _ in range(count)])]
+    return np.eye(n)[rng.permuted(np.broadcast_to(np.arange(n), (count, n)), axis=1)]
 
 
 def _whole_numbers(rng, count, n):

@@ -100,6 +100,13 @@ def test_roots_of_motion_solve_the_equations_of_motion(held):
             assert smallest <= 1e-11 * np.linalg.norm(rates)
 
 
+def test_more_states_than_the_compiled_functions_have_room_for_are_handed_over():
+    half = compiled.MOST_STATES // 2
+    for n, expected in ((half, False), (half + 1, True)):
+        _, rest = compiled.roots_of_motion(*motions(np.random.default_rng(10), 2, n), range(n))
+        assert (rest == expected).all()
+
+
 def test_a_mass_matrix_that_needs_exchanges_of_rows_is_handed_over():
     mass, damping, stiffness = motions(np.random.default_rng(9), 20, 4)
     mass[7] = np.eye(4)[[1, 0, 3, 2]]

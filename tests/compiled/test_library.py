@@ -2,8 +2,10 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+from importlib.util import find_spec
 
 import pytest
 
@@ -24,6 +26,15 @@ def answer(code, **environment):
     )
     assert not done.returncode, done.stderr
     return json.loads(done.stdout)
+
+
+def compiler_that_refuses(folder, argument):
+    """The command of a compiler that fails where an argument holds a word."""
+    script = folder / "refuses"
+    fails = f'case "$*" in *{argument}*) echo "cannot do {argument}" >&2; exit 1;; esac'
+    script.write_text(f'#!/bin/sh\n{fails}\nexec cc "$@"\n')
+    script.chmod(0o755)
+    return str(script)
 
 
 ROOTS = """
@@ -53,9 +64,12 @@ print(json.dumps(said))
 
 
 @needs_compiler
-def test_the_library_is_built_once_and_a_damaged_one_again(tmp_path):
+def test_processes_that_build_at_once_make_one_library_and_a_damaged_one_is_built_again(tmp_path):
     cache = {"PROPROTOR_CACHE": str(tmp_path / "cache")}
-    first = answer(ROOTS, **cache)
+    command = [sys.executable, "-c", ROOTS]
+    both = [subprocess.Popen(command, env=os.environ | cache, stdout=subprocess.PIPE) for _ in range(2)]
+    first, other = (json.loads(process.communicate()[0]) for process in both)
+    assert first == other and [process.returncode for process in both] == [0, 0]
     (built,) = (tmp_path / "cache").iterdir()
     made = built.stat().st_mtime_ns
     assert answer(ROOTS, **cache) == first and built.stat().st_mtime_ns == made
@@ -64,12 +78,17 @@ def test_the_library_is_built_once_and_a_damaged_one_again(tmp_path):
 
 
 @needs_compiler
-def test_every_width_of_vectors_has_the_same_bits(tmp_path):
-    cache = {"PROPROTOR_CACHE": str(tmp_path)}
+def test_every_width_of_vectors_has_the_same_bits_and_a_library_of_its_own(tmp_path):
+    """The narrowest also with a compiler that has no flag for the instructions of its processor."""
+    cache = {"PROPROTOR_CACHE": str(tmp_path / "cache")}
     compiler = os.environ.get("CC") or "cc"
-    widths = [answer(ROOTS, CC=f"{compiler} -DLANES={lanes}", **cache) for lanes in (2, 4, 8)]
-    assert widths[0] == widths[1] == widths[2]
-    assert len(list(tmp_path.iterdir())) == 3  # each flag has a library of its own
+    commands = (
+        compiler_that_refuses(tmp_path, "native"),
+        *(f"{compiler} -DLANES={lanes}" for lanes in (4, 8)),
+    )
+    widths = [answer(ROOTS, CC=command, **cache) for command in commands]
+    assert widths[0] == widths[1] == widths[2] == answer(ROOTS)
+    assert len(list((tmp_path / "cache").iterdir())) == 3
 
 
 def test_without_a_compiler_numpy_computes_and_the_refusal_is_one_line(tmp_path):
@@ -85,17 +104,53 @@ def test_without_a_compiler_numpy_computes_and_the_refusal_is_one_line(tmp_path)
 
 
 def test_a_compiler_that_fails_says_why(tmp_path):
-    script = tmp_path / "cc"
-    fails = 'case "$*" in *-shared*) echo "no room on the disk" >&2; exit 1;; esac'
-    script.write_text(f'#!/bin/sh\n{fails}\nexec cc "$@"\n')
-    script.chmod(0o755)
-    reason = answer(REASON, CC=str(script), PROPROTOR_CACHE=str(tmp_path / "cache"))
-    assert "no room on the disk" in reason or "there is no C compiler" in reason
+    reason = answer(
+        REASON, CC=compiler_that_refuses(tmp_path, "-shared"), PROPROTOR_CACHE=str(tmp_path / "cache")
+    )
+    assert "cannot do -shared" in reason or "there is no C compiler" in reason
 
 
 @needs_compiler
-def test_a_cache_that_cannot_be_made_says_which_variable_helps(tmp_path):
+@pytest.mark.parametrize(
+    "variables", [{"PROPROTOR_CACHE": "{file}/cache"}, {"HOME": "{file}"}, {"HOME": "/proc"}]
+)
+def test_a_cache_that_cannot_be_made_says_which_variable_helps(tmp_path, variables):
+    """Also a home that is not for writing, and before anything is compiled."""
     place = tmp_path / "file"
     place.write_text("a file where the folder should be")
-    reason = answer(REASON, PROPROTOR_CACHE=str(place / "cache"))
-    assert "cannot be kept" in reason and "PROPROTOR_CACHE" in reason
+    own = {"PROPROTOR_CACHE": "", "XDG_CACHE_HOME": "", "CC": compiler_that_refuses(tmp_path, "-shared")}
+    reason = answer(REASON, **own | {name: value.format(file=place) for name, value in variables.items()})
+    assert "cannot be kept" in reason and "PROPROTOR_CACHE" in reason and "\n" not in reason
+
+
+@pytest.mark.parametrize("command", ["'no end", " "])
+def test_a_variable_cc_that_is_no_command_is_told_or_empty(tmp_path, command):
+    place = tmp_path / "file"
+    place.write_text("a file where the folder should be")
+    reason = answer(REASON, CC=command, PROPROTOR_CACHE=str(place))
+    assert "No closing quotation" in reason if "end" in command else "'--version'" not in reason
+
+
+@needs_compiler
+def test_a_folder_whose_files_may_not_be_run_is_a_reason(tmp_path):
+    place = tmp_path / "cache"
+    place.mkdir()
+    mount = f"mount -t tmpfs -o noexec none {place} && exec "
+    own_mounts = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
+    if not shutil.which("unshare") or subprocess.run([*own_mounts, f"{mount} true"], check=False).returncode:
+        pytest.skip("this system has no mounts of one process")
+    done = subprocess.run(
+        [*own_mounts, f'{mount} "$0" -c "$1"', sys.executable, REASON],
+        env=os.environ | {"PROPROTOR_CACHE": str(place)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    reason = json.loads(done.stdout)
+    assert "cannot be loaded" in reason and "PROPROTOR_CACHE" in reason
+
+
+@pytest.mark.skipif(not find_spec("ziglang"), reason="needs the package ziglang, which brings Clang")
+def test_clang_builds_functions_with_the_same_bits(tmp_path):
+    clang = {"CC": f"{sys.executable} -m ziglang cc", "PROPROTOR_CACHE": str(tmp_path / "cache")}
+    assert answer(ROOTS, **clang) == answer(ROOTS)

@@ -14,13 +14,15 @@ import shlex
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
 from proprotor_equations import fused
 
 from proprotor.errors import InputError
-from proprotor.files.output import write_whole
+from proprotor.files.output import check_writable, write_whole
 
 _SOURCES = Path(__file__).parent
 _GENERATED = Path(fused.__file__).parent
@@ -37,6 +39,7 @@ _FLAGS = (
 _OWN_PROCESSOR = ("-march=native", "-mcpu=native")  # by GCC and Clang on most processors, and on some
 _PATIENCE = 300  # s, for the compiler
 _CACHE = "PROPROTOR_CACHE"
+_HELP = f"set {_CACHE} to a folder whose files may be run"
 
 
 class Unavailable(Exception):
@@ -68,18 +71,28 @@ def library() -> ctypes.CDLL:
     try:
         return ctypes.CDLL(str(place))
     except OSError:  # not built yet, or damaged
+        _check_cache(place)
         _build(compiler, flags, place)
     try:
         return ctypes.CDLL(str(place))
     except OSError as error:
-        raise Unavailable(f"the compiled library cannot be loaded: {error}") from None
+        raise Unavailable(f"the compiled library cannot be loaded: {error}; {_HELP}") from None
 
 
 def cache_folder() -> Path:
-    """Return the folder of compiled libraries: that of the variable PROPROTOR_CACHE, or the user's cache."""
+    """Return the folder of compiled libraries: that of the variable PROPROTOR_CACHE, or the user's cache.
+
+    Raises
+    ------
+    Unavailable
+        Without the variable and without a home.
+    """
     if own := os.environ.get(_CACHE):
         return Path(own)
-    home = Path.home()
+    try:
+        home = Path.home()
+    except RuntimeError:
+        raise Unavailable(f"the compiled library cannot be kept: the user has no home; {_HELP}") from None
     if sys.platform == "darwin":
         return home / "Library" / "Caches" / "proprotor"
     return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "proprotor"
@@ -87,7 +100,11 @@ def cache_folder() -> Path:
 
 def _compiler() -> tuple[str, ...]:
     """Return the command of the C compiler: that of the variable CC, or `cc`."""
-    command = tuple(shlex.split(os.environ.get("CC") or "cc"))
+    given = os.environ.get("CC", "")
+    try:
+        command = tuple(shlex.split(given)) or ("cc",)
+    except ValueError as error:
+        raise Unavailable(f"there is no C compiler: the variable CC is {given}: {error}") from None
     _output_of((*command, "--version"), "there is no C compiler")
     return command
 
@@ -128,12 +145,25 @@ def _build(compiler: tuple[str, ...], flags: tuple[str, ...], place: Path) -> No
         sources = (f"-I{_GENERATED}", f"-I{_SOURCES}", "-o", str(built), *map(str, _sources("c")), "-lm")
         _output_of((*compiler, *flags, *sources), "the C compiler fails")
         content = built.read_bytes()
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
+    with _keeping(place):
         write_whole(place, lambda file: file.write(content))
+
+
+def _check_cache(place: Path) -> None:
+    """Make the folder of a library and try whether a file can be written there, which costs less than compiling."""
+    with _keeping(place):
+        place.parent.mkdir(parents=True, exist_ok=True)
+        check_writable(place)
+
+
+@contextmanager
+def _keeping(place: Path) -> Iterator[None]:
+    """Turn what goes wrong with the place of a library into a reason."""
+    try:
+        yield
     except (OSError, InputError) as error:
         raise Unavailable(
-            f"the compiled library cannot be kept in {place.parent}: {error}; set {_CACHE}"
+            f"the compiled library cannot be kept in {place.parent}: {error}; {_HELP}"
         ) from None
 
 

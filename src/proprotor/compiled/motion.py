@@ -10,7 +10,7 @@ from proprotor.compiled.columns import address, column, lane_room
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
-MOST_ROWS = 64  # of motion.c
+MOST_ROWS = 64  # of motion.c, of the result
 
 
 def on_support(matrix: Array, hub: Array, addition: Array) -> Array:
@@ -28,7 +28,7 @@ def on_support(matrix: Array, hub: Array, addition: Array) -> Array:
     modes = hub.shape[-1]
     n = modes + size - 6
     found, kept = np.empty((points, n, n)), [np.ascontiguousarray(matrix, dtype=float)]
-    columns = [column(part.reshape(*part.shape[:-2], -1), kept) for part in (hub, addition)]
+    columns = [column(part.reshape(*part.shape[:-2], part.shape[-2] * modes), kept) for part in (hub, addition)]
     library().on_support(
         ctypes.c_ssize_t(points),
         ctypes.c_int(size),
