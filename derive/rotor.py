@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from derive import airloads, flap_lag_springs, pitch
+from derive import airloads, flap_lag_springs, offset_mass, pitch
 from derive import kinematics as kin
 from derive import symbols as s
 from derive.function import Function
@@ -31,6 +31,8 @@ OPTIONAL = frozenset(
         s.shaft_stiffness,
         flap_lag_springs.cyclic_flap_stiffness_excess,
         pitch.cyclic_control_stiffness_excess,
+        *offset_mass.DATA,
+        *(airloads.MOMENTS["fd_spin", power] for power in (0, 1)),  # with the aerodynamic centre beside the axis
     }
 )
 
@@ -140,11 +142,13 @@ BLADE_MATRICES = Recipe(
     "Mass, damping and stiffness of one blade in rotating axes with its airloads, and loads of gusts on it.",
     {
         "integrals": ("inertia.trim_integrals",),
+        "beside_axis": ("offset_mass.trim_integrals",),
         "air": ("rotor.blade_airloads",),
-        "mass": ("inertia.mass", "pitch.mass"),
-        "damping": ("inertia.gyroscopic", "pitch.damping", Code("air.damping")),
+        "mass": ("inertia.mass", "offset_mass.mass", "pitch.mass"),
+        "damping": ("inertia.gyroscopic", "offset_mass.gyroscopic", "pitch.damping", Code("air.damping")),
         "stiffness": (
             "inertia.centrifugal_stiffness",
+            "offset_mass.centrifugal_stiffness",
             "pitch.stiffness",
             "flap_lag_springs.stiffness",
             Code("air.stiffness"),
