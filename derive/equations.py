@@ -146,7 +146,7 @@ SECTION = (
     values("pitching_moment", section.pitching_moment, STRIP_THEORY, LOADS),
     values("steady_forces", section.steady_forces, STRIP_THEORY, LOADS),
     values("air_beside_axis", section.air_beside_axis, BESIDE),
-    values("loads_beside_axis", section.loads_beside_axis, BESIDE, LOADS),
+    values("about_axis", section.about_axis, BESIDE),
 )
 AIRLOADS = (
     loads_matrix("load_derivatives", section.load_derivative, f"{STRIP}, as NASA TN D-7677", MOTIONS),

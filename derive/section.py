@@ -323,20 +323,12 @@ def air_beside_axis() -> list[tuple[sp.Symbol, sp.Expr]]:
     ]
 
 
-def loads_beside_axis() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Loads of a section about its pitch axis, and derivatives, where the aerodynamic centre lies beside the axis.
+@functools.cache
+def about_axis() -> dict[sp.Symbol, sp.Expr]:
+    """Loads of a section about its pitch axis, and derivatives, by those of an aerodynamic centre beside the axis.
 
     The radial drag, which is small, acts on the axis and by the velocity of the axis.
     """
-    return [
-        *((AT_CENTER.get(symbol, symbol), value.xreplace(AT_CENTER)) for symbol, value in steps_of((*FORCES, "m"))),
-        *about_axis().items(),
-    ]
-
-
-@functools.cache
-def about_axis() -> dict[sp.Symbol, sp.Expr]:
-    """Each load and each derivative about the axis, by the chain rule from those at the centre."""
     found = {SECTION_LOADS[load, ""]: _at_center(load) for load in LOADS}
     for name in _ARGUMENTS:
         for load in LOADS:

@@ -170,19 +170,39 @@ def _blade(published: bool) -> Iterator[Check]:
 def _balance() -> Iterator[Check]:
     """Of springs and centrifugal force, and its change with coning, lag, elastic pitch and collective."""
     quantities = blade_quantities()
-    pairs = [one_blade.steady_rows(one_blade.vacuum_rows, p) for p in points()]
+    pairs = [_in_vacuum(p) for p in points()]
     rows, slopes = map(np.array, zip(*pairs, strict=True))
-    told = "steady balance of the nonlinear rotor in vacuum"
+    told = "steady balance of the nonlinear rotor in vacuum, its masses on the pitch axis"
     yield matrix_check(("trim", "residual"), told, quantities, rows[..., None], _moment_size())
     yield matrix_check(("trim", "jacobian"), told, quantities, slopes, _moment_size())
+    beside = [_beside_axis(p) for p in points()]
+    rows, slopes = map(np.array, zip(*beside, strict=True))
+    told = "steady inertia forces of the nonlinear rotor, with and without its offsets"
+    yield matrix_check(("trim", "offset_residual"), told, quantities, rows[..., None], _moment_size())
+    yield matrix_check(("trim", "offset_jacobian"), told, quantities, slopes, _moment_size())
     loads = np.array([_undeflected_inertia(p) for p in points()])
     told = "steady inertia forces on the undeflected blade of the nonlinear rotor"
     yield matrix_check(("trim", "precone_load"), told, quantities, loads[..., None], _moment_size())
 
 
+def _in_vacuum(point: Point) -> tuple[NDArray, NDArray]:
+    """Steady loads and slopes of springs, lumped pitch inertia and masses on the pitch axis."""
+    return one_blade.steady_rows(one_blade.vacuum_rows, replace(point, rotor=one_blade.lumped(point.rotor)))
+
+
+def _beside_axis(point: Point) -> tuple[NDArray, NDArray]:
+    """What the place of the masses beside the axis adds to steady inertia forces and their slopes."""
+    beside, on_axis = (
+        one_blade.steady_rows(inertia_rows, replace(point, rotor=change(point.rotor)))
+        for change in (one_blade.without_lumped, one_blade.on_axis)
+    )
+    return beside[0] - on_axis[0], beside[1] - on_axis[1]
+
+
 def _undeflected_inertia(point: Point) -> NDArray:
     """Flap, lag and pitch moment (3,) of the steady inertia forces without coning, lag and elastic pitch."""
-    rows, _ = one_blade.steady_rows(inertia_rows, replace(point, trim=np.zeros_like(point.trim)))
+    flat = replace(point, trim=np.zeros_like(point.trim), rotor=one_blade.on_axis(point.rotor))
+    rows, _ = one_blade.steady_rows(inertia_rows, flat)
     return rows[:3]
 
 
@@ -274,7 +294,7 @@ def _balance_by_plan() -> Iterator[Check]:
 
     still = [replace(p, pitch_flap_coupling=0.0, pitch_lag_coupling=0.0) for p in points()]
     in_air = [one_blade.steady_rows(functools.partial(one_blade.airload_rows, p), p) for p in still]
-    in_vacuum = [one_blade.steady_rows(one_blade.vacuum_rows, p) for p in points()]
+    in_vacuum = [_in_vacuum(p) for p in points()]
     for name, pairs, actual in (("balance", in_vacuum, balance), ("work", in_air, work)):
         rows, slopes = map(np.array, zip(*pairs, strict=True))
         named = ("residual", "slopes") if name == "balance" else ("work", "work_slopes")

@@ -107,7 +107,8 @@ def _blade(with_structure: bool = True, with_air: bool = True) -> dict[str, NDAr
     """Mass, damping, stiffness (points, 12, 12), gust loads (points, 12, 3) of one blade, or of a part alone."""
     parts = [one_blade.air_matrices] * with_air
     if with_structure:
-        parts += [one_blade.mass_matrices, one_blade.spring_matrices, one_blade.pitch_matrices]
+        parts += [one_blade.mass_matrices, one_blade.offset_matrices]
+        parts += [one_blade.spring_matrices, one_blade.pitch_matrices]
     sums = [np.sum([part(point) for part in parts], axis=0) for point in points()]
     found = dict(zip(_NAMES, np.moveaxis(np.array(sums), 1, 0), strict=True))
     if not with_structure:

@@ -33,7 +33,8 @@ def stacked(pools: Iterable[Mapping[str, Any]]) -> Quantities:
 @functools.cache
 def blade_quantities() -> Quantities:
     """Of the whole blade, (points,)."""
-    return stacked(one_blade.quantities(p) | trim_integrals(p) | spring_constants(p) for p in points())
+    parts = (one_blade.quantities, one_blade.beside_line, trim_integrals, spring_constants)
+    return stacked({name: number for part in parts for name, number in part(p).items()} for p in points())
 
 
 @functools.cache

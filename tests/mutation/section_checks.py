@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from tests.mutation.sections import (
     STEP,
     Air,
     StraightAirfoil,
+    at_center,
     coefficients_of,
     inflow,
     section_derivatives,
@@ -29,6 +31,7 @@ def checks() -> Iterator[Check]:
     yield from _segment_loads()
     yield _lift_slope()
     yield _loads_by_plan()
+    yield from _beside_axis()
 
 
 def some_air() -> Air:
@@ -90,6 +93,35 @@ def _sections() -> Iterator[Check]:
         yield values_check(("section", function), told, quantities, expected, _sizes(air, wanted))
 
 
+def beside_axis() -> Air:
+    """Sections whose aerodynamic centres lie ahead of the axis and behind it."""
+    return replace(some_air(), center=np.random.default_rng(9).uniform(-0.2, 0.2, _COUNT))
+
+
+def at_axis(air: Air) -> dict[str, NDArray]:
+    """Quantities of sections by the names of the derivation, with what the aerodynamic centre meets."""
+    below, along = (air.center * wave(air.pitch) for wave in (np.sin, np.cos))
+    named = {"tangential_velocity": air.tangential, "axial_velocity": air.axial}
+    of_center = {"aerodynamic_center": air.center, "center_along": along, "center_below": below}
+    met = at_center(air)
+    velocities = {"tangential_at_center": met.tangential, "axial_at_center": met.axial}
+    return quantities_of(met) | named | of_center | velocities
+
+
+def _beside_axis() -> Iterator[Check]:
+    """Aerodynamic centres beside the pitch axis."""
+    air = beside_axis()
+    quantities, told = at_axis(air), "velocities and forces of a point of a section that turns, by complex steps"
+    names = ("center_along", "center_below", "tangential_at_center", "axial_at_center", "section_speed")
+    names += ("inflow_cosine", "inflow_sine", "angle_of_attack", "turn_incidence", "lift_incidence", "mach")
+    expected = {name: quantities[name] for name in names}
+    yield values_check(("section", "air_beside_axis"), told, quantities, expected)
+    own = section_derivatives(POLYNOMIAL, at_center(air))
+    given = quantities | {f"{name}_at_center": load for name, load in own.items()}
+    expected = section_derivatives(POLYNOMIAL, air)
+    yield values_check(("section", "about_axis"), told, given, expected, _sizes(air, expected))
+
+
 def _sizes(air: Air, names: Iterable[str]) -> dict[str, NDArray]:
     """Of loads and derivatives where coefficients, angles and speeds relative to the section's are of order one."""
     speed, _, _ = inflow(air)
@@ -132,7 +164,7 @@ def _segment_loads() -> Iterator[Check]:
     rng = np.random.default_rng(6)
     r, weight = rng.uniform(0.5, 3.5, _COUNT), rng.uniform(0.1, 0.3, _COUNT)
     forces, velocities = ("fx", "fn", "fd"), ("ut", "up", "ur")
-    absent = {"fx_ur", "fn_ur", "m_ur", "fd_spin"}  # no section load depends on these
+    absent = {"fx_ur", "fn_ur", "m_ur"}  # no section load depends on these
     names = [f"{load}_{motion}" for load in (*forces, "m") for motion in (*velocities, "theta", "spin")]
     along: dict[str, Any] = {n: 0 * r if n in absent else rng.uniform(1, 2, _COUNT) for n in names}
     along |= {load: rng.uniform(1, 2, _COUNT) for load in (*forces, "m")}

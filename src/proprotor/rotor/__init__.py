@@ -6,6 +6,7 @@ matrices. This room imports `errors`, `typing` and `files`, and the generated eq
 
 What a rotor is:
     rotor                a proprotor: geometry, mass, springs, chord and twist
+    offset_mass          integrals of mass beside the pitch axis
     airfoil              section coefficients; the linear airfoil
     airfoil_regions      airfoils by region of the span
     airfoil_table        an airfoil from tables

@@ -75,7 +75,7 @@ class _Balanced(NamedTuple):
 
 def serves_sections(sections: BladeSections) -> bool:
     """Return whether the fused functions hold the airfoil of these sections."""
-    return type(sections.airfoil) is Airfoil
+    return type(sections.airfoil) is Airfoil and not sections.beside_axis
 
 
 def balanced(
