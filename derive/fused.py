@@ -165,7 +165,6 @@ def _blade() -> tuple[list[tuple[sp.Symbol, sp.Expr]], Blade, Blade]:
     for line in cast(Assembly, of_catalogue("rotor", "blade_matrices")).lines:
         functions = [term.function for term in line.terms if isinstance(term, Call)]
         plain = [function for function in functions if not isinstance(function, Assembly)]
-        plain = [function for function in plain if function.module != "offset_mass"]
         steps += [step for function in plain for step in function.steps]
         blade[line.result] = _sum(entries_of(function) for function in plain)
         air[line.result] = _sum(_air(term) for term in line.terms if isinstance(term, Code))

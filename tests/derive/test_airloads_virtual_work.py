@@ -16,6 +16,7 @@ from tests.oracles.comparison import assert_matrices_match, picked
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import (
     AZIMUTH,
+    DOFS,
     FLAP,
     LAG,
     PITCH,
@@ -199,17 +200,34 @@ def pitch_flap_and_pitch_lag_coupling(rotor, trim):
     return [pitch_moment(bent) / rotor.n_blades / rotor.control_stiffness for bent in (FLAP, LAG)]
 
 
-@pytest.mark.parametrize("name", ["windmilling", "powered, tables"])
-def test_quasi_static_pitch_couples_flap_and_lag_into_the_airloads(name):
-    """Pitch follows −K_Pβ δβ − K_Pζ δζ of each blade in the airloads only, a static angle that turns no section."""
-    case = Case(**CASES[name])
-    model, airloads = case.airloads(pitch="coupling")
+def with_couplings(case, model, unturned):
+    """What airloads add whose pitch follows flap and lag, the loads of the pitch being those of the air `unturned`."""
     rotor, trim = case.oracle(model)
     flap_coupling, lag_coupling = pitch_flap_and_pitch_lag_coupling(rotor, trim)
     _, C, K = linearised(lambda q, time: airload_rows(case.air, rotor, q, time), trim, 0.0)
-    unturned = replace(case.air, section_damping=False)
     _, _, by_angle = linearised(lambda q, time: airload_rows(unturned, rotor, q, time), trim, 0.0)
     pitch = by_angle[:, PITCH : PITCH + 3]
     K[:, FLAP : FLAP + 3] -= flap_coupling * pitch
     K[:, LAG : LAG + 3] -= lag_coupling * pitch
-    case.assert_match(airloads, (np.zeros_like(C), C, K), model)
+    return np.zeros_like(C), C, K
+
+
+@pytest.mark.parametrize("name", ["windmilling", "powered, tables"])
+def test_quasi_static_pitch_couples_flap_and_lag_into_the_airloads(name):
+    """Pitch follows −K_Pβ δβ − K_Pζ δζ of each blade in the airloads only, a static angle that turns no section."""
+    case = Case(**CASES[name], aerodynamic_center=0.0)
+    model, airloads = case.airloads(pitch="coupling")
+    unturned = replace(case.air, section_damping=False)
+    case.assert_match(airloads, with_couplings(case, model, unturned), model)
+
+
+@pytest.mark.parametrize("name", ["windmilling", "powered, tables"])
+def test_quasi_static_pitch_moves_the_aerodynamic_centre(name):
+    """In collective motions, whose pitch stands still in a section's eyes; a cyclic one turns once a revolution."""
+    case = Case(**CASES[name])
+    model, (_, _, actual) = case.airloads(pitch="coupling")
+    _, _, expected = with_couplings(case, model, case.air)
+    own, whole = ([dofs.index(name) for name in ("flap_0", "lag_0")] for dofs in (model.dofs, DOFS))
+    rows = [DOFS.index(name) for name in model.dofs]
+    difference = np.abs(actual[:, own] - expected[np.ix_(rows, whole)])
+    assert (difference.max(axis=0) < 1e-10 * np.abs(expected[:, whole]).max(axis=0)).all()

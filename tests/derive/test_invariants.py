@@ -134,18 +134,36 @@ def test_mass_is_positive_once_the_hub_carries_inertia(flight, seed):
     assert least(model.M) > 1e-12
 
 
+ON_AXIS = {"offset_mass": None}
+
+
+def lumped_inertia(rotor):
+    """Pitch inertia that no mass beside the axis has."""
+    return rotor.pitch_inertia - (0.0 if rotor.offset_mass is None else rotor.offset_mass.inertia)
+
+
+@pytest.mark.parametrize("beside_axis", [False, True], ids=["masses on the axis", "no inertia but of masses beside it"])
 @any_rotor
-@given(flights(hinges="at centre"))
-def test_blades_hinged_at_the_centre_move_as_yoke_and_shaft_move_them(flight):
-    """Flap and lag can then undo a gimbal tilt and a turn of the shaft, and no hub inertia makes the mass positive."""
-    model = undamped(flight)
-    cone, lag = flight.rotor.precone + model.trim.coning, model.trim.lag
-    rise, swing, pitch = np.cos(cone) * np.tan(lag), np.sin(cone), flight.rotor.pitch_gimbal_coupling
+@given(flight=flights(hinges="at centre"))
+def test_blades_hinged_at_the_centre_move_as_yoke_and_shaft_move_them(beside_axis, flight):
+    """Flap and lag can then undo a gimbal tilt and a turn of the shaft, and no hub inertia makes the mass positive.
+
+    Masses beside the axis stay where they are if pitch undoes the turn of the sections too; the lumped pitch inertia
+    feels such a pitch and no turn.
+    """
+    rotor = flight.rotor
+    assume(not beside_axis or (rotor.offset_mass.inertia > 1e-3 * rotor.pitch_inertia))
+    change = {"pitch_inertia": rotor.offset_mass.inertia, "propeller_inertia": None} if beside_axis else ON_AXIS
+    model = undamped(flight.with_rotor(**change))
+    cone, lag = rotor.precone + model.trim.coning, model.trim.lag
+    rise, swing, pitch = np.cos(cone) * np.tan(lag), np.sin(cone), rotor.pitch_gimbal_coupling
+    turn, roll = (-np.sin(cone) / np.cos(lag), 1 - np.cos(cone) / np.cos(lag)) if beside_axis else (0.0, 0.0)
     matrices = Matrices(model, flight.rotor_speed)
+    back = {"pitch_1c": pitch, "pitch_1s": -roll}, {"pitch_1s": pitch, "pitch_1c": roll}
     for name in "MC":
-        matrices.assert_cancel(name, azimuth=1, flap_0=swing * np.tan(lag), lag_0=np.cos(cone))
-        matrices.assert_cancel(name, gimbal_1c=1, flap_1c=-1, flap_1s=-rise, lag_1s=swing, pitch_1c=pitch)
-        matrices.assert_cancel(name, gimbal_1s=1, flap_1s=-1, flap_1c=rise, lag_1c=-swing, pitch_1s=pitch)
+        matrices.assert_cancel(name, azimuth=1, flap_0=swing * np.tan(lag), lag_0=np.cos(cone), pitch_0=turn)
+        matrices.assert_cancel(name, gimbal_1c=1, flap_1c=-1, flap_1s=-rise, lag_1s=swing, **back[0])
+        matrices.assert_cancel(name, gimbal_1s=1, flap_1s=-1, flap_1c=rise, lag_1c=-swing, **back[1])
 
 
 @any_rotor
@@ -176,9 +194,9 @@ UNCOUPLED = {
 @any_rotor
 @given(flight=flights())
 def test_a_gimbal_tilted_back_against_the_hub_moves_no_mass(case, flight):
-    """αx − β_GS and αy + β_GC where I_θ K_PG = 0."""
+    """αx − β_GS and αy + β_GC where I_θ K_PG = 0, of masses on the pitch axis."""
     without, options = UNCOUPLED[case]
-    matrices = Matrices(undamped(flight.with_rotor(**without), **options), flight.rotor_speed)
+    matrices = Matrices(undamped(flight.with_rotor(**without, **ON_AXIS), **options), flight.rotor_speed)
     for name in "MC":
         matrices.assert_cancel(name, alpha_x=1, gimbal_1s=-1)
         matrices.assert_cancel(name, alpha_y=1, gimbal_1c=1)
@@ -188,11 +206,29 @@ def test_a_gimbal_tilted_back_against_the_hub_moves_no_mass(case, flight):
 @given(flights())
 def test_blades_that_follow_the_swashplate_move_no_pitch_inertia(flight):
     """With K_PG the same holds once the blades pitch by K_PG times the tilt, which leaves Θs as it was."""
-    matrices = Matrices(undamped(flight), flight.rotor_speed)
+    matrices = Matrices(undamped(flight.with_rotor(**ON_AXIS)), flight.rotor_speed)
     coupling = flight.rotor.pitch_gimbal_coupling
     for name in "MC":
         matrices.assert_cancel(name, alpha_x=1, gimbal_1s=-1, pitch_1s=-coupling)
         matrices.assert_cancel(name, alpha_y=1, gimbal_1c=1, pitch_1c=coupling)
+
+
+@any_rotor
+@given(flights())
+def test_a_gimbal_tilted_back_against_the_hub_turns_masses_beside_the_axis(flight):
+    """The blade stays and the swashplate has tilted: the masses turn as pitch turns them, the lumped inertia does not."""
+    free = flight.with_rotor(pitch_gimbal_coupling=0.0)
+    matrices, rotor = Matrices(undamped(free), flight.rotor_speed), free.rotor
+    lumped = rotor.n_blades / 2 * lumped_inertia(rotor)
+    gyroscopic = 2 * lumped * flight.rotor_speed  # of a pitch that goes round
+    for tilt, pitch, later, sense in (
+        ({"alpha_x": 1, "gimbal_1s": -1}, "pitch_1c", "pitch_1s", -1),
+        ({"alpha_y": 1, "gimbal_1c": 1}, "pitch_1s", "pitch_1c", 1),
+    ):
+        moved = {"M": {pitch: lumped}, "C": {later: sense * gyroscopic}}
+        for name, own in moved.items():
+            pitched = matrices.along(name, **{pitch: 1}) - matrices.rows(**own)
+            matrices.assert_loads_equal(name, matrices.along(name, **tilt), pitched, *tilt, pitch)
 
 
 @any_rotor
@@ -205,7 +241,7 @@ def test_a_gimbal_tilted_back_against_the_hub_only_pitches_the_blades(flight):
     free = flight.with_rotor(gimbal_stiffness=0.0, pitch_gimbal_coupling=0.0).without_dampers()
     model, rotor = trimmed(free), free.rotor
     matrices = Matrices(model, free.rotor_speed)
-    held = rotor.n_blades / 2 * (rotor.control_stiffness - rotor.pitch_inertia * free.rotor_speed**2)
+    held = rotor.n_blades / 2 * (rotor.control_stiffness - lumped_inertia(rotor) * free.rotor_speed**2)
     for tilt, pitch, across in (
         ({"alpha_x": 1, "gimbal_1s": -1}, "pitch_1c", "gimbal_1c"),
         ({"alpha_y": 1, "gimbal_1c": 1}, "pitch_1s", "gimbal_1s"),
@@ -364,18 +400,22 @@ def structure(rotor, rotor_speed, trim):
     """M, C, K without airloads, straight from the generated functions: any sign of the rotor speed."""
     pool = (
         {entry.name: getattr(rotor, entry.name) for entry in fields(rotor)}
+        | vars(rotor.offset_mass)
         | trim
-        | {"rotor_speed": rotor_speed}
+        | {"rotor_speed": rotor_speed, "pitch_inertia": lumped_inertia(rotor)}
     )
+    pool["propeller_moment"] = rotor.propeller_share
     pool["pitch"] = trim["collective"] + trim["elastic_pitch"]
     pool["structural_pitch"] = pool["pitch"] + rotor.structural_pitch_offset
     inertia, springs, pitch = equations.inertia, equations.flap_lag_springs, equations.pitch
-    for named in (inertia.dependent_inertias, inertia.trim_integrals, springs.effective_stiffness):
+    beside = equations.offset_mass
+    steps = (inertia.dependent_inertias, inertia.trim_integrals, beside.trim_integrals, springs.effective_stiffness)
+    for named in steps:
         pool |= evaluate(named, pool)._asdict()
-    mass = evaluate(inertia.mass, pool) + evaluate(pitch.mass, pool)
-    damping = evaluate(inertia.gyroscopic, pool) + evaluate(pitch.damping, pool)
-    stiffness = evaluate(inertia.centrifugal_stiffness, pool) + evaluate(springs.stiffness, pool)
-    stiffness = stiffness + evaluate(pitch.stiffness, pool)
+    mass = sum(evaluate(part.mass, pool) for part in (inertia, beside, pitch))
+    damping = sum(evaluate(part.gyroscopic, pool) for part in (inertia, beside)) + evaluate(pitch.damping, pool)
+    stiffness = sum(evaluate(part.centrifugal_stiffness, pool) for part in (inertia, beside))
+    stiffness = stiffness + sum(evaluate(part.stiffness, pool) for part in (springs, pitch))
     multiblade = equations.multiblade
     return {
         "M": evaluate(multiblade.mass, pool, mass),
@@ -385,8 +425,12 @@ def structure(rotor, rotor_speed, trim):
 
 
 def mirrored(rotor):
+    """Blades that are twisted the other way, and whose masses lie on the other side of the axis."""
+    beside = vars(rotor.offset_mass)
+    turned = ("offset_cosine_moment", "offset_cosine_lag_inertia", "offset_product_inertia")
     return replace(
         rotor,
+        offset_mass=pp.OffsetMass(**beside | {name: -beside[name] for name in turned}),
         pitch_gimbal_coupling=-rotor.pitch_gimbal_coupling,
         structural_pitch_offset=-rotor.structural_pitch_offset,
     )
@@ -541,6 +585,7 @@ def test_mass_knows_nothing_but_masses_geometry_and_deflection():
 def test_mass_of_an_undeflected_rotor_is_the_same_in_any_flight(flight, factor):
     """Bit for bit."""
     springs = ("flap_stiffness", "lag_stiffness", "gimbal_stiffness", "control_stiffness")
+    flight = flight.with_rotor(**ON_AXIS)  # what lies beside the axis goes up and down with the pitch of the flight
     stiffer = flight.with_rotor(**{name: factor * getattr(flight.rotor, name) for name in springs})
     faster = replace(flight.operation, rotor_speed=factor * flight.rotor_speed, density=0.3, trim="windmill")
     elsewhere = Flight(stiffer.without_dampers().rotor, faster, factor * flight.airspeed)
@@ -592,7 +637,8 @@ def test_a_tilted_rotor_that_flies_along_its_shaft_only_tilts_its_loads(flight, 
 
 def flat_in_vacuum(flight, collective, **options):
     """Neither precone nor coning: nothing bends a flat blade in vacuum."""
-    flat = flight.with_rotor(precone=0.0, propeller_moment=False, pitch_gimbal_coupling=0.0).without_dampers()
+    flat = flight.with_rotor(precone=0.0, propeller_moment=False, pitch_gimbal_coupling=0.0, **ON_AXIS)
+    flat = flat.without_dampers()
     operation = replace(flat.operation, density=0.0, trim={"collective": collective})
     return trimmed(replace(flat, operation=operation), airloads="none", pitch="rigid", **options)
 
@@ -670,15 +716,20 @@ def converted(part, **instead):
 
 
 def along_blade(distribution, unit):
-    """Chord or twist: a number or a table."""
+    """Chord, twist or aerodynamic centre: a number or a table."""
     if isinstance(distribution, tuple):
         return METRE * distribution[0], unit * distribution[1]
     return unit * distribution
 
 
 def in_other_units(flight):
-    chord, twist = along_blade(flight.rotor.chord, METRE), along_blade(flight.rotor.twist, 1.0)
-    rotor = converted(flight.rotor, chord=chord, twist=twist)
+    given = flight.rotor
+    tables = {"chord": METRE, "twist": 1.0, "aerodynamic_center": METRE}
+    along = {name: along_blade(getattr(given, name), unit) for name, unit in tables.items()}
+    units = {name: KILOGRAM * METRE if name.endswith("moment") else KILOGRAM * METRE**2 for name in vars(given.offset_mass)}
+    beside = pp.OffsetMass(**{name: units[name] * value for name, value in vars(given.offset_mass).items()})
+    propeller = None if given.propeller_inertia is None else KILOGRAM * METRE**2 * given.propeller_inertia
+    rotor = converted(given, **along, offset_mass=beside, propeller_inertia=propeller)
     return Flight(rotor, converted(flight.operation), METRE / SECOND * flight.airspeed)
 
 

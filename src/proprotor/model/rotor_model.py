@@ -42,7 +42,7 @@ from proprotor.rotor.section_loads import (
     load_moments,
     segment_quantities,
 )
-from proprotor.rotor.trim import Trim, has_offset_mass, trim_target
+from proprotor.rotor.trim import Trim, trim_target
 from proprotor.rotor.trim_solver import Settled, solve_trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
@@ -202,7 +202,7 @@ def _matrices(
     if len(rows):
         quantities = settled.quantities | couplings(options, settled.quantities)
         segments = _segments(sections, rows, quantities, settled.segments, options)
-        served = fused.serves(options.equation_set) and not has_offset_mass(quantities)
+        served = fused.serves(options.equation_set)
         if reactionless is not None or not served:
             given = segments | quantities | {"equations": options.equation_set}
             blade = evaluate(whole_rotor.blade_matrices, given)
