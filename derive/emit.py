@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import functools
 import hashlib
 import itertools
 import re
@@ -28,9 +29,10 @@ from derive.files import write_whole
 from derive.function import Function
 from derive.fused import FusedFunction, functions_of_rotor
 from derive.fused_trim import functions_of_trim
+from derive.plain import ALL_ROTORS, ON_AXIS, PLAIN_ROTORS, Catalogue
 from derive.plan import print_line
 from derive.published import DROPPED_TERMS
-from derive.rotor import OF_SEGMENTS, OPTIONAL, Assembly, Call
+from derive.rotor import OF_SEGMENTS, OFFSETS, OPTIONAL, Assembly, Call
 from derive.symbols import QUANTITIES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -279,25 +281,40 @@ def _lines_of(function: FusedFunction) -> Iterator[tuple[str, sp.Expr]]:
 
 
 _FUSED = {
-    "rotor": (
-        "A whole rotor as plans of few operations",
-        "`proprotor_equations.rotor`",
-        functions_of_rotor,
-    ),
-    "trim": (
-        "The trim of a blade as plans of few operations",
-        "`proprotor_equations.trim`, `section` and `airloads`",
-        functions_of_trim,
-    ),
+    "plain": ("Plain rotors, without linkages and drive train, as plans of few operations", PLAIN_ROTORS),
+    "general": ("Rotors with linkages and drive train as plans of few operations", ON_AXIS),
+    "offset": ("Rotors with something beside the pitch axis as plans of few operations", ALL_ROTORS),
 }
 
 
 def render_fused(module: str) -> str:
-    """Text of a module of fused functions."""
-    title, readable, functions = _FUSED[module]
-    described = [_describe_fused(function) for function in functions()]
-    given = {"title": title, "readable": readable, "functions": described}
+    """Text of a module of fused functions; those that an earlier module has are taken from there."""
+    title, rotors = _FUSED[module]
+    functions = _fused_functions(rotors)
+    shared: dict[str, list[FusedFunction]] = {}
+    for earlier, (_, others) in itertools.takewhile(lambda entry: entry[0] != module, _FUSED.items()):
+        known = [one for found in shared.values() for one in found]
+        same = [one for one in functions if one in _fused_functions(others) and one not in known]
+        shared |= {earlier: same} if same else {}
+    taken = [one for found in shared.values() for one in found]
+    given = {
+        "title": title,
+        "functions": [_describe_fused(function) for function in functions if function not in taken],
+        "shared": {earlier: _names_of(found) for earlier, found in shared.items()},
+        "names": _names_of(functions),
+        "absent": [symbol.name for symbol in QUANTITIES if symbol in rotors.absent - OFFSETS],
+    }
     return _rendered("fused.py.jinja", f"fused/{module}.py", **given)
+
+
+def _names_of(functions: list[FusedFunction]) -> list[str]:
+    """Names of functions and of their tables."""
+    return sorted(name for function in functions for name in (function.name.upper(), function.name))
+
+
+@functools.cache
+def _fused_functions(rotors: Catalogue) -> list[FusedFunction]:
+    return [*functions_of_rotor(rotors), *functions_of_trim(rotors)]
 
 
 def _rendered(template: str, name: str, **given: Any) -> str:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from proprotor_equations.fused import trim as plans
+from proprotor_equations.fused import plain as plans
 
 from proprotor.rotor.fused_balance import MOMENTS
 from tests.mutation import one_blade, paper_blade

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 from proprotor_equations import BLADE_COORDINATES
-from proprotor_equations.fused import trim as plans
+from proprotor_equations.fused import plain as plans
 
 from proprotor.rotor.fused import effective_stiffness
 from proprotor.rotor.fused import trim_integrals as integrals_by_plan

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from proprotor_equations.fused import trim as plans
+from proprotor_equations.fused import plain as plans
 
 from tests.mutation.comparison import Check, call, matrix_check, values_check
 from tests.mutation.sections import (

@@ -84,7 +84,7 @@ def _numbers_of(rotor: Rotor) -> dict[str, Any]:
     given = of_rotor(rotor)
     softest = _SOFTEST_SPRING * np.maximum(np.maximum(rotor.flap_stiffness, rotor.lag_stiffness), 1.0)
     given |= {name: np.maximum(given[name], softest) for name in ("flap_stiffness", "lag_stiffness")}
-    return given | {"propeller_moment": rotor.propeller_share}
+    return given | {"propeller_moment": rotor.propeller_share, "beside_axis": rotor.is_beside_axis}
 
 
 def of_rotor(rotor: Rotor) -> dict[str, Any]:

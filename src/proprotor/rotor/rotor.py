@@ -334,6 +334,11 @@ class Rotor:
         return isinstance(center, tuple) or callable(center) or bool(np.any(np.asarray(center) != 0))
 
     @property
+    def is_beside_axis(self) -> bool:
+        """Whether masses or aerodynamic centres lie beside the pitch axis, by what is given."""
+        return self.offset_mass is not None or self.has_aerodynamic_center
+
+    @property
     def propeller_share(self) -> Any:
         """Share of the lumped pitch inertia, that of mass beside the axis taken off, which makes the propeller moment."""
         whole = self.pitch_inertia if self.propeller_inertia is None else self.propeller_inertia
