@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError, check_finite
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.hinged_blade import HingedBlade, hinged_blade
+from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.rotor import Rotor
 
 _FEWEST = 3
@@ -35,7 +37,7 @@ def rotor_from_stations(
     pitch : array (p,)
         Collectives at 0.75 R, rad, for which the hinged blade is found; at least 3.
     **fields
-        Further fields of `Rotor`: the number of blades and the airfoil at least. Chord and twist are those of the
+        Further fields of `Rotor`: the number of blades and the airfoil at least. Chord, twist and the places on the chord are those of the
         stations, and the blade has air from the first station, unless they are given; any number that was found is
         replaced by one that is given.
 
@@ -57,8 +59,14 @@ def rotor_from_stations(
     found: dict[str, Any] = dict(blade.numbers)
     found["root_cutout"] = float(stations.radius[0])
     found["twist"] = (stations.radius, stations.angle(stations.radius))
-    if stations.chord is not None:
-        found["chord"] = (stations.radius, stations.chord)
+    for name in ("chord", "aerodynamic_center"):
+        if getattr(stations, name) is not None:
+            found[name] = (stations.radius, getattr(stations, name))
+    if stations.mass_offset is not None:
+        along = ("mass_per_length", "mass_offset")
+        mass, offset = (functools.partial(stations.at, name) for name in along)
+        hinge = found["lag_hinge_offset"]
+        found["offset_mass"] = OffsetMass.along(stations.radius, hinge, mass, offset, stations.angle)
     if "chord" not in found and "chord" not in fields:
         raise InputError("chord", None, "must be a column of the stations, or be given")
     return FromStations(Rotor(**found | fields), blade)
