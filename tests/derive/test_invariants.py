@@ -465,9 +465,11 @@ def test_a_mirror_image_run_backwards_in_time_turns_the_same_way(flight, collect
         return undamped(replace(flight, rotor=rotor, operation=operation))
 
     model, image = in_vacuum(flight.rotor, collective), in_vacuum(mirrored(flight.rotor), -collective)
-    matrices = Matrices(model, flight.rotor_speed)
     for name, sign in (("M", 1), ("C", -1), ("K", 1)):
-        matrices.assert_equal(name, sign * MIRROR @ getattr(image, name) @ MIRROR, matrices.matrix[name])
+        seen, own = sign * MIRROR @ getattr(image, name) @ MIRROR, getattr(model, name)
+        # Both are those of a trim before its last step, of up to 1e-13 rad, and the steps are no mirror images.
+        away = 1e-13 * np.abs(own).max() * 4
+        np.testing.assert_allclose(seen, own, rtol=1e-12, atol=away)
 
 
 # Directions and azimuth ---------------------------------------------------------------------------
