@@ -5,6 +5,7 @@ Expressions are printed here, by one printer; the templates only lay them out; t
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import difflib
 import functools
@@ -261,23 +262,42 @@ def _describe_fused(function: FusedFunction) -> dict[str, Any]:
             }
             for symbol in function.arguments
         ],
-        "lines": [{"name": name, "code": print_line(value)} for name, value in _lines_of(function)],
+        "lines": _lines_of(function),
         "results": function.plan.results,
         "layouts": list(function.plan.layouts.items()),
     }
 
 
-def _lines_of(function: FusedFunction) -> Iterator[tuple[str, sp.Expr]]:
-    """Lines of a plan; a result that goes into an array is put there in a line of its own if later lines need it."""
-    results, lines = function.plan.results, function.plan.lines
-    needed = set().union(*(value.free_symbols for _, value in lines))
-    for name, value in lines:
-        place = f"into[{results.index(name)}]" if function.into and name in results else name
-        if place != name and sp.Symbol(name, real=True) in needed:
-            yield name, value
-            yield place, sp.Symbol(name, real=True)
-        else:
-            yield place, value
+def _lines_of(function: FusedFunction) -> list[dict[str, str]]:
+    """Lines of a plan as code."""
+    results = function.plan.results if function.into else []
+    return [
+        {"name": name, "code": _put(print_line(value), results.index(name))}
+        if name in results
+        else {"name": name, "code": print_line(value)}
+        for name, value in function.plan.lines
+    ]
+
+
+_OPERATIONS = {
+    ast.Add: "add",
+    ast.Sub: "subtract",
+    ast.Mult: "multiply",
+    ast.Div: "divide",
+    ast.USub: "negative",
+}
+
+
+def _put(code: str, place: int) -> str:
+    """Code that puts a result into an array: the last operation does so itself, which takes no copy."""
+    last = ast.parse(code, mode="eval").body
+    if isinstance(last, ast.BinOp):
+        given = f"{ast.unparse(last.left)}, {ast.unparse(last.right)}"
+    elif isinstance(last, ast.UnaryOp):
+        given = ast.unparse(last.operand)
+    else:
+        return f"np.positive({code}, into[{place}])"
+    return f"np.{_OPERATIONS[type(last.op)]}({given}, into[{place}])"
 
 
 _FUSED = {
@@ -302,6 +322,7 @@ def render_fused(module: str) -> str:
         "functions": [_describe_fused(function) for function in functions if function not in taken],
         "shared": {earlier: _names_of(found) for earlier, found in shared.items()},
         "names": _names_of(functions),
+        "takes_array": any(function.into for function in functions if function not in taken),
         "absent": [symbol.name for symbol in QUANTITIES if symbol in rotors.absent - OFFSETS],
     }
     return _rendered("fused.py.jinja", f"fused/{module}.py", **given)

@@ -21,7 +21,6 @@ from derive import kinematics as kin
 from derive import multiblade
 from derive.columns import Columns, Combination
 from derive.coordinates import SEGMENT_LOADS, SEGMENT_MOTIONS, names
-from derive.function import Function
 from derive.plain import Catalogue, entries_of
 from derive.plan import Matrix, Place, Plan, Results, Steps, plan
 from derive.rotor import Assembly, Call, Code
@@ -46,14 +45,12 @@ class Group:
     members: tuple[str, ...]
 
 
-_CALLED = {(sp.cos, sp.sin): ("cos", "sin"), (sp.atan,): ("sqrt", "arctan")}
-
-
 @dataclass(frozen=True)
 class FusedFunction:
     """A plan with its name, summary and arguments, groups of numbers first.
 
-    With `into` the function puts its results into an array that it takes, and otherwise returns them.
+    With `into` the function is one of arrays, and puts its results into an array that it takes; otherwise it is one of
+    arrays or plain numbers, and returns them.
     """
 
     name: str
@@ -65,9 +62,8 @@ class FusedFunction:
 
     @property
     def called(self) -> tuple[str, ...]:
-        """Functions of one number that the plan calls."""
-        found = [value for _, value in self.plan.lines]
-        return next((names for kinds, names in _CALLED.items() if any(v.has(*kinds) for v in found)), ())
+        """Functions of one number that the plan takes."""
+        return ("cos", "sin") if any(value.has(sp.cos, sp.sin) for _, value in self.plan.lines) else ()
 
 
 # W, U and G

@@ -19,7 +19,7 @@ from derive import symbols as s
 from derive.coordinates import SEGMENT_LOADS, SEGMENT_MOTIONS, names
 from derive.fused import FusedFunction, Group, arguments, named_values, sum_of
 from derive.plain import Catalogue, entries_of
-from derive.plan import Matrix, Place, Steps, plan
+from derive.plan import Matrix, Place, Steps, plan, without_other_names
 from derive.trim import HINGED, STEADY_ROWS
 
 zero_lift_angle = s.quantity("zero_lift_angle", r"\alpha_0", "rad", "angle of attack without lift")
@@ -48,24 +48,12 @@ def line(rotors: Catalogue) -> FusedFunction:
 
 def section_loads(rotors: Catalogue) -> FusedFunction:
     """Loads of a section with a straight lift line per unit span, their derivatives, and two numbers for doubts."""
-    steps = _without_other_names(rotors.steps(_steps_of_section(rotors)))
+    steps, _ = without_other_names(rotors.steps(_steps_of_section(rotors)))
     known = {symbol for symbol, _ in steps}
     wanted = [symbol.name for symbol in section.SECTION_LOADS.values() if symbol in known]
     wanted += [section.lift_incidence.name, section.mach.name]
     made = plan(steps, {}, wanted, short_lived=True)
     return FusedFunction("section_loads", _summary(section_loads), made, arguments(made, steps), into=True)
-
-
-def _without_other_names(steps: Steps) -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Leave out the steps that are zero or another name of an earlier step."""
-    same: dict[sp.Symbol, sp.Expr] = {}
-    kept = []
-    for symbol, value in _replaced(steps, same):
-        if value == 0 or value.is_Symbol:
-            same[symbol] = value
-        else:
-            kept.append((symbol, value))
-    return kept
 
 
 def _steps_of_section(rotors: Catalogue) -> list[tuple[sp.Symbol, sp.Expr]]:

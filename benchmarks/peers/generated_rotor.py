@@ -12,7 +12,10 @@ from proprotor.rotor.generated import evaluate
 
 Matrices = tuple[NDArray, NDArray, NDArray]  # M, C, K
 
-NO_LINKAGES = {"kinematic_pitch_flap_coupling": 0.0, "kinematic_pitch_lag_coupling": 0.0}  # as the other methods
+NO_LINKAGES = {
+    "kinematic_pitch_flap_coupling": 0.0,
+    "kinematic_pitch_lag_coupling": 0.0,
+}  # as the other methods
 
 # What is called for M, C and K, in this order; also what size and operations are counted over.
 BLADE_FUNCTIONS: tuple[Callable, ...] = (

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from proprotor_equations.fused.plain import ABSENT
 
 from tests.mutation import one_blade
 from tests.mutation.one_blade import Point
@@ -15,13 +17,25 @@ from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import hinge_spring_energy
 
 Quantities = dict[str, NDArray]
+PLAIN, GENERAL, OFFSET = "plain", "general", "offset"  # fused modules
 SEEDS = (0, 1, 2)  # rotors of three, four and five blades
 
 
 @functools.cache
-def points() -> tuple[Point, ...]:
-    """Rotors at a steady state."""
-    return tuple(map(Point.random, SEEDS))
+def points(kind: str = OFFSET) -> tuple[Point, ...]:
+    """Rotors at a steady state, of the kind that a fused module serves.
+
+    Those of `GENERAL` have nothing beside the pitch axis, plain ones have no linkages and couplings of the pitch either.
+    """
+    found = map(Point.random, SEEDS)
+    if kind != OFFSET:
+        found = map(one_blade.all_on_axis, found)
+    if kind == PLAIN:
+        found = (
+            replace(one_blade.without_linkages(p), pitch_flap_coupling=0.0, pitch_lag_coupling=0.0)
+            for p in found
+        )
+    return tuple(found)
 
 
 def stacked(pools: Iterable[Mapping[str, Any]]) -> Quantities:
@@ -31,10 +45,12 @@ def stacked(pools: Iterable[Mapping[str, Any]]) -> Quantities:
 
 
 @functools.cache
-def blade_quantities() -> Quantities:
-    """Of the whole blade, (points,)."""
+def blade_quantities(kind: str = OFFSET) -> Quantities:
+    """Of the whole blade, (points,); what plain rotors have not is the plain number zero."""
     parts = (one_blade.quantities, one_blade.beside_line, trim_integrals, spring_constants)
-    return stacked({name: number for part in parts for name, number in part(p).items()} for p in points())
+    pools = ({name: value for part in parts for name, value in part(p).items()} for p in points(kind))
+    absent = dict.fromkeys(ABSENT, 0.0) if kind == PLAIN else {}
+    return stacked(pools) | absent | {"beside_axis": kind == OFFSET}
 
 
 @functools.cache

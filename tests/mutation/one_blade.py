@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.mutation.sections import POLYNOMIAL, Air, section_loads
+from tests.mutation.sections import POLYNOMIAL, Air, PolynomialAirfoil, StraightAirfoil, section_loads
 from tests.mutation.transform import ONE_BLADE, in_rotating_axes, seen_from_blade
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import (
@@ -54,6 +54,7 @@ class Point:
     n_blades: int
     pitch_flap_coupling: float
     pitch_lag_coupling: float
+    airfoil: PolynomialAirfoil | StraightAirfoil = POLYNOMIAL
 
     @classmethod
     def random(cls, seed: int) -> Point:
@@ -131,6 +132,15 @@ def without_linkages(point: Point) -> Point:
     gone = {"kinematic_pitch_flap_coupling": 0.0, "kinematic_pitch_lag_coupling": 0.0}
     collective = point.rotor.collective - turned_by_linkages(point)
     return replace(point, rotor=replace(point.rotor, collective=collective, **gone))
+
+
+def all_on_axis(point: Point) -> Point:
+    """The same blade with its masses and aerodynamic centres on the pitch axis."""
+    center = (np.array([0.0, point.air.radius]), np.zeros(2))
+    given = {"mass_offset": 0.0, "propeller_inertia": None}
+    return replace(
+        point, rotor=replace(point.rotor, **given), air=replace(point.air, aerodynamic_center=center)
+    )
 
 
 def arms(point: Point) -> tuple[NDArray, NDArray, NDArray]:
@@ -283,7 +293,7 @@ def airload_rows(point: Point, rotor: NonlinearRotor, q: Motion, time: float, dr
     """What the airloads add to the left-hand side."""
     r, weight, _ = stations(point)
     motion = blades(rotor, r, q, clock(rotor, time))
-    loads = section_loads(POLYNOMIAL, air_at(point, r, motion, drift))
+    loads = section_loads(point.airfoil, air_at(point, r, motion, drift))
     force = loads["fx"][..., None] * motion.chordwise.value
     force = (
         force + loads["fn"][..., None] * motion.normal.value + loads["fd"][..., None] * motion.spanwise.value

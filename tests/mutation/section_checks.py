@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from proprotor_equations.fused import plain as plans
+from proprotor_equations.fused import offset, plain
 
 from tests.mutation.comparison import Check, call, matrix_check, values_check
 from tests.mutation.sections import (
@@ -30,7 +31,8 @@ def checks() -> Iterator[Check]:
     yield from _sections()
     yield from _segment_loads()
     yield _lift_slope()
-    yield _loads_by_plan()
+    yield _loads_by_plan("plain", plain, some_air())
+    yield _loads_by_plan("offset", offset, beside_axis())
     yield from _beside_axis()
 
 
@@ -130,18 +132,19 @@ def _sizes(air: Air, names: Iterable[str]) -> dict[str, NDArray]:
     return {name: force * per.get(name.partition("_")[2], 1.0) for name in names}
 
 
-def _loads_by_plan() -> Check:
+def _loads_by_plan(kind: str, plans: ModuleType, air: Air) -> Check:
     """Loads of a section with a straight lift line, and powers of the chord with values of their own."""
-    air, airfoil, powers = some_air(), StraightAirfoil(), (1.07, 1.21)
+    airfoil, powers = StraightAirfoil(), (1.07, 1.21)
     found = section_derivatives(airfoil, air, powers=powers)
     expected = {name: load for name, load in found.items() if name in plans.SECTION_LOADS}
     size = _sizes(air, expected) | dict.fromkeys(("lift_incidence", "mach"), 1.0)
-    speed, _, alpha = inflow(air)
+    met = at_center(air)
+    speed, _, alpha = inflow(met)
     expected |= {
-        "lift_incidence": alpha + powers[0] * turn_incidence(air),
+        "lift_incidence": alpha + powers[0] * turn_incidence(met),
         "mach": speed / air.speed_of_sound,
     }
-    quantities = quantities_of(air) | {
+    quantities = at_axis(air) | {
         "lift_slope": airfoil.lift_slope,
         "zero_lift_angle": airfoil.zero_lift_angle,
         "drag_coefficient": airfoil.drag,
@@ -152,11 +155,11 @@ def _loads_by_plan() -> Check:
 
     def actual() -> dict[str, NDArray]:
         into = np.empty((len(plans.SECTION_LOADS), _COUNT))
-        call(("fused.trim", "section_loads"), quantities, np.sqrt, np.arctan, into)
+        call((f"fused.{kind}", "section_loads"), quantities, into)
         return dict(zip(plans.SECTION_LOADS, into, strict=True))
 
     told = "lift, drag and moment of a section, by complex steps"
-    return Check(("fused.trim", "section_loads"), told, actual, expected, size)
+    return Check((f"fused.{kind}", "section_loads"), told, actual, expected, size)
 
 
 def _segment_loads() -> Iterator[Check]:

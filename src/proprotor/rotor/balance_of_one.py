@@ -20,6 +20,7 @@ from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import plain_number
 from proprotor.rotor.fused_balance import OF_AIRFOIL, PITCH_TWICE, loads_of, moments_of
 from proprotor.rotor.generated import evaluate, keywords
+from proprotor.rotor.kept import kept
 from proprotor.rotor.quadrature import POWERS
 from proprotor.rotor.section_loads import LOAD_MOMENTS, OUTBOARD, BladeSections
 from proprotor.rotor.trim import FLAP_LAG, blade_pitch
@@ -95,7 +96,7 @@ class _Stations:
     sides: list[Numbers]
 
     @staticmethod
-    @functools.lru_cache(maxsize=8)
+    @kept
     def of(sections: BladeSections) -> _Stations:
         """Return the stations of sections that have no axis of points."""
         quadrature, along = sections.quadrature, sections.along
@@ -128,8 +129,6 @@ class _Stations:
         tangential, axial = ends[:2] + ends[3:5] * self.radii
         loads = np.empty((len(plans.SECTION_LOADS), len(self.radii)))
         plans.section_loads(
-            np.sqrt,
-            np.arctan,
             loads,
             **self.given,
             tangential_velocity=tangential,
@@ -159,7 +158,7 @@ class _Places(NamedTuple):
     work_slopes: list[list[int]]
 
     @staticmethod
-    @functools.lru_cache(maxsize=32)
+    @functools.cache
     def of(plans: ModuleType, rows: tuple[int, ...], free: tuple[int, ...]) -> _Places:
         """Return the places of the entries of some rows and columns."""
         residual, slopes = plans.BALANCE["residual"], plans.BALANCE["slopes"]
@@ -233,7 +232,9 @@ class BalanceOfOne:
 
     def _work(self, lines: list[tuple[float, ...]], moments: Array) -> Sequence[float]:
         """Return the results of the plan `work`, summed over the segments."""
-        own = moments.reshape(len(moments), len(lines), POWERS).swapaxes(0, 1).reshape(len(lines), -1).tolist()
+        own = (
+            moments.reshape(len(moments), len(lines), POWERS).swapaxes(0, 1).reshape(len(lines), -1).tolist()
+        )
         first, *others = (
             self.plans.work(line, of_loads, **given)
             for line, of_loads, given in zip(lines, own, self.of_work, strict=True)

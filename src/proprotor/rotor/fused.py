@@ -7,18 +7,18 @@ Python floats, or as complex numbers for derivatives by a complex step.
 A trim has matrices of the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and
 both renderings take the sines of NumPy. Complex numbers agree to rounding.
 
-There are plans for plain rotors, without linkages and drive train, plans for rotors with them, and plans for rotors with
-masses or aerodynamic centres beside the pitch axis. `plans_of` takes those for plain
-rotors where each quantity that a plain rotor has not is the plain number zero. An array goes with the plans for
-other rotors, whatever it holds: so a design has the same bits in every batch that varies the same quantities, and the bits of a
-batch with a linkage of zero, an array, agree to rounding with those of the rotor without one.
+There are plans for plain rotors, without linkages and drive train, plans for rotors with them, and plans for rotors
+with masses or aerodynamic centres beside the pitch axis. `plans_of` takes those for plain rotors where each quantity
+that a plain rotor has not is the plain number zero. An array goes with the plans for other rotors, whatever it holds:
+so a design has the same bits in every batch that varies the same quantities. The bits of a design whose linkage is zero
+in an array differ by rounding from those of the rotor without a linkage.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from types import ModuleType
 from typing import Any
 
@@ -43,16 +43,31 @@ def serves(equations: EquationSet) -> bool:
 def plans_of(quantities: Quantities) -> ModuleType:
     """Return the fused functions for a rotor with these quantities: those for plain rotors, or for others."""
     if quantities.get("beside_axis"):
-        from proprotor_equations.fused import offset  # here, as below
-
-        return offset
+        return _offset()
     for name in plain.ABSENT:
         value = quantities.get(name, 0.0)
         if not (isinstance(value, float | int) and value == 0):
-            from proprotor_equations.fused import general  # here, because few rotors need it
+            return _general()
+    return _PLAIN
 
-            return general
-    return plain
+
+_PLAIN: ModuleType = plain
+
+
+def _general() -> ModuleType:
+    """Return the fused functions for rotors with linkages and the like, imported here because few rotors need them."""
+    from proprotor_equations.fused import general
+
+    found: ModuleType = general
+    return found
+
+
+def _offset() -> ModuleType:
+    """Return the fused functions for rotors with something beside the pitch axis, imported here as the general ones."""
+    from proprotor_equations.fused import offset
+
+    found: ModuleType = offset
+    return found
 
 
 @cache
@@ -108,7 +123,7 @@ def _names(plans: ModuleType, in_air: bool) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for function in functions for name in keywords(function)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Layout:
     """Where the results of a plan stand in its matrices.
 
@@ -118,6 +133,16 @@ class Layout:
 
     opposite: list[int]
     places: dict[str, Array]
+
+    @cached_property
+    def at_once(self) -> tuple[Array, list[tuple[str, slice, tuple[int, ...]]]]:
+        """The places of all entries, and which of them are those of each matrix, with its shape."""
+        ends = np.cumsum([0, *(places.size for places in self.places.values())]).tolist()
+        parts = [
+            (name, slice(start, end), places.shape)
+            for (name, places), start, end in zip(self.places.items(), ends, ends[1:], strict=False)
+        ]
+        return np.concatenate([places.ravel() for places in self.places.values()]), parts
 
     @classmethod
     def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> Layout:
@@ -174,7 +199,7 @@ def _empty(layout: Layout, points: int, kind: np.dtype[Any]) -> Matrices:
 
 
 @cache
-def _pairs(plans: ModuleType) -> tuple[Array, dict[str, Array]]:
+def _pairs(plans: ModuleType) -> tuple[list[list[int]], dict[str, Array]]:
     """Return the different pairs of results that add up to entries, and which pair stands at each entry.
 
     A pair has a place among the values of the rotor without airloads, and a place among those of the airloads.
@@ -188,7 +213,7 @@ def _pairs(plans: ModuleType) -> tuple[Array, dict[str, Array]]:
     found, order = np.unique(every, axis=0, return_inverse=True)
     parts = np.split(order.ravel(), np.cumsum([pair.size // 2 for pair in pairs.values()])[:-1])
     shaped = {name: part.reshape(pairs[name].shape[:-1]) for name, part in zip(pairs, parts, strict=True)}
-    return found, shaped
+    return found.tolist(), shaped
 
 
 @cache
@@ -200,7 +225,7 @@ def _sums(plans: ModuleType) -> Layout:
 def _with_airloads(plans: ModuleType, values: Sequence[Any], results: Sequence[Any]) -> list[Any]:
     """Return the sum of each pair of values without airloads and of airloads."""
     added = values_of(results, _layout(plans, "of_airloads"))
-    return [values[one] + added[other] if other else values[one] for one, other in _pairs(plans)[0].tolist()]
+    return [values[one] + added[other] if other else values[one] for one, other in _pairs(plans)[0]]
 
 
 def _of_rows(value: Any, rows: slice) -> Any:
@@ -262,15 +287,19 @@ def pool_of(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) 
 def _one_point(plans: ModuleType, quantities: Quantities, segments: Quantities | None) -> Matrices:
     """Return the matrices of one point by plain numbers, with an axis of one point."""
     blade = {name: plain_number(value) for name, value in quantities.items()}
-    found = _matrices(plans, [evaluate(plans.in_vacuum, blade, _cos, _sin)], "in_vacuum")
+    layout = _layout(plans, "in_vacuum")
+    values = values_of(evaluate(plans.in_vacuum, blade, _cos, _sin), layout)
     if segments is None:
-        return found
-    rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in _one_by_one(segments)]
-    arrays = _matrices(plans, rows, "segment")
-    geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
+        return _matrices([values], layout)
+    of_segments = _layout(plans, "segment")
+    rows = [
+        values_of(evaluate(plans.segment, {**blade, **here}, _cos, _sin), of_segments)
+        for here in _one_by_one(segments)
+    ]
+    arrays = _matrices(rows, of_segments)
+    geometric = np.add.reduce(arrays["geometric_stiffness"], axis=0).ravel().tolist()
     results = evaluate(plans.of_airloads, blade, _work(arrays).ravel().tolist(), geometric)
-    added = _matrices(plans, [results], "of_airloads")
-    return found | {name: matrix + found[name] for name, matrix in added.items()}
+    return _matrices([_with_airloads(plans, values, results)], _sums(plans))
 
 
 def _cos(angle: complex) -> Any:
@@ -302,22 +331,8 @@ def _one_by_one(segments: Quantities) -> list[dict[str, Any]]:
     return [dict(zip(segments, numbers, strict=True)) for numbers in zip(*lists, strict=True)]
 
 
-@cache
-def _entries(plans: ModuleType, plan: str) -> Array:
-    """Return the place of each entry of all matrices of a plan among zero, the results, and all negatives."""
-    every = np.concatenate([np.ravel(rows) for rows in getattr(plans, plan.upper()).values()])
-    return np.where(every < 0, np.abs(every).max() - every, every)
-
-
-def _matrices(plans: ModuleType, rows: Sequence[Sequence[Any]], plan: str) -> Matrices:
-    """Return the matrices (rows, ...) of some rows of results of a plan."""
-    results = np.array(rows)
-    count = results.shape[1]
-    pool = np.zeros((len(rows), 1 + 2 * count), dtype=results.dtype)
-    pool[:, 1 : 1 + count] = results
-    np.negative(results, out=pool[:, 1 + count :])
-    entries, start, found = pool.take(_entries(plans, plan), axis=1), 0, {}
-    for name, places in _layout(plans, plan).places.items():
-        found[name] = entries[:, start : start + places.size].reshape(len(rows), *places.shape)
-        start += places.size
-    return found
+def _matrices(rows: Sequence[Sequence[Any]], layout: Layout) -> Matrices:
+    """Return the matrices (rows, ...) of some rows of values as the layout counts them."""
+    every, parts = layout.at_once
+    entries, count = np.array(rows).take(every, axis=1), len(rows)
+    return {name: entries[:, part].reshape(count, *shape) for name, part, shape in parts}

@@ -239,7 +239,7 @@ def _loads_at_stations(
         turned = along.center * np.cos(given["section_pitch"]), along.center * np.sin(given["section_pitch"])
         given["center_along"], given["center_below"] = turned
     loads = room.array((len(plans.SECTION_LOADS), *shape), kind)
-    evaluate(plans.section_loads, given, np.sqrt, np.arctan, loads)
+    evaluate(plans.section_loads, given, loads)
     return loads
 
 
