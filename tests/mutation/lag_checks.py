@@ -164,7 +164,7 @@ def _work(point: Point) -> NDArray:
 @functools.cache
 def _quantities() -> Quantities:
     """Of the segments, (points, segments); the geometry is that of the other airloads."""
-    whole = {name: value[:, None] for name, value in blade_quantities().items()}
+    whole = {name: np.asarray(value)[..., None] for name, value in blade_quantities().items()}
     whole |= {"beyond_flap_hinge": BEYOND_FLAP[None], "beyond_lag_hinge": BEYOND_LAG[None]}
     whole |= stacked(map(_moments, points()))
     return whole | call(("airloads", "segment_geometry"), whole)._asdict()

@@ -5,8 +5,10 @@ Closed forms are held to 1e-12 of the largest entry of a matrix, integrals to 1e
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import proprotor as pp
+from proprotor.commands.main import main
 from proprotor.deck.blade_file import read_blade
 from proprotor.model.quantities import closed_couplings
 
@@ -229,6 +231,24 @@ def test_a_rotor_of_stations_has_the_places_on_the_chord(tmp_path, head, cells):
     angle = blade.angle(np.array([4.0]))  # twist makes less of the offset than its whole
     assert 0.012 * held * np.cos(angle[0]) * 0.8 < rotor.offset_mass.offset_cosine_lag_inertia < 0.012 * held
     assert np.isclose(rotor.offset_mass.inertia, 0.012**2 * mass_beyond(rotor.lag_hinge_offset), rtol=1e-12)
+
+
+def test_the_deck_of_stations_has_them_too(tmp_path):
+    """Lines of `proprotor blade --deck` in a deck give the rotor that Python makes of the same stations."""
+    path = stations_file(tmp_path, "x_cg [mm], x_ac [mm]", "12, -4")
+    arguments = ["blade", str(path), "--at-rotor-speed", "45 rad/s", "--collective", "20:50:15 deg", "--deck"]
+    arguments += [str(tmp_path / "rotor.toml"), "--control-stiffness", "3e4 N*m/rad", "--pitch-bearing", "0.5 m"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 0, result.output
+    lines = (tmp_path / "rotor.toml").read_text(encoding="utf-8")
+    deck = f'base = "xv15-uncoupled"\n[case]\nname = "made"\n{lines}twist = "0 deg"\nchord = "0.3 m"\n'
+    (tmp_path / "made.toml").write_text(deck, encoding="utf-8")
+    rotor, (_, expected) = pp.load_case(tmp_path / "made.toml").rotor, from_stations(path)
+    # The hinge lies within an element of the blade in bending, whose sums over Gauss points do not end at the hinge.
+    assert rotor.lag_inertia == pytest.approx(expected.lag_inertia, rel=1e-5)
+    for name, value in vars(expected.offset_mass).items():
+        assert getattr(rotor.offset_mass, name) == pytest.approx(value, rel=1e-8)
+    assert np.allclose(rotor.aerodynamic_center[1], -0.004, rtol=1e-9)
 
 
 def mass_beyond(hinge):

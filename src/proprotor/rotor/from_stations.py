@@ -63,10 +63,13 @@ def rotor_from_stations(
         if getattr(stations, name) is not None:
             found[name] = (stations.radius, getattr(stations, name))
     if stations.mass_offset is not None:
-        along = ("mass_per_length", "mass_offset")
-        mass, offset = (functools.partial(stations.at, name) for name in along)
-        hinge = found["lag_hinge_offset"]
-        found["offset_mass"] = OffsetMass.along(stations.radius, hinge, mass, offset, stations.angle)
+        found["offset_mass"] = _offset_mass(stations, found["lag_hinge_offset"])
     if "chord" not in found and "chord" not in fields:
         raise InputError("chord", None, "must be a column of the stations, or be given")
     return FromStations(Rotor(**found | fields), blade)
+
+
+def _offset_mass(stations: BladeStations, hinge: float) -> OffsetMass:
+    """Return the integrals of the mass beside the pitch axis."""
+    mass, offset = (functools.partial(stations.at, name) for name in ("mass_per_length", "mass_offset"))
+    return OffsetMass.along(stations.radius, hinge, mass, offset, stations.angle)
