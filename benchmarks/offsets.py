@@ -2,8 +2,8 @@
 
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.offsets
 
-The quarter chord is that of the published stations, aft of the elastic axis, which stands for the pitch axis. Where the
-centre of gravity lies is not published: it is assumed on the axis, on the quarter chord, or a little aft or ahead of it.
+The quarter chord is that of the published stations, aft of the elastic axis, which stands for the pitch axis. Where
+the centre of gravity lies is not published: it is assumed on the axis, on the quarter chord, or a little beside it.
 """
 
 from __future__ import annotations
@@ -86,7 +86,9 @@ def write_figure() -> None:
         axes.plot([0, 0, place, place], [0, height, height, 0], lw=0.6, color=colour)
         axes.annotate("", (place, height), (0, height), arrowprops={"arrowstyle": "->", "color": colour})
         axes.text(place + 0.03, height, told, color=colour, va="center", fontsize=9)
-    axes.annotate("rotation", (-0.62, 0.1), (-0.3, 0.1), arrowprops={"arrowstyle": "->"}, fontsize=8, va="center")
+    axes.annotate(
+        "rotation", (-0.62, 0.1), (-0.3, 0.1), arrowprops={"arrowstyle": "->"}, fontsize=8, va="center"
+    )
     axes.set(xlim=(-0.75, 0.95), ylim=(-0.5, 0.42), aspect="equal")
     axes.axis("off")
     write_whole(FIGURE, lambda file: figure.savefig(file, dpi=110, format="png"))

@@ -60,12 +60,14 @@ def _steps_of_section(rotors: Catalogue) -> list[tuple[sp.Symbol, sp.Expr]]:
     """Return the steps to the loads of a section about its pitch axis, whose aerodynamic centre may lie beside it."""
     if section.center_along in rotors.absent:
         return _steps_to_center(section.air_at_section())
-    about = {symbol: value for symbol, value in section.about_axis().items() if value != section.AT_CENTER[symbol]}
+    about = {
+        symbol: value for symbol, value in section.about_axis().items() if value != section.AT_CENTER[symbol]
+    }
     at_center = {symbol: section.AT_CENTER[symbol] for symbol in about}
     alike = {center: symbol for symbol, center in section.AT_CENTER.items() if symbol not in about}
     air = section.air_beside_axis()[2:]  # the place of the centre is given
     own = [(at_center.get(symbol, symbol), value) for symbol, value in _steps_to_center(air)]
-    return [*own, *_replaced(about.items(), alike)]
+    return [*own, *_replaced(list(about.items()), alike)]
 
 
 def _steps_to_center(air: Steps) -> list[tuple[sp.Symbol, sp.Expr]]:
@@ -170,7 +172,8 @@ def _loads_of_motion(rotors: Catalogue) -> tuple[list[tuple[sp.Symbol, sp.Expr]]
 def balance(rotors: Catalogue) -> FusedFunction:
     """Steady balance of one blade without airloads, and its change with coning, lag, elastic pitch and collective."""
     residual, slopes = (
-        sum_of(rotors.entries("trim", name) for name in (own, f"offset_{own}")) for own in ("residual", "jacobian")
+        sum_of(rotors.entries("trim", name) for name in (own, f"offset_{own}"))
+        for own in ("residual", "jacobian")
     )
     matrices = {
         "residual": _matrix(("trim",), residual),

@@ -116,7 +116,7 @@ def change_of_circulation() -> list[tuple[sp.Symbol, sp.Expr]]:
 
 
 def change_beside_axis() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Weighed change of a section's circulation, its force and its moment about an axis beside the aerodynamic centre."""
+    """Weighed change of a section's circulation, its force and its moment, where its centre lies beside the axis."""
     at_center = change_of_circulation()
     along, below = section.center_along, section.center_below
     return [

@@ -48,8 +48,12 @@ OFFSET_SQUARES = {
 DATA = (*OFFSET_MOMENTS.values(), *OFFSET_SQUARES.values())
 
 # Place of the mass at trim, beside the point of the line.
-along_arm = s.quantity("along_arm", r"x\cos\theta", "m", "trim position of the mass from the pitch axis along i'")
-below_arm = s.quantity("below_arm", r"x\sin\theta", "m", "trim position of the mass from the pitch axis against n")
+along_arm = s.quantity(
+    "along_arm", r"x\cos\theta", "m", "trim position of the mass from the pitch axis along i'"
+)
+below_arm = s.quantity(
+    "below_arm", r"x\sin\theta", "m", "trim position of the mass from the pitch axis against n"
+)
 _OFFSETS = (along_arm, below_arm)
 _NAMES = {along_arm: ("along", "a"), below_arm: ("below", "b")}
 _ARM_NAMES = {
@@ -75,11 +79,15 @@ PRODUCTS = {
     for arm, (of_arm, arm_latex) in _ARM_NAMES.items()
 }
 SQUARES = {
-    (along_arm, along_arm): s.quantity("along_offset_inertia", "I_{xaa}", "kg m^2", "mass times along arm squared"),
+    (along_arm, along_arm): s.quantity(
+        "along_offset_inertia", "I_{xaa}", "kg m^2", "mass times along arm squared"
+    ),
     (along_arm, below_arm): s.quantity(
         "along_below_offset_inertia", "I_{xab}", "kg m^2", "mass times along and below arm"
     ),
-    (below_arm, below_arm): s.quantity("below_offset_inertia", "I_{xbb}", "kg m^2", "mass times below arm squared"),
+    (below_arm, below_arm): s.quantity(
+        "below_offset_inertia", "I_{xbb}", "kg m^2", "mass times below arm squared"
+    ),
 }
 INTEGRALS = {(offset,): symbol for offset, symbol in FIRST.items()} | PRODUCTS | SQUARES
 
@@ -134,7 +142,8 @@ def mass_motion() -> MovingPoint:
     """A point mass beside the blade's line, by the arms of both."""
     trig = [symbol for pair in WHOLE_BLADE_ANGLES.values() for symbol in pair]
     ring = PolynomialRing(
-        [*trig, *ARMS, *_OFFSETS, *s.LINKAGES], "`ARMS` of derive/inertia.py or `_OFFSETS` of derive/offset_mass.py"
+        [*trig, *ARMS, *_OFFSETS, *s.LINKAGES],
+        "`ARMS` of derive/inertia.py or `_OFFSETS` of derive/offset_mass.py",
     )
     line = name_trigonometry(kin.deflected_line(), WHOLE_BLADE_ANGLES)
     line = line.subs(kin.chordwise_arm, kin.lag_arm * sin_lag)

@@ -1,8 +1,8 @@
 """The functions of the catalogue as fused functions take them: for all rotors, or for rotors that lack something.
 
-A plain rotor has nothing of `OPTIONAL` of derive/rotor.py: no linkages, no drive train, nothing beside its pitch axes. Most
-other rotors have at least nothing beside the axes, none of `OFFSETS`. In the functions of such rotors these quantities are
-zero from the start, so that a plan has no operation for them.
+A plain rotor has nothing of `OPTIONAL` of derive/rotor.py: no linkages, no drive train, nothing beside its pitch axes.
+Most other rotors have at least nothing beside the axes, none of `OFFSETS`. In the functions of such rotors these
+quantities are zero from the start, so that a plan has no operation for them.
 """
 
 from __future__ import annotations

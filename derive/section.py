@@ -278,8 +278,12 @@ def air_at_section() -> list[tuple[sp.Symbol, sp.Expr]]:
 aerodynamic_center = s.quantity(
     "aerodynamic_center", "x_a", "m", "aerodynamic centre of the section aft of the pitch axis"
 )
-center_along = s.quantity("center_along", r"x_a\cos\theta", "m", "aerodynamic centre from the pitch axis along i'")
-center_below = s.quantity("center_below", r"x_a\sin\theta", "m", "aerodynamic centre from the pitch axis against n")
+center_along = s.quantity(
+    "center_along", r"x_a\cos\theta", "m", "aerodynamic centre from the pitch axis along i'"
+)
+center_below = s.quantity(
+    "center_below", r"x_a\sin\theta", "m", "aerodynamic centre from the pitch axis against n"
+)
 tangential_at_center = s.quantity(
     "tangential_at_center", "u_{T,a}", "m/s", "velocity of the air along i' at the aerodynamic centre"
 )
@@ -332,12 +336,14 @@ def about_axis() -> dict[sp.Symbol, sp.Expr]:
     found = {SECTION_LOADS[load, ""]: _at_center(load) for load in LOADS}
     for name in _ARGUMENTS:
         for load in LOADS:
-            derivative = along_argument(name, lambda other, load=load: _at_center(load, f"_{other}"))
-            found[SECTION_LOADS[load, f"_{name}"]] = derivative
+            of_center = functools.partial(_derivative_at_center, load)
+            found[SECTION_LOADS[load, f"_{name}"]] = along_argument(name, of_center)
     for force, arm in zip(("fn", "fx"), center(), strict=True):
         found[SECTION_LOADS["m", ""]] -= arm * found[SECTION_LOADS[force, ""]]
         for name, symbol in _ARGUMENTS.items():
-            derivative = arm * found[SECTION_LOADS[force, f"_{name}"]] + sp.diff(arm, symbol) * _at_center(force)
+            derivative = arm * found[SECTION_LOADS[force, f"_{name}"]] + sp.diff(arm, symbol) * _at_center(
+                force
+            )
             found[SECTION_LOADS["m", f"_{name}"]] -= derivative
     return {symbol: sp.expand(_with_places(value)) for symbol, value in found.items()}
 
@@ -363,6 +369,10 @@ _ARGUMENTS = {
     "spin": section_spin,
 }
 _PLACES = {sp.cos: center_along, sp.sin: center_below}
+
+
+def _derivative_at_center(load: str, argument: str) -> sp.Expr:
+    return _at_center(load, f"_{argument}")
 
 
 def _at_center(load: str, argument: str = "") -> sp.Expr:

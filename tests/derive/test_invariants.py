@@ -61,7 +61,9 @@ def assert_equal(actual, expected, dofs, scale, columns=None, away=0.0):
             block = np.ix_(rows, places)
             largest = max(np.abs(actual[block]).max(), np.abs(expected[block]).max())
             error, allowed = np.abs(actual[block] - expected[block]).max(), 1e-12 * largest
-            assert error <= allowed + 1e-14 * scale[block].max() + away, f"{dofs[rows[0]]} by {dofs[places[0]]}"
+            assert error <= allowed + 1e-14 * scale[block].max() + away, (
+                f"{dofs[rows[0]]} by {dofs[places[0]]}"
+            )
 
 
 class Matrices:
@@ -147,7 +149,9 @@ def lumped_inertia(rotor):
     return rotor.pitch_inertia - (0.0 if rotor.offset_mass is None else rotor.offset_mass.inertia)
 
 
-@pytest.mark.parametrize("beside_axis", [False, True], ids=["masses on the axis", "no inertia but of masses beside it"])
+@pytest.mark.parametrize(
+    "beside_axis", [False, True], ids=["masses on the axis", "no inertia but of masses beside it"]
+)
 @any_rotor
 @given(flight=flights(hinges="at centre"))
 def test_blades_hinged_at_the_centre_move_as_yoke_and_shaft_move_them(beside_axis, flight):
@@ -158,7 +162,9 @@ def test_blades_hinged_at_the_centre_move_as_yoke_and_shaft_move_them(beside_axi
     """
     rotor = flight.rotor
     assume(not beside_axis or (rotor.offset_mass.inertia > 1e-3 * rotor.pitch_inertia))
-    change = {"pitch_inertia": rotor.offset_mass.inertia, "propeller_inertia": None} if beside_axis else ON_AXIS
+    change = (
+        {"pitch_inertia": rotor.offset_mass.inertia, "propeller_inertia": None} if beside_axis else ON_AXIS
+    )
     model = undamped(flight.with_rotor(**change))
     cone, lag = rotor.precone + model.trim.coning, model.trim.lag
     rise, swing, pitch = np.cos(cone) * np.tan(lag), np.sin(cone), rotor.pitch_gimbal_coupling
@@ -224,7 +230,7 @@ def test_blades_that_follow_the_swashplate_move_no_pitch_inertia(flight):
 @any_rotor
 @given(flights())
 def test_a_gimbal_tilted_back_against_the_hub_turns_masses_beside_the_axis(flight):
-    """The blade stays and the swashplate has tilted: the masses turn as pitch turns them, the lumped inertia does not."""
+    """The blade stays, the swashplate has tilted: the masses turn as pitch turns them, the lumped inertia does not."""
     free = flight.with_rotor(pitch_gimbal_coupling=0.0)
     matrices, rotor = Matrices(undamped(free), flight.rotor_speed), free.rotor
     lumped = rotor.n_blades / 2 * lumped_inertia(rotor)
@@ -417,11 +423,18 @@ def structure(rotor, rotor_speed, trim):
     pool["structural_pitch"] = pool["pitch"] + rotor.structural_pitch_offset
     inertia, springs, pitch = equations.inertia, equations.flap_lag_springs, equations.pitch
     beside = equations.offset_mass
-    steps = (inertia.dependent_inertias, inertia.trim_integrals, beside.trim_integrals, springs.effective_stiffness)
+    steps = (
+        inertia.dependent_inertias,
+        inertia.trim_integrals,
+        beside.trim_integrals,
+        springs.effective_stiffness,
+    )
     for named in steps:
         pool |= evaluate(named, pool)._asdict()
     mass = sum(evaluate(part.mass, pool) for part in (inertia, beside, pitch))
-    damping = sum(evaluate(part.gyroscopic, pool) for part in (inertia, beside)) + evaluate(pitch.damping, pool)
+    damping = sum(evaluate(part.gyroscopic, pool) for part in (inertia, beside)) + evaluate(
+        pitch.damping, pool
+    )
     stiffness = sum(evaluate(part.centrifugal_stiffness, pool) for part in (inertia, beside))
     stiffness = stiffness + sum(evaluate(part.stiffness, pool) for part in (springs, pitch))
     multiblade = equations.multiblade
@@ -595,7 +608,9 @@ def test_mass_knows_nothing_but_masses_geometry_and_deflection():
 def test_mass_of_an_undeflected_rotor_is_the_same_in_any_flight(flight, factor):
     """Bit for bit."""
     springs = ("flap_stiffness", "lag_stiffness", "gimbal_stiffness", "control_stiffness")
-    flight = flight.with_rotor(**ON_AXIS)  # what lies beside the axis goes up and down with the pitch of the flight
+    flight = flight.with_rotor(
+        **ON_AXIS
+    )  # what lies beside the axis goes up and down with the pitch of the flight
     stiffer = flight.with_rotor(**{name: factor * getattr(flight.rotor, name) for name in springs})
     faster = replace(flight.operation, rotor_speed=factor * flight.rotor_speed, density=0.3, trim="windmill")
     elsewhere = Flight(stiffer.without_dampers().rotor, faster, factor * flight.airspeed)
@@ -736,7 +751,10 @@ def in_other_units(flight):
     given = flight.rotor
     tables = {"chord": METRE, "twist": 1.0, "aerodynamic_center": METRE}
     along = {name: along_blade(getattr(given, name), unit) for name, unit in tables.items()}
-    units = {name: KILOGRAM * METRE if name.endswith("moment") else KILOGRAM * METRE**2 for name in vars(given.offset_mass)}
+    units = {
+        name: KILOGRAM * METRE if name.endswith("moment") else KILOGRAM * METRE**2
+        for name in vars(given.offset_mass)
+    }
     beside = pp.OffsetMass(**{name: units[name] * value for name, value in vars(given.offset_mass).items()})
     propeller = None if given.propeller_inertia is None else KILOGRAM * METRE**2 * given.propeller_inertia
     rotor = converted(given, **along, offset_mass=beside, propeller_inertia=propeller)

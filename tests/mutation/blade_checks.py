@@ -89,7 +89,9 @@ def _beside_axis() -> Iterator[Check]:
         _, _, stiffness = one_blade.offset_matrices(one_blade.without_linkages(p))
         moments = stiffness[pitch, places] / p.rotor.control_stiffness
         expected.append(dict(zip(("pitch_flap_coupling", "pitch_lag_coupling"), moments, strict=True)))
-    sizes = [natural_sizes()[2][:, pitch, place] / blade_quantities()["control_stiffness"] for place in places]
+    sizes = [
+        natural_sizes()[2][:, pitch, place] / blade_quantities()["control_stiffness"] for place in places
+    ]
     natural = dict(zip(expected[0], sizes, strict=True))
     names = ("offset_mass", "couplings")
     yield values_check(names, told, blade_quantities(), stacked(expected), natural)

@@ -25,7 +25,7 @@ SEEDS = (0, 1, 2)  # rotors of three, four and five blades
 def points(kind: str = OFFSET) -> tuple[Point, ...]:
     """Rotors at a steady state, of the kind that a fused module serves.
 
-    Those of `GENERAL` have nothing beside the pitch axis, plain ones have no linkages and couplings of the pitch either.
+    Those of `GENERAL` have nothing beside the pitch axis, plain ones have no linkages and couplings of pitch either.
     """
     found = map(Point.random, SEEDS)
     if kind != OFFSET:

@@ -113,7 +113,10 @@ def at_axis(air: Air) -> dict[str, NDArray]:
 def _beside_axis() -> Iterator[Check]:
     """Aerodynamic centres beside the pitch axis."""
     air = beside_axis()
-    quantities, told = at_axis(air), "velocities and forces of a point of a section that turns, by complex steps"
+    quantities, told = (
+        at_axis(air),
+        "velocities and forces of a point of a section that turns, by complex steps",
+    )
     names = ("center_along", "center_below", "tangential_at_center", "axial_at_center", "section_speed")
     names += ("inflow_cosine", "inflow_sine", "angle_of_attack", "turn_incidence", "lift_incidence", "mach")
     expected = {name: quantities[name] for name in names}

@@ -159,7 +159,9 @@ def blades(rotor, station, q, shaft):
 def beside_axis(motion, aft, twist):
     """From the pitch axis to points `aft` of it, on chords turned nose up by pitch and `twist`."""
     section_pitch = motion.pitch + twist
-    return scaled(aft * cos(section_pitch), motion.chordwise) - scaled(aft * sin(section_pitch), motion.normal)
+    return scaled(aft * cos(section_pitch), motion.chordwise) - scaled(
+        aft * sin(section_pitch), motion.normal
+    )
 
 
 def masses(rotor, q, shaft):

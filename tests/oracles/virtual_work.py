@@ -90,10 +90,10 @@ def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=14):
 
 @dataclass(frozen=True)
 class Flow:
-    """The flow a section meets: speed U and inflow angle φ across the span at its aerodynamic centre, the quarter chord.
+    """The flow a section meets: speed U and inflow angle φ across the span, at its quarter chord.
 
-    u_R, along the span, is that of the pitch axis, where the radial drag acts. The section's rotation about the span moves its 3/4 chord, half a chord aft, down through the air: the incidence
-    there makes the lift.
+    u_R, along the span, is that of the pitch axis, where the radial drag acts. The section's rotation about the span
+    moves its 3/4 chord, half a chord aft, down through the air: the incidence there makes the lift.
     """
 
     speed: np.ndarray

@@ -1,6 +1,6 @@
 """Masses and aerodynamic centres beside the pitch axis: closed forms of one blade, integrals, and what is refused.
 
-Closed forms are held to 1e-12 of the largest entry of a matrix, integrals to 1e-12 of the integral of the absolute value.
+Closed forms are held to 1e-12 of the largest entry of a matrix, integrals to 1e-12 of the same of the absolute value.
 """
 
 import numpy as np
@@ -60,7 +60,7 @@ def test_flap_and_pitch_of_a_blade_are_those_of_textbooks(mass_offset):
 
 
 def test_a_blade_with_its_mass_aft_diverges_where_its_control_system_is_too_soft():
-    """K_θ/Ω² + I_θ = S (γ/8 + S/I_β), below which there is no trim; with its mass ahead a blade does not diverge at all."""
+    """K_θ/Ω² + I_θ = S (γ/8 + S/I_β), below which there is no trim; with its mass ahead a blade does not diverge."""
     for mass_offset in (0.03, 0.06):
         s = mass_offset * FIRST_MOMENT
         boundary = SPEED**2 * (s * (LOCK / 8 + s / FLAP_INERTIA) - PITCH_INERTIA)
@@ -86,8 +86,8 @@ def test_a_blade_with_its_mass_aft_flutters_and_one_with_its_mass_ahead_does_not
 def test_an_aerodynamic_centre_aft_of_the_axis_holds_the_blade_against_its_pitch():
     """Lift a θ at x_a behind the axis turns the nose down: K_θθ grows by k = ∫ ρ/2 c a x_a (Ωr)² dr.
 
-    A blade that is up turns in space by Ω β about its span. The centre then goes down, and the lift grows by k β. A nose
-    that comes up takes the centre down as well: K_βθ has no x_a, C_βθ and C_θθ have.
+    A blade that is up turns in space by Ω β about its span. The centre then goes down, and the lift grows by k β. A
+    nose that comes up takes the centre down as well: K_βθ has no x_a, C_βθ and C_θθ have.
     """
     center = 0.05
     on_axis, aft = hovering(), hovering(aerodynamic_center=center)
@@ -162,7 +162,9 @@ def test_places_on_the_axis_change_nothing():
     """Bit for bit; a table of zeros goes by other plans, to rounding."""
     case = pp.load_case("xv15-mass-distribution")
     on_axis = pp.load_case("xv15-mass-distribution", {"rotor.aerodynamic_center": "0 ft"})
-    zero = pp.load_case("xv15-mass-distribution", {"rotor.aerodynamic_center": "0 ft", "rotor.mass_offset": "0 in"})
+    zero = pp.load_case(
+        "xv15-mass-distribution", {"rotor.aerodynamic_center": "0 ft", "rotor.mass_offset": "0 in"}
+    )
     models = [part.linearize(np.array([100.0, 140.0])) for part in (case, on_axis, zero)]
     for name in "MCKB":
         own, same, near = (getattr(model, name) for model in models)
@@ -174,16 +176,22 @@ def test_places_on_the_axis_change_nothing():
 
 
 def test_masses_that_no_blade_can_have_are_refused():
-    with pytest.raises(pp.InputError, match=r"pitch_inertia = 0\.01: must be at least ∫ m x² = 0\.0216 kg m²"):
+    with pytest.raises(
+        pp.InputError, match=r"pitch_inertia = 0\.01: must be at least ∫ m x² = 0\.0216 kg m²"
+    ):
         uniform_rotor(mass_offset=0.03, pitch_inertia=0.01)
     whole = dict.fromkeys(pp.OffsetMass.__dataclass_fields__, 0.0) | {"offset_cosine_moment": 1.0}
-    with pytest.raises(pp.InputError, match="offset_mass = .*: cannot belong to this blade"):
+    with pytest.raises(pp.InputError, match=r"offset_mass = .*: cannot belong to this blade"):
         uniform_rotor(offset_mass=pp.OffsetMass(**whole))
-    with pytest.raises(pp.InputError, match="offset_sine_inertia = -1.0: must not be negative"):
+    with pytest.raises(pp.InputError, match=r"offset_sine_inertia = -1\.0: must not be negative"):
         pp.OffsetMass(**whole | {"offset_sine_inertia": -1.0})
-    with pytest.raises(pp.InputError, match="mass_offset = 2 values: has stations from 0.25 R to 1 R; they must"):
+    with pytest.raises(
+        pp.InputError, match=r"mass_offset = 2 values: has stations from 0\.25 R to 1 R; they must"
+    ):
         uniform_rotor(mass_offset=(np.array([1.0, RADIUS]), np.array([0.01, 0.01])))
-    with pytest.raises(pp.InputError, match="aerodynamic_center = 2 values: has stations from 0.25 R to 1 R"):
+    with pytest.raises(
+        pp.InputError, match=r"aerodynamic_center = 2 values: has stations from 0\.25 R to 1 R"
+    ):
         uniform_rotor(aerodynamic_center=(np.array([1.0, RADIUS]), np.array([0.01, 0.01])))
 
 
@@ -237,17 +245,26 @@ def test_the_deck_of_stations_has_them_too(tmp_path):
     """Lines of `proprotor blade --deck` in a deck give the rotor that Python makes of the same stations."""
     path = stations_file(tmp_path, "x_cg [mm], x_ac [mm]", "12, -4")
     arguments = ["blade", str(path), "--at-rotor-speed", "45 rad/s", "--collective", "20:50:15 deg", "--deck"]
-    arguments += [str(tmp_path / "rotor.toml"), "--control-stiffness", "3e4 N*m/rad", "--pitch-bearing", "0.5 m"]
+    arguments += [
+        str(tmp_path / "rotor.toml"),
+        "--control-stiffness",
+        "3e4 N*m/rad",
+        "--pitch-bearing",
+        "0.5 m",
+    ]
     result = CliRunner().invoke(main, arguments)
     assert result.exit_code == 0, result.output
     lines = (tmp_path / "rotor.toml").read_text(encoding="utf-8")
-    deck = f'base = "xv15-uncoupled"\n[case]\nname = "made"\n{lines}twist = "0 deg"\nchord = "0.3 m"\n'
+    twist = 'twist = { r_over_R = [0.1, 0.25, 0.5, 0.75, 1], value = [36, 30, 20, 10, 0], unit = "deg", beyond = "held"'
+    twist += " }\n"
+    deck = f'base = "xv15-uncoupled"\n[case]\nname = "made"\n{lines}{twist}chord = "0.3 m"\n'
     (tmp_path / "made.toml").write_text(deck, encoding="utf-8")
     rotor, (_, expected) = pp.load_case(tmp_path / "made.toml").rotor, from_stations(path)
     # The hinge lies within an element of the blade in bending, whose sums over Gauss points do not end at the hinge.
     assert rotor.lag_inertia == pytest.approx(expected.lag_inertia, rel=1e-5)
+    # The place of a hinge is that of a minimum, known to the root of rounding.
     for name, value in vars(expected.offset_mass).items():
-        assert getattr(rotor.offset_mass, name) == pytest.approx(value, rel=1e-8)
+        assert getattr(rotor.offset_mass, name) == pytest.approx(value, rel=1e-6)
     assert np.allclose(rotor.aerodynamic_center[1], -0.004, rtol=1e-9)
 
 

@@ -70,7 +70,8 @@ def blade(
 
     STATIONS is a CSV file whose first line names the columns with units: r, mass, EI_flat, EI_edge, GJ, twist, and
     perhaps chord, pitch_inertia, x_cg and x_ac aft of the pitch axis, such as "r [in], mass [lb/ft], EI_flat
-    [lbf*in**2]". The blade is held at its first station. Where the hinged blade differs by more than 5 % from the elastic one, the command says so.
+    [lbf*in**2]". The blade is held at its first station. Where the hinged blade differs by more than 5 % from the
+    elastic one, the command says so.
 
     \b
     Examples:

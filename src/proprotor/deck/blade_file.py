@@ -33,11 +33,18 @@ _COLUMNS = {
     "twist": ("rad", "", ("twist", "structural_twist", "theta")),
     "chord": ("m", "above zero", ("chord", "c")),
     "mass_offset": ("m", "", ("mass_offset", "x_cg", "cg", "center_of_gravity", "centre_of_gravity")),
-    "aerodynamic_center": ("m", "", ("aerodynamic_center", "aerodynamic_centre", "x_ac", "ac", "quarter_chord")),
+    "aerodynamic_center": (
+        "m",
+        "",
+        ("aerodynamic_center", "aerodynamic_centre", "x_ac", "ac", "quarter_chord"),
+    ),
     "elastic_axis": ("m", "", ("elastic_axis", "x_ea", "ea", "pitch_axis", "shear_center")),
     "pitch_inertia_per_length": ("kg*m", "not negative", ("pitch_inertia", "I_theta", "inertia")),
 }
-_PLACES = ("mass_offset", "aerodynamic_center")  # aft of the pitch axis, or of the line that elastic_axis is told from
+_PLACES = (
+    "mass_offset",
+    "aerodynamic_center",
+)  # aft of the pitch axis, or of the line that elastic_axis is told from
 _OPTIONAL = ("chord", "pitch_inertia_per_length", "elastic_axis", *_PLACES)
 _PER_RADIUS = ("r_over_R", "x/R", "r/R")
 
@@ -126,7 +133,9 @@ def _from_pitch_axis(columns: dict[str, Array]) -> dict[str, Array]:
     if axis is None:
         return columns
     if not any(name in columns for name in _PLACES):
-        raise Fault("has a column for elastic_axis, and none for mass_offset or aerodynamic_center to count from it")
+        raise Fault(
+            "has a column for elastic_axis, and none for mass_offset or aerodynamic_center to count from it"
+        )
     return columns | {name: columns[name] - axis for name in _PLACES if name in columns}
 
 

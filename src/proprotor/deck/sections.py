@@ -11,12 +11,11 @@ with a status of published, measured, derived, recalled, calibrated or assumed, 
 status of all numbers of a file. Chord and twist take one value (twist:
 the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
 linear between its stations, as mass_offset and aerodynamic_center do; all of these and mass_distribution may also be a
-column of a CSV file,
-``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
+column of a CSV file, ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
 
-Stations of chord, twist and aerodynamic_center reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
-values hold there. Stations of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to
-the tip, or their table says ``beyond = "nothing"``: no mass there.
+Stations of chord, twist and aerodynamic_center reach from the root cutout to the tip, or their table says
+``beyond = "held"``: the end values hold there. Stations of mass_distribution reach from the centre of rotation, or with
+hub_mass from anywhere, to the tip, or their table says ``beyond = "nothing"``: no mass there.
 
 ``base``
     Above all sections: the deck that this deck alters, a bundled name or a file in the same folder. A field of this

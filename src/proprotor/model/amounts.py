@@ -245,8 +245,18 @@ def _masses(case: Configuration) -> Iterator[tuple[str, Any, str, str]]:
     if rotor.offset_mass is not None:
         arms = "1, r, ρ_β, ρ_ζ, x cos τ, x sin τ"
         yield "∫ m x", rotor.offset_mass.offset_cosine_moment, "kg m", "outboard of the lag hinge, x cos τ"
-        yield "∫ m x ρ_ζ", rotor.offset_mass.offset_cosine_lag_inertia, "kg m²", "outboard of the lag hinge, x cos τ"
-        yield "∫ m x²", rotor.offset_mass.inertia, "kg m²", "the part of the pitch inertia that comes from the offset"
+        yield (
+            "∫ m x ρ_ζ",
+            rotor.offset_mass.offset_cosine_lag_inertia,
+            "kg m²",
+            "outboard of the lag hinge, x cos τ",
+        )
+        yield (
+            "∫ m x²",
+            rotor.offset_mass.inertia,
+            "kg m²",
+            "the part of the pitch inertia that comes from the offset",
+        )
     diagonal = np.diagonal(gram)
     size = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     yield (

@@ -42,7 +42,9 @@ def batch_shape(
 @kept
 def shape_of(rotor: Rotor) -> tuple[int, ...]:
     """Return the shape of all arrays among the numbers of a rotor, broadcast together; () for a single design."""
-    inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name not in ("airfoil", "offset_mass")]
+    inputs = [
+        getattr(rotor, entry.name) for entry in fields(rotor) if entry.name not in ("airfoil", "offset_mass")
+    ]
     inputs += [] if rotor.offset_mass is None else list(vars(rotor.offset_mass).values())
     leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
     inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)] + leading

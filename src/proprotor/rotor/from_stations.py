@@ -37,9 +37,9 @@ def rotor_from_stations(
     pitch : array (p,)
         Collectives at 0.75 R, rad, for which the hinged blade is found; at least 3.
     **fields
-        Further fields of `Rotor`: the number of blades and the airfoil at least. Chord, twist and the places on the chord are those of the
-        stations, and the blade has air from the first station, unless they are given; any number that was found is
-        replaced by one that is given.
+        Further fields of `Rotor`: the number of blades and the airfoil at least. Chord, twist and the places on the
+        chord are those of the stations, and the blade has air from the first station, unless they are given; any
+        number that was found is replaced by one that is given.
 
     Returns
     -------

@@ -222,7 +222,9 @@ class Rotor:
             rule = f"must be at least ∫ m x² = {_shown(own)} kg m² of the mass beside the pitch axis"
             raise InputError("pitch_inertia", self.pitch_inertia, rule)
         if not nowhere_negative(np.real(self._gram_of_offsets)):
-            rule = "cannot belong to this blade: the Gram matrix of the mass integrals has a negative eigenvalue"
+            rule = (
+                "cannot belong to this blade: the Gram matrix of the mass integrals has a negative eigenvalue"
+            )
             raise InputError("offset_mass", "∫ m x …", rule)
 
     @property
@@ -235,8 +237,8 @@ class Rotor:
             (of.offset_sine_moment, of.offset_sine_lag_inertia),
         )
         beside = [(first, lag + before * first, lag + between * first, lag) for first, lag in moments]
-        squares = ((of.offset_cosine_inertia, of.offset_product_inertia),)
-        squares += ((of.offset_product_inertia, of.offset_sine_inertia),)
+        product = of.offset_product_inertia
+        squares = ((of.offset_cosine_inertia, product), (product, of.offset_sine_inertia))
         own = self._gram_of_line
         rows = [[own[..., i, j] for j in range(4)] + [column[i] for column in beside] for i in range(4)]
         rows += [[*column, *square] for column, square in zip(beside, squares, strict=True)]
@@ -340,7 +342,7 @@ class Rotor:
 
     @property
     def propeller_share(self) -> Any:
-        """Share of the lumped pitch inertia, that of mass beside the axis taken off, which makes the propeller moment."""
+        """Share that makes the propeller moment, of the pitch inertia that no mass beside the axis has."""
         whole = self.pitch_inertia if self.propeller_inertia is None else self.propeller_inertia
         own = 0.0 if self.offset_mass is None else self.offset_mass.inertia
         lumped = np.asarray(self.pitch_inertia - own)
@@ -468,7 +470,7 @@ class Rotor:
         """
         center = self.aerodynamic_center
         if isinstance(center, tuple) or callable(center):
-            return _interpolate(center, r)
+            return np.asarray(_interpolate(center, r))
         return np.asarray(center, dtype=np.result_type(float, np.asarray(center)))[..., None]
 
     def twist_at(self, r: Array) -> Array:
@@ -636,7 +638,7 @@ def _check_distribution(name: str, distribution: _Table) -> None:
         raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
 
 
-def _check_covers(name: str, table: _Table, start: Array, radius: Array) -> None:
+def _check_covers(name: str, table: _Table, start: Any, radius: Any) -> None:
     """Refuse a table whose stations do not reach from a radius to the tip, unless its end values hold."""
     if table[2:] == (HELD,):
         return

@@ -182,14 +182,16 @@ class Balance:
         return np.asarray(here.residual + (1 - share[:, None]) * work)
 
     def precone_load(self, rows: Array) -> Array:
-        """Return the part of precone and of mass beside the pitch axis in the residual (n, k) of the undeflected blade."""
+        """Return the part of precone and of mass beside the axis in the residual (n, k) of the undeflected blade."""
         load = np.zeros((len(rows), len(self.free)))
         places = np.array(self.free)[self.hinged]
         given = take(self.quantities, rows)
         precone = evaluate(equations.precone_load, given)
         load[:, self.hinged] = precone[..., places, equations.TRIM]
         if has_offset_mass(given):
-            flat = dict.fromkeys((*UNKNOWNS, "precone"), 0.0) | {"collective": self.air_direction(self.points)[rows]}
+            flat = dict.fromkeys((*UNKNOWNS, "precone"), 0.0) | {
+                "collective": self.air_direction(self.points)[rows]
+            }
             beside = evaluate(equations.offset_residual, with_trim(given | flat, self.options, flat))
             load[:, self.hinged] += np.real(beside[..., places, equations.TRIM])
         return load

@@ -132,11 +132,16 @@ def _lines_along(table: BladeStations, source: str) -> Iterator[str]:
     """Yield the places on the chord along the blade, as lines of a deck, and the mass to which they belong."""
     wanted = {"aerodynamic_center": ("aerodynamic_center", "m", HELD)}
     if table.mass_offset is not None:
-        wanted |= {"mass_distribution": ("mass_per_length", "kg/m", NOTHING), "mass_offset": ("mass_offset", "m", HELD)}
+        wanted |= {
+            "mass_distribution": ("mass_per_length", "kg/m", NOTHING),
+            "mass_offset": ("mass_offset", "m", HELD),
+        }
     for name, (column, unit, beyond) in wanted.items():
         values = getattr(table, column)
         if values is None:
             continue
-        r, value = (", ".join(f"{number:.10g}" for number in part) for part in (table.radius / table.tip, values))
+        r, value = (
+            ", ".join(f"{number:.10g}" for number in part) for part in (table.radius / table.tip, values)
+        )
         told = f'unit = "{unit}", beyond = "{beyond}", status = "derived", source = "{source}"'
         yield f"{name} = {{ r_over_R = [{r}], value = [{value}], {told} }}"
