@@ -565,7 +565,7 @@ class Rotor:
         def offset_at(r: Array) -> Array:
             if isinstance(offset, tuple) or callable(offset):
                 return _interpolate(offset, r)
-            return np.asarray(offset)[..., None] + 0 * r
+            return np.asarray(np.asarray(offset)[..., None] + 0 * r)
 
         first, last = (np.asarray(mass[0])[..., end : end + 1 or None] for end in (0, -1))
         knots = _joined([np.asarray(table[0]) for table in (mass, *tables)])
