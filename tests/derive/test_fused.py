@@ -58,7 +58,11 @@ def assert_alike(found, expected, rotor_speed):
 def at(blade, rows):
     """Quantities of some rotors, (rows,); of a single place as plain numbers."""
     return {
-        name: value if isinstance(value, float | bool) else value[rows] if np.ndim(rows) else float(value[rows])
+        name: value
+        if isinstance(value, float | bool)
+        else value[rows]
+        if np.ndim(rows)
+        else float(value[rows])
         for name, value in blade.items()
     }
 
