@@ -41,7 +41,7 @@ deferred import goes down: `LinearModel.modes` calls `stability`.
 
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
-from proprotor.model.lift_lag import with_lift_lag
+from proprotor.model.lift_lag import lagging_blade, with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
@@ -66,6 +66,7 @@ __all__ = [
     "first_order",
     "html",
     "in_closed_form",
+    "lagging_blade",
     "mass_at_rest",
     "mount",
     "mount_pair",

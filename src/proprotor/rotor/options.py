@@ -73,7 +73,7 @@ class Options:
         damping to these equations. Lift-slope airloads keep the lift of the damping alone.
     lift : "quasi-steady" or "lagged"
         Lift of blade sections that follows air and pitch at once, or that their shed vortices hold back, with states of
-        its own (consistent equations with airloads; no reactionless motions). The trim is the same.
+        its own (consistent equations with airloads). The trim is the same.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional
@@ -141,8 +141,6 @@ class Options:
             raise InputError("lift", self.lift, 'goes with equations="consistent"')
         if self.airloads == "none":
             raise InputError("lift", self.lift, 'goes with airloads="full" or "lift-slope"')
-        if self.reactionless:
-            raise InputError("lift", self.lift, "goes with reactionless=False")
 
     @property
     def equation_set(self) -> EquationSet:

@@ -17,7 +17,7 @@ from proprotor_equations import rotor as whole_rotor
 
 from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
-from proprotor.model.lift_lag import with_lift_lag
+from proprotor.model.lift_lag import lagging_blade, with_lift_lag
 from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
@@ -236,7 +236,7 @@ def _lag_of_lift(
     """Return what the lag of lift adds, on the rotor's coordinates and its own."""
     own, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
     nothing = {name: np.zeros((points, own, len(INPUTS) if name == "B" else own)) for name in "MCKB"}
-    found = with_lift_lag(nothing, sections, quantities, choice)
+    found = with_lift_lag(nothing, lagging_blade(sections, quantities, points, choice), quantities)
     return _Part(*(found[name] for name in "MCK"))
 
 
