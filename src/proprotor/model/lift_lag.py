@@ -23,7 +23,7 @@ from proprotor_equations import BLADE_COORDINATES, airloads, lift_lag, multiblad
 from proprotor_equations.coordinates import DIFFERENTIAL, FIXED, REACTIONLESS_PAIR, SWASHPLATE, Coordinate
 
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.lift_lag import Circulation, Shapes, circulation, polynomials
+from proprotor.rotor.lift_lag import Shapes, circulation, polynomials
 from proprotor.rotor.motions import LAG_SHAPES, LAGS
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections
@@ -256,4 +256,3 @@ def _entry(entries: Array) -> Array:
     matrix = np.zeros((*moved.shape, *_NOTHING.shape), dtype=moved.dtype)
     matrix[..., _BLADE_ANGLE, _BLADE_ANGLE] = moved
     return matrix
-
