@@ -8,6 +8,7 @@ configuration, and the stamp that every result has.
     batches              shapes of batches, and their points a few at a time
     quantities           the numbers of rotor, operation and options by the names of the derivation
     lift_lag             the lag of lift, added to the matrices of a rotor
+    wing_lift_lag        the lag of a wing's lift, added to a coupled model
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
     blade_comparison     a hinged blade beside the elastic blade that it stands for
@@ -50,6 +51,7 @@ from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair, rotors_on, shares
 from proprotor.model.rotor_model import airload_moments, in_closed_form, rotor_model
 from proprotor.model.side import Side
+from proprotor.model.wing_lift_lag import with_wing_lag
 
 __all__ = [
     "INPUTS",
@@ -87,4 +89,5 @@ __all__ = [
     "with_lift_lag",
     "with_mast",
     "with_reasons",
+    "with_wing_lag",
 ]

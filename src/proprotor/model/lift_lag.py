@@ -31,7 +31,7 @@ from proprotor.typing import Array
 
 # Jones' approximation of Wagner's function, 1 - Σ A exp(-b s), s in half chords: A and b of each state.
 # NACA Report 681 (1940).
-_JONES = dict(zip(LAGS, ((0.165, 0.0455), (0.335, 0.300)), strict=True))
+JONES = dict(zip(LAGS, ((0.165, 0.0455), (0.335, 0.300)), strict=True))
 _ANGLE = "flap"  # any angle that each blade has for itself
 _BLADE_ANGLE = BLADE_COORDINATES.index(_ANGLE)
 _MOTIONS = ("virtual_motion", "rate_motion", "displacement_motion", "gust_motion")
@@ -170,9 +170,9 @@ def _with_lag(
     """Return the matrices of some coordinates with the lag of lift, and its states behind; without gusts no B."""
     own = rotor["M"].shape[-1]
     states = len(total.angle) * len(blade.work)
-    whole = _padded(rotor, len(_JONES) * states, np.result_type(*blade))
+    whole = _padded(rotor, len(JONES) * states, np.result_type(*blade))
     _add_loads_at_once(whole, own, blade, total, gust_loads)
-    for place, (share, rate) in enumerate(_JONES.values()):
+    for place, (share, rate) in enumerate(JONES.values()):
         start = own + place * states
         _add_state(whole, own, slice(start, start + states), blade, total, share, rate)
         if gust_loads is not None:
@@ -206,7 +206,7 @@ def _add_loads_at_once(
     gust_loads: Callable[[Array], Array] | None,
 ) -> None:
     """Take off the share of the loads that comes late, A W G⁻¹ f of both states."""
-    late = sum(share for share, _ in _JONES.values())
+    late = sum(share for share, _ in JONES.values())
     damping, stiffness, gusts = (
         late * np.einsum("kpi,kpj->pij", blade.work, change)
         for change in (blade.by_rates, blade.by_displacements, blade.by_gusts)

@@ -105,7 +105,7 @@ def model_of(
     reactionless = _reactionless(rotor, choice)
     apart = reactionless_groups(reactionless) if reactionless else []
     lagging: tuple[Coordinate, ...] = ()
-    if choice.lift == "lagged":
+    if choice.blades_lag:
         lagging, apart = lag_coordinates(), [with_lag(group) for group in apart]
     coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
     found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
@@ -174,7 +174,7 @@ def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
     if options.reactionless:
         blades = float(np.max(rotor.n_blades))
         count += 3 * (blades - 3)
-    if options.lift == "lagged":
+    if options.blades_lag:
         count += LAGS_PER_BLADE * blades
     if options.reactionless:
         check_memory("n_blades", rotor.n_blades, _BYTES_PER_ENTRY * count**2, "the matrices")
@@ -221,7 +221,7 @@ def _matrices(
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
         late = None
-        if options.lift == "lagged":
+        if options.blades_lag:
             late = lagging_blade(sections.take(rows), quantities, len(rows), options)
             found = with_lift_lag(found, late, quantities)
         if not options.pitch_is_free:

@@ -71,6 +71,22 @@ def lag_coordinates(shapes: int = LAG_SHAPES) -> tuple[Coordinate, ...]:
     return _lagging(("0", "1c", "1s"), shapes)
 
 
+def wing_lag_names(symmetry: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the coordinates whose rates are downwash of a wing that takes effect late, in m/s.
+
+    Parameters
+    ----------
+    symmetry : sequence of str
+        The half of the motion of each function of the span, "" on a single wing.
+    """
+    numbers = [symmetry[: place + 1].count(half) for place, half in enumerate(symmetry)]
+    return tuple(
+        f"{half} {lag} wing lift{f' {number}' if number > 1 else ''}".lstrip()
+        for lag in LAGS
+        for half, number in zip(symmetry, numbers, strict=True)
+    )
+
+
 def with_lag(group: tuple[Coordinate, ...], shapes: int = LAG_SHAPES) -> tuple[Coordinate, ...]:
     """Return one of the `reactionless_groups` with the coordinates of circulation that lags behind its own."""
     return (*group, *_lagging(tuple(c.name.partition("_")[2] for c in group if c.angle == "flap"), shapes))
