@@ -8,6 +8,7 @@ configuration, and the stamp that every result has.
     batches              shapes of batches, and their points a few at a time
     quantities           the numbers of rotor, operation and options by the names of the derivation
     lift_lag             the lag of lift, added to the matrices of a rotor
+    theodorsen           lift that lags by Theodorsen's function, at one frequency after the other
     wing_lift_lag        the lag of a wing's lift, added to a coupled model
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
@@ -51,6 +52,7 @@ from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair, rotors_on, shares
 from proprotor.model.rotor_model import airload_moments, in_closed_form, rotor_model
 from proprotor.model.side import Side
+from proprotor.model.theodorsen import at_frequencies
 from proprotor.model.wing_lift_lag import with_wing_lag
 
 __all__ = [
@@ -62,6 +64,7 @@ __all__ = [
     "airload_moments",
     "amount_rules",
     "amounts",
+    "at_frequencies",
     "blade_comparison",
     "deck_fingerprint",
     "doubts",

@@ -56,7 +56,8 @@ def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
     held, shape = held_coordinates(model), model.M.shape[:-2]
     rates = _rates(tuple(held), len(model.dofs))
-    matrix = np.empty((*shape, rates.shape[1], rates.shape[1]))
+    kind = np.result_type(model.M, model.C, model.K)
+    matrix = np.empty((*shape, rates.shape[1], rates.shape[1]), dtype=kind)
     for rows in few_at_once(shape):
         mass, damping, stiffness = (at_rows(part, rows, shape) for part in (model.M, model.C, model.K))
         loads = np.concatenate([stiffness.take(held, -1), damping], axis=-1)

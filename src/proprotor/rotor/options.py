@@ -134,14 +134,20 @@ class Options:
         if self.drive_train is not None and self.rotor_speed == "constant":
             raise InputError("drive_train", self.drive_train, 'goes with rotor_speed="windmilling"')
         if self.blades_lag:
-            self._check_lag()
+            self.check_blades_may_lag(self.lift)
 
-    def _check_lag(self) -> None:
-        """Refuse options without equations for the lag of lift."""
+    def check_blades_may_lag(self, lift: str) -> None:
+        """Refuse options without equations for the lag of lift, which `lift` asks for.
+
+        Raises
+        ------
+        InputError
+            For other equations than the consistent ones, and without airloads.
+        """
         if self.equation_set != EQUATION_SETS["consistent"]:
-            raise InputError("lift", self.lift, 'goes with equations="consistent"')
+            raise InputError("lift", lift, 'goes with equations="consistent"')
         if self.airloads == "none":
-            raise InputError("lift", self.lift, 'goes with airloads="full" or "lift-slope"')
+            raise InputError("lift", lift, 'goes with airloads="full" or "lift-slope"')
 
     @property
     def blades_lag(self) -> bool:

@@ -87,7 +87,12 @@ class WingAerodynamics:
         by_rates = -gathered @ self._behind(strips, "downwash_point")
         single = ("",) * functions.shape[-1]
         return WingLift(
-            self._forces(strips) @ functions, by_rates, gathered @ strips.pitch, self.chord, single
+            self._forces(strips) @ functions,
+            by_rates,
+            gathered @ strips.pitch,
+            self.chord,
+            single,
+            *self.matrices(strips),
         )
 
     def _forces(self, strips: Strips) -> Array:

@@ -30,6 +30,8 @@ class WingCirculation(NamedTuple):
         cosine of the sweep cancels.
     symmetry : tuple of str
         "symmetric" or "antisymmetric" for each function, "" on a single wing.
+    damping, stiffness : array (..., n, n)
+        Parts in C and K of all of the lift, where it comes at once.
     """
 
     work: Array
@@ -37,10 +39,14 @@ class WingCirculation(NamedTuple):
     by_displacements: Array
     way: Array
     symmetry: tuple[str, ...]
+    damping: Array
+    stiffness: Array
 
 
 class WingLift(NamedTuple):
-    """The same at any airspeed V and density ρ: work per ρV, and downwash by displacements per V.
+    """The same at any airspeed V and density ρ: work per ρV, downwash by displacements per V,
+
+    damping and stiffness per ρV and ρV².
 
     chord : float or array (...)
         m, along the wind.
@@ -51,6 +57,8 @@ class WingLift(NamedTuple):
     by_displacements: Array
     chord: ArrayLike
     symmetry: tuple[str, ...]
+    damping: Array
+    stiffness: Array
 
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> WingCirculation:
         """Return downwash and work at airspeeds (m/s) and densities (kg/m³) that broadcast."""
@@ -58,7 +66,13 @@ class WingLift(NamedTuple):
         flow = (np.asarray(density) * speed)[..., None, None]
         downwash = speed[..., None, None] * self.by_displacements
         return WingCirculation(
-            flow * self.work, self.by_rates, downwash, 2 * speed / np.asarray(self.chord), self.symmetry
+            flow * self.work,
+            self.by_rates,
+            downwash,
+            2 * speed / np.asarray(self.chord),
+            self.symmetry,
+            flow * self.damping,
+            flow * speed[..., None, None] * self.stiffness,
         )
 
 
@@ -75,6 +89,8 @@ def of_both_wings(right: WingLift, left: WingLift, halves: tuple[str, ...]) -> W
         together(right.by_displacements, left.by_displacements, -2),
         right.chord,
         tuple(half for half in halves for _ in right.symmetry),
+        (right.damping + left.damping) / 2,
+        (right.stiffness + left.stiffness) / 2,
     )
 
 
