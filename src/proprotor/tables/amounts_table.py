@@ -62,8 +62,8 @@ def amounts_tables(case: Configuration) -> tuple[tuple[AmountsTable, ...], tuple
     if trims:
         caption = "The blade at trim: uncoupled frequencies at zero cone, and couplings"
         apart = case.rotor.cyclic_control_stiffness is not None
-        rows = tuple(_trim_row(one, cyclic=apart) for one in trims)
-        tables.append(AmountsTable(caption, _BLADE + _CYCLIC * apart, rows, ()))
+        blades = tuple(_trim_row(one, cyclic=apart) for one in trims)
+        tables.append(AmountsTable(caption, _BLADE + _CYCLIC * apart, blades, ()))
     if modes:
         head = ("mode", "alone, Hz", "/rev", "with the rotor, Hz", "with it, /rev")
         caption = (
@@ -78,9 +78,9 @@ def amounts_tables(case: Configuration) -> tuple[tuple[AmountsTable, ...], tuple
 def _trim_row(blade: BladeAtTrim, *, cyclic: bool) -> tuple[str, ...]:
     degrees = (f"{math.degrees(angle):.3f}" for angle in (blade.collective, blade.coning, blade.lag))
     frequencies = (f"{ratio:.3f}" for ratio in (blade.flap_frequency, blade.lag_frequency))
-    pairs = (blade.pitch_flap_coupling, blade.pitch_lag_coupling)
+    pairs = [blade.pitch_flap_coupling, blade.pitch_lag_coupling]
     if cyclic:
-        pairs += (blade.cyclic_pitch_flap_coupling, blade.cyclic_pitch_lag_coupling)
+        pairs += [blade.cyclic_pitch_flap_coupling, blade.cyclic_pitch_lag_coupling]
     couplings = ("–" if math.isnan(k) else f"{k:.4f}" for k in pairs)
     return (marked(f"{blade.airspeed / KNOT:.4g}", blade.doubt), *degrees, *frequencies, *couplings)
 
