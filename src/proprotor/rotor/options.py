@@ -137,7 +137,12 @@ class Options:
             self.check_blades_may_lag(self.lift)
 
     def check_blades_may_lag(self, lift: str) -> None:
-        """Refuse options without equations for the lag of lift, which `lift` asks for.
+        """Refuse options without equations for the lag of lift.
+
+        Parameters
+        ----------
+        lift : str
+            What asks for the lag, for the message.
 
         Raises
         ------
