@@ -142,6 +142,8 @@ def test_mass_is_positive_once_the_hub_carries_inertia(flight, seed):
 
 
 ON_AXIS = {"offset_mass": None}
+NO_MASSES = dict.fromkeys((entry.name for entry in fields(pp.OffsetMass)), 0.0)
+UNLINKED = dict.fromkeys(("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling"), 0.0)
 
 
 def lumped_inertia(rotor):
@@ -162,8 +164,7 @@ def test_blades_hinged_at_the_centre_move_as_yoke_and_shaft_move_them(beside_axi
     """
     rotor = flight.rotor
     assume(not beside_axis or (rotor.offset_mass.inertia > 1e-3 * rotor.pitch_inertia))
-    unlinked = dict.fromkeys(("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling"), 0.0)
-    alone = {"pitch_inertia": rotor.offset_mass.inertia, "propeller_inertia": None, **unlinked}
+    alone = {"pitch_inertia": rotor.offset_mass.inertia, "propeller_inertia": None, **UNLINKED}
     flight = flight.with_rotor(**(alone if beside_axis else ON_AXIS))
     model, rotor = undamped(flight), flight.rotor
     cone, lag = rotor.precone + model.trim.coning, model.trim.lag
@@ -236,7 +237,7 @@ def test_blades_that_follow_the_swashplate_move_no_pitch_inertia(flight):
 @given(flights())
 def test_a_gimbal_tilted_back_against_the_hub_turns_masses_beside_the_axis(flight):
     """The blade stays, the swashplate has tilted: the masses turn as pitch turns them, the lumped inertia does not."""
-    free = flight.with_rotor(pitch_gimbal_coupling=0.0)
+    free = flight.with_rotor(pitch_gimbal_coupling=0.0, **UNLINKED)
     matrices, rotor = Matrices(undamped(free), flight.rotor_speed), free.rotor
     lumped = rotor.n_blades / 2 * lumped_inertia(rotor)
     gyroscopic = 2 * lumped * flight.rotor_speed  # of a pitch that goes round
@@ -433,7 +434,7 @@ def structure(rotor, rotor_speed, trim):
     """M, C, K without airloads, straight from the generated functions: any sign of the rotor speed."""
     pool = (
         {entry.name: getattr(rotor, entry.name) for entry in fields(rotor)}
-        | vars(rotor.offset_mass)
+        | (NO_MASSES if rotor.offset_mass is None else vars(rotor.offset_mass))
         | trim
         | {"rotor_speed": rotor_speed, "pitch_inertia": lumped_inertia(rotor)}
     )

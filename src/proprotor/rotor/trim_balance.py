@@ -62,10 +62,13 @@ class Slopes(NamedTuple):
     def by_moments(self, sprung: Array) -> Slopes:
         """Return the slopes per unit of the moments that springs and centrifugal force set against flap and lag.
 
-        Counted in this way, a spring of any stiffness that turns with the pitch changes no slope.
+        Counted in this way, a spring of any stiffness that turns with the pitch changes no slope. The other angles
+        are counted as moments too, of the stiffest of these springs, so that units do not matter.
         """
-        structure = np.where(sprung[:, None], self.full - self.airloads, np.eye(len(sprung)))
-        angles = solve(structure, np.broadcast_to(np.eye(len(sprung)), structure.shape))
+        springs, places = self.full - self.airloads, np.flatnonzero(sprung)
+        stiffest = np.abs(springs[:, places]).max(axis=(1, 2), initial=0.0)
+        own = np.where(stiffest > 0, stiffest, 1.0)[:, None, None] * np.eye(len(sprung))
+        angles = solve(np.where(sprung[:, None], springs, own), np.broadcast_to(np.eye(len(sprung)), springs.shape))
         return Slopes(self.full @ angles, self.airloads @ angles)
 
     def of(self, rows: Array | slice) -> Slopes:
