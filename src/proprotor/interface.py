@@ -32,6 +32,7 @@ from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet
+from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.stability.branches import by_branch
@@ -55,6 +56,7 @@ __all__ = [
     "InputError",
     "LinearModel",
     "NormalModes",
+    "OffsetMass",
     "Operation",
     "Pylon",
     "Rotor",

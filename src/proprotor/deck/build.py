@@ -216,8 +216,8 @@ def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datu
     lock_number = given.pop("lock_number", None)
     build: Callable[..., Rotor] = Rotor
     if "mass_distribution" in given:
-        distribution, hub_mass = given.pop("mass_distribution"), given.pop("hub_mass", None)
-        build = partial(Rotor.from_mass_distribution, *distribution, hub_mass=hub_mass)
+        beside = {name: given.pop(name, None) for name in ("hub_mass", "mass_offset")}
+        build = partial(Rotor.from_mass_distribution, *given.pop("mass_distribution"), **beside)
     # Springs and chord may follow from inertias that only a rotor has, so this rotor has placeholders.
     bare = build(**{"flap_stiffness": 0.0, "lag_stiffness": 0.0, "chord": 1.0} | given)
     derived = {f"{name}_stiffness": _spring(bare, name, frequency) for name, frequency in omega.items()}

@@ -164,6 +164,7 @@ Count = Annotated[Datum | None, Reading("count", least=3)]
 Size = Annotated[Datum | None, Reading("count", least=1)]
 Chord = Annotated[Datum | None, _AlongTheBlade("along the blade", "m", POSITIVE, beyond=HELD)]
 Twist = Annotated[Datum | None, _AlongTheBlade("along the blade", "rad", beyond=HELD)]
+PlaceOnChord = Annotated[Datum | None, _AlongTheBlade("along the blade", "m", beyond=HELD)]
 MassDistribution = Annotated[
     Datum | None, _AlongTheBlade("distribution", "kg/m", NOT_NEGATIVE, beyond=NOTHING)
 ]

@@ -23,7 +23,13 @@ _FILES = (
     ("rotor", "airfoil", "table", "value"),
     *(("support", name, "value") for name in ("file", "mass", "stiffness", "damping", "dofs", "hub_motion")),
 )
-_MAY_BE_COLUMNS = ("chord", "twist", "mass_distribution")  # in [rotor]: { file = ..., column = ... }
+_MAY_BE_COLUMNS = (
+    "chord",
+    "twist",
+    "mass_distribution",
+    "mass_offset",
+    "aerodynamic_center",
+)  # in [rotor]: { file = ..., column = ... }
 
 _LARGEST = 1_000_000  # bytes
 

@@ -10,12 +10,12 @@ without a dimension is plain. Either may be a table that names its source::
 with a status of published, measured, derived, recalled, calibrated or assumed, see `default_status` of [case] for a
 status of all numbers of a file. Chord and twist take one value (twist:
 the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
-linear between its stations; chord, twist and mass_distribution may also be a column of a CSV file,
-``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
+linear between its stations, as mass_offset and aerodynamic_center do; all of these and mass_distribution may also be a
+column of a CSV file, ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
 
-Stations of chord and twist reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
-values hold there. Stations of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to
-the tip, or their table says ``beyond = "nothing"``: no mass there.
+Stations of chord, twist and aerodynamic_center reach from the root cutout to the tip, or their table says
+``beyond = "held"``: the end values hold there. Stations of mass_distribution reach from the centre of rotation, or with
+hub_mass from anywhere, to the tip, or their table says ``beyond = "nothing"``: no mass there.
 
 ``base``
     Above all sections: the deck that this deck alters, a bundled name or a file in the same folder. A field of this
@@ -292,6 +292,10 @@ class RotorSection(Section):
     pitch_damping: fields.Damping = optional("Viscous damping of the blade's pitch.")
     gimbal_damping: fields.Damping = optional("Viscous damping of the gimbal, in non-rotating axes.")
     propeller_moment: bool = optional("Whether the propeller moment acts on the blade's pitch.", True)
+    propeller_inertia: fields.InertiaOrNone = optional(
+        "I_xx - I_yy of one blade, chordwise less through the thickness, which makes the propeller moment; that of "
+        "pitch_inertia, a thin blade, if left out."
+    )
     chord: fields.Chord = optional(
         "Chord of the blade, one value or along r from root cutout to tip; "
         'beyond = "held" if the end values hold beyond the stations.'
@@ -300,6 +304,13 @@ class RotorSection(Section):
     twist: fields.Twist = needed(
         "Twist, one value for a linear change from centre to tip, or along r from root cutout to tip; "
         'beyond = "held" if the end values hold beyond the stations. Pitch is zero at 0.75 R.'
+    )
+    mass_offset: fields.PlaceOnChord = optional(
+        "Centre of the mass aft of the pitch axis, one value or along r from lag hinge to tip, with mass_distribution; "
+        "it counts outboard of the lag hinge."
+    )
+    aerodynamic_center: fields.PlaceOnChord = optional(
+        "Aerodynamic centre (quarter chord) aft of the pitch axis, one value or along r from root cutout to tip."
     )
     airfoil: AirfoilSection = needed("Sections of the blade.")
     frequencies: FrequenciesSection | None = optional("Blade frequencies; from the springs if left out.")
@@ -311,6 +322,9 @@ class RotorSection(Section):
         if self.hub_mass is not None and self.mass_distribution is None:
             rule = "must be given with mass_distribution; blade_mass holds the hub's mass"
             raise InputError("hub_mass", self.hub_mass.written, rule)
+        if self.mass_offset is not None and self.mass_distribution is None:
+            rule = "must be given with mass_distribution: the seven integrals do not tell where the mass is"
+            raise InputError("mass_offset", self.mass_offset.written, rule)
         return self
 
 

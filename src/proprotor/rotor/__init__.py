@@ -6,6 +6,7 @@ matrices. This room imports `errors`, `typing` and `files`, and the generated eq
 
 What a rotor is:
     rotor                a proprotor: geometry, mass, springs, chord and twist
+    offset_mass          integrals of mass beside the pitch axis
     airfoil              section coefficients; the linear airfoil
     airfoil_regions      airfoils by region of the span
     airfoil_table        an airfoil from tables
@@ -61,9 +62,10 @@ from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
-from proprotor.rotor.trim import UNKNOWNS, Target, Trim, trim_target, with_trim
+from proprotor.rotor.trim import UNKNOWNS, Target, Trim, has_offset_mass, trim_target, with_trim
 from proprotor.rotor.trim_solver import Settled, solve_trim
 
 __all__ = [
@@ -78,6 +80,7 @@ __all__ = [
     "BladeFrequencies",
     "BladeStations",
     "DriveTrain",
+    "OffsetMass",
     "Operation",
     "Rotor",
     "SectionCoefficients",
@@ -91,6 +94,7 @@ __all__ = [
     "from_stations",
     "fused",
     "generated",
+    "has_offset_mass",
     "hinged_blade",
     "kept",
     "lift_lag",
