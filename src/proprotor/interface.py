@@ -36,6 +36,7 @@ from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.stability.branches import by_branch
 from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.study import sampling
 from proprotor.study.study import study
 from proprotor.study.study_file import save_study
@@ -65,6 +66,7 @@ __all__ = [
     "design_inputs",
     "distribution",
     "frequency_response",
+    "growth_constraint",
     "list_cases",
     "load_case",
     "load_results",

@@ -57,6 +57,8 @@ RESULTS = {
     "Case.boundaries": lambda case, **o: case.boundaries(SPEEDS, **o),
     "Case.flutter_point": lambda case, **o: case.flutter_point(SPEEDS, **o),
     "Case.sensitivity": lambda case, **o: case.sensitivity("damping", ["rotor.precone"], airspeed=AT, **o),
+    "Case.growth_constraint": lambda case, **o: case.growth_constraint(SPEEDS, ["rotor.precone"], **o),
+    "growth_constraint": lambda case, **o: pp.growth_constraint(case, SPEEDS, (), **o),
     "Case.attribution": lambda case, **o: case.attribution(AT, **o),
     "Case.stability_map": lambda case, **o: case.stability_map(MAP, **o),
     "Case.boundary_against": lambda case, **o: case.boundary_against(

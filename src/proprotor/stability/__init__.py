@@ -38,6 +38,7 @@ Boundaries: where damping passes a level
 What a mode comes from and depends on
     eigenvalue_derivatives  change of eigenvalues with the matrices
     sensitivity             derivatives of eigenvalues, damping and flutter speed by inputs
+    growth_constraint       one number for optimisers, at or below zero where all roots are damped enough
     origins, attribution    matrices by physical origin; what drives and damps a mode
 """
 
@@ -54,6 +55,7 @@ from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_c
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.growth_constraint import SHARPNESS, growth_constraint
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
@@ -77,6 +79,7 @@ __all__ = [
     "DOUBTFUL",
     "FLUTTER",
     "NOT_TOLD",
+    "SHARPNESS",
     "Boundary",
     "BoundaryLine",
     "Brackets",
@@ -114,6 +117,7 @@ __all__ = [
     "flutter_point",
     "follow",
     "frequency_response",
+    "growth_constraint",
     "instability",
     "kinds",
     "match_modes",
