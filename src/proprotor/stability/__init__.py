@@ -33,6 +33,7 @@ Boundaries: where damping passes a level
     in_notebook             boundaries as HTML, for notebooks
     flutter_messages        records and sentences for people
     map, boundary_lines     the plane of two inputs; its boundary by mode
+    boundary_search         boundaries along many lines of airspeeds at once, a line for each design
     boundary_against        boundaries against one input, such as altitude or rotor speed
 
 What a mode comes from and depends on
