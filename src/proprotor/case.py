@@ -12,6 +12,7 @@ from proprotor.model.configuration import Configuration
 from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary_against import boundary_against
+from proprotor.stability.envelope import envelope
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.stability.map import stability_map
@@ -37,6 +38,7 @@ class Case(Configuration):
     attribution = attribution
     stability_map = stability_map
     growth_constraint = growth_constraint
+    envelope = envelope
 
 
 def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] | None = None) -> Case:

@@ -35,6 +35,7 @@ from proprotor.rotor.generated import EquationSet
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.stability.branches import by_branch
+from proprotor.stability.envelope import envelope
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.study import sampling
@@ -65,6 +66,7 @@ __all__ = [
     "by_branch",
     "design_inputs",
     "distribution",
+    "envelope",
     "frequency_response",
     "growth_constraint",
     "list_cases",

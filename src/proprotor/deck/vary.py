@@ -23,7 +23,7 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
 
     A path is the place in the deck: ``rotor.precone``, ``rotor.airfoil.lift_slope``, ``operation.rotor_speed``,
     ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. Distributions along the blade, blade
-    frequencies, files and numbers that follow from other numbers are left out.
+    frequencies, files, numbers that follow from other numbers, and the envelope's are left out.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
         for path, number in case.given.items()
         if number.r_over_R is None
         and not isinstance(number.si, _FIXED)
-        and not path.startswith("rotor.frequencies.")
+        and not path.startswith(("rotor.frequencies.", "envelope."))
     }
 
 

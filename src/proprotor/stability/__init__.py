@@ -35,6 +35,9 @@ Boundaries: where damping passes a level
     map, boundary_lines     the plane of two inputs; its boundary by mode
     boundary_search         boundaries along many lines of airspeeds at once, a line for each design
     boundary_against        boundaries against one input, such as altitude or rotor speed
+    envelope_speeds         V_D and M_D at altitude, and the speeds up to which there must be no flutter
+    envelope_dataset        the dataset of an envelope, its limits and its worst case
+    envelope                onsets and damping of all conditions of a deck against these speeds
 
 What a mode comes from and depends on
     eigenvalue_derivatives  change of eigenvalues with the matrices
@@ -53,6 +56,8 @@ from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.branches import BranchLabels, NamedStates, branch_labels, by_branch, named_at
 from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
+from proprotor.stability.envelope import envelope
+from proprotor.stability.envelope_dataset import MET, NOT_KNOWN, NOT_MET
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
@@ -79,6 +84,9 @@ __all__ = [
     "ANCHORS",
     "DOUBTFUL",
     "FLUTTER",
+    "MET",
+    "NOT_KNOWN",
+    "NOT_MET",
     "NOT_TOLD",
     "SHARPNESS",
     "Boundary",
@@ -111,6 +119,7 @@ __all__ = [
     "decomposition",
     "eigenvalue_change",
     "eigenvalues",
+    "envelope",
     "error_near_zero",
     "find_crossings",
     "flies_free",
