@@ -282,6 +282,12 @@ def case() -> pp.Case:
     return pp.load_case("xv15-uncoupled")
 
 
+def with_envelope(case: pp.Case) -> pp.Case:
+    """The deck of a case with an envelope."""
+    altitudes = '{ value = [0, 1], unit = "km" }'
+    return pp.load_case(case.name, {"envelope.dive_speed": "200 keas", "envelope.altitudes": altitudes})
+
+
 # How each function with options of the model is called.
 WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "Case.linearize": lambda case, **more: case.linearize(150.0, **more),
@@ -289,6 +295,8 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "Case.boundaries": lambda case, **more: case.boundaries(SPEEDS, **more),
     "Case.flutter_point": lambda case, **more: case.flutter_point(SPEEDS, **more),
     "Case.sensitivity": lambda case, **more: case.sensitivity(airspeed=SPEEDS, **more),
+    "Case.envelope": lambda case, **more: with_envelope(case).envelope(SPEEDS, **more),
+    "envelope": lambda case, **more: pp.envelope(with_envelope(case), SPEEDS, **more),
     "Case.growth_constraint": lambda case, **more: case.growth_constraint(SPEEDS, (), **more),
     "growth_constraint": lambda case, **more: pp.growth_constraint(case, SPEEDS, (), **more),
     "Case.attribution": lambda case, **more: case.attribution(150.0, **more),

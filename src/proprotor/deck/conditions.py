@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any, Generic, NamedTuple
 
+import numpy as np
+
 from proprotor.deck.build import C, assemble
 from proprotor.deck.envelope_sections import FAILURE
 from proprotor.deck.numbers import numbers_of
@@ -84,7 +86,7 @@ def _case_of(case: C, names: Sequence[str]) -> C:
     if case.deck.envelope.powers is not None:
         changes["operation"]["trim"] = {"power_coefficient": 0.0}
     if "rotor.lock_number" in own.given:
-        chord = f"{float(own.rotor.chord)!r} m"
+        chord = f"{np.asarray(own.rotor.chord).item()!r} m"
         source = "lock_number, in the air of the deck"
         changes["rotor"] = {"chord": {"value": chord, "status": "derived", "source": source}}
     return _assembled(case, deck_of_condition(case.deck, names, changes), names)

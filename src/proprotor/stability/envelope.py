@@ -37,9 +37,8 @@ from proprotor.units import KEAS, KNOT, in_metres_per_second
 if TYPE_CHECKING:
     from proprotor.deck.conditions import Condition
 
-_BEYOND = (
-    1.1  # of the speed up to which a condition must be free of flutter: where a search ends at the earliest
-)
+_BEYOND = 1.1  # of the speed required: where a search ends at the earliest
+_ROUNDING = 1e-12  # of an airspeed
 _FEWEST = 80  # airspeeds of a line, at least about
 
 
@@ -257,7 +256,8 @@ def _dataset(
     per = np.tile(speeds.per_equivalent, len(onset) // len(speeds.altitude))
     sound = np.tile(speeds.speed_of_sound, len(per) // len(speeds.altitude))
     verdicts = [
-        _verdict(cells, line, onset[line], falls[line], level, per[line]) for line in range(len(onset))
+        _verdict(_Place(cells, line, onset[line], falls[line], level, per[line]))
+        for line in range(len(onset))
     ]
     parts: dict[str, Any] = {
         "onset": onset,
@@ -295,34 +295,57 @@ def _onset(own: OfLine, free: bool) -> Any:
     )
 
 
-def _verdict(
-    cells: _Cells, line: int, onset: float, falls: float, level: float, per_equivalent: float
-) -> tuple[str, str]:
-    """Return whether a line is free of flutter up to the speed required, and has the damping required; and why not."""
+class _Place(NamedTuple):
+    """One line of a condition: its onset, where damping falls below the one required, and the speeds, m/s, true."""
 
-    def written(speed: float) -> str:
-        return f"{speed / per_equivalent / KNOT:.4g} {KEAS}"
+    cells: _Cells
+    line: int
+    onset: float
+    falls: float
+    level: float
+    per_equivalent: float
 
-    required, dive, start = cells.required[line], cells.dive[line], cells.at_start
-    if start.ratio[line] < 0:
-        return (
-            NOT_MET,
-            f"{start.mode[line]} is unstable at the lowest airspeed already, {written(cells.start[line])}",
-        )
-    if onset <= required:
-        return NOT_MET, f"unstable from {written(onset)}, needed {written(required)}"
-    if level and start.ratio[line] < level:
-        return (
-            NOT_MET,
-            f"{start.mode[line]} has {100 * start.ratio[line]:.2g} % at {written(cells.start[line])}",
-        )
-    if falls <= dive:
-        return NOT_MET, f"damping below {100 * level:g} % from {written(falls)}, needed to {written(dive)}"
-    for own, end in ((cells.found[line], required), *(((cells.below[line], dive),) if cells.below else ())):
-        gap = next((speed for speed in own.gaps if speed <= end), None)
-        if gap is not None or not own.searched[1] >= end * (1 - 1e-12):
-            why = own.reason or f"the search ends at {written(own.searched[1])}"
-            return NOT_KNOWN, why
-    if not np.isfinite(cells.at_end.ratio[line]):
-        return NOT_KNOWN, str(cells.at_end.reason[line])
+    def written(self, speed: float) -> str:
+        """Return a true airspeed as an equivalent one in words."""
+        return f"{speed / self.per_equivalent / KNOT:.4g} {KEAS}"
+
+
+def _verdict(place: _Place) -> tuple[str, str]:
+    """Return whether a line meets the requirement, and why it does not, or why this is not known."""
+    if why := _broken(place):
+        return NOT_MET, why
+    if why := _unknown(place):
+        return NOT_KNOWN, why
     return MET, ""
+
+
+def _broken(place: _Place) -> str:
+    """Return why a line does not meet the requirement; empty if nothing shows that it does not."""
+    cells, line, level, written = place.cells, place.line, place.level, place.written
+    start, ratio = written(cells.start[line]), cells.at_start.ratio[line]
+    mode = cells.at_start.mode[line]
+    if ratio < 0:
+        return f"{mode} is unstable at the lowest airspeed already, {start}"
+    if place.onset <= cells.required[line]:
+        return f"unstable from {written(place.onset)}, needed {written(cells.required[line])}"
+    if level and ratio < level:
+        return f"{mode} has {100 * ratio:.2g} % damping at {start}, needed {100 * level:g} %"
+    if place.falls <= cells.dive[line]:
+        return f"damping below {100 * level:g} % from {written(place.falls)}, needed to {written(cells.dive[line])}"
+    return ""
+
+
+def _unknown(place: _Place) -> str:
+    """Return why it is not known whether a line meets the requirement; empty if it is known."""
+    cells, line, written = place.cells, place.line, place.written
+    if cells.start[line] > cells.required[line]:
+        return f"the search begins at {written(cells.start[line])}"
+    searches = [(cells.found[line], cells.required[line])]
+    if cells.below is not None:
+        searches.append((cells.below[line], cells.dive[line]))
+    for own, end in searches:
+        if any(speed <= end for speed in own.gaps):
+            return own.reason
+        if not own.searched[1] >= end * (1 - _ROUNDING):
+            return own.reason or f"the search ends at {written(own.searched[1])}"
+    return "" if np.isfinite(cells.at_end.ratio[line]) else str(cells.at_end.reason[line])
