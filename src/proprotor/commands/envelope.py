@@ -13,6 +13,7 @@ from proprotor.errors import InputError
 from proprotor.tables.csv_text import csv_of
 from proprotor.tables.envelope_table import (
     COLUMNS,
+    HEADING,
     SCOPE,
     TEXT,
     envelope_footnotes,
@@ -23,11 +24,13 @@ from proprotor.tables.envelope_table import (
 from proprotor.typing import Dataset
 from proprotor.units import speeds
 
+_NARROWEST = 16  # characters of the names of conditions, which are wrapped
+
 
 @arguments.command()
 @arguments.case_argument
 @click.option(
-    "--variant",
+    "--only",
     "variants",
     multiple=True,
     metavar="NAME",
@@ -57,9 +60,8 @@ def envelope(
     \b
     Examples:
       proprotor envelope my.toml --plot envelope.png
-      proprotor envelope my.toml --variant downstop-off --csv envelope.csv
-      proprotor envelope xv15 --set "envelope.dive_speed=300 keas" \\
-          --set 'envelope.altitudes={value=[0, 20000], unit="ft"}'
+      proprotor envelope my.toml --only downstop-off --csv envelope.csv
+      proprotor envelope my.toml --set "envelope.speed_factor=1.2"
     """
     case = request.load()
     if scan is not None and speeds(scan, "--scan", case.operation.density).size < 2:
@@ -96,7 +98,7 @@ def _document(found: Dataset, records: list[dict[str, Any]]) -> dict[str, Any]:
 def _print(case: Case, found: Dataset) -> None:
     output.print_head(case, found.attrs)
     out = output.console()
-    out.print("Each condition at its worst altitude, ζ at the speed needed:")
-    output.print_table(COLUMNS, envelope_rows(found), text=TEXT)
+    out.print(f"{HEADING}:")
+    output.print_table(COLUMNS, envelope_rows(found), text=TEXT, narrowest=_NARROWEST)
     for sentence in (envelope_verdict(found), *envelope_footnotes(found), SCOPE):
         out.print(sentence)

@@ -18,7 +18,9 @@ class EnvelopeSection(Section):
 
     dive_speed: fields.EquivalentSpeed = needed("Design dive speed V_D, an equivalent airspeed.")
     dive_mach: fields.Positive = optional("Design dive Mach number M_D, which limits V_D at altitude.")
-    altitudes: fields.Altitudes = needed("Pressure altitudes, rising, -610 m to 32 km.")
+    altitudes: fields.Altitudes = needed(
+        "Pressure altitudes, rising, -610 m to 32 km; that at which V_D meets M_D is added."
+    )
     speed_factor: fields.Positive = optional(
         "Factor on V_D and M_D up to which normal conditions must be free of flutter; 1.15 if left out "
         "(CS and 14 CFR 25.629(b)(1)), 1.2 for 14 CFR 23.629(c). Limited to Mach 1 where M_D is below 1."

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.errors import InputError
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.style import COLOURS, GREY, LABEL_SIZE
@@ -44,7 +45,10 @@ def plot_envelope(found: Dataset, ax: Axes | None = None, *, unit: str = "ft") -
     InputError
         For a unit that is no length.
     """
-    factor = factor_to_si(unit, unit, "m")
+    try:
+        factor = factor_to_si(unit, unit, "m")
+    except InputError as error:
+        raise error.within("unit") from None
     ax = axes_or_new(ax, size=(8, 5))
     altitude = found.altitude.values / factor
     shown = _draw_needed(ax, found, found.height.values / factor)

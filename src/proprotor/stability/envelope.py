@@ -26,7 +26,7 @@ from proprotor.stability.envelope_dataset import (
     with_limits,
     with_worst,
 )
-from proprotor.stability.envelope_speeds import EnvelopeSpeeds, envelope_speeds
+from proprotor.stability.envelope_speeds import EnvelopeSpeeds, altitudes_of, envelope_speeds
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.mode_names import moving
 from proprotor.stability.points import Solved, solve_points
@@ -97,7 +97,8 @@ def envelope(
     -------
     xarray.Dataset
         Over ``condition``, ``rotor_speed`` (rad/s), ``power`` (W) and ``altitude`` (m), where the coordinates of rotor
-        speed and power are NaN for those of the condition's own deck. onset, the lowest true airspeed at which a mode
+        speed and power are NaN for those of the condition's own deck; one of the altitudes is that at which V_D meets
+        M_D, if it lies between those of the deck. onset, the lowest true airspeed at which a mode
         becomes unstable, of an aircraft that flies free by flutter, m/s, NaN where none does; equivalent_onset, m/s,
         and mach_onset; mode, kind and frequency, rad/s; margin, the onset over the speed required, less 1;
         damping_onset, the lowest true airspeed up to the dive speed at which a mode has less than the damping required,
@@ -122,7 +123,7 @@ def envelope(
     section = case.deck.envelope
     offset = conditions[0].case.given.get("operation.temperature_offset")
     kelvin = 0.0 if offset is None else float(offset.si)
-    speeds = envelope_speeds(section, np.array(section.altitudes.si), kelvin)
+    speeds = envelope_speeds(section, altitudes_of(section), kelvin)
     level = 0.0 if section.damping_ratio is None else float(section.damping_ratio.si)
     turning, powers = (
         None if axis is None else np.array(axis.si) for axis in (section.rotor_speeds, section.powers)

@@ -70,7 +70,8 @@ def envelope_dataset(
 
 def with_limits(found: Dataset, section: Any, temperature_offset: float) -> Dataset:
     """Return the dataset with the equivalent airspeeds of V_D and of the speeds required between its altitudes too."""
-    height = np.linspace(found.altitude.values[0], found.altitude.values[-1], _HEIGHTS)
+    altitude = found.altitude.values
+    height = np.unique(np.append(np.linspace(altitude[0], altitude[-1], _HEIGHTS), altitude))
     speeds = envelope_speeds(section, height, temperature_offset)
     limits = np.stack([speeds.dive, speeds.normal, speeds.failure]) / speeds.per_equivalent
     about = {"units": "m/s", "long_name": "equivalent airspeed"}

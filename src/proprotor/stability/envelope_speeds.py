@@ -4,6 +4,10 @@ At a pressure altitude with air of density ρ and speed of sound a, an equivalen
 V_E √(ρ0/ρ), and a Mach number M is a true airspeed M a. The dive speed at altitude is the lower one of V_D and M_D. A
 factor on V_D and on M_D at constant altitude covers the same factor on the equivalent airspeed at constant Mach number:
 that one leads from the line of V_D to a point with factor V_D lower down, and from the line of M_D to that line.
+
+V_D meets M_D where the air has the pressure p = ρ0 V_D² / (γ M_D²), whatever its temperature. Below that corner the
+equivalent airspeed that is wanted does not change with altitude while onsets fall, above it that airspeed falls faster
+than most onsets: the corner is often the worst altitude, and is one of those that are analysed.
 """
 
 from __future__ import annotations
@@ -17,6 +21,10 @@ from proprotor.typing import Array
 from proprotor.units import KNOT, SEA_LEVEL_DENSITY
 
 _SPEED_FACTOR, _FAILURE_SPEED_FACTOR = 1.15, 1.0  # CS and 14 CFR 25.629(b)(1) and (b)(2)(i)
+
+
+_GAMMA = 1.4  # ratio of specific heats of air, ISO 2533
+_CLOSE = 1e-6  # m, of the altitude of the corner
 
 
 class EnvelopeSpeeds(NamedTuple):
@@ -37,6 +45,32 @@ class EnvelopeSpeeds(NamedTuple):
     def per_equivalent(self) -> Array:
         """True airspeed per equivalent airspeed (k,)."""
         return np.sqrt(SEA_LEVEL_DENSITY / self.density)
+
+
+def altitudes_of(envelope: Any) -> Array:
+    """Return the altitudes of the section [envelope] of a deck, m, rising, with that of the corner of V_D and M_D.
+
+    Parameters
+    ----------
+    envelope : proprotor.deck.envelope_sections.EnvelopeSection
+
+    Raises
+    ------
+    InputError
+        For an altitude without a standard atmosphere.
+    """
+    from scipy.optimize import brentq  # here, because it takes long to import
+
+    given = np.array(envelope.altitudes.si)
+    low, high = given[0], given[-1]
+    ends = standard_air(given[[0, -1]]).pressure
+    if envelope.dive_mach is None:
+        return given
+    corner = SEA_LEVEL_DENSITY * (envelope.dive_speed.si * KNOT / envelope.dive_mach.si) ** 2 / _GAMMA
+    if not ends[1] < corner < ends[0]:
+        return given
+    found = brentq(lambda height: float(standard_air(height).pressure) - corner, low, high, xtol=_CLOSE)
+    return np.unique(np.append(given, found))
 
 
 def envelope_speeds(envelope: Any, altitude: Array, temperature_offset: float = 0.0) -> EnvelopeSpeeds:

@@ -17,8 +17,10 @@ SCOPE = (
     "Whirl flutter of this model alone: one part of what a showing of compliance needs, beside control surfaces, "
     "control reversal, tolerances, tests and whatever else the certification basis asks for."
 )
-COLUMNS = ("verdict", "ft", "rpm", "kW", f"onset {KEAS}", "needed", "margin %", "ζ %", "condition")
+COLUMNS = ("verdict", "ft", "rpm", "kW", KEAS, "needed", "margin", "ζ", "condition")
+HEADING = f"Each condition at its worst altitude; onset and speed needed in {KEAS}, margin and ζ there in %"
 TEXT = ("verdict", "condition")  # columns of the table that are words
+_WORST = 3  # places of a verdict whose reasons stand below the table
 _FOOT, _RPM = 0.3048, math.pi / 30
 
 
@@ -134,10 +136,10 @@ def envelope_footnotes(found: Dataset) -> Iterator[str]:
     records = envelope_records(found)
     for verdict in (NOT_MET, NOT_KNOWN):
         of = [record for record in records if record["verdict"] == verdict]
-        for record in sorted(of, key=_severity)[:3]:
+        for record in sorted(of, key=_severity)[:_WORST]:
             yield f"{verdict.capitalize()}: {_place(record)}: {record['why']}."
-        if len(of) > 3:
-            yield f"{verdict.capitalize()} at {len(of) - 3} further places."
+        if len(of) > _WORST:
+            yield f"{verdict.capitalize()} at {len(of) - _WORST} more."
     doubts = reasons_for_doubt(found.warning.values.ravel().tolist())
     for text, places in doubts.items():
         yield f"{MARK} Doubtful at {len(places)} of {found.verdict.size} places: {text}."
