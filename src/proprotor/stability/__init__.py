@@ -71,9 +71,10 @@ from proprotor.stability.modes import (
     coordinate_motion,
     decomposition,
     eigenvalues,
+    few_spectra,
     modes,
 )
-from proprotor.stability.names_and_steps import Steps, names_and_steps
+from proprotor.stability.names_and_steps import Steps, Walk, joined, names_and_steps
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
@@ -104,6 +105,7 @@ __all__ = [
     "Search",
     "Spectrum",
     "Steps",
+    "Walk",
     "at_boundary",
     "at_columns",
     "attribution",
@@ -121,6 +123,7 @@ __all__ = [
     "eigenvalues",
     "envelope",
     "error_near_zero",
+    "few_spectra",
     "find_crossings",
     "flies_free",
     "flutter_messages",
@@ -129,6 +132,7 @@ __all__ = [
     "frequency_response",
     "growth_constraint",
     "instability",
+    "joined",
     "kinds",
     "match_modes",
     "mode_columns",
