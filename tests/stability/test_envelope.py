@@ -10,6 +10,7 @@ import proprotor as pp
 from proprotor.stability.envelope_dataset import MET, NOT_KNOWN, NOT_MET
 
 KNOT, FOOT, RPM, HP = 1852 / 3600, 0.3048, math.pi / 30, 550 * 0.3048 * 4.4482216152605
+CLOSE = 1e-8  # of an airspeed: a search ends with a correction of a billionth
 # m: where 280 KEAS are Mach 0.5, by p = ρ0 V² / (γ M²) and the troposphere of ISO 2533.
 CORNER = (
     288.15 / 0.0065 * (1 - (1.225 * (280 * KNOT / 0.5) ** 2 / 1.4 / 101325) ** (287.05287 * 0.0065 / 9.80665))
@@ -140,7 +141,7 @@ def test_a_place_is_the_flutter_point_of_a_case_made_by_hand(found, condition, a
     settings["operation.altitude"] = f"{float(found.altitude[altitude])!r} m"
     point = pp.load_case("xv15-wing", settings).flutter_point()
     here = found.isel(condition=condition, altitude=altitude, rotor_speed=0, power=0)
-    assert here.onset.item() == pytest.approx(point.speed, rel=1e-9)
+    assert here.onset.item() == pytest.approx(point.speed, rel=CLOSE)
     assert here["mode"].item() == point.mode and here.kind.item() == point.kind
     assert here.frequency.item() == pytest.approx(point.frequency, rel=1e-7)
     assert here.verdict.item() == (MET if point.speed > here.required.item() else NOT_MET)
@@ -205,7 +206,7 @@ def test_the_damping_required_is_sought_up_to_the_dive_speed(deck):
             lost += 1
             assert here.verdict.item() == NOT_MET and "0.15 %" in here.why.item()
             if first:
-                assert here.damping_onset.item() == pytest.approx(first, rel=1e-9)
+                assert here.damping_onset.item() == pytest.approx(first, rel=CLOSE)
         else:
             assert np.isnan(here.damping_onset.item())
     assert lost
@@ -224,7 +225,7 @@ def test_a_lock_number_does_not_make_the_chord_grow_with_altitude(deck):
     chord = deck(settings={"rotor.chord": f"{float(np.mean(np.atleast_1d(rotor.chord)))!r} m"}).envelope(
         variants=[]
     )
-    np.testing.assert_allclose(given.onset, chord.onset, rtol=1e-9)
+    np.testing.assert_allclose(given.onset, chord.onset, rtol=CLOSE)
 
 
 def test_what_could_not_be_analysed_is_not_known_and_spoils_no_other(deck, found):
@@ -236,7 +237,7 @@ def test_what_could_not_be_analysed_is_not_known_and_spoils_no_other(deck, found
     fast = two.isel(condition=0, rotor_speed=1, power=0)
     assert (fast.verdict.values != MET).all() and "Mach" in fast.reason.values[-1]
     slow = two.isel(condition=0, rotor_speed=0, power=0)
-    np.testing.assert_allclose(slow.onset, found.onset.values[0, 0, 0], rtol=1e-9)
+    np.testing.assert_allclose(slow.onset, found.onset.values[0, 0, 0], rtol=CLOSE)
     assert (slow.reason.values == "").all()
 
 
@@ -310,7 +311,7 @@ support.downstop = false
 """
     point = deck(one).flutter_point("150:350:20keas")
     here = found.isel(condition=1, rotor_speed=0, power=0, altitude=1)
-    np.testing.assert_allclose(here.onset, point.speed, rtol=1e-8)
+    np.testing.assert_allclose(here.onset, point.speed, rtol=CLOSE)
 
 
 @pytest.mark.parametrize(

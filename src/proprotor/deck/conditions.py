@@ -81,12 +81,12 @@ def _check(deck: Any, name: str) -> None:
 
 def _case_of(case: C, names: Sequence[str]) -> C:
     """Return the case of a condition, in the standard atmosphere at sea level."""
-    own = _assembled(case, deck_of_condition(case.deck, names))
+    own = deck_of_condition(case.deck, names)
     changes: dict[str, Any] = {"operation": {"altitude": "0 m"} | _offset(case)}
     if case.deck.envelope.powers is not None:
         changes["operation"]["trim"] = {"power_coefficient": 0.0}
-    if "rotor.lock_number" in own.given:
-        chord = f"{np.asarray(own.rotor.chord).item()!r} m"
+    if own.rotor.lock_number is not None:
+        chord = f"{np.asarray(_assembled(case, own).rotor.chord).item()!r} m"
         source = "lock_number, in the air of the deck"
         changes["rotor"] = {"chord": {"value": chord, "status": "derived", "source": source}}
     return _assembled(case, deck_of_condition(case.deck, names, changes), names)
