@@ -23,6 +23,10 @@ STATIONS = """r [m],mass [kg/m],EI_flat [N*m**2],EI_edge [N*m**2],GJ [N*m**2],tw
 0.36,12,2e7,2e7,2e5,27,0.35,0.09
 3.8,12,2e7,2e7,2e5,0,0.35,0.09
 """
+ENVELOPE = (
+    *("--set", "envelope.dive_speed=200 keas", "--scan", "150:240:45keas"),
+    *("--set", 'envelope.altitudes={value=[0, 1000], unit="ft"}'),
+)
 BLADE = ("--at-rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
 # Each command as it needs no extra.
 PLAIN = {
@@ -33,6 +37,7 @@ PLAIN = {
     "sweep": (CASE, *SPEED, "--csv", "sweep.csv", "--plot", "sweep.png"),
     "flutter": (CASE, "--scan", "300:400:50kt"),
     "boundary": (CASE, "--against", "rotor.precone=1:2:1 deg", "--scan", "300:400:50kt"),
+    "envelope": (CASE, *ENVELOPE),
     "map": (CASE, "--x", "rotor.precone=1:2:1 deg", "--y", "airspeed=300:400:100kt"),
     "sensitivity": (CASE, "--wrt", "rotor.precone", "--scan", "300:400:50kt"),
     "attribution": (CASE, "--mode", "chord", "--speed", "200 kt"),

@@ -12,7 +12,9 @@ from proprotor.model.configuration import Configuration
 from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary_against import boundary_against
+from proprotor.stability.envelope import envelope
 from proprotor.stability.flutter import flutter_point
+from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.stability.map import stability_map
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case
@@ -35,6 +37,8 @@ class Case(Configuration):
     sensitivity = sensitivity
     attribution = attribution
     stability_map = stability_map
+    growth_constraint = growth_constraint
+    envelope = envelope
 
 
 def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] | None = None) -> Case:

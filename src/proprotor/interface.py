@@ -36,7 +36,9 @@ from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.stability.branches import by_branch
+from proprotor.stability.envelope import envelope
 from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.study import sampling
 from proprotor.study.study import study
 from proprotor.study.study_file import save_study
@@ -66,7 +68,9 @@ __all__ = [
     "by_branch",
     "design_inputs",
     "distribution",
+    "envelope",
     "frequency_response",
+    "growth_constraint",
     "list_cases",
     "load_case",
     "load_results",

@@ -63,6 +63,8 @@ pound = 0.45359237 * kilogram = lb = lbm
 newton = kilogram * meter / second ** 2 = N
 pound_force = 9.80665 * pound * meter / second ** 2 = lbf
 slug = pound_force * second ** 2 / foot
+watt = newton * meter / second = W
+horsepower = 550 * foot * pound_force / second = hp
 
 # differences of temperature only: degrees of both kinds, and no zero
 kelvin = [temperature] = K = degC
@@ -89,6 +91,7 @@ _MEANINGS = {
     "kg/m**3": ("a density", '"1.225 kg/m**3"'),
     "kg*m**2/m": ("a moment of inertia per length", '"2 lb*ft**2/ft"'),
     "N": ("a force", '"1.5e8 lbf"'),
+    "W": ("a power", '"900 hp"'),
     "N*m**2": ("a bending or torsion stiffness", '"3.7e9 lbf*in**2"'),
     "N*m/rad": ("a moment per angle", '"2700 in*lbf/deg"'),
     "K": ("a difference of temperature", '"15 K" or "15 degC"'),

@@ -21,6 +21,10 @@ from proprotor.commands.main import main
 PROPROTOR = [sys.executable, "-c", "from proprotor.commands.main import main; main()"]
 MAP = ("xv15-uncoupled", "--x", "airspeed=200:300:50kt", "--y", "rotor.precone=1:3:1 deg")
 STUDY = ("xv15-uncoupled", "--vary", "rotor.precone=1:2:1 deg", "--speed", "200 kt", "--workers", "1")
+ENVELOPE = (
+    *("xv15-uncoupled", "--set", "envelope.dive_speed=150 keas", "--scan", "140:180:20keas"),
+    *("--set", 'envelope.altitudes={ value = [0, 1], unit = "km" }'),
+)
 FAST = ("--pitch", "rigid", "--rotor-speed", "constant")
 # Of each command arguments that succeed, and some that fail with 2; with 1 where it can.
 SUCCEED = {
@@ -30,6 +34,7 @@ SUCCEED = {
     "sweep": [("xv15-uncoupled", "--speed", "0:200:200kt")],  # no airspeed at the first
     "flutter": [("xv15-uncoupled", "--speed", "160 kt", *FAST), ("xv15-uncoupled", "--scan", "100:110:5kt")],
     "map": [(*MAP, *FAST)],
+    "envelope": [(*ENVELOPE, *FAST)],
     "sensitivity": [
         ("xv15-uncoupled", "--wrt", "rotor.precone"),
         ("xv15-uncoupled", "--of", "damping", "--speed", "300 kt", "--mode", "beam", *FAST),
@@ -51,6 +56,7 @@ FAIL = {
         ("xv15-uncoupled", "--x", "airspeed=1:2:1kt", "--y", "rotor.precon=1:2:1 deg"),
         "did you mean rotor.precone?",
     ),
+    "envelope": ((*ENVELOPE, "--only", "heavy"), "variants = heavy: unknown variant"),
     "sensitivity": (("xv15-uncoupled", "--wrt", "rotor.precon"), "wrt = rotor.precon: unknown input"),
     "attribution": (("xv15-uncoupled", "--speed", "300 kt", "--mode", "bean"), "did you mean beam?"),
     "study": (
@@ -72,6 +78,8 @@ OUTPUTS = [
     ("flutter", ("xv15-uncoupled",), "--csv", "x.csv"),
     ("map", MAP, "--csv", "x.csv"),
     ("map", MAP, "--plot", "x.pdf"),
+    ("envelope", ENVELOPE, "--csv", "x.csv"),
+    ("envelope", ENVELOPE, "--plot", "x.png"),
     ("sensitivity", ("xv15-uncoupled",), "--csv", "x.csv"),
     ("sensitivity", ("xv15-uncoupled",), "--plot", "x.svg"),
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--csv", "x.csv"),

@@ -44,6 +44,7 @@ COMMANDS = {
         "--plot",
         "a.png",
     ),
+    "envelope": ("--csv", "a.csv", "--plot", "a.png"),
     "sensitivity": ("--csv", "a.csv", "--plot", "a.png"),
     "attribution": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
     "study": ("--vary", "rotor.precone=1:3:1 deg", *SPEED, "--out", "a.nc", "--checkpoint", "kept"),

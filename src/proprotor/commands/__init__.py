@@ -12,7 +12,7 @@ and show its result; they compute nothing themselves.
 
     cases new describe                              decks
     blade                                           a blade of a deck from a table of stations
-    sweep flutter stability_map sensitivity attribution study    analyses of a case
+    sweep flutter boundary envelope stability_map sensitivity attribution study    analyses of a case
     report explore                                  a page on a case, as a file and with sliders
     export                                          the equations of a case for another program
 
@@ -27,6 +27,7 @@ __all__ = [
     "boundary",
     "cases",
     "describe",
+    "envelope",
     "explore",
     "export",
     "flutter",

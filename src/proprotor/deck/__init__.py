@@ -15,6 +15,7 @@ asked for, with the source of every number, or the text of a deck and the descri
     fields              types of fields: form, unit, bound
     sections            the sections of a deck, their fields and the meaning of each
     support_sections    the section [support], one set of fields for each kind
+    envelope_sections   the sections [envelope] and [variants.NAME]
     tables              walk nested tables
     text                printable text, prose on one line
     validation          check tables against the sections, a line for each problem
@@ -27,6 +28,7 @@ asked for, with the source of every number, or the text of a deck and the descri
     each_design         each different design of a batch, built once
     left                what differs on the left side of an aircraft
     vary                other designs: other values for numbers of the deck
+    conditions          the conditions of an envelope: the deck and its variants, each as a case
     describe            every field in words
     fields_page         docs/decks.md
     schema              the JSON schema, for editors
@@ -49,6 +51,7 @@ __all__ = [
     "as_one_file",
     "blade_file",
     "check_input",
+    "conditions",
     "describe",
     "design_inputs",
     "fields_page",

@@ -41,6 +41,10 @@ _FORMS = {
     "files": "the name of a file, or a list of names",
     "rising list": "{ value = [...], unit = ... }",
 }
+_NAMED = {
+    "support.modes": "support.modes[NAME]",
+    "variants": "variants.NAME",
+}  # sections of which there are several
 _PLAIN = {bool: "true or false", str: "text"}
 # Forms of fields that are no numbers, by their possible values.
 _PLAIN_FORMS = {
@@ -131,8 +135,10 @@ def _hint(wanted: str) -> str:
 
 
 def plain_path(path: str) -> str:
-    """Return a path without the names of entries of lists."""
-    return "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
+    """Return a path without the names of entries of lists and of variants."""
+    plain = "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
+    first, _, rest = plain.partition(".")
+    return f"variants.{rest.partition('.')[2]}" if first == "variants" and "." in rest else plain
 
 
 def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckField]:
@@ -145,7 +151,7 @@ def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckF
         reading = number or Reading(_PLAIN_FORMS.get(takes, ""))
         is_one_side = any(name in side for choice in section.alternatives for side in choice)
         yield DeckField(
-            path=f"{place}.{name}".replace("support.modes.", "support.modes[NAME]."),
+            path=f"{_NAMED.get(place, place)}.{name}",
             kind=kind,
             meaning=field.description or "",
             takes=takes,

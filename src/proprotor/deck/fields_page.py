@@ -36,6 +36,9 @@ An editor that knows JSON schemas for TOML (Even Better TOML, taplo) completes a
 """
 
 
+_BRACKETS = {"support.modes": "[[support.modes]]", "variants": "[variants.NAME]"}
+
+
 def markdown() -> str:
     """Return the text of docs/decks.md."""
     return "\n".join([_HEAD, *_sections()]) + "\n"
@@ -45,7 +48,7 @@ def _sections() -> Iterator[str]:
     for place in section_places():
         for kind, section in sections_at(place).items():
             name = ".".join(place)
-            brackets = f"[[{name}]]" if name == "support.modes" else f"[{name}]"
+            brackets = _BRACKETS.get(name, f"[{name}]")
             yield f"## {brackets}{f' of kind {kind}' if kind else ''}\n"
             yield f"{' '.join((section.__doc__ or '').split())}\n"
             yield "| field | meaning | takes | range | default | instead of |"

@@ -55,6 +55,13 @@ hub_mass from anywhere, to the tip, or their table says ``beyond = "nothing"``: 
     [operation] the trim, of [drive_train] all but the interconnect shaft, and of [support] the wing, the
     carry-through box, the pylon and its springs. The whole unsymmetric aircraft is then one problem.
 
+``[envelope]``
+    Optional; what `proprotor envelope` needs: dive_speed, altitudes and perhaps dive_mach, speed_factor,
+    failure_speed_factor, damping_ratio, temperature_offset, rotor_speeds and powers.
+``[variants.NAME]``
+    Optional, a table for each condition of the deck: condition, "normal" or "failure", and the fields that differ,
+    ``support.downstop = false``.
+
 A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
 written in the same file, or in the base if the file gives none. The frequency is then fixed in hertz: a deck that
 alters this deck, ``--set``, a study and a map change the rotor speed and not the frequency. A frequency set in /rev
@@ -77,6 +84,7 @@ from proprotor.deck.alternatives import (
     TRIM_ALTERNATIVES,
 )
 from proprotor.deck.default_provenance import DEFAULT_SOURCE, DEFAULT_STATUS
+from proprotor.deck.envelope_sections import EnvelopeSection, VariantSection
 from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.deck.reading import read_quantity
 from proprotor.deck.support_sections import SupportSection
@@ -425,8 +433,13 @@ class Deck(Section):
     drive_train: DriveTrainSection | None = optional("Engine and shaft; none if left out.")
     support: SupportSection = needed("The support of the rotor.")
     left: LeftSection | None = optional("What differs on the left side of an aircraft; nothing if left out.")
+    envelope: EnvelopeSection | None = optional("Speeds and altitudes to be free of flutter.")
+    variants: dict[fields.Name, VariantSection] = Field(
+        default_factory=dict, description="Conditions of the deck by name: other loads, and failures."
+    )
 
     _left_side: Deck | None = PrivateAttr(default=None)
+    _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _origin: tuple[str, dict[str, str]] = PrivateAttr(default=("", {}))
 
     @property
@@ -444,6 +457,17 @@ class Deck(Section):
     def left_side(self) -> Deck | None:
         """The whole deck of the left side, if the left side differs."""
         return self._left_side
+
+    @property
+    def tables(self) -> dict[str, Any]:
+        """The tables that the deck was made from, without those of its envelope and its variants."""
+        return self._tables
+
+    def with_tables(self, tables: Mapping[str, Any]) -> Deck:
+        """Return the deck with the tables that it was made from."""
+        whole = self.model_copy()
+        whole._tables = dict(tables)
+        return whole
 
     def with_left_side(self, other: Deck) -> Deck:
         """Return the deck with the whole deck of the left side."""

@@ -27,7 +27,7 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
     A path is the place in the deck: ``rotor.precone``, ``rotor.airfoil.lift_slope``, ``operation.rotor_speed``,
     ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. A list with a number for each region of the
     span has the paths of its entries from the root outward, ``rotor.airfoil.lift_slope[1]``. Distributions along the
-    blade, blade frequencies, files and numbers that follow from other numbers are left out.
+    blade, blade frequencies, files, numbers that follow from other numbers, and the envelope's are left out.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
         for path, number in _entries(whole, given)
         if number.r_over_R is None
         and not isinstance(number.si, _FIXED)
-        and not path.startswith("rotor.frequencies.")
+        and not path.startswith(("rotor.frequencies.", "envelope."))
     }
 
 

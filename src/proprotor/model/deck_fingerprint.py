@@ -52,6 +52,8 @@ def _choices(section: Any) -> dict[str, Any]:
             found[name] = {} if name == "case" else _choices(entry)
         elif isinstance(entry, list | tuple):
             found[name] = [_choices(one) if hasattr(type(one), "model_fields") else one for one in entry]
+        elif name == "variants":
+            found[name] = {key: _choices(one) for key, one in entry.items()}
         elif isinstance(entry, str | bool | int | dict) or entry is None:
             found[name] = entry
         elif _names_files(getattr(entry, "si", None)):

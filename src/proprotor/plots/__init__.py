@@ -5,6 +5,7 @@ round numbers, and the motion of points in a mode.
 
     frequency_and_damping campbell root_locus participation mode_shape    a sweep, or one of its modes
     attribution tornado stability_map boundary_against study_results      what moves a mode or a boundary
+    envelope            onsets of an envelope over equivalent airspeed and altitude
     blade_frequencies   a hinged blade beside an elastic one: frequencies over collective and rotor speed
     points              points of a CSV file, with error bars, on plots
     mode_motion         how wing, mast and blades move in a mode, as points in space
@@ -29,6 +30,7 @@ from proprotor.plots.blade_frequencies import plot_blade_frequencies
 from proprotor.plots.boundary_against import plot_boundary_against
 from proprotor.plots.campbell import plot_campbell
 from proprotor.plots.canvas import rests_on
+from proprotor.plots.envelope import plot_envelope
 from proprotor.plots.frequency_and_damping import plot_damping, plot_frequency, plot_sweep
 from proprotor.plots.mode_shape import plot_mode_shape
 from proprotor.plots.participation import plot_participation
@@ -50,6 +52,7 @@ __all__ = [
     "plot_campbell",
     "plot_damping",
     "plot_distribution",
+    "plot_envelope",
     "plot_frequency",
     "plot_mode_shape",
     "plot_participation",

@@ -33,11 +33,16 @@ Boundaries: where damping passes a level
     in_notebook             boundaries as HTML, for notebooks
     flutter_messages        records and sentences for people
     map, boundary_lines     the plane of two inputs; its boundary by mode
+    boundary_search         boundaries along many lines of airspeeds at once, a line for each design
     boundary_against        boundaries against one input, such as altitude or rotor speed
+    envelope_speeds         V_D and M_D at altitude, and the speeds up to which there must be no flutter
+    envelope_dataset        the dataset of an envelope, its limits and its worst case
+    envelope                onsets and damping of all conditions of a deck against these speeds
 
 What a mode comes from and depends on
     eigenvalue_derivatives  change of eigenvalues with the matrices
     sensitivity             derivatives of eigenvalues, damping and flutter speed by inputs
+    growth_constraint       one number for optimisers, at or below zero where all roots are damped enough
     origins, attribution    matrices by physical origin; what drives and damps a mode
 """
 
@@ -51,9 +56,12 @@ from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.branches import BranchLabels, NamedStates, branch_labels, by_branch, named_at
 from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
+from proprotor.stability.envelope import envelope
+from proprotor.stability.envelope_dataset import MET, NOT_KNOWN, NOT_MET
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.growth_constraint import SHARPNESS, growth_constraint
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
@@ -77,7 +85,11 @@ __all__ = [
     "ANCHORS",
     "DOUBTFUL",
     "FLUTTER",
+    "MET",
+    "NOT_KNOWN",
+    "NOT_MET",
     "NOT_TOLD",
+    "SHARPNESS",
     "Boundary",
     "BoundaryLine",
     "Brackets",
@@ -109,6 +121,7 @@ __all__ = [
     "decomposition",
     "eigenvalue_change",
     "eigenvalues",
+    "envelope",
     "error_near_zero",
     "few_spectra",
     "find_crossings",
@@ -117,6 +130,7 @@ __all__ = [
     "flutter_point",
     "follow",
     "frequency_response",
+    "growth_constraint",
     "instability",
     "joined",
     "kinds",
