@@ -21,7 +21,7 @@ from typing import NamedTuple
 SOURCE = Path(__file__).parents[1] / "src" / "proprotor"
 # From the ground up to the workbench: data flow from the first to the last.
 ROOMS = (
-    "errors", "typing", "needs", "units", "datum", "files", "nastran",
+    "errors", "typing", "needs", "units", "datum", "files", "records", "nastran",
     "rotor", "support", "model",
     "deck", "stability", "case", "study", "exchange", "tables", "plots", "report", "explore", "commands",
 )  # fmt: skip

@@ -23,6 +23,8 @@ from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.model.rotor_model import rotor_model
 from proprotor.model.several_rotors import mount_rotors
 from proprotor.model.structural_damping import neutral_damping
+from proprotor.records.identify import identify
+from proprotor.records.record import Record, read_record
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
@@ -57,6 +59,7 @@ __all__ = [
     "NormalModes",
     "Operation",
     "Pylon",
+    "Record",
     "Rotor",
     "WhirlDerivatives",
     "Wing",
@@ -65,12 +68,14 @@ __all__ = [
     "design_inputs",
     "distribution",
     "frequency_response",
+    "identify",
     "list_cases",
     "load_case",
     "load_results",
     "mount",
     "mount_rotors",
     "neutral_damping",
+    "read_record",
     "rigid_propeller",
     "rigid_support",
     "rotor_model",
