@@ -12,6 +12,7 @@ each room is its map.
     model       M, C, K, B of a rotor, of a support, and of both; the stamp that every result has
     deck        text to configuration and back
     stability   modes, their names, sweeps, flutter boundaries, sensitivities, stability maps
+    responses   spectra in turbulence, outputs over time for inputs and gusts
     case        a configuration with the analyses as methods
     study       many designs: sampling, workers, uncertainty
     exchange    other programs: netCDF, MATLAB, OpenMDAO

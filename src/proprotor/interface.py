@@ -25,6 +25,11 @@ from proprotor.model.several_rotors import mount_rotors
 from proprotor.model.structural_damping import neutral_damping
 from proprotor.records.identify import identify
 from proprotor.records.record import Record, read_record
+from proprotor.responses.design_gusts import design_gust, design_turbulence
+from proprotor.responses.discrete_gust import discrete_gust
+from proprotor.responses.gust_response import gust_response
+from proprotor.responses.time_response import time_response
+from proprotor.responses.turbulence import Turbulence
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
@@ -61,13 +66,18 @@ __all__ = [
     "Pylon",
     "Record",
     "Rotor",
+    "Turbulence",
     "WhirlDerivatives",
     "Wing",
     "beam_wing",
     "by_branch",
+    "design_gust",
     "design_inputs",
+    "design_turbulence",
+    "discrete_gust",
     "distribution",
     "frequency_response",
+    "gust_response",
     "identify",
     "list_cases",
     "load_case",
@@ -88,6 +98,7 @@ __all__ = [
     "sobol_indices",
     "standard_air",
     "study",
+    "time_response",
     "two_axis_pivot",
     "write_c81",
 ]

@@ -53,7 +53,16 @@ from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
-from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.frequency_response import (
+    decays_everywhere,
+    frequencies_in_si,
+    frequency_response,
+    places_of,
+    system_at,
+    transfer,
+    unit_of_input,
+    unit_of_output,
+)
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
@@ -129,4 +138,11 @@ __all__ = [
     "sweep_case",
     "tip_speed",
     "with_changes",
+    "decays_everywhere",
+    "frequencies_in_si",
+    "places_of",
+    "system_at",
+    "transfer",
+    "unit_of_input",
+    "unit_of_output",
 ]

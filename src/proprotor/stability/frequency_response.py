@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,14 +61,14 @@ def frequency_response(
     """
     import xarray  # here, because it takes long to import
 
-    omega = _frequencies(frequency)
+    omega = frequencies_in_si(frequency)
     space = model.to_state_space()
-    columns, rows = _places(inputs, space.inputs, "inputs"), _places(outputs, space.outputs, "outputs")
+    columns, rows = places_of(inputs, space.inputs, "inputs"), places_of(outputs, space.outputs, "outputs")
     count = space.A[..., 0, 0].size * omega.size
     asked = f"{omega.size} frequencies"
     size = _BYTES_PER_ENTRY * count * len(rows) * len(columns)
     check_memory("frequency", asked, size, "the response", "take fewer, or fewer inputs and outputs")
-    response = _response(space, omega, rows, columns)
+    response = transfer(space, omega, rows, columns)
     leading = leading_dims(model)
     dims = (*leading, "frequency", "output", "input")
     names, moved = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
@@ -78,22 +78,22 @@ def frequency_response(
             "response": (dims, response, unit),
             "magnitude": (dims, np.abs(response), unit),
             "phase": (dims, np.angle(response), {"units": "rad"}),
-            "stable": (leading, _stable(model)),
+            "stable": (leading, decays_everywhere(model)),
             **doubt_and_failure(model, leading),
         },
         coords={
             "frequency": ("frequency", omega, {"units": "rad/s"}),
             "output": names,
             "input": moved,
-            "output_unit": ("output", [_unit_of(name) for name in names]),
-            "input_unit": ("input", ["rad" if half_of(name)[1] in SWASHPLATE else "m/s" for name in moved]),
+            "output_unit": ("output", [unit_of_output(name) for name in names]),
+            "input_unit": ("input", [unit_of_input(name) for name in moved]),
             "airspeed": (leading, model.airspeed, {"units": "m/s"}),
         },
         attrs=dict(space.stamp),
     )
 
 
-def _frequencies(frequency: Any) -> Array:
+def frequencies_in_si(frequency: Any) -> Array:
     """Return frequencies (k,) in rad/s; raise an error for one that is negative or not finite."""
     omega = values_in_si(frequency, "rad/s", "frequency").reshape(-1)
     wrong = ~(np.isfinite(omega) & (omega >= 0))
@@ -102,7 +102,7 @@ def _frequencies(frequency: Any) -> Array:
     return omega
 
 
-def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> list[int]:
+def places_of(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> list[int]:
     """Return the places of wanted names among known names; of all names where none is wanted."""
     names = known if wanted is None else (wanted,) if isinstance(wanted, str) else tuple(wanted)
     for name in names:
@@ -110,7 +110,25 @@ def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> 
     return [known.index(name) for name in names]
 
 
-def _response(space: StateSpace, omega: Array, rows: list[int], columns: list[int]) -> Array:
+class System(NamedTuple):
+    """ẋ = A x + B u, y = C x + D u."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+
+
+def system_at(space: StateSpace, point: tuple[int, ...]) -> System:
+    """Return one point of a batch, with the states that the point has."""
+    leading = space.A.shape[:-2]
+    whole = (space.A, space.B, space.C, space.D)
+    a, b, c, d = (np.broadcast_to(m, (*leading, *m.shape[-2:]))[point] for m in whole)
+    own = np.isfinite(np.diagonal(a))
+    return System(a[np.ix_(own, own)], b[own], c[:, own], d)
+
+
+def transfer(space: StateSpace | System, omega: Array, rows: list[int], columns: list[int]) -> Array:
     """Return C (iω - A)⁻¹ B + D (..., frequencies, rows, columns)."""
     leading = space.A.shape[:-2]
     count = int(np.prod(leading, dtype=int))
@@ -162,14 +180,19 @@ def _solved(matrices: Array, loads: Array) -> Array:
         return solutions
 
 
-def _stable(model: LinearModel) -> NDArray[np.bool_]:
+def decays_everywhere(model: LinearModel) -> NDArray[np.bool_]:
     """Return at which points (...) every root decays, by more than its error."""
     values, error = roots(model)
     decays = (values.real < -error) | np.isnan(values)  # a state that a point does not have
     return np.asarray(decays.all(axis=-1) & np.isfinite(values).any(axis=-1))
 
 
-def _unit_of(output: str) -> str:
+def unit_of_input(name: str) -> str:
+    """Return the SI unit of an input by its name."""
+    return "rad" if half_of(name)[1] in SWASHPLATE else "m/s"
+
+
+def unit_of_output(output: str) -> str:
     """Return the SI unit of an output by its name."""
     name = half_of(output)[1]
     if name in LOADS:
