@@ -16,7 +16,7 @@ each room is its map.
     case        a configuration with the analyses as methods
     study       many designs: sampling, workers, uncertainty
     exchange    other programs: netCDF, MATLAB, OpenMDAO
-    tables plots     numbers and pictures of a result
+    tables calibration plots     numbers and pictures of a result; inputs fitted to test points
     report explore   pages: a report of a case, a page with sliders
     commands    the command line
 """

@@ -11,6 +11,8 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
 
+from proprotor.calibration.calibrate import calibrate
+from proprotor.calibration.calibrated_deck import calibrated_deck
 from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
@@ -49,6 +51,7 @@ from proprotor.study.study_file import save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
 from proprotor.support.beam_wing import Pylon, Wing, beam_wing
 from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
+from proprotor.tables.points import read_points
 
 __all__ = [
     "Airfoil",
@@ -71,6 +74,8 @@ __all__ = [
     "Wing",
     "beam_wing",
     "by_branch",
+    "calibrate",
+    "calibrated_deck",
     "design_gust",
     "design_inputs",
     "design_turbulence",
@@ -85,6 +90,7 @@ __all__ = [
     "mount",
     "mount_rotors",
     "neutral_damping",
+    "read_points",
     "read_record",
     "rigid_propeller",
     "rigid_support",

@@ -78,7 +78,8 @@ from proprotor.stability.names_and_steps import Steps, names_and_steps
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
-from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
+from proprotor.stability.named_modes import named_modes
+from proprotor.stability.sensitivity import at_boundary, damping_rate, eigenvalue_rates, sensitivity
 from proprotor.stability.sweep import mode_columns, sweep, sweep_case
 
 __all__ = [
@@ -113,8 +114,10 @@ __all__ = [
     "coordinate_motion",
     "coordinate_shares",
     "damping_rate",
+    "decays_everywhere",
     "decomposition",
     "eigenvalue_change",
+    "eigenvalue_rates",
     "eigenvalues",
     "error_near_zero",
     "find_crossings",
@@ -122,6 +125,7 @@ __all__ = [
     "flutter_messages",
     "flutter_point",
     "follow",
+    "frequencies_in_si",
     "frequency_response",
     "instability",
     "kinds",
@@ -130,19 +134,18 @@ __all__ = [
     "modes",
     "moving",
     "named_at",
+    "named_modes",
     "names_and_steps",
+    "places_of",
     "scan_speeds",
     "sensitivity",
     "stability_map",
     "sweep",
     "sweep_case",
-    "tip_speed",
-    "with_changes",
-    "decays_everywhere",
-    "frequencies_in_si",
-    "places_of",
     "system_at",
+    "tip_speed",
     "transfer",
     "unit_of_input",
     "unit_of_output",
+    "with_changes",
 ]

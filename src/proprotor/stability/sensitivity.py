@@ -139,7 +139,7 @@ def _chosen(case: Configuration, wrt: Sequence[str] | None) -> dict[str, Datum]:
     return known if wrt is None else {path: known[path] for path in wrt}
 
 
-def _rates(
+def eigenvalue_rates(
     case: Configuration,
     inputs: Mapping[str, Datum],
     airspeed: float,
@@ -147,7 +147,22 @@ def _rates(
     model: LinearModel,
     options: Any,
 ) -> tuple[Array, Array]:
-    """Return derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) took a complex step."""
+    """Return derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) took a complex step.
+
+    Parameters
+    ----------
+    case : Case
+    inputs : mapping of str to Datum
+        Inputs by path, at whose values the derivatives are wanted.
+    airspeed : float
+        m/s.
+    modes : Modes
+        Modes of the model, one point.
+    model : LinearModel
+        The case at these values and this airspeed.
+    options : mapping
+        Of the model.
+    """
 
     def linearize(values: Mapping[str, Array]) -> LinearModel:
         return vary_case(case, values).linearize(airspeed, **options)
@@ -212,7 +227,7 @@ def at_boundary(
     model = case.linearize(speed, **options)
     spectrum = decomposition(model)
     modes = spectrum.modes(spectrum.nearest(np.array([boundary.eigenvalue])))
-    rates, exact = _rates(case, inputs, speed, modes, model, options)
+    rates, exact = eigenvalue_rates(case, inputs, speed, modes, model, options)
     rates = rates[:, 0]
     moves = -growth_rate(modes.values, rates, level) / boundary.rate
     frequency = rates.imag + boundary.eigenvalue_rate.imag * moves
@@ -239,7 +254,7 @@ def _of_modes(
     options: Mapping[str, Any],
 ) -> Dataset:
     names, modes, model, speed = named_modes(case, airspeed, mode, options)
-    rates, exact = _rates(case, inputs, speed, modes, model, options)
+    rates, exact = eigenvalue_rates(case, inputs, speed, modes, model, options)
     value, units = modes.values, "rad/s"
     if of == "damping":
         root = refined(model, modes)
