@@ -23,7 +23,8 @@ SOURCE = Path(__file__).parents[1] / "src" / "proprotor"
 ROOMS = (
     "errors", "typing", "needs", "units", "datum", "files", "records", "nastran",
     "rotor", "support", "model",
-    "deck", "stability", "responses", "case", "study", "exchange", "tables", "calibration", "plots", "report", "explore", "commands",
+    "deck", "stability", "responses", "case", "study", "exchange", "tables", "calibration",
+    "plots", "report", "explore", "commands",
 )  # fmt: skip
 # The one import of a room further down, deferred: a model's method that gives its modes.
 EXCEPTION = ("model", "stability", "LinearModel.modes")

@@ -13,6 +13,7 @@ from typing import Any
 
 from proprotor.calibration.calibrate import calibrate
 from proprotor.calibration.calibrated_deck import calibrated_deck
+from proprotor.calibration.modal_comparison import compare_modes
 from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
@@ -76,6 +77,7 @@ __all__ = [
     "by_branch",
     "calibrate",
     "calibrated_deck",
+    "compare_modes",
     "design_gust",
     "design_inputs",
     "design_turbulence",

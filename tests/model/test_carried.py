@@ -21,6 +21,7 @@ from proprotor.commands.main import main
 from proprotor.exchange.matlab import matlab_names
 from proprotor.explore.analysis import live_modes
 from proprotor.explore.page import ExplorePage, messages, readout
+from proprotor.files.csv_columns import Head
 from proprotor.model import options_in_force, options_of_result, stamp
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
@@ -38,6 +39,7 @@ from proprotor.stability.sensitivity import at_boundary, sensitivity
 from proprotor.stability.sweep import sweep_case
 from proprotor.tables import study_summary
 from proprotor.tables.csv_text import csv_of
+from proprotor.tables.points import Column, Points
 from tests.csv_files import without_comments
 
 KNOT = 1852 / 3600
@@ -49,6 +51,18 @@ GIVEN = {"section_damping": True, "pitch": "coupling", "pitch_lag_coupling": -0.
 MAP = {"airspeed": "340:440:50kt", "rotor.precone": "1:2:0.5 deg"}
 SPEEDS = "300:440:20kt"
 AT = "360 kt"
+
+
+def one_point():
+    """Of a test: the frequency of the beam mode."""
+    columns = {
+        "airspeed": Column(*[np.array([180.0])] * 3, Head(0, "", "airspeed", "m/s")),
+        "frequency": Column(
+            *(np.array([end]) for end in (20.0, 19.0, 21.0)), Head(1, "", "frequency", "rad/s")
+        ),
+    }
+    return Points("point", columns, *(np.array([word], dtype=object) for word in ("point", "", "beam")))
+
 
 # Everything that takes options of the model and returns a result.
 RESULTS = {
@@ -83,6 +97,12 @@ RESULTS = {
     "LinearModel.modes": lambda case, **o: case.linearize([180.0, 190.0], **o).modes(),
     "LinearModel.to_state_space": lambda case, **o: case.linearize(AT, **o).to_state_space(),
     "frequency_response": lambda case, **o: pp.frequency_response(case.linearize(AT, **o), "2 Hz"),
+    "calibrate": lambda case, **o: pp.calibrate(case, one_point(), ["rotor.precone"], **o),
+    "gust_response": lambda case, **o: pp.gust_response(case.linearize(AT, **o)),
+    "discrete_gust": lambda case, **o: pp.discrete_gust(case.linearize(AT, **o), "30 m", outputs=["force_x"]),
+    "time_response": lambda case, **o: pp.time_response(
+        case.linearize(AT, **o), "0:1:0.1 s", {"gust_x": 1.0}
+    ),
     "distribution": lambda case, **o: pp.distribution(found("study", case, **o)),
     "LinearModel.submodel": lambda case, **o: case.linearize(AT, **o).submodel(("beam", "chord")),
 }

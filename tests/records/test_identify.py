@@ -181,7 +181,7 @@ def test_methods_for_one_mode_take_one_channel():
 
 def test_noise_alone_shows_no_mode_above_it():
     for method in METHODS[1:]:
-        with pytest.raises(pp.InputError, match="above the noise|must decay"):
+        with pytest.raises(pp.InputError, match=r"above the noise|must decay"):
             pp.identify(decay((), noise=1.0), method, frequency="5 Hz")
     with pytest.raises(pp.InputError, match="must move: all its samples are equal"):
         pp.identify(decay((), noise=0.0))

@@ -1,5 +1,5 @@
-"""Turbulence and what it does to a rotor on a wing: against Lyapunov's equation, python-control, quadrature by SciPy, and
-records of turbulence made sample by sample.
+"""Turbulence and what it does to a rotor on a wing: against Lyapunov's equation, python-control, quadrature by SciPy,
+and records of turbulence made sample by sample.
 """
 
 from functools import cache
@@ -12,8 +12,8 @@ from scipy.linalg import expm, solve_continuous_lyapunov
 from scipy.special import gamma
 
 import proprotor as pp
-from proprotor.responses.turbulence import COMPONENTS, SPECTRA, dryden_filter
 from proprotor.responses.spectral_integral import rule_for
+from proprotor.responses.turbulence import COMPONENTS, SPECTRA, dryden_filter
 
 SPEED = 128.0
 GUSTS = {"vertical": "gust_x", "lateral": "gust_y", "longitudinal": "gust_z"}
@@ -36,7 +36,7 @@ def with_filter(turbulence, speed=SPEED):
 
 @pytest.mark.parametrize("component", COMPONENTS)
 def test_root_mean_squares_are_those_of_lyapunov(component):
-    turbulence = pp.Turbulence("Dryden", component, "2 ft/s", "300 m")
+    turbulence = pp.Turbulence("dryden", component, "2 ft/s", "300 m")
     system, driven, output = with_filter(turbulence)
     # Solved again with states of unit variance: the error is one of rounding beside the largest state.
     rough = solve_continuous_lyapunov(system, -driven @ driven.T)
@@ -85,7 +85,7 @@ def test_the_constant_of_von_karman():
 
 @pytest.mark.parametrize("component", COMPONENTS)
 def test_the_filter_of_dryden_has_its_spectrum(component):
-    own = pp.Turbulence("Dryden", component, 1.7, 400.0)
+    own = pp.Turbulence("dryden", component, 1.7, 400.0)
     system, driven, output = dryden_filter(own, 90.0)
     for omega in (0.0, 0.1, 0.7, 5.0):
         gain = output @ np.linalg.solve(1j * omega * np.eye(len(system)) - system, driven)
@@ -94,7 +94,7 @@ def test_the_filter_of_dryden_has_its_spectrum(component):
 
 def test_turbulence_made_sample_by_sample_has_these_root_mean_squares():
     """Noise of each step has the covariance that Van Loan's matrix gives; the record is long beside all decays."""
-    turbulence = pp.Turbulence("Dryden", "longitudinal", 1.0, "100 m")
+    turbulence = pp.Turbulence("dryden", "longitudinal", 1.0, "100 m")
     system, driven, output = with_filter(turbulence)
     step, samples, size = 0.01, 400_000, len(system)
     both = np.block([[-system, driven @ driven.T], [np.zeros((size, size)), system.T]]) * step
@@ -158,11 +158,11 @@ def test_turbulence_that_is_none_is_refused(how, told):
 
 
 def test_what_has_no_answer_is_refused():
-    with pytest.raises(pp.InputError, match="airspeed = 0.0: must be above zero: turbulence is frozen"):
+    with pytest.raises(pp.InputError, match=r"airspeed = 0.0: must be above zero: turbulence is frozen"):
         pp.gust_response(pp.load_case("xv15-uncoupled").linearize(0.0))
     with pytest.raises(pp.InputError, match="unknown output 'force_u'"):
         pp.gust_response(model(), outputs=["force_u"])
-    with pytest.raises(pp.InputError, match="spectrum = von Karman: must be Dryden"):
+    with pytest.raises(pp.InputError, match="spectrum = von-karman: must be dryden"):
         dryden_filter(pp.Turbulence(), SPEED)
 
 

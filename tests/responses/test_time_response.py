@@ -1,4 +1,4 @@
-"""Outputs over time: against SciPy's simulation, an integrator of differential equations, and the frequency response."""
+"""Outputs over time: against SciPy's simulation, an integrator, and the frequency response."""
 
 from functools import cache
 
@@ -56,7 +56,9 @@ def test_the_transform_of_an_impulse_is_the_frequency_response():
     for place, frequency in enumerate(omega):
         transform = (weights * np.exp(-1j * frequency * time)) @ found.response.values + feedthrough
         expected = direct.response.values[place, :, 0]
-        assert np.abs(transform - expected) == pytest.approx(0 * omega[:1].repeat(4), abs=2e-3 * np.abs(expected).max())
+        assert np.abs(transform - expected) == pytest.approx(
+            0 * omega[:1].repeat(4), abs=2e-3 * np.abs(expected).max()
+        )
 
 
 def test_energy_over_time_is_energy_over_frequency():
@@ -89,7 +91,11 @@ def test_every_point_of_a_batch_is_its_own():
         ("1 s", {}, "time: must be two times or more that rise"),
         ([0.0, 0.1, 0.3], {}, "time: must run in even steps"),
         ("0:1:0.1 s", {"gust_w": 1.0}, "inputs = gust_w: unknown input"),
-        ("0:1:0.1 s", {"gust_x": [1.0, 2.0]}, "gust_x = array of shape (2,): must be one number, or a finite"),
+        (
+            "0:1:0.1 s",
+            {"gust_x": [1.0, 2.0]},
+            "gust_x = array of shape (2,): must be one number, or a finite",
+        ),
         ("0:1:0.1 s", {"gust_x": "1 kg"}, "gust_x = 1 kg: "),
     ],
 )

@@ -18,7 +18,7 @@ from proprotor.tables.points import Points
 from proprotor.typing import Array, Dataset
 from proprotor.units import values_in_si
 
-_TOLERANCE = 1e-10  # relative, of inputs and of the sum of squares
+_TOLERANCE = 1e-8  # relative, of inputs and of the sum of squares
 _UNLIKELY = 0.01  # as chance: a misfit that the errors of the points do not explain
 _AT_END = 1e-6  # of the width of the bounds
 
@@ -36,6 +36,11 @@ class Calibration(NamedTuple):
 
     found: Dataset
     case: Configuration
+
+    @property
+    def stamp(self) -> stamp.Stamp:
+        """The case that was calibrated and the options in force, see `proprotor.model.stamp`."""
+        return stamp.of(self.found.attrs)
 
 
 def calibrate(
@@ -90,7 +95,7 @@ def calibrate(
 
 
 class _Fit(NamedTuple):
-    """values (inputs,), SI; jacobian (targets, inputs), over the errors; before, after (targets,); at_bound (inputs,)."""
+    """values (inputs,), SI; jacobian (targets, inputs), over the errors; before, after (targets,); at_bound."""
 
     values: Array
     jacobian: Array
@@ -103,7 +108,11 @@ class _Fit(NamedTuple):
 def _bounds(case: Configuration, inputs: Sequence[str] | Mapping[str, Any]) -> dict[str, tuple[float, float]]:
     """Return the bounds of the inputs by path, SI."""
     known, found = design_inputs(case), {}
-    given = inputs if isinstance(inputs, Mapping) else dict.fromkeys([inputs] if isinstance(inputs, str) else inputs)
+    given = (
+        inputs
+        if isinstance(inputs, Mapping)
+        else dict.fromkeys([inputs] if isinstance(inputs, str) else inputs)
+    )
     if not given:
         raise InputError("inputs", None, "must name at least one input")
     for path, ends in given.items():
@@ -118,7 +127,9 @@ def _bounds(case: Configuration, inputs: Sequence[str] | Mapping[str, Any]) -> d
             raise InputError(path, ends, "must have two bounds, low and high")
         low, high = (float(values_in_si(end, known[path].unit, path).item()) for end in ends)
         if not low < value < high:
-            raise InputError(path, f"{value:g} {known[path].unit}".strip(), f"must lie between {low:g} and {high:g}")
+            raise InputError(
+                path, f"{value:g} {known[path].unit}".strip(), f"must lie between {low:g} and {high:g}"
+            )
         found[path] = (low, high)
     return found
 
@@ -130,14 +141,14 @@ def _fit(predictor: Predictor, bounds: Array) -> _Fit:
     measured = np.array([target.value for target in predictor.targets])
     error = np.array([target.error for target in predictor.targets])
     start = predictor.at.copy()
-    size = input_size(start, bounds)
+    size = _input_size(start, bounds)
 
     def misfit(scaled: Array) -> Array:
         off = (predictor.values(scaled * size) - measured) / error
         return np.where(np.isfinite(off), off, np.inf)  # a step that ends here is made shorter
 
     def derivatives(scaled: Array) -> Array:
-        return predictor.move_to(scaled * size) * size / error[:, None]
+        return np.asarray(predictor.move_to(scaled * size) * size / error[:, None])
 
     before = predictor.values(start)
     done = least_squares(
@@ -157,10 +168,10 @@ def _fit(predictor: Predictor, bounds: Array) -> _Fit:
     return _Fit(values, jacobian, before, predictor.values(values), at_bound, int(done.nfev))
 
 
-def input_size(start: Array, bounds: Array) -> Array:
+def _input_size(start: Array, bounds: Array) -> Array:
     """Return the size of each input (inputs,), SI: its value, or where that is zero the width of its bounds."""
     width = np.ptp(bounds, axis=1)
-    return np.where(start != 0, np.abs(start), np.where(np.isfinite(width), width, 1.0))
+    return np.asarray(np.where(start != 0, np.abs(start), np.where(np.isfinite(width), width, 1.0)))
 
 
 def _dataset(
@@ -174,8 +185,8 @@ def _dataset(
     import xarray  # here, because it takes long to import
     from scipy.stats import chi2
 
-    start, ends = predictor_start(case, predictor.paths), np.array(list(bounds.values()))
-    size = input_size(start, ends)
+    start, ends = _start(case, predictor.paths), np.array(list(bounds.values()))
+    size = _input_size(start, ends)
     free = ~fit.at_bound
     told = directions(fit.jacobian * free, size)
     variance = covariance(directions(fit.jacobian[:, free], size[free]), size[free]) if free.any() else None
@@ -233,7 +244,7 @@ def _dataset(
     )
 
 
-def predictor_start(case: Configuration, paths: Sequence[str]) -> Array:
+def _start(case: Configuration, paths: Sequence[str]) -> Array:
     """Return the values of the deck (inputs,), SI."""
     return np.array([float(case.given[path].si) for path in paths])
 

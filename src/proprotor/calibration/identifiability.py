@@ -1,8 +1,8 @@
 """Which combinations of inputs the points do not tell, from the singular values of the weighted derivatives.
 
 Columns are scaled by the size of each input, so that a singular value is the number of standard errors by which the
-points move when the inputs change by as much as themselves in that direction: its inverse is the relative standard error
-of the combination.
+points move when the inputs change by as much as themselves in that direction: its inverse is the relative standard
+error of the combination.
 """
 
 from __future__ import annotations
@@ -54,7 +54,9 @@ def not_told(found: Directions, paths: Sequence[str]) -> list[str]:
         if value < _TOLD:
             signed = vector * np.sign(vector[np.argmax(np.abs(vector))])
             parts = [
-                f"{share:+.2f} {path}" for share, path in zip(signed, paths, strict=True) if abs(share) > _PART
+                f"{share:+.2f} {path}"
+                for share, path in zip(signed, paths, strict=True)
+                if abs(share) > _PART
             ]
             inverse = f"{1 / value:.0%}" if value > 1e-4 else "more than 10000 %"
             what = "" if len(parts) == 1 else " together (relative changes)"

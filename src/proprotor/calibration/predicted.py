@@ -1,7 +1,7 @@
 """What the model says to targets, with exact derivatives by the inputs.
 
-At the first design a mode is found by its name. From there on it is the root nearest to where the derivatives say that it
-moved: a name could pass to another root where two of them exchange their motions.
+At the first design a mode is found by its name. From there on it is the root nearest to where the derivatives say that
+it moved: a name could pass to another root where two of them exchange their motions.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from proprotor.tables.points import FREQUENCY
 from proprotor.typing import Array
 
 
-class Roots(NamedTuple):
+class _Roots(NamedTuple):
     """Roots of the targets at a design: values (targets,), and derivatives (targets, inputs), SI."""
 
     values: Array
@@ -43,7 +43,7 @@ class Predictor:
         Of the model.
     at : array (inputs,)
         Design at which `roots` are known.
-    roots : Roots
+    roots : _Roots
     """
 
     case: Configuration
@@ -51,7 +51,7 @@ class Predictor:
     targets: Sequence[Target]
     options: Mapping[str, Any]
     at: Array = field(init=False)
-    roots: Roots = field(init=False)
+    roots: _Roots = field(init=False)
 
     def __post_init__(self) -> None:
         self.at = np.array([float(self.case.given[path].si) for path in self.paths])
@@ -117,7 +117,7 @@ class Predictor:
                 found[places] = own.values[own.nearest(moved[places])]
         return found
 
-    def _with_rates(self, design: Array, values: Array) -> Roots:
+    def _with_rates(self, design: Array, values: Array) -> _Roots:
         """Return roots at a design with their derivatives."""
         case = self.design(design)
         inputs = {path: case.given[path] for path in self.paths}
@@ -127,7 +127,7 @@ class Predictor:
             spectrum = decomposition(model)
             modes = spectrum.modes(spectrum.nearest(values[places]))
             rates[places] = eigenvalue_rates(case, inputs, airspeed, modes, model, self.options)[0].T
-        return Roots(values, rates)
+        return _Roots(values, rates)
 
 
 def _numbers(targets: Sequence[Target], roots: Array) -> Array:
@@ -136,7 +136,7 @@ def _numbers(targets: Sequence[Target], roots: Array) -> Array:
         return np.where(is_frequency, np.abs(roots.imag), -roots.real / np.abs(roots))
 
 
-def _derivatives(targets: Sequence[Target], roots: Roots) -> Array:
+def _derivatives(targets: Sequence[Target], roots: _Roots) -> Array:
     is_frequency = np.array([[target.quantity == FREQUENCY] for target in targets])
     values = roots.values[:, None]
     frequency = np.sign(values.imag) * roots.rates.imag

@@ -40,8 +40,8 @@ def targets_of(points: Points, case: Configuration, mode: str | None = None) -> 
     Raises
     ------
     InputError
-        Without columns for the airspeed and for frequency or damping, for a point without a mode, and a number without an
-        error bar.
+        Without columns for the airspeed and for frequency or damping, for a point without a mode, and a number without
+        an error bar.
     """
     density, rotor_speed = case.operation.density, case.operation.rotor_speed
     across = Quantity("airspeed", "m/s", 1.0, {"keas": float(speed_factor(KEAS, density))})
@@ -49,7 +49,9 @@ def targets_of(points: Points, case: Configuration, mode: str | None = None) -> 
     points.check(across, up)
     found = [target for quantity in up for target in _of_quantity(points, across, quantity, mode)]
     if not found:
-        raise InputError("points", points.name, "must have a point with an airspeed and a frequency or a damping")
+        raise InputError(
+            "points", points.name, "must have a point with an airspeed and a frequency or a damping"
+        )
     return tuple(found)
 
 
@@ -66,6 +68,8 @@ def _of_quantity(points: Points, across: Quantity, up: Quantity, mode: str | Non
             raise InputError("points", where, "must name its mode in a column mode, or mode must be given")
         error = float(y.high[place] - y.low[place]) / 2
         if not error > 0:
-            rule = f"needs the error of its {up.name}, in a column {up.name}_error, by which points are weighted"
+            rule = (
+                f"needs the error of its {up.name}, in a column {up.name}_error, by which points are weighted"
+            )
             raise InputError("points", where, rule)
         yield Target(float(x.values[place]), name, up.name, float(y.values[place]), error)

@@ -2,10 +2,10 @@
 
 Every channel is a sum of the same decaying sinusoids and a constant, with amplitudes and phases of its own. These enter
 linearly, so that for given roots they follow by linear least squares, and only the roots are searched for (variable
-projection, Golub and Pereyra, SIAM J. Numer. Anal. 10, 413, 1973), from those of `proprotor.records.realisation`. With white
-noise the roots are those of greatest likelihood, and their covariance is the Cramér-Rao bound, σ² (JᵀJ)⁻¹ with J the
-derivatives of the sum by the roots without the part that amplitudes make up for. How many modes there are is told by
-the Bayesian information criterion.
+projection, Golub and Pereyra, SIAM J. Numer. Anal. 10, 413, 1973), from those of `proprotor.records.realisation`. With
+white noise the roots are those of greatest likelihood, and their covariance is the Cramér-Rao bound, σ² (JᵀJ)⁻¹ with J
+the derivatives of the sum by the roots without the part that amplitudes make up for. How many modes there are is told
+by the Bayesian information criterion.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ _COLOURED = (
 class Fit(NamedTuple):
     """The modes of a record.
 
-    roots : with their covariance; amplitude (modes, channels) : complex, at the start of the record; noise (channels,) :
-    standard deviation of what is left; coloured : whether what is left is no white noise; criterion : of Bayes, smaller
-    for a better number of modes
+    roots : with their covariance; amplitude (modes, channels) : complex, at the start of the record; noise (channels,)
+    : standard deviation of what is left; coloured : whether what is left is no white noise; criterion : of Bayes,
+    smaller for a better number of modes
     """
 
     roots: tuple[Root, ...]
@@ -79,7 +79,7 @@ class _Projection:
             :, :, None
         ] * amplitude  # of each mode (samples, modes, channels)
         columns = np.concatenate([-by_root.real, -by_root.imag], axis=1)  # by decay, then by frequency
-        columns = columns - np.einsum("nk,km...->nm...", q, np.tensordot(q.T, columns, 1))
+        columns -= np.einsum("nk,km...->nm...", q, np.tensordot(q.T, columns, 1))
         return -np.moveaxis(columns, 2, 0).reshape(-1, 2 * modes)
 
 

@@ -1,14 +1,16 @@
 """One mode by the logarithmic decrement: the ratio of the amplitudes of successive cycles.
 
-The amplitude of a cycle is that of the decaying sinusoid which fits all samples of the cycle best, so that noise does not
-move a peak, and a constant beside it takes up an offset. The logarithms of the amplitudes lie on a line whose slope is
-the decay, and the phases on a line whose slope is the frequency. Both lines are fitted with the weights that the noise
-left in the cycles gives, and the covariance of a weighted regression gives the errors. What remains between amplitudes
-and line is compared with the noise: a beat of two modes, or a damping that depends on the amplitude, is no line.
+The amplitude of a cycle is that of the decaying sinusoid which fits all samples of the cycle best, so that noise does
+not move a peak, and a constant beside it takes up an offset. The logarithms of the amplitudes lie on a line whose slope
+is the decay, and the phases on a line whose slope is the frequency. Both lines are fitted with the weights that the
+noise left in the cycles gives, and the covariance of a weighted regression gives the errors. What remains between
+amplitudes and line is compared with the noise: a beat of two modes, or a damping that depends on the amplitude, is no
+line.
 """
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -29,8 +31,8 @@ _SYSTEMATIC = 0.01  # of the amplitude: departures that matter however small the
 class _Cycles(NamedTuple):
     """Cycles of a record.
 
-    start (cycles,), s; amplitude (cycles,), complex; error (cycles,) : of the two parts of the amplitude; size (cycles,) :
-    of the amplitude by an even decay, which the noise in a cycle does not move
+    start (cycles,), s; amplitude (cycles,), complex; error (cycles,) : of the two parts of the amplitude; size
+    (cycles,) : of the amplitude by an even decay, which the noise in a cycle does not move
     """
 
     start: Array
@@ -78,7 +80,7 @@ def _cycles(record: Record, root: Root) -> _Cycles:
     per_cycle = 2 * np.pi / (root.frequency * record.step)
     edges = np.round(np.arange(0, len(record.time) + 0.5, per_cycle)).astype(int)
     start, amplitude, spread, left, free = [], [], [], 0.0, 0
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in pairwise(edges):
         time = record.step * np.arange(last - first)
         basis = decaying(time, root.decay, root.frequency)
         found, rest, *_ = np.linalg.lstsq(basis, record.values[first:last, 0], rcond=None)

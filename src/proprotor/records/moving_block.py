@@ -1,10 +1,11 @@
 """One mode by moving blocks: the line of its frequency in blocks that move along the record, Hammond and Doggett, NASA
 SP-385 (1975).
 
-The logarithm of the size of that line falls by the decay per second, and its phase tells what the frequency is off. Blocks
-overlap, so that their errors go together: the slope is a weighted sum of all samples to first order in the noise, and its
-variance is the sum of the squares of these weights times the variance of the noise beside the mode. A Hann window in each
-block keeps out modes at other frequencies, and the mirror image of the line at its negative frequency.
+The logarithm of the size of that line falls by the decay per second, and its phase tells what the frequency is off.
+Blocks overlap, so that their errors go together: the slope is a weighted sum of all samples to first order in the
+noise, and its variance is the sum of the squares of these weights times the variance of the noise beside the mode. A
+Hann window in each block keeps out modes at other frequencies, and the mirror image of the line at its negative
+frequency.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Roots to start from, by the eigensystem realisation algorithm, Juang and Pappa, J. Guidance 8, 620 (1985).
 
-A free decay is a sum of exponentials, and so is its average over short spans of time: with the same roots. A matrix whose
-columns are the record, each a sample later than the one before, has as many large singular values as there are roots, and
-on their vectors a step of time is multiplication by a small matrix. Its eigenvalues are e^{sΔt}.
+A free decay is a sum of exponentials, and so is its average over short spans of time: with the same roots. A matrix
+whose columns are the record, each a sample later than the one before, has as many large singular values as there are
+roots, and on their vectors a step of time is multiplication by a small matrix. Its eigenvalues are e^{sΔt}.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _SAMPLES = 500  # after averaging: enough for 80 cycles in the record
 _ROWS = 0.35  # of these samples, in a column
 
 
-class Realisation(NamedTuple):
+class _Realisation(NamedTuple):
     """Left vectors of the matrix of shifted samples, their singular values, channels in a row, and the step of time."""
 
     vectors: Array
@@ -42,7 +42,7 @@ class Realisation(NamedTuple):
         return found[np.argsort(-found.real)][:count]
 
 
-def realisation(record: Record) -> Realisation:
+def realisation(record: Record) -> _Realisation:
     """Return the realisation of a record, of all its channels at once, each scaled by its own size."""
     span = max(1, len(record.time) // _SAMPLES)
     count = len(record.time) // span
@@ -56,4 +56,4 @@ def realisation(record: Record) -> Realisation:
     )  # (rows, channels, columns)
     matrix = windows[:rows].reshape(-1, count - rows)
     vectors, singular, _ = np.linalg.svd(matrix, full_matrices=False)
-    return Realisation(vectors, singular, values.shape[1], span * record.step)
+    return _Realisation(vectors, singular, values.shape[1], span * record.step)

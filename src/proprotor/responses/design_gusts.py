@@ -20,11 +20,13 @@ _GUSTS = ((0.0, 56.0), (15_000.0, 44.0), (60_000.0, 20.86))
 _TURBULENCE = ((0.0, 90.0), (24_000.0, 79.0), (60_000.0, 79.0))
 _FULL_GRADIENT = 350.0 * _FOOT  # with which a gust has the whole reference velocity
 _SEA_LEVEL_DENSITY = 1.225  # kg/m³, of the standard atmosphere
-HIGHEST = 60_000.0 * _FOOT
-GRADIENTS = (30.0 * _FOOT, 350.0 * _FOOT)  # the range of 14 CFR 25.341(a)(3), m
+_HIGHEST = 60_000.0 * _FOOT
+_GRADIENTS = (30.0 * _FOOT, 350.0 * _FOOT)  # the range of 14 CFR 25.341(a)(3), m
 
 
-def design_gust(altitude: Any, gradient: Any, *, density: float | None = None, alleviation: float = 1.0) -> Array:
+def design_gust(
+    altitude: Any, gradient: Any, *, density: float | None = None, alleviation: float = 1.0
+) -> Array:
     """Return the design velocity of a single gust, U_ref F_g (H/350 ft)^(1/6).
 
     Parameters
@@ -50,7 +52,7 @@ def design_gust(altitude: Any, gradient: Any, *, density: float | None = None, a
     """
     height = _altitude(altitude)
     distance = values_in_si(gradient, "m", "gradient")
-    low, high = GRADIENTS
+    low, high = _GRADIENTS
     if not ((distance >= low * (1 - 1e-9)) & (distance <= high * (1 + 1e-9))).all():
         raise InputError("gradient", gradient, f"must be from {low:.4g} to {high:.4g} m (30 to 350 ft)")
     size = _reference(_GUSTS, height) * _factor(alleviation) * (distance / _FULL_GRADIENT) ** (1 / 6)
@@ -84,8 +86,8 @@ def design_turbulence(altitude: Any, *, alleviation: float = 1.0) -> float:
 
 def _altitude(altitude: Any) -> float:
     found = values_in_si(altitude, "m", "altitude").reshape(-1)
-    if len(found) != 1 or not 0 <= found[0] <= HIGHEST:
-        raise InputError("altitude", altitude, f"must be one altitude from 0 to {HIGHEST:g} m (60,000 ft)")
+    if len(found) != 1 or not 0 <= found[0] <= _HIGHEST:
+        raise InputError("altitude", altitude, f"must be one altitude from 0 to {_HIGHEST:g} m (60,000 ft)")
     return float(found[0])
 
 

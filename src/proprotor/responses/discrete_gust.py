@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from proprotor.errors import InputError
+from proprotor.errors import InputError, is_choice, list_choices
 from proprotor.model.linear_model import LinearModel
 from proprotor.needs import check_memory
 from proprotor.responses.gust_response import gust_input
 from proprotor.responses.time_response import time_response
 from proprotor.responses.turbulence import COMPONENTS
-from proprotor.errors import is_choice, list_choices
 from proprotor.stability.modes import eigenvalues
 from proprotor.typing import Array, Dataset
 from proprotor.units import values_in_si
@@ -58,8 +57,8 @@ def discrete_gust(
     Raises
     ------
     InputError
-        For a batch of models, an airspeed of zero, a gradient or duration that is not above zero, an unknown output, and
-        a response that does not fit into memory.
+        For a batch of models, an airspeed of zero, a gradient or duration that is not above zero, an unknown output,
+        and a response that does not fit into memory.
     """
     import xarray  # here, because it takes long to import
 

@@ -14,9 +14,9 @@ from proprotor.responses.spectral_integral import rule_for
 from proprotor.responses.turbulence import Turbulence
 from proprotor.rotor.motions import in_half
 from proprotor.stability.frequency_response import (
+    System,
     decays_everywhere,
     frequencies_in_si,
-    System,
     places_of,
     system_at,
     transfer,
@@ -95,7 +95,9 @@ def gust_response(
     column, rows = gust_input(space.inputs, own.component), places_of(outputs, space.outputs, "outputs")
     airspeed = np.broadcast_to(np.real(model.airspeed), space.A.shape[:-2])
     if not (airspeed > 0).all():
-        raise InputError("airspeed", float(airspeed.min()), "must be above zero: turbulence is frozen in space")
+        raise InputError(
+            "airspeed", float(airspeed.min()), "must be above zero: turbulence is frozen in space"
+        )
     omega = _shown(space) if frequency is None else frequencies_in_si(frequency)
     stable = decays_everywhere(model)
     psd = np.full((*airspeed.shape, len(omega), len(rows)), np.nan)
@@ -149,7 +151,8 @@ def _rms(system: System, rows: list[int], column: int, own: Turbulence, airspeed
 
 
 def _shown(space: StateSpace) -> Array:
-    """Return frequencies up to the highest root of all points, more of them where they are low."""
-    finite = np.nan_to_num(space.A)
-    highest = float(np.abs(np.linalg.eigvals(finite).imag).max())
-    return np.geomspace(1e-3 * highest, 1.1 * highest, _SHOWN)
+    """Return frequencies up to the highest root of all points, those of the roots among them."""
+    own = np.abs(np.linalg.eigvals(np.nan_to_num(space.A)).imag).ravel()
+    highest = float(own.max())
+    spread = np.geomspace(1e-3 * highest, 1.1 * highest, _SHOWN)
+    return np.unique(np.concatenate([spread, own[own > spread[0]] if space.A.ndim == 2 else []]))

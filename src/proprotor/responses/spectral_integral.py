@@ -19,14 +19,14 @@ _TAIL_NODES = 40
 _BEYOND = 8.0  # times the largest root: where the tail begins
 
 
-class Rule(NamedTuple):
+class _Rule(NamedTuple):
     """Frequencies (k,), rad/s, and weights (k,) of values there whose sum is the integral."""
 
     frequency: Array
     weight: Array
 
 
-def rule_for(roots: Array) -> Rule:
+def rule_for(roots: Array) -> _Rule:
     """Return a rule for functions of the frequency whose singularities in the plane of s are roots (k,), rad/s."""
     size = np.abs(roots)
     roots = roots[np.isfinite(size) & (size > 0)]
@@ -46,4 +46,4 @@ def rule_for(roots: Array) -> Rule:
     nodes, weights = np.polynomial.legendre.leggauss(_TAIL_NODES)
     v = (nodes + 1) / 2
     tail = end / v**3, weights / 2 * 3 * end / v**4
-    return Rule(*(np.concatenate(pair) for pair in zip(panels, tail, strict=True)))
+    return _Rule(*(np.concatenate(pair) for pair in zip(panels, tail, strict=True)))

@@ -4,8 +4,8 @@ For such inputs the state at the next sample follows exactly from the exponentia
 
     x(t+h) = e^{Ah} x(t) + Γ0 u(t) + Γ1 (u(t+h) - u(t)),
 
-whose blocks Γ0 = ∫ e^{As} ds B and Γ1 the exponential of A, B and the input's rate in one matrix has (Van Loan, IEEE Trans.
-Automatic Control 23, 395, 1978).
+whose blocks Γ0 = ∫ e^{As} ds B and Γ1 the exponential of A, B and the input's rate in one matrix has (Van Loan, IEEE
+Trans. Automatic Control 23, 395, 1978).
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ def time_response(
     Returns
     -------
     xarray.Dataset
-        response (..., time, output) in the output's unit, exact at the samples to rounding; input (time, input_name);
-        warning and reason (...). NaN where a point failed. Attributes: the case and its options
+        response (..., time, output) in the output's unit, exact at the samples to rounding; input_over_time (time,
+        input_name); warning and reason (...). NaN where a point failed. Attributes: the case and its options
         (`proprotor.model.stamp`).
 
     Raises
@@ -89,7 +89,7 @@ def time_response(
     return xarray.Dataset(
         {
             "response": ((*leading, "time", "output"), response, {"units": "output_unit"}),
-            "input": (("time", "input_name"), run[:, [space.inputs.index(name) for name in moved]]),
+            "input_over_time": (("time", "input_name"), run[:, [space.inputs.index(name) for name in moved]]),
             **doubt_and_failure(model, leading),
         },
         coords={

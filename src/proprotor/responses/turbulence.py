@@ -20,11 +20,11 @@ from proprotor.errors import InputError, is_choice, list_choices
 from proprotor.typing import Array
 from proprotor.units import values_in_si
 
-SPECTRA = ("von Karman", "Dryden")
+SPECTRA = ("von-karman", "dryden")
 COMPONENTS = ("vertical", "lateral", "longitudinal")
 _FOOT = 0.3048
 # Above 2000 ft, MIL-HDBK-1797; that of von Kármán also 14 CFR 25.341(b).
-_SCALES = {"von Karman": 2500 * _FOOT, "Dryden": 1750 * _FOOT}
+_SCALES = {"von-karman": 2500 * _FOOT, "dryden": 1750 * _FOOT}
 _KARMAN = 1.339  # 11/3 Γ(11/6)/Γ(1/3)/√π to four digits, as the regulations print it
 
 
@@ -34,7 +34,7 @@ class Turbulence:
 
     Parameters
     ----------
-    spectrum : "von Karman" or "Dryden"
+    spectrum : "von-karman" or "dryden"
     component : "vertical", "lateral" or "longitudinal"
         Velocity of the air up, sideways, or along the shaft.
     intensity : float in m/s, text such as "3 ft/s", or pint quantity
@@ -50,7 +50,7 @@ class Turbulence:
         For an unknown word, or a number that is not above zero.
     """
 
-    spectrum: str = "von Karman"
+    spectrum: str = "von-karman"
     component: str = "vertical"
     intensity: Any = 1.0
     scale: Any = None
@@ -83,16 +83,18 @@ class Turbulence:
         """
         time = self.scale / airspeed
         along = self.component == "longitudinal"
-        if self.spectrum == "Dryden":
+        if self.spectrum == "dryden":
             square = (time * np.asarray(frequency)) ** 2
             shape = 2 / (1 + square) if along else (1 + 3 * square) / (1 + square) ** 2
         else:
             square = (_KARMAN * time * np.asarray(frequency)) ** 2
-            shape = 2 * (1 + square) ** (-5 / 6) if along else (1 + 8 / 3 * square) * (1 + square) ** (-11 / 6)
+            shape = (
+                2 * (1 + square) ** (-5 / 6) if along else (1 + 8 / 3 * square) * (1 + square) ** (-11 / 6)
+            )
         return np.asarray(self.intensity**2 * time / np.pi * shape)
 
 
-class Filter(NamedTuple):
+class _Filter(NamedTuple):
     """ẋ = A x + B w, v = C x: a velocity v of turbulence from white noise w of unit intensity."""
 
     A: Array
@@ -100,7 +102,7 @@ class Filter(NamedTuple):
     C: Array
 
 
-def dryden_filter(turbulence: Turbulence, airspeed: float) -> Filter:
+def dryden_filter(turbulence: Turbulence, airspeed: float) -> _Filter:
     """Return the filter whose output has the spectrum of Dryden.
 
     Along it is σ √(2τ)/(1 + τs), across σ √τ (1 + √3 τs)/(1 + τs)².
@@ -117,11 +119,11 @@ def dryden_filter(turbulence: Turbulence, airspeed: float) -> Filter:
     InputError
         For another spectrum, which no filter of finite order has.
     """
-    if turbulence.spectrum != "Dryden":
-        raise InputError("spectrum", turbulence.spectrum, "must be Dryden: no other has a filter")
+    if turbulence.spectrum != "dryden":
+        raise InputError("spectrum", turbulence.spectrum, "must be dryden: no other has a filter")
     rate, size = airspeed / turbulence.scale, turbulence.intensity
     if turbulence.component == "longitudinal":
-        return Filter(np.array([[-rate]]), np.array([[1.0]]), np.array([[size * np.sqrt(2 * rate)]]))
+        return _Filter(np.array([[-rate]]), np.array([[1.0]]), np.array([[size * np.sqrt(2 * rate)]]))
     system = np.array([[0.0, 1.0], [-(rate**2), -2 * rate]])
     output = size * np.sqrt(rate) * np.array([[rate, np.sqrt(3)]])
-    return Filter(system, np.array([[0.0], [1.0]]), output)
+    return _Filter(system, np.array([[0.0], [1.0]]), output)

@@ -74,11 +74,11 @@ from proprotor.stability.modes import (
     eigenvalues,
     modes,
 )
+from proprotor.stability.named_modes import named_modes
 from proprotor.stability.names_and_steps import Steps, names_and_steps
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
-from proprotor.stability.named_modes import named_modes
 from proprotor.stability.sensitivity import at_boundary, damping_rate, eigenvalue_rates, sensitivity
 from proprotor.stability.sweep import mode_columns, sweep, sweep_case
 

@@ -14,6 +14,9 @@ csv_text              records of any kind as CSV
 blade_table           the hinged blade of a table of stations: fields, comparison, lines of a deck
 boundary_table        boundaries against an input: records and lines
 amounts_table         what the inputs of a case amount to, as lines for a terminal and a report
+record_table          modes that were identified in a record, as rows of points
+calibration_table     calibrated inputs and the test points, as records
+response_table        responses to gusts, as records
 points                points of a CSV file, to stand on plots beside results
 ====================  =========================================================================
 
@@ -24,9 +27,12 @@ __all__ = [
     "amounts_table",
     "blade_table",
     "boundary_table",
+    "calibration_table",
     "csv_text",
     "percentiles",
     "points",
+    "record_table",
+    "response_table",
     "sensitivity_summary",
     "study_summary",
     "study_table",

@@ -8,9 +8,9 @@
 
 A column has the name of the quantity of an axis and a unit: ``airspeed``, ``frequency``, ``damping``, or an input by
 its path in the deck or the last word of the path. ``NAME_error``, or ``NAME_low`` and ``NAME_high``, are the ends of an
-error bar, in the unit of NAME; an empty cell is a point without the number. Points of one ``label`` look the same; ``mode``
-names the mode of a point, for `proprotor.calibration`.
-`proprotor.files.csv_columns` has the rules of all such files.
+error bar, in the unit of NAME; an empty cell is a point without the number. Points of one ``label`` look the same;
+``mode`` names the mode of a point, for `proprotor.calibration`. `proprotor.files.csv_columns` has the rules of all such
+files.
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ FREQUENCY, DAMPING, GROWTH = "frequency", "damping", "growth"  # names of column
 _LARGEST = 1_000_000  # bytes
 _MOST_POINTS = 10_000
 _WORDS = ("label", "source", "mode")
+_NO_QUANTITIES = (*_WORDS, "warning")
 _ENDS = ("_error", "_low", "_high")
 _PER_REV = ("per rev", "/rev")
 
@@ -162,7 +163,9 @@ def _points(name: str, heads: list[Head], rows: list[Line]) -> Points:
     if not rows or len(rows) > _MOST_POINTS:
         raise Fault(f"must have 1 to {_MOST_POINTS} points, a line for each")
     by_name = {head.name: head for head in heads}
-    quantities = [head for head in heads if head.name not in _WORDS and _base_of(head, by_name) is None]
+    quantities = [
+        head for head in heads if head.name not in _NO_QUANTITIES and _base_of(head, by_name) is None
+    ]
     if len(quantities) < 2:
         raise Fault('must have a column for each axis, such as "airspeed [ktas]" and "damping [%]"')
     columns = {head.name: _column(head, by_name, rows) for head in quantities}
