@@ -38,6 +38,11 @@ class Calibration(NamedTuple):
     case: Configuration
 
     @property
+    def warning(self) -> str:
+        """What makes the calibrated values doubtful; "" for nothing."""
+        return str(self.found.warning.item())
+
+    @property
     def stamp(self) -> stamp.Stamp:
         """The case that was calibrated and the options in force, see `proprotor.model.stamp`."""
         return stamp.of(self.found.attrs)
@@ -198,8 +203,8 @@ def _dataset(
     misfit = (fit.after - measured) / error
     freedom = len(error) - int(free.sum())
     chance = float(chi2.sf((misfit**2).sum(), freedom)) if freedom else 1.0
-    names = predictor.names(fit.values)
-    warnings = _warnings(predictor, fit, told, names, chance)
+    names, doubts = predictor.names_and_doubts(fit.values)
+    warnings = _warnings(predictor, fit, told, names, chance) + doubts
     units = [case.given[path].unit for path in predictor.paths]
     by_target = {
         "measured": measured,

@@ -16,6 +16,7 @@ from proprotor.calibration.targets import Target
 from proprotor.deck.vary import vary
 from proprotor.errors import InputError, check_known
 from proprotor.model.configuration import Configuration
+from proprotor.model.doubts import reasons_for_doubt
 from proprotor.stability import damping_rate, decomposition, eigenvalue_rates
 from proprotor.stability.named_modes import named_modes
 from proprotor.tables.points import FREQUENCY
@@ -79,15 +80,16 @@ class Predictor:
         self.at = design.copy()
         return _derivatives(self.targets, self.roots)
 
-    def names(self, design: Array) -> list[str]:
-        """Return what moves in the root of each target at a design."""
-        found = [""] * len(self.targets)
+    def names_and_doubts(self, design: Array) -> tuple[list[str], list[str]]:
+        """Return what moves in the root of each target at a design, and what makes the model doubtful there."""
+        found, doubts = [""] * len(self.targets), []
         values = self._roots_at(design)
         for airspeed, places in self._by_airspeed():
-            names, modes, *_ = named_modes(self.design(design), airspeed, None, self.options)
+            names, modes, model, _ = named_modes(self.design(design), airspeed, None, self.options)
+            doubts.append(str(model.trim.warning))
             for place in places:
                 found[place] = names[int(np.argmin(np.abs(modes.values - values[place])))]
-        return found
+        return found, list(reasons_for_doubt(doubts))
 
     def design(self, values: Array) -> Configuration:
         """Return the case with some values of the inputs."""

@@ -90,7 +90,8 @@ def _print(case: Case, found: Dataset, rows: list[dict[str, Any]]) -> None:
             row["measured"],
             row["model"] or "none",
             marked(f"{row['MAC']:.2f}", row["warning"]),
-            *(f"{row[name]:.4g}" for name in names[1:]),
+            *(f"{row[name]:.4g}" for name in names[1:3]),
+            *(f"{round(row[name], 2) + 0.0:.2f}" for name in names[3:]),
         )
         for row in rows
     ]
