@@ -89,7 +89,11 @@ def _above(size: Array, error: float, record: Record) -> int:
     below = np.flatnonzero(size < _ABOVE_NOISE * error)
     count = int(below[0]) if len(below) else len(size)
     if count < 2:
-        raise InputError("channel", record.channels[0], "must stand above the noise, and above other modes, in more than one block")
+        raise InputError(
+            "channel",
+            record.channels[0],
+            "must stand above the noise, and above other modes, in more than one block",
+        )
     return count
 
 

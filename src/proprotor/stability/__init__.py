@@ -72,10 +72,11 @@ from proprotor.stability.modes import (
     coordinate_motion,
     decomposition,
     eigenvalues,
+    few_spectra,
     modes,
 )
 from proprotor.stability.named_modes import named_modes
-from proprotor.stability.names_and_steps import Steps, names_and_steps
+from proprotor.stability.names_and_steps import Steps, Walk, joined, names_and_steps
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
@@ -102,6 +103,7 @@ __all__ = [
     "Search",
     "Spectrum",
     "Steps",
+    "Walk",
     "at_boundary",
     "at_columns",
     "attribution",
@@ -120,6 +122,7 @@ __all__ = [
     "eigenvalue_rates",
     "eigenvalues",
     "error_near_zero",
+    "few_spectra",
     "find_crossings",
     "flies_free",
     "flutter_messages",
@@ -128,6 +131,7 @@ __all__ = [
     "frequencies_in_si",
     "frequency_response",
     "instability",
+    "joined",
     "kinds",
     "match_modes",
     "mode_columns",
