@@ -127,10 +127,14 @@ def _slope(time: Array, values: Array, weight: Array) -> float:
 
 
 def _departure(cycles: _Cycles) -> tuple[float, float]:
-    """Return how far the amplitudes lie from a line, as a share of the amplitude, and the chance of that by noise."""
+    """Return how far the amplitudes lie from an even decay, as a share of them, and the chance of that by noise.
+
+    Differences of amplitudes are compared, since the logarithm of a small amplitude has no normal distribution.
+    """
     size, weight = np.abs(cycles.amplitude), cycles.weight
     middle = np.average(cycles.start, weights=weight)
-    line = _slope(cycles.start, np.log(size), weight) * (cycles.start - middle)
-    off = np.log(size) - np.average(np.log(size), weights=weight) - line
+    slope = _slope(cycles.start, np.log(size), weight)
+    even = np.exp(np.average(np.log(size), weights=weight) + slope * (cycles.start - middle))
+    off = size / even - 1
     share = float(np.sqrt(np.average(off**2, weights=weight)))
     return share, float(chi2.sf((weight * off**2).sum(), max(len(size) - 2, 1)))
