@@ -21,7 +21,6 @@ from proprotor.commands.main import main
 from proprotor.exchange.matlab import matlab_names
 from proprotor.explore.analysis import live_modes
 from proprotor.explore.page import ExplorePage, messages, readout
-from proprotor.files.csv_columns import Head
 from proprotor.model import options_in_force, options_of_result, stamp
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
@@ -39,8 +38,8 @@ from proprotor.stability.sensitivity import at_boundary, sensitivity
 from proprotor.stability.sweep import sweep_case
 from proprotor.tables import study_summary
 from proprotor.tables.csv_text import csv_of
-from proprotor.tables.points import Column, Points
 from tests.csv_files import without_comments
+from tests.measured_point import measured_point
 
 KNOT = 1852 / 3600
 # Air in which the blades of the XV-15 outrun what its linear sections know, from 340 kt on: its flutter speed is there.
@@ -51,18 +50,6 @@ GIVEN = {"section_damping": True, "pitch": "coupling", "pitch_lag_coupling": -0.
 MAP = {"airspeed": "340:440:50kt", "rotor.precone": "1:2:0.5 deg"}
 SPEEDS = "300:440:20kt"
 AT = "360 kt"
-
-
-def one_point():
-    """Of a test: the frequency of the beam mode."""
-    columns = {
-        "airspeed": Column(*[np.array([180.0])] * 3, Head(0, "", "airspeed", "m/s")),
-        "frequency": Column(
-            *(np.array([end]) for end in (20.0, 19.0, 21.0)), Head(1, "", "frequency", "rad/s")
-        ),
-    }
-    return Points("point", columns, *(np.array([word], dtype=object) for word in ("point", "", "beam")))
-
 
 # Everything that takes options of the model and returns a result.
 RESULTS = {
@@ -97,7 +84,7 @@ RESULTS = {
     "LinearModel.modes": lambda case, **o: case.linearize([180.0, 190.0], **o).modes(),
     "LinearModel.to_state_space": lambda case, **o: case.linearize(AT, **o).to_state_space(),
     "frequency_response": lambda case, **o: pp.frequency_response(case.linearize(AT, **o), "2 Hz"),
-    "calibrate": lambda case, **o: pp.calibrate(case, one_point(), ["rotor.precone"], **o),
+    "calibrate": lambda case, **o: pp.calibrate(case, measured_point(), ["rotor.precone"], **o),
     "gust_response": lambda case, **o: pp.gust_response(case.linearize(AT, **o)),
     "discrete_gust": lambda case, **o: pp.discrete_gust(case.linearize(AT, **o), "30 m", outputs=["force_x"]),
     "time_response": lambda case, **o: pp.time_response(

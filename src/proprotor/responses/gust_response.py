@@ -13,7 +13,8 @@ from proprotor.model.state_space import StateSpace
 from proprotor.responses.spectral_integral import rule_for
 from proprotor.responses.turbulence import Turbulence
 from proprotor.rotor.motions import in_half
-from proprotor.stability.frequency_response import (
+from proprotor.stability.modes import doubt_and_failure, leading_dims
+from proprotor.stability.transfer import (
     System,
     decays_everywhere,
     frequencies_in_si,
@@ -22,7 +23,6 @@ from proprotor.stability.frequency_response import (
     transfer,
     unit_of_output,
 )
-from proprotor.stability.modes import doubt_and_failure, leading_dims
 from proprotor.typing import Array, Dataset
 
 _INPUTS = {"vertical": "gust_x", "lateral": "gust_y", "longitudinal": "gust_z"}

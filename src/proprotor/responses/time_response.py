@@ -18,8 +18,8 @@ import numpy as np
 from proprotor.errors import InputError, check_known
 from proprotor.model.linear_model import LinearModel
 from proprotor.needs import check_memory
-from proprotor.stability.frequency_response import places_of, system_at, unit_of_input, unit_of_output
 from proprotor.stability.modes import doubt_and_failure, leading_dims
+from proprotor.stability.transfer import places_of, system_at, unit_of_input, unit_of_output
 from proprotor.typing import Array, Dataset
 from proprotor.units import values_in_si
 

@@ -11,6 +11,7 @@ Modes of one point, or of a batch of points
     root_error              roots as exact as the matrices allow, and their error: what "neutral" means
     mode_names              what moves in a mode, and how it whirls
     named_modes             modes of a case at one airspeed, by name
+    transfer                transfer of inputs to outputs at a frequency; their names and units
     frequency_response      response of loads and motions to gusts and swashplate
 
 Modes along a line of points
@@ -53,16 +54,7 @@ from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
-from proprotor.stability.frequency_response import (
-    decays_everywhere,
-    frequencies_in_si,
-    frequency_response,
-    places_of,
-    system_at,
-    transfer,
-    unit_of_input,
-    unit_of_output,
-)
+from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
@@ -82,6 +74,16 @@ from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
 from proprotor.stability.sensitivity import at_boundary, damping_rate, eigenvalue_rates, sensitivity
 from proprotor.stability.sweep import mode_columns, sweep, sweep_case
+from proprotor.stability.transfer import (
+    System,
+    decays_everywhere,
+    frequencies_in_si,
+    places_of,
+    system_at,
+    transfer,
+    unit_of_input,
+    unit_of_output,
+)
 
 __all__ = [
     "ANCHORS",
@@ -103,6 +105,7 @@ __all__ = [
     "Search",
     "Spectrum",
     "Steps",
+    "System",
     "Walk",
     "at_boundary",
     "at_columns",
