@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import pyuff
 
 import proprotor as pp
 from proprotor.calibration.modal_comparison import _assurance as assurance
 from proprotor.model import mass_at_rest
 from proprotor.model.rotor_share import rotor_share
+from proprotor.support.universal_modes import universal_modes
 
 CASE = pp.load_case("xv15")
 
@@ -90,3 +92,31 @@ def test_what_cannot_be_compared_is_refused():
     many = CASE.vary({path: np.array([0.9, 1.0]) * float(CASE.given[path].si)})
     with pytest.raises(pp.InputError, match="must be one design"):
         pp.compare_modes(many, CASE.support)
+
+
+def test_modes_of_a_universal_file_are_compared(tmp_path):
+    """Written by pyuff with the six motions of the hub's node, in the axes of an aircraft: X = -z, Y = y, Z = x."""
+    own, test = measured(frequency=(1.0, 1.0, 0.9))
+    shapes = np.stack([-test.hub[2], test.hub[1], test.hub[0], -test.hub[5], test.hub[4], test.hub[3]])
+    hertz = own * np.array([1.0, 1.0, 0.9, *np.ones(len(own) - 3)]) / (2 * np.pi)
+    sets = [
+        {
+            "type": 55, "id1": "a", "id2": "b", "id3": "c", "id4": "d", "id5": "e", "model_type": 1,
+            "analysis_type": 2, "data_ch": 3, "spec_data_type": 8, "data_type": 2, "n_data_per_node": 6,
+            "load_case": 1, "mode_n": place + 1, "freq": hertz[place], "modal_m": test.mass[place, place],
+            "modal_damp_vis": 0.01, "modal_damp_his": 0.0, "node_nums": [7],
+            **{f"r{k + 1}": np.array([shapes[k, place]]) for k in range(6)},
+        }
+        for place in range(len(own))
+    ]  # fmt: skip
+    pyuff.UFF(str(tmp_path / "gvt.unv")).write_sets(sets, mode="overwrite")
+    read = universal_modes(
+        tmp_path / "gvt.unv", 7, includes_rotor="mass only", length_unit=1.0, mass_unit=1.0
+    )
+    found = pp.compare_modes(CASE, read)
+    order = np.argsort(hertz)  # of the file's modes by frequency
+    assert found.pair_mac.values == pytest.approx(np.ones(len(own)), abs=1e-6)
+    assert found.model_frequency.values == pytest.approx(own[order], rel=1e-9)
+    assert found.measured_frequency.values == pytest.approx(2 * np.pi * hertz[order], rel=1e-5)
+    worst = int(np.flatnonzero(order == 2)[0])
+    assert found.frequency_misfit.values[worst] == pytest.approx(1 / 0.9 - 1, rel=1e-3)

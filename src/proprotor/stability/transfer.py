@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from proprotor.errors import InputError, check_known
-from proprotor.model.linear_model import SWASHPLATE, LinearModel
+from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
 from proprotor.rotor.motions import HUB, half_of, is_lift
 from proprotor.stability.root_error import roots
@@ -20,6 +20,7 @@ from proprotor.typing import Array
 from proprotor.units import values_in_si
 
 _PER = {" rate": "/s", " acceleration": "/s**2"}  # by the end of an output's name
+_GUSTS = tuple(name for name in INPUTS if name not in SWASHPLATE)
 _BLOCK = 4096  # matrices solved at once
 
 
@@ -119,7 +120,7 @@ def decays_everywhere(model: LinearModel) -> NDArray[np.bool_]:
 
 def unit_of_input(name: str) -> str:
     """Return the SI unit of an input by its name."""
-    return "rad" if half_of(name)[1] in SWASHPLATE else "m/s"
+    return "m/s" if half_of(name)[1] in _GUSTS else "rad"
 
 
 def unit_of_output(output: str) -> str:
