@@ -11,6 +11,9 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
 
+from proprotor.calibration.calibrate import calibrate
+from proprotor.calibration.calibrated_deck import calibrated_deck
+from proprotor.calibration.modal_comparison import compare_modes
 from proprotor.case import Case, list_cases, load_case
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
@@ -23,6 +26,13 @@ from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.model.rotor_model import rotor_model
 from proprotor.model.several_rotors import mount_rotors
 from proprotor.model.structural_damping import neutral_damping
+from proprotor.records.identify import identify
+from proprotor.records.record import Record, read_record
+from proprotor.responses.design_gusts import design_gust, design_turbulence
+from proprotor.responses.discrete_gust import discrete_gust
+from proprotor.responses.gust_response import gust_response
+from proprotor.responses.time_response import time_response
+from proprotor.responses.turbulence import Turbulence
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
@@ -45,6 +55,7 @@ from proprotor.study.study_file import save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
 from proprotor.support.beam_wing import Pylon, Wing, beam_wing
 from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
+from proprotor.tables.points import read_points
 
 __all__ = [
     "Airfoil",
@@ -61,22 +72,34 @@ __all__ = [
     "OffsetMass",
     "Operation",
     "Pylon",
+    "Record",
     "Rotor",
+    "Turbulence",
     "WhirlDerivatives",
     "Wing",
     "beam_wing",
     "by_branch",
+    "calibrate",
+    "calibrated_deck",
+    "compare_modes",
+    "design_gust",
     "design_inputs",
+    "design_turbulence",
+    "discrete_gust",
     "distribution",
     "envelope",
     "frequency_response",
     "growth_constraint",
+    "gust_response",
+    "identify",
     "list_cases",
     "load_case",
     "load_results",
     "mount",
     "mount_rotors",
     "neutral_damping",
+    "read_points",
+    "read_record",
     "rigid_propeller",
     "rigid_support",
     "rotor_model",
@@ -89,6 +112,7 @@ __all__ = [
     "sobol_indices",
     "standard_air",
     "study",
+    "time_response",
     "two_axis_pivot",
     "write_c81",
 ]

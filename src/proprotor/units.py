@@ -75,6 +75,7 @@ rankine = 5 / 9 * kelvin = degR = degF
 _MEANINGS = {
     "": ("a plain number", '0.0065 or "1 %"'),
     "m": ("a length", '"12.5 ft"'),
+    "s": ("a time", '"0.5 s"'),
     "m**2": ("an area", '"50 ft**2"'),
     "rad": ("an angle", '"2.5 deg"'),
     "1/rad": ("a slope per angle", '"5.7/rad"'),

@@ -47,6 +47,9 @@ COMMANDS = {
     "envelope": ("--csv", "a.csv", "--plot", "a.png"),
     "sensitivity": ("--csv", "a.csv", "--plot", "a.png"),
     "attribution": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
+    "gust": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
+    "calibrate": ("--to", "points.csv", "--input", "rotor.precone", "--out", "a.toml"),
+    "mac": ("xv15", "--csv", "a.csv", "--plot", "a.png"),
     "study": ("--vary", "rotor.precone=1:3:1 deg", *SPEED, "--out", "a.nc", "--checkpoint", "kept"),
 }
 

@@ -39,6 +39,7 @@ from proprotor.stability.sweep import sweep_case
 from proprotor.tables import study_summary
 from proprotor.tables.csv_text import csv_of
 from tests.csv_files import without_comments
+from tests.measured_point import measured_point
 
 KNOT = 1852 / 3600
 # Air in which the blades of the XV-15 outrun what its linear sections know, from 340 kt on: its flutter speed is there.
@@ -92,6 +93,12 @@ RESULTS = {
     "LinearModel.modes": lambda case, **o: case.linearize([180.0, 190.0], **o).modes(),
     "LinearModel.to_state_space": lambda case, **o: case.linearize(AT, **o).to_state_space(),
     "frequency_response": lambda case, **o: pp.frequency_response(case.linearize(AT, **o), "2 Hz"),
+    "calibrate": lambda case, **o: pp.calibrate(case, measured_point(), ["rotor.precone"], **o),
+    "gust_response": lambda case, **o: pp.gust_response(case.linearize(AT, **o)),
+    "discrete_gust": lambda case, **o: pp.discrete_gust(case.linearize(AT, **o), "30 m", outputs=["force_x"]),
+    "time_response": lambda case, **o: pp.time_response(
+        case.linearize(AT, **o), "0:1:0.1 s", {"gust_x": 1.0}
+    ),
     "distribution": lambda case, **o: pp.distribution(found("study", case, **o)),
     "LinearModel.submodel": lambda case, **o: case.linearize(AT, **o).submodel(("beam", "chord")),
 }

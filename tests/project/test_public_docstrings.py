@@ -41,6 +41,7 @@ from proprotor.stability.modes import modes
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case
 from proprotor.study import mode_damping
+from tests.measured_point import measured_point
 
 # All functions and classes of these are public, and of others those that are named.
 MODULES: tuple[ModuleType, ...] = (
@@ -306,6 +307,7 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     ),
     "rotor_model": lambda case, **more: pp.rotor_model(case.rotor, case.operation, 150.0, **more),
     "study": lambda case, **more: pp.study(case, {"rotor.precone": [0.01]}, 150.0, **more),
+    "calibrate": lambda case, **more: pp.calibrate(case, measured_point(), ["rotor.precone"], **more),
     "attribution.attribution": lambda case, **more: attribution(case, 150.0, **more),
     "boundary_lines.boundary_lines": lambda case, **more: boundary_lines(
         case, case.stability_map(AXES, airloads="none"), **more

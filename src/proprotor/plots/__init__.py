@@ -6,6 +6,7 @@ round numbers, and the motion of points in a mode.
     frequency_and_damping campbell root_locus participation mode_shape    a sweep, or one of its modes
     attribution tornado stability_map boundary_against study_results      what moves a mode or a boundary
     envelope            onsets of an envelope over equivalent airspeed and altitude
+    gust_spectra time_response modal_comparison    responses, and measured modes beside a model
     blade_frequencies   a hinged blade beside an elastic one: frequencies over collective and rotor speed
     points              points of a CSV file, with error bars, on plots
     mode_motion         how wing, mast and blades move in a mode, as points in space
@@ -32,11 +33,14 @@ from proprotor.plots.campbell import plot_campbell
 from proprotor.plots.canvas import rests_on
 from proprotor.plots.envelope import plot_envelope
 from proprotor.plots.frequency_and_damping import plot_damping, plot_frequency, plot_sweep
+from proprotor.plots.gust_spectra import plot_gust_spectra
+from proprotor.plots.modal_comparison import plot_mac
 from proprotor.plots.mode_shape import plot_mode_shape
 from proprotor.plots.participation import plot_participation
 from proprotor.plots.root_locus import plot_root_locus
 from proprotor.plots.stability_map import plot_stability_map
 from proprotor.plots.study_results import plot_distribution, plot_sobol
+from proprotor.plots.time_response import plot_time_response
 from proprotor.plots.tornado import plot_sensitivity
 
 __all__ = [
@@ -54,6 +58,8 @@ __all__ = [
     "plot_distribution",
     "plot_envelope",
     "plot_frequency",
+    "plot_gust_spectra",
+    "plot_mac",
     "plot_mode_shape",
     "plot_participation",
     "plot_root_locus",
@@ -61,6 +67,7 @@ __all__ = [
     "plot_sobol",
     "plot_stability_map",
     "plot_sweep",
+    "plot_time_response",
     "rests_on",
     "style",
 ]

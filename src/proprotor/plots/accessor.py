@@ -23,6 +23,10 @@ from proprotor.typing import Axes, Dataset, Figure
 
 # Kinds of results: a variable or an attribute that no other kind has, and the plots, the usual one first.
 _KINDS = {
+    "turbulence": ("gust_psd", ("plot_gust_spectra",)),
+    "single gusts": ("gust", ("plot_time_response",)),
+    "time response": ("input_over_time", ("plot_time_response",)),
+    "modes beside a test": ("pair_mac", ("plot_mac",)),
     "study": ("study", ("plot_distribution",)),
     "indices": ("first_half_interval", ("plot_sobol",)),
     "distribution": ("at_least", ()),

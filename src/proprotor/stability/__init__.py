@@ -11,6 +11,7 @@ Modes of one point, or of a batch of points
     root_error              roots as exact as the matrices allow, and their error: what "neutral" means
     mode_names              what moves in a mode, and how it whirls
     named_modes             modes of a case at one airspeed, by name
+    transfer                transfer of inputs to outputs at a frequency; their names and units
     frequency_response      response of loads and motions to gusts and swashplate
 
 Modes along a line of points
@@ -74,12 +75,23 @@ from proprotor.stability.modes import (
     few_spectra,
     modes,
 )
+from proprotor.stability.named_modes import named_modes
 from proprotor.stability.names_and_steps import Steps, Walk, joined, names_and_steps
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
-from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
+from proprotor.stability.sensitivity import at_boundary, damping_rate, eigenvalue_rates, sensitivity
 from proprotor.stability.sweep import mode_columns, sweep, sweep_case
+from proprotor.stability.transfer import (
+    System,
+    decays_everywhere,
+    frequencies_in_si,
+    places_of,
+    system_at,
+    transfer,
+    unit_of_input,
+    unit_of_output,
+)
 
 __all__ = [
     "ANCHORS",
@@ -105,6 +117,7 @@ __all__ = [
     "Search",
     "Spectrum",
     "Steps",
+    "System",
     "Walk",
     "at_boundary",
     "at_columns",
@@ -118,8 +131,10 @@ __all__ = [
     "coordinate_motion",
     "coordinate_shares",
     "damping_rate",
+    "decays_everywhere",
     "decomposition",
     "eigenvalue_change",
+    "eigenvalue_rates",
     "eigenvalues",
     "envelope",
     "error_near_zero",
@@ -129,6 +144,7 @@ __all__ = [
     "flutter_messages",
     "flutter_point",
     "follow",
+    "frequencies_in_si",
     "frequency_response",
     "growth_constraint",
     "instability",
@@ -139,12 +155,18 @@ __all__ = [
     "modes",
     "moving",
     "named_at",
+    "named_modes",
     "names_and_steps",
+    "places_of",
     "scan_speeds",
     "sensitivity",
     "stability_map",
     "sweep",
     "sweep_case",
+    "system_at",
     "tip_speed",
+    "transfer",
+    "unit_of_input",
+    "unit_of_output",
     "with_changes",
 ]
