@@ -22,7 +22,7 @@ SOURCE = Path(__file__).parents[1] / "src" / "proprotor"
 # From the ground up to the workbench: data flow from the first to the last.
 ROOMS = (
     "errors", "typing", "needs", "units", "datum", "files", "nastran",
-    "rotor", "support", "model",
+    "rotor", "support", "control", "model",
     "deck", "stability", "case", "study", "exchange", "tables", "plots", "report", "explore", "commands",
 )  # fmt: skip
 # The one import of a room further down, deferred: a model's method that gives its modes.

@@ -24,6 +24,7 @@ SECOND = ", second root"
 LAGS = ("slow", "fast")  # states of lift that lags
 LAG_SHAPES = 2  # functions of the radius in which lift lags; tests/model/test_lift_lag.py has their error
 _LIFT = re.compile(r"(^| )(slow|fast) lift( \d+)?$")  # stems of their coordinates
+_OF_LAW = re.compile(r"(.* law(?: \d+)?)_([ab])")  # two states of a control law, which may swing as one pair
 
 
 class Motion(NamedTuple):
@@ -33,9 +34,10 @@ class Motion(NamedTuple):
     ----------
     names : tuple of str
         One name, or the names of the regressive and the progressive mode. A cyclic pair of which only the rates are
-        states, of lift that lags, has one mode.
+        states, of lift that lags, has one mode, and so have two states of a control law.
     places : tuple of int
-        Places of the coordinate, or of the cosine and the sine part, among the coordinates of the model.
+        Places of the coordinate, or of the cosine and the sine part, or of two states, among the coordinates of the
+        model.
     """
 
     names: tuple[str, ...]
@@ -91,7 +93,11 @@ def motions(dofs: tuple[str, ...]) -> list[Motion]:
     found = []
     for place, dof in enumerate(dofs):
         partner = dof[:-1] + "s"
-        if _is_cosine(dof) and partner in dofs:
+        of_law = _OF_LAW.fullmatch(dof)
+        if of_law:
+            if of_law[2] == "a":
+                found.append(Motion((of_law[1],), (place, dofs.index(f"{of_law[1]}_b"))))
+        elif _is_cosine(dof) and partner in dofs:
             found.append(Motion(_cyclic_names(dof), (place, dofs.index(partner))))
         elif not (_is_cosine(dof[:-1] + "c") and dof[:-1] + "c" in dofs and dof.endswith("s")):
             found.append(Motion((_single_name(dof),), (place,)))
