@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from proprotor.deck.build import load
 from proprotor.deck.file import list_cases
-from proprotor.deck.vary import vary
+from proprotor.deck.vary import vary, with_control
 from proprotor.model.configuration import Configuration
 from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries
@@ -28,6 +28,7 @@ class Case(Configuration):
     """
 
     vary = vary
+    with_control = with_control
     sweep = sweep_case
     boundaries = boundaries
     boundary_against = boundary_against

@@ -74,6 +74,7 @@ _MEANINGS = {
     "": ("a plain number", '0.0065 or "1 %"'),
     "m": ("a length", '"12.5 ft"'),
     "m**2": ("an area", '"50 ft**2"'),
+    "s": ("a time", '"10 ms"'),
     "rad": ("an angle", '"2.5 deg"'),
     "1/rad": ("a slope per angle", '"5.7/rad"'),
     "rad/m": ("an angle per length", '"-0.09 rad/ft"'),

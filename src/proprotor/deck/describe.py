@@ -14,10 +14,11 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
+from proprotor.control.control_loop import ControlLoop
+from proprotor.deck import control_sections, support_sections
 from proprotor.deck import sections as deck
-from proprotor.deck import support_sections
 from proprotor.deck.fields import AfterChoice, Reading, Section
-from proprotor.deck.sections import section_places, sections_at, sections_of
+from proprotor.deck.sections import LISTS, section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
@@ -145,7 +146,7 @@ def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckF
         reading = number or Reading(_PLAIN_FORMS.get(takes, ""))
         is_one_side = any(name in side for choice in section.alternatives for side in choice)
         yield DeckField(
-            path=f"{place}.{name}".replace("support.modes.", "support.modes[NAME]."),
+            path=f"{place}[NAME].{name}" if place in LISTS else f"{place}.{name}",
             kind=kind,
             meaning=field.description or "",
             takes=takes,
@@ -218,6 +219,7 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
         deck.RotorSection: (Rotor,),
         deck.AirfoilSection: (Airfoil, AirfoilRegions),
         deck.DriveTrainSection: (DriveTrain,),
+        control_sections.ControlLoopSection: (ControlLoop,),
         support_sections.BeamWingSection: (Wing, Pylon),
         support_sections.AircraftSection: (Wing, Pylon),
         support_sections.FuselageSection: (Fuselage,),

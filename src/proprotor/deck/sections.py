@@ -46,6 +46,9 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
 ``[drive_train]``
     Optional; the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness, mast_stiffness,
     engine_inertia, engine_damping and, of an aircraft, interconnect_stiffness.
+``[control]``
+    Optional; control loops that every result has closed, a table ``[[control.loops]]`` each:
+    `proprotor.deck.control_sections` lists the fields.
 ``[support]``
     kind and the fields of that kind: `proprotor.deck.support_sections` lists them.
 
@@ -76,6 +79,7 @@ from proprotor.deck.alternatives import (
     ALTERNATIVES,
     TRIM_ALTERNATIVES,
 )
+from proprotor.deck.control_sections import ControlSection
 from proprotor.deck.default_provenance import DEFAULT_SOURCE, DEFAULT_STATUS
 from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.deck.reading import read_quantity
@@ -410,6 +414,7 @@ class Deck(Section):
     operation: OperationSection = needed("The operation of the rotor, and the air.")
     drive_train: DriveTrainSection | None = optional("Engine and shaft; none if left out.")
     support: SupportSection = needed("The support of the rotor.")
+    control: ControlSection | None = optional("Control loops; none if left out.")
     left: LeftSection | None = optional("What differs on the left side of an aircraft; nothing if left out.")
 
     _left_side: Deck | None = PrivateAttr(default=None)
@@ -457,6 +462,7 @@ def _places(
 
 
 SECTIONS = dict(_places(Deck))
+LISTS = ("support.modes", "control.loops")  # places of lists of sections, whose entries have names
 SUPPORT_KINDS = tuple(place[1] for place in SECTIONS if place[:1] == ("support",) and len(place) == 2)
 
 

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.control.control_loop import ControlLoop
 from proprotor.datum import Datum
 from proprotor.deck.build import C, assemble
+from proprotor.deck.build_control import IN_PYTHON, law_warnings, numbers_of_loops
 from proprotor.deck.numbers import numbers_of
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.configuration import Configuration
@@ -93,7 +95,7 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
         number = _number(path, value, known[path].unit)
         written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
         numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
-    return assemble(case.deck, numbers, tuple(case.support.names), kind=type(case))
+    return assemble(case.deck, numbers, tuple(case.support.names), case.loops, kind=type(case))
 
 
 def varied_numbers(case: Configuration) -> dict[str, Any]:
@@ -107,7 +109,11 @@ def varied_numbers(case: Configuration) -> dict[str, Any]:
         A case built from a deck.
     """
     own = numbers_of(case.deck)
-    return {path: number.si for path, number in case.given.items() if not _same(number.si, own[path].si)}
+    return {
+        path: number.si
+        for path, number in case.given.items()
+        if path not in own or not _same(number.si, own[path].si)
+    }
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -126,3 +132,47 @@ def _number(path: str, value: Any, unit: str) -> np.ndarray:
     if not np.isfinite(number).all():
         raise InputError(path, value, "must be finite")
     return number if number.dtype.kind == "c" else number.astype(float)
+
+
+def with_control(case: C, *loops: ControlLoop) -> C:
+    """Return the case with control loops closed, in place of those that it has; without loops, with none closed.
+
+    Parameters
+    ----------
+    case : Case
+    *loops : ControlLoop
+        Their numbers may vary like those of the deck: ``control.loops[damper].gain``.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    InputError
+        For something that is no control loop, and two loops of one name. Sensors and inputs are compared with those of
+        the model once it is made.
+    """
+    names: list[str] = []
+    for loop in loops:
+        if not isinstance(loop, ControlLoop):
+            raise InputError("loops", type(loop).__name__, "must be a ControlLoop")
+        if loop.name in names:
+            raise InputError("loops", loop.name, "must not be the name of two loops")
+        names.append(loop.name)
+    own, old = numbers_of_loops(loops), law_warnings(case.loops)
+    given, sources = (
+        {path: number for path, number in numbers.items() if not path.startswith("control.")} | own
+        for numbers in (case.given, case.sources)
+    )
+    warnings = (*(text for text in case.warnings if text not in old), *law_warnings(loops))
+    return replace(case, loops=loops, given=given, sources=sources, warnings=warnings)
+
+
+def added_loops(case: Configuration) -> bool:
+    """Return whether the control loops of a case are others than those of its deck, so that the deck does not tell."""
+    own = {} if case.deck.control is None else {one.name: one for one in case.deck.control.loops}
+    given = {loop.name for loop in case.loops}
+    return own.keys() != given or any(
+        number.source == IN_PYTHON for path, number in case.given.items() if path.startswith("control.")
+    )
