@@ -14,6 +14,7 @@ from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary_against import boundary_against
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.map import stability_map
+from proprotor.stability.margins import margins
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case
 
@@ -33,6 +34,7 @@ class Case(Configuration):
     boundaries = boundaries
     boundary_against = boundary_against
     flutter_point = flutter_point
+    margins = margins
     sensitivity = sensitivity
     attribution = attribution
     stability_map = stability_map
