@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from proprotor.errors import InputError, check_known
-from proprotor.model.linear_model import SWASHPLATE, LinearModel
+from proprotor.model.linear_model import GUSTS, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
 from proprotor.needs import check_memory
 from proprotor.rotor.motions import HUB, half_of, is_lift
@@ -86,7 +86,7 @@ def frequency_response(
             "output": names,
             "input": moved,
             "output_unit": ("output", [_unit_of(name) for name in names]),
-            "input_unit": ("input", ["rad" if half_of(name)[1] in SWASHPLATE else "m/s" for name in moved]),
+            "input_unit": ("input", ["m/s" if half_of(name)[1] in GUSTS else "rad" for name in moved]),
             "airspeed": (leading, model.airspeed, {"units": "m/s"}),
         },
         attrs=dict(space.stamp),
