@@ -12,7 +12,7 @@ and show its result; they compute nothing themselves.
 
     cases new describe                              decks
     blade                                           a blade of a deck from a table of stations
-    sweep flutter stability_map sensitivity attribution study    analyses of a case
+    sweep flutter stability_map margins sensitivity attribution study    analyses of a case
     report explore                                  a page on a case, as a file and with sliders
     export                                          the equations of a case for another program
 
@@ -31,6 +31,7 @@ __all__ = [
     "export",
     "flutter",
     "main",
+    "margins",
     "new",
     "report",
     "sensitivity",

@@ -26,6 +26,7 @@ _SUMMARIES = {
     "sweep": "Show frequency and damping of each mode along airspeeds.",
     "flutter": "Find flutter and divergence boundaries, and the margin.",
     "boundary": "Follow the boundaries over altitude, rotor speed or another input.",
+    "margins": "Show how much each control loop may change before it is unstable.",
     "map": "Show where in the plane of two inputs a case is stable.",
     "sensitivity": "Show how each input moves the flutter speed or a damping.",
     "blade": "Make a hinged blade of a table of stations.",

@@ -12,7 +12,7 @@ The room may import the ground (`errors`, `typing`) and `rotor`.
 """
 
 from proprotor.control.control_law import ControlLaw
-from proprotor.control.control_loop import ControlLoop
+from proprotor.control.control_loop import NUMBERS, ControlLoop, loop_text
 from proprotor.control.pade import phase_limit, sections
 
-__all__ = ["ControlLaw", "ControlLoop", "phase_limit", "sections"]
+__all__ = ["NUMBERS", "ControlLaw", "ControlLoop", "loop_text", "phase_limit", "sections"]

@@ -14,8 +14,8 @@ from proprotor.typing import Array
 
 _MATRICES = ("A", "B", "C", "D")
 _KINDS = (
-    "must be a transfer function (numerator, denominator), a state space (A, B, C, D), or an object that has num and den "
-    "or A, B, C and D"
+    "must be a transfer function (numerator, denominator), a state space (A, B, C, D), or an object that has num and "
+    "den or A, B, C and D"
 )
 _IMPROPER = "must not have a higher degree than the denominator: such a law is no state space; add a filter"
 
@@ -53,7 +53,9 @@ class ControlLaw:
         for name, shape in shapes.items():
             own = getattr(self, name)
             if own.shape != shape and not (own.size == 0 and 0 in shape):
-                rule = f"must have the shape {shape}, for the {states} states of A and the {self.D.shape} of D"
+                rule = (
+                    f"must have the shape {shape}, for the {states} states of A and the {self.D.shape} of D"
+                )
                 raise InputError(name, f"array of shape {own.shape}", rule)
             object.__setattr__(self, name, own.reshape(shape))
 
@@ -67,7 +69,9 @@ class ControlLaw:
             For other numbers of signals and commands.
         """
         if signals != commands and signals != 1:
-            rule = f"is missing: {signals} sensors and {commands} inputs need weights, or a law that says which goes where"
+            rule = (
+                f"is missing: {signals} sensors and {commands} inputs need weights, or a law that joins them"
+            )
             raise InputError("law", None, rule)
         through = np.ones((commands, 1)) if signals == 1 else np.eye(commands)
         return cls(np.zeros((0, 0)), np.zeros((0, signals)), np.zeros((commands, 0)), through)
@@ -109,7 +113,9 @@ class ControlLaw:
     def response(self, omega: Array) -> Array:
         """Return C (iω - A)⁻¹ B + D (frequencies, commands, signals) at frequencies ω (frequencies,), rad/s."""
         turning = 1j * np.asarray(omega)[:, None, None] * np.eye(len(self.A))
-        return np.asarray(self.C @ np.linalg.solve(turning - self.A, np.asarray(self.B, dtype=complex)) + self.D)
+        return np.asarray(
+            self.C @ np.linalg.solve(turning - self.A, np.asarray(self.B, dtype=complex)) + self.D
+        )
 
 
 def _matrix(name: str, given: ArrayLike) -> Array:
@@ -174,7 +180,7 @@ def _of_transfer_function(numerator: ArrayLike, denominator: ArrayLike) -> Contr
     through = num[0]
     A = np.eye(states, k=-1)
     A[:1] = -den[1:]
-    return ControlLaw(A, np.eye(states, 1), (num - through * den)[None, 1:], [[through]])
+    return ControlLaw(A, np.eye(states, 1), (num - through * den)[None, 1:], np.array([[through]]))
 
 
 def _coefficients(name: str, given: ArrayLike) -> Array:
@@ -184,5 +190,7 @@ def _coefficients(name: str, given: ArrayLike) -> Array:
     except (TypeError, ValueError):
         raise InputError(name, given, "must be real coefficients of powers of s, the highest first") from None
     if found.ndim != 1 or not np.isfinite(found).all():
-        raise InputError(name, given, "must be a list of finite coefficients of powers of s, the highest first")
+        raise InputError(
+            name, given, "must be a list of finite coefficients of powers of s, the highest first"
+        )
     return found

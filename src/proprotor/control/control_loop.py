@@ -16,7 +16,12 @@ from proprotor.errors import InputError, check_finite
 from proprotor.rotor.smooth_table import smooth_table
 from proprotor.typing import Array
 
-NUMBERS = {"gain": "", "actuator_bandwidth": "rad/s", "actuator_damping": "", "delay": "s"}  # with their SI units
+NUMBERS = {
+    "gain": "",
+    "actuator_bandwidth": "rad/s",
+    "actuator_damping": "",
+    "delay": "s",
+}  # with their SI units
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 .-]{0,59}")
 _POSITIVE = ("actuator_bandwidth", "actuator_damping", "delay")
 
@@ -68,12 +73,12 @@ class ControlLoop:
     inputs: str | Sequence[str]
     weights: ArrayLike | None = None
     law: Any = None
-    gain: ArrayLike = 1.0
+    gain: float | Array = 1.0
     scheduled_at: ArrayLike | None = None
     scheduled_gains: ArrayLike | None = None
-    actuator_bandwidth: ArrayLike | None = None
-    actuator_damping: ArrayLike | None = None
-    delay: ArrayLike | None = None
+    actuator_bandwidth: float | Array | None = None
+    actuator_damping: float | Array | None = None
+    delay: float | Array | None = None
     delay_order: int = 3
 
     def __post_init__(self) -> None:
@@ -102,7 +107,9 @@ class ControlLoop:
         check_finite("weights", self.weights)
         weights = np.atleast_1d(np.asarray(self.weights, dtype=float))
         if weights.shape != (len(self.sensors),):
-            raise InputError("weights", list(weights), f"must be one for each of the {len(self.sensors)} sensors")
+            raise InputError(
+                "weights", list(weights), f"must be one for each of the {len(self.sensors)} sensors"
+            )
         object.__setattr__(self, "weights", weights)
 
     def _check_schedule(self) -> None:
@@ -117,7 +124,9 @@ class ControlLoop:
         if at.ndim != 1 or len(at) < 2 or np.any(np.diff(at) <= 0):
             raise InputError("scheduled_at", at.tolist(), "must be two airspeeds or more that rise")
         if gains.shape != at.shape:
-            raise InputError("scheduled_gains", gains.tolist(), f"must be one for each of the {len(at)} airspeeds")
+            raise InputError(
+                "scheduled_gains", gains.tolist(), f"must be one for each of the {len(at)} airspeeds"
+            )
 
     @property
     def signals(self) -> int:
@@ -147,7 +156,9 @@ class ControlLoop:
         The delay is e^{-iωτ} itself, and the numbers are those of one design, at an airspeed in m/s.
         """
         s = 1j * np.asarray(omega)
-        found = complex(self.gain_at(np.asarray(airspeed))) * np.exp(-s * (0.0 if self.delay is None else self.delay))
+        found = complex(self.gain_at(np.asarray(airspeed))) * np.exp(
+            -s * (0.0 if self.delay is None else self.delay)
+        )
         if self.actuator_bandwidth is None:
             return np.asarray(found)
         ratio = s / self.actuator_bandwidth

@@ -18,7 +18,7 @@ MOST = 8  # order: beyond it nothing is gained before rounding shows
 _WRONG = radians(1.0)  # phase by which an approximation may be off
 
 
-class Section(NamedTuple):
+class _Section(NamedTuple):
     """A section of the chain for a delay of one second: damping a and stiffness b; a real root has no damping."""
 
     damping: float | None
@@ -26,7 +26,7 @@ class Section(NamedTuple):
 
 
 @lru_cache(maxsize=MOST)
-def sections(order: int) -> tuple[Section, ...]:
+def sections(order: int) -> tuple[_Section, ...]:
     """Return the sections of an approximation, the slowest first.
 
     Parameters
@@ -40,8 +40,8 @@ def sections(order: int) -> tuple[Section, ...]:
         factorial(2 * order - k) * half / (whole * factorial(k) * factorial(order - k)) for k in powers
     ]
     roots = np.roots(coefficients)
-    pairs = [Section(float(-2 * root.real), float(abs(root) ** 2)) for root in roots if root.imag > 0]
-    real = [Section(None, float(-root.real)) for root in roots if root.imag == 0]
+    pairs = [_Section(float(-2 * root.real), float(abs(root) ** 2)) for root in roots if root.imag > 0]
+    real = [_Section(None, float(-root.real)) for root in roots if root.imag == 0]
     return tuple(sorted(pairs, key=lambda one: one.stiffness)) + tuple(real)
 
 

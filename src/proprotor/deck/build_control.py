@@ -21,7 +21,7 @@ _MATRICES = ("A", "B", "C", "D")
 IN_PYTHON = "given in Python"
 
 
-def path_of(loop: str, field: str = "") -> str:
+def _path_of(loop: str, field: str = "") -> str:
     """Return the path of a loop, or of one of its numbers: ``control.loops[damper].gain``."""
     return ".".join(filter(None, (f"control.loops[{loop}]", field)))
 
@@ -39,7 +39,7 @@ def loops_of(deck: Deck) -> tuple[ControlLoop, ...]:
     names = [section.name for section in deck.control.loops]
     for place, name in enumerate(names):
         if name in names[:place]:
-            raise InputError(path_of(name, "name"), name, "must not be the name of two loops")
+            raise InputError(_path_of(name, "name"), name, "must not be the name of two loops")
     return tuple(map(_loop, deck.control.loops))
 
 
@@ -57,7 +57,7 @@ def _loop(section: ControlLoopSection) -> ControlLoop:
     except InputError as error:
         number = getattr(section, error.field, None)
         value = number.written if isinstance(number, Datum) else error.value
-        raise InputError(path_of(section.name, error.field), value, error.rule) from None
+        raise InputError(_path_of(section.name, error.field), value, error.rule) from None
 
 
 def _law(section: ControlLoopSection) -> Any:
@@ -77,7 +77,7 @@ def _law(section: ControlLoopSection) -> Any:
 def numbers_of_loops(loops: Iterable[ControlLoop]) -> dict[str, Datum]:
     """Return the numbers of loops that were given in Python, by path, as numbers that may vary."""
     return {
-        path_of(loop.name, field): Datum(f"{value:g} {unit}".strip(), value, unit, "assumed", IN_PYTHON)
+        _path_of(loop.name, field): Datum(f"{value:g} {unit}".strip(), value, unit, "assumed", IN_PYTHON)
         for loop in loops
         for field, unit, value in _plain_numbers(loop)
     }
@@ -100,12 +100,14 @@ def with_numbers(loop: ControlLoop, numbers: Mapping[str, Datum]) -> ControlLoop
         For a number that is not physical, with its path.
     """
     given: dict[str, Any] = {
-        field: number.si for field in NUMBERS if (number := numbers.get(path_of(loop.name, field))) is not None
+        field: number.si
+        for field in NUMBERS
+        if (number := numbers.get(_path_of(loop.name, field))) is not None
     }
     try:
         return replace(loop, **given)
     except InputError as error:
-        raise InputError(path_of(loop.name, error.field), error.value, error.rule) from None
+        raise InputError(_path_of(loop.name, error.field), error.value, error.rule) from None
 
 
 def law_warnings(loops: Iterable[ControlLoop]) -> tuple[str, ...]:

@@ -26,25 +26,33 @@ class ControlLoopSection(Section):
         'rotors "symmetric x acceleration".'
     )
     inputs: _Names = needed(
-        '"collective", "cyclic_1c", "cyclic_1s"; "flaperon" of a wing that has one; of two rotors "symmetric collective".'
+        '"collective", "cyclic_1c", "cyclic_1s"; "flaperon" of a wing with one; of two rotors "symmetric collective".'
     )
     weights: fields.Numbers = optional(
-        "Weight of each sensor; the weighted sum is then the one signal of the law. Each sensor is a signal if left out."
+        "Weight of each sensor in the one signal of the law, their weighted sum. Each sensor is a signal if left out."
     )
     numerator: fields.Numbers = optional("Coefficients of powers of s of the law, the highest first.")
     denominator: fields.Numbers = optional("Coefficients of powers of s of the law, the highest first.")
     state_space: dict[str, Any] | None = optional(
         "The law as matrices A, B, C and D, lists of rows: from the signals to a command for each input."
     )
-    gain: fields.Number = optional("Input in rad per unit of the law's command, in SI units of the sensors; 1 if left out.")
+    gain: fields.Number = optional(
+        "Input in rad per unit of the law's command, in SI units of the sensors; 1 if left out."
+    )
     scheduled_at: fields.Airspeeds = optional("Rising true airspeeds at which scheduled_gains holds.")
-    scheduled_gains: fields.Numbers = optional("Factor on the gain at each airspeed; smooth between, held beyond.")
-    actuator_bandwidth: fields.PositiveFrequency = optional("Corner frequency of the actuators; no lag if left out.")
+    scheduled_gains: fields.Numbers = optional(
+        "Factor on the gain at each airspeed; smooth between, held beyond."
+    )
+    actuator_bandwidth: fields.PositiveFrequency = optional(
+        "Corner frequency of the actuators; no lag if left out."
+    )
     actuator_damping: fields.Positive = optional(
         "Damping ratio of actuators of second order; of first order if left out."
     )
     delay: fields.Time = optional("Delay of the commands; none if left out.")
-    delay_order: fields.Size = optional("Order of the Padé approximation of the delay in eigenvalues; 3 if left out.")
+    delay_order: fields.Size = optional(
+        "Order of the Padé approximation of the delay in eigenvalues; 3 if left out."
+    )
 
     @model_validator(mode="after")
     def _one_law(self) -> ControlLoopSection:

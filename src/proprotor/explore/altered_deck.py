@@ -77,8 +77,9 @@ def altered_deck(
         lines += ["", f"[{section}]", *entries]
     # A list replaces the list of the base, so all entries are written.
     for listed in dict.fromkeys(path.partition("[")[0] for path in changed if "[" in path):
-        for entry in functools.reduce(operator.getitem, listed.split("."), tables):
-            lines += ["", f"[[{listed}]]", *(f"{name} = {toml(value)}" for name, value in entry.items())]
+        whole: Any = functools.reduce(operator.getitem, listed.split("."), tables)
+        for one in whole:
+            lines += ["", f"[[{listed}]]", *(f"{name} = {toml(value)}" for name, value in one.items())]
     return "\n".join(lines) + "\n"
 
 

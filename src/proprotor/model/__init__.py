@@ -19,6 +19,8 @@ configuration, and the stamp that every result has.
     mast                 a mast that twists between a rotor and its engine
     several_rotors       several rotors on a support
     massless             motions that move no mass, which have no eigenvalue
+    sensors              what a sensor reads, by its name
+    closed_loop          control loops closed around a model
     first_order          which points and coordinates have states, and the state matrix
     state_space          A, B, C, D with names
     structural_damping   structural damping at which a model is neutrally stable
@@ -35,14 +37,15 @@ configuration, and the stamp that every result has.
     in_notebook          a case and a model as HTML
     options_of_result    options taken back from a result
 
-The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor` and `support`. One
+The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor`, `support` and `control`. One
 deferred import goes down: `LinearModel.modes` calls `stability`.
 """
 
+from proprotor.model.closed_loop import close_loops
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.lift_lag import with_lift_lag
-from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
+from proprotor.model.linear_model import GUSTS, INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
 from proprotor.model.mast import with_mast
@@ -52,6 +55,7 @@ from proprotor.model.rotor_model import airload_moments, in_closed_form, rotor_m
 from proprotor.model.side import Side
 
 __all__ = [
+    "GUSTS",
     "INPUTS",
     "SWASHPLATE",
     "Configuration",
@@ -60,6 +64,7 @@ __all__ = [
     "airload_moments",
     "amount_rules",
     "amounts",
+    "close_loops",
     "blade_comparison",
     "deck_fingerprint",
     "doubts",
@@ -77,6 +82,7 @@ __all__ = [
     "rotor_model",
     "rotor_share",
     "rotors_on",
+    "sensors",
     "several_rotors",
     "shares",
     "stamp",

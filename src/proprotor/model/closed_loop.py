@@ -54,7 +54,7 @@ def close_loops(model: LinearModel, loops: Sequence[ControlLoop]) -> LinearModel
     """
     if not loops:
         return model
-    check_loops(model, loops)
+    _check_loops(model, loops)
     shape = joint_shape(model.M.shape[:-2], *(loop.shape for loop in loops))
     closing = _Closing(broadcast(model, shape), loops)
     for loop in loops:
@@ -62,10 +62,10 @@ def close_loops(model: LinearModel, loops: Sequence[ControlLoop]) -> LinearModel
     return _without_circles(closing.model(), model)
 
 
-def check_loops(model: LinearModel, loops: Sequence[ControlLoop]) -> None:
+def _check_loops(model: LinearModel, loops: Sequence[ControlLoop]) -> None:
     """Refuse loops whose sensors or inputs a model does not have, and loops of one name; see `close_loops`."""
     names = [loop.name for loop in loops]
-    known = control_inputs(model)
+    known = _control_inputs(model)
     for place, loop in enumerate(loops):
         field = f"control.loops[{loop.name}]"
         if loop.name in names[:place]:
@@ -78,7 +78,7 @@ def check_loops(model: LinearModel, loops: Sequence[ControlLoop]) -> None:
             sensor(model, name, f"{field}.sensors")
 
 
-def control_inputs(model: LinearModel) -> tuple[str, ...]:
+def _control_inputs(model: LinearModel) -> tuple[str, ...]:
     """Return the inputs that a control loop may move: all but the gusts."""
     return () if model.B is None else tuple(name for name in model.inputs if half_of(name)[1] not in GUSTS)
 
@@ -103,7 +103,8 @@ class _Closing:
         """Add the coordinates of a loop, and its commands to the inputs."""
         read = [self._wide(sensor(self.plant, name)) for name in loop.sensors]
         signals = [
-            Signal.sum([one.times(w) for one, w in zip(read, row, strict=True)], self.size) for row in loop.mixing
+            Signal.sum([one.times(w) for one, w in zip(read, row, strict=True)], self.size)
+            for row in loop.mixing
         ]
         gain = loop.gain_at(self.airspeed)
         for name, command in zip(loop.inputs, self._law(loop, signals), strict=True):
@@ -135,7 +136,8 @@ class _Closing:
         """Add the states of a law, which are rates, and return its commands."""
         law = loop.law
         driven = [
-            Signal.sum([one.times(w) for one, w in zip(signals, row, strict=True)], self.size) for row in law.B
+            Signal.sum([one.times(w) for one, w in zip(signals, row, strict=True)], self.size)
+            for row in law.B
         ]
         places = [self._row(0.0, 0.0, signal) for signal in driven]
         for row, place in enumerate(places):
@@ -177,8 +179,8 @@ class _Closing:
         """Tell where the approximation of a delay reaches less high than the coordinates of the model do."""
         if loop.delay is None:
             return
-        limit = phase_limit(loop.delay_order) / np.real(loop.delay)
-        lacks = limit < highest_frequency(self.plant)
+        limit = phase_limit(loop.delay_order) / np.asarray(loop.delay).real
+        lacks = limit < _highest_frequency(self.plant)
         for place in map(tuple, np.argwhere(np.broadcast_to(lacks, self.warning.shape))):
             hertz = float(np.broadcast_to(limit, self.warning.shape)[place]) / (2 * np.pi)
             text = (
@@ -192,7 +194,9 @@ class _Closing:
         plant, shape = self.plant, self.plant.M.shape[:-2]
         assert plant.B is not None  # checked with the inputs of the loops
         rows = [
-            np.stack([np.broadcast_to(own[order], (*shape, self.size)) for own in self.commands.values()], axis=-2)
+            np.stack(
+                [np.broadcast_to(own[order], (*shape, self.size)) for own in self.commands.values()], axis=-2
+            )
             for order in range(3)
         ]
         whole = [part.copy() for part in self.parts]
@@ -251,7 +255,9 @@ def _coupled(closed: LinearModel, more: int) -> LinearModel:
     """Return the model with the half of the motion to which loops belong, and with what the loops couple."""
     n = len(closed.dofs) - more
     touched = _touched(closed, n)
-    apart = tuple(group for group in closed.apart if not any(closed.dofs.index(name) in touched for name in group))
+    apart = tuple(
+        group for group in closed.apart if not any(closed.dofs.index(name) in touched for name in group)
+    )
     if not closed.symmetry:
         return replace(closed, apart=apart)
     halves = {closed.symmetry[place] for place in touched if place < n}
@@ -264,8 +270,8 @@ def _coupled(closed: LinearModel, more: int) -> LinearModel:
 def _touched(closed: LinearModel, n: int) -> set[int]:
     """Return the places of the coordinates of the plant that loops sense or move."""
     assert closed.feedback is not None and closed.B is not None
-    moving = [(np.abs(part) > 0).any(axis=-1) for part in closed.feedback]
-    used = np.any([one.any(axis=tuple(range(one.ndim - 1))) for one in moving], axis=0)
+    moving = [np.asarray((part != 0).any(axis=-1)) for part in closed.feedback]
+    used = np.any([one.reshape(-1, one.shape[-1]).any(axis=0) for one in moving], axis=0)
     loads = (closed.B[..., :n, :][..., used] != 0).any(axis=-1)
     sensed = np.any(
         [(matrix[..., n:, :n] != 0).any(axis=-2) for matrix in (closed.M, closed.C, closed.K)], axis=0
@@ -285,7 +291,7 @@ def _without_circles(closed: LinearModel, opened: LinearModel) -> LinearModel:
     return failed_where(np.where(circular, _CIRCULAR, ""), closed)
 
 
-def highest_frequency(model: LinearModel) -> Array:
+def _highest_frequency(model: LinearModel) -> Array:
     """Return the highest frequency (...) of a coordinate that moves alone, all others held, rad/s."""
     mass, stiffness = (np.real(matrix.diagonal(0, -2, -1)) for matrix in (model.M, model.K))
     with np.errstate(all="ignore"):

@@ -28,7 +28,7 @@ _AZIMUTHS = tuple(in_half(half, ROTOR_SPEED) for half in reversed(HALVES))
 
 
 class Feedback(NamedTuple):
-    """What control loops add to the inputs of a model, (..., inputs, n) per unit of each coordinate and its derivatives.
+    """What control loops add to the inputs of a model (..., inputs, n), by the motion of each coordinate.
 
     displacement, rate, acceleration : in the input's unit per m or rad, per s and per s²
     """
@@ -92,7 +92,7 @@ class LinearModel:
         Of two rotors: motion of the left hub per unit of each coordinate, m and rad, in the mirrored axes of the left
         rotor.
     inputs : tuple of str
-        Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on; then those of the support.
+        Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on; then the support's.
     feedback : Feedback, optional
         Of a model with control loops, which its matrices contain: `proprotor.model.closed_loop`.
     """

@@ -28,7 +28,17 @@ if TYPE_CHECKING:
 Stamp = Mapping[str, str]
 _AIR = ("operation.density", "operation.altitude", "operation.temperature_offset")
 NAMES = (
-    *("case", "title", "deck", "air_density", "options", "control", "reservations", "case_warnings", "made_by"),
+    *(
+        "case",
+        "title",
+        "deck",
+        "air_density",
+        "options",
+        "control",
+        "reservations",
+        "case_warnings",
+        "made_by",
+    ),
 )
 
 

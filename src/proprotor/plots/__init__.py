@@ -5,6 +5,7 @@ round numbers, and the motion of points in a mode.
 
     frequency_and_damping campbell root_locus participation mode_shape    a sweep, or one of its modes
     attribution tornado stability_map boundary_against study_results      what moves a mode or a boundary
+    margins             margins of control loops over airspeed
     blade_frequencies   a hinged blade beside an elastic one: frequencies over collective and rotor speed
     points              points of a CSV file, with error bars, on plots
     mode_motion         how wing, mast and blades move in a mode, as points in space
@@ -30,6 +31,7 @@ from proprotor.plots.boundary_against import plot_boundary_against
 from proprotor.plots.campbell import plot_campbell
 from proprotor.plots.canvas import rests_on
 from proprotor.plots.frequency_and_damping import plot_damping, plot_frequency, plot_sweep
+from proprotor.plots.margins import plot_margins
 from proprotor.plots.mode_shape import plot_mode_shape
 from proprotor.plots.participation import plot_participation
 from proprotor.plots.root_locus import plot_root_locus
@@ -51,6 +53,7 @@ __all__ = [
     "plot_damping",
     "plot_distribution",
     "plot_frequency",
+    "plot_margins",
     "plot_mode_shape",
     "plot_participation",
     "plot_root_locus",

@@ -14,6 +14,7 @@ What a rotor is:
     c81_writer           writing such files
     coefficient_surface  the smooth surface through a table
     drive_train          engine and shaft
+    smooth_table         smooth interpolation of a table, with exact derivatives
     blade_frequencies    frequencies given in tables, in place of springs
 
 A rotor from a blade by stations:
@@ -49,7 +50,7 @@ Loads and trim:
     trim_solver          Newton's method for all points
 
 All public names of the modules `blade_stations`, `elastic_blade`, `element_chain`, `hinged_blade`, `from_stations`,
-`fused`, `generated`, `lift_lag`, `motions`, `options` and `section_loads` belong to the face.
+`fused`, `generated`, `lift_lag`, `motions`, `options`, `section_loads` and `smooth_table` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -95,6 +96,7 @@ __all__ = [
     "motions",
     "options",
     "section_loads",
+    "smooth_table",
     "solve_trim",
     "standard_air",
     "trim_target",

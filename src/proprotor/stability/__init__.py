@@ -12,6 +12,9 @@ Modes of one point, or of a batch of points
     mode_names              what moves in a mode, and how it whirls
     named_modes             modes of a case at one airspeed, by name
     frequency_response      response of loads and motions to gusts and swashplate
+    loop_transfer           the transfer function of a control loop, cut at its actuator
+    margin_search           gain, phase, delay and disk margin of a transfer function
+    margins                 margins of the control loops of a case along airspeeds
 
 Modes along a line of points
     parameter_lines         lines of airspeeds or of another input, and the approach from the anchor
@@ -56,6 +59,7 @@ from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
+from proprotor.stability.margins import margins
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import (
@@ -116,6 +120,7 @@ __all__ = [
     "frequency_response",
     "instability",
     "kinds",
+    "margins",
     "match_modes",
     "mode_columns",
     "modes",

@@ -24,17 +24,17 @@ from proprotor.typing import Array
 _BLOCK = 2048  # frequencies solved at once
 
 
-class Cut(NamedTuple):
+class _Cut(NamedTuple):
     """Where a loop may be cut: place of the loop, and of the actuator among the inputs of the loop."""
 
     loop: int
     actuator: int
 
 
-def cuts_of(loops: Sequence[ControlLoop]) -> dict[str, Cut]:
+def cuts_of(loops: Sequence[ControlLoop]) -> dict[str, _Cut]:
     """Return every actuator of every loop by name: that of the loop, with the input where a loop has several."""
     return {
-        loop.name if len(loop.inputs) == 1 else f"{loop.name} {name}": Cut(place, actuator)
+        loop.name if len(loop.inputs) == 1 else f"{loop.name} {name}": _Cut(place, actuator)
         for place, loop in enumerate(loops)
         for actuator, name in enumerate(loop.inputs)
     }
@@ -52,13 +52,13 @@ class LoopTransfer:
     opened: LinearModel
     loops: Sequence[ControlLoop]
 
-    def transfer(self, cut: Cut, omega: Array) -> Array:
+    def transfer(self, cut: _Cut, omega: Array) -> Array:
         """Return L (...) at frequencies ω (...) above zero, rad/s."""
         flat = np.reshape(omega, -1)
         parts = [self._at(cut, flat[start : start + _BLOCK]) for start in range(0, len(flat), _BLOCK)]
         return np.concatenate([*parts, np.zeros(0, dtype=complex)]).reshape(np.shape(omega))
 
-    def roots(self, cut: Cut | None = None) -> Array:
+    def roots(self, cut: _Cut | None = None) -> Array:
         """Return the eigenvalues of all loops closed or, with a cut, of all others; delays are approximated."""
         loops = [
             _silent(loop, cut.actuator) if cut is not None and place == cut.loop else loop
@@ -66,7 +66,7 @@ class LoopTransfer:
         ]
         return eigenvalues(close_loops(self.opened, loops))
 
-    def _at(self, cut: Cut, omega: Array) -> Array:
+    def _at(self, cut: _Cut, omega: Array) -> Array:
         """Return L (frequencies,) of a few frequencies."""
         every = self._commands(omega)
         own = list(cuts_of(self.loops).values()).index(cut)
@@ -87,9 +87,7 @@ class LoopTransfer:
             s**2 * model.M + s * model.C + model.K, np.asarray(model.B[:, moved], dtype=complex)
         )
         airspeed = float(np.real(model.airspeed))
-        rows = [
-            loop.response(omega, airspeed) @ (self._read(loop, omega) @ motion) for loop in self.loops
-        ]
+        rows = [loop.response(omega, airspeed) @ (self._read(loop, omega) @ motion) for loop in self.loops]
         return np.concatenate(rows, axis=1)
 
     def _read(self, loop: ControlLoop, omega: Array) -> Array:

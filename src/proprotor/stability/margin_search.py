@@ -15,7 +15,7 @@ import numpy as np
 
 from proprotor.typing import Array
 
-Transfer = Callable[[Array], Array]
+_Transfer = Callable[[Array], Array]
 
 _AROUND_ROOT = np.tan(np.linspace(-1.5, 1.5, 41))  # in parts of the decay of a root
 _EVERYWHERE = 400  # frequencies of a grid that knows no root
@@ -27,7 +27,7 @@ _MOST_OF_DELAY = 4000  # frequencies that resolve a delay
 _NEIGHBOURS = 1e-9  # of a frequency: grid points that are one
 
 
-class Margin(NamedTuple):
+class _Margin(NamedTuple):
     """A margin, and the frequency where it is lost, rad/s; NaN without one."""
 
     value: float
@@ -41,11 +41,11 @@ class LoopMargins(NamedTuple):
     phase_margin : rad to either side; delay_margin : s; disk_margin : α, 0 to 2
     """
 
-    gain_margin: Margin
-    gain_reduction: Margin
-    phase_margin: Margin
-    delay_margin: Margin
-    disk_margin: Margin
+    gain_margin: _Margin
+    gain_reduction: _Margin
+    phase_margin: _Margin
+    delay_margin: _Margin
+    disk_margin: _Margin
 
 
 def frequencies(roots: Array, delay: float) -> Array:
@@ -60,10 +60,10 @@ def frequencies(roots: Array, delay: float) -> Array:
         turning = np.linspace(low, high, int(min(_MOST_OF_DELAY, high * delay / _TURN)) + 2)
     found = np.sort(np.concatenate([near.ravel(), np.geomspace(low, high, _EVERYWHERE), turning]))
     found = found[(found >= low) & (found <= high)]
-    return found[np.concatenate([[True], np.diff(found) > _NEIGHBOURS * found[:-1]])]
+    return np.asarray(found[np.concatenate([[True], np.diff(found) > _NEIGHBOURS * found[:-1]])])
 
 
-def margins_of(transfer: Transfer, grid: Array) -> LoopMargins:
+def margins_of(transfer: _Transfer, grid: Array) -> LoopMargins:
     """Return the margins of a stable loop.
 
     Parameters
@@ -78,19 +78,19 @@ def margins_of(transfer: Transfer, grid: Array) -> LoopMargins:
     beyond, within = real[real <= -1], real[real > -1]
     phase, delay = _by_phase(*_of_size_one(transfer, grid, values))
     return LoopMargins(
-        gain_margin=Margin(-1 / within.min(), float(at_real[real > -1][within.argmin()]))
+        gain_margin=_Margin(-1 / within.min(), float(at_real[real > -1][within.argmin()]))
         if len(within)
-        else Margin(np.inf, np.nan),
-        gain_reduction=Margin(-1 / beyond.max(), float(at_real[real <= -1][beyond.argmax()]))
+        else _Margin(np.inf, np.nan),
+        gain_reduction=_Margin(-1 / beyond.max(), float(at_real[real <= -1][beyond.argmax()]))
         if len(beyond)
-        else Margin(0.0, np.nan),
+        else _Margin(0.0, np.nan),
         phase_margin=phase,
         delay_margin=delay,
         disk_margin=_disk(transfer, grid, values),
     )
 
 
-def _on_the_real_axis(transfer: Transfer, grid: Array, values: Array) -> tuple[Array, Array]:
+def _on_the_real_axis(transfer: _Transfer, grid: Array, values: Array) -> tuple[Array, Array]:
     """Return where L is real and negative, and the frequencies there; a loop that is static at the start counts."""
     change = np.signbit(values.imag[1:]) != np.signbit(values.imag[:-1])
     omega = _zeros(lambda at: transfer(at).imag, grid, np.flatnonzero(change))
@@ -103,24 +103,26 @@ def _on_the_real_axis(transfer: Transfer, grid: Array, values: Array) -> tuple[A
     return real, at
 
 
-def _of_size_one(transfer: Transfer, grid: Array, values: Array) -> tuple[Array, Array]:
+def _of_size_one(transfer: _Transfer, grid: Array, values: Array) -> tuple[Array, Array]:
     """Return L where its size is one, and the frequencies there."""
     larger = np.abs(values) > 1
     omega = _zeros(lambda at: np.abs(transfer(at)) - 1, grid, np.flatnonzero(larger[1:] != larger[:-1]))
     return transfer(omega), omega
 
 
-def _by_phase(values: Array, omega: Array) -> tuple[Margin, Margin]:
+def _by_phase(values: Array, omega: Array) -> tuple[_Margin, _Margin]:
     """Return the phase margin, to either side, and the delay margin from L (k,) of size one."""
     if not len(values):
-        return Margin(np.inf, np.nan), Margin(np.inf, np.nan)
+        return _Margin(np.inf, np.nan), _Margin(np.inf, np.nan)
     lag = np.mod(np.angle(values) + np.pi, 2 * np.pi)  # that turns L to -1
     either, delay = np.minimum(lag, 2 * np.pi - lag), lag / omega
     least, first = int(either.argmin()), int(delay.argmin())
-    return Margin(float(either[least]), float(omega[least])), Margin(float(delay[first]), float(omega[first]))
+    return _Margin(float(either[least]), float(omega[least])), _Margin(
+        float(delay[first]), float(omega[first])
+    )
 
 
-def _disk(transfer: Transfer, grid: Array, values: Array) -> Margin:
+def _disk(transfer: _Transfer, grid: Array, values: Array) -> _Margin:
     """Return the disk margin, from the largest |S - T| at and between the frequencies of the grid."""
     from scipy.optimize import elementwise  # here, because it takes long to import
 
@@ -135,7 +137,7 @@ def _disk(transfer: Transfer, grid: Array, values: Array) -> Margin:
         best = int(np.nanargmin(found.f_x))
         if -found.f_x[best] > largest:
             largest, at = float(-found.f_x[best]), float(found.x[best])
-    return Margin(2 / largest, at)
+    return _Margin(2 / largest, at)
 
 
 def _balanced(values: Array) -> Array:
@@ -143,7 +145,7 @@ def _balanced(values: Array) -> Array:
     return np.asarray(np.abs((1 - values) / (1 + values)))
 
 
-def _zeros(function: Transfer, grid: Array, places: Array) -> Array:
+def _zeros(function: _Transfer, grid: Array, places: Array) -> Array:
     """Return the zeros of a function between the points of a grid at some places and the next ones."""
     from scipy.optimize import elementwise  # here, because it takes long to import
 

@@ -71,14 +71,18 @@ def _check(case: Configuration) -> None:
         raise InputError("case", case.name, rule)
     for loop in case.loops:
         if loop.shape:
-            raise InputError(f"control.loops[{loop.name}]", f"array of shape {loop.shape}", "must be one design")
+            raise InputError(
+                f"control.loops[{loop.name}]", f"array of shape {loop.shape}", "must be one design"
+            )
 
 
 def _closed(case: Configuration, airspeeds: Any, options: Mapping[str, Any]) -> tuple[LinearModel, Array]:
     """Return the case with its loops closed at airspeeds (k,), and which of the points are stable."""
     closed = case.linearize(airspeeds, **options)
     if closed.airspeed.ndim != 1:
-        raise InputError("airspeeds", f"array of shape {closed.airspeed.shape}", "must be a list of airspeeds")
+        raise InputError(
+            "airspeeds", f"array of shape {closed.airspeed.shape}", "must be a list of airspeeds"
+        )
     values, error = roots(closed)
     decays = (values.real < -error) | np.isnan(values)  # a state that a point does not have
     return closed, np.asarray(decays.all(axis=-1) & np.isfinite(values).any(axis=-1))
@@ -87,7 +91,10 @@ def _closed(case: Configuration, airspeeds: Any, options: Mapping[str, Any]) -> 
 def _at(case: Configuration, airspeed: float, options: Mapping[str, Any]) -> list[LoopMargins]:
     """Return the margins of all loops at an airspeed at which the case is stable."""
     loops = LoopTransfer(case.open_loop(airspeed, **options), case.loops)
-    delay, closed = sum(float(loop.delay or 0.0) for loop in case.loops), loops.roots()
+    delay, closed = (
+        sum(0.0 if loop.delay is None else float(loop.delay) for loop in case.loops),
+        loops.roots(),
+    )
     return [
         margins_of(
             partial(loops.transfer, cut), frequencies(np.concatenate([closed, loops.roots(cut)]), delay)

@@ -88,13 +88,17 @@ class WingAerodynamics:
             sign = "above zero" if entry.name in ("lift_slope", "chord") else ""
             if entry.name != "flap_chord" or self.flap_chord is not None:
                 check_finite(entry.name, getattr(self, entry.name), sign)
-        if self.flap_chord is not None and np.any((np.real(self.flap_chord) <= 0) | (np.real(self.flap_chord) > 1)):
+        if self.flap_chord is not None and np.any(
+            (np.real(self.flap_chord) <= 0) | (np.real(self.flap_chord) > 1)
+        ):
             raise InputError("flap_chord", self.flap_chord, "must be above 0, and at most the whole chord, 1")
         for name, low, high in (
             ("flap_inboard", 0.0, self.flap_outboard),
             ("flap_outboard", self.flap_inboard, 1.0),
         ):
-            if np.any((np.real(getattr(self, name)) < np.real(low)) | (np.real(getattr(self, name)) > np.real(high))):
+            if np.any(
+                (np.real(getattr(self, name)) < np.real(low)) | (np.real(getattr(self, name)) > np.real(high))
+            ):
                 rule = "must lie on the wing, 0 to 1 of its span, inboard before outboard"
                 raise InputError(name, getattr(self, name), rule)
 
@@ -112,7 +116,9 @@ class WingAerodynamics:
         assert self.flap_chord is not None  # checked by the caller
         own = self._arrays()
         effectiveness, moment = flap_derivatives(np.asarray(self.flap_chord)[..., None, None])
-        area = strips.width[..., None] * _covered(strips.width, self.flap_inboard, self.flap_outboard)[..., None]
+        area = (
+            strips.width[..., None] * _covered(strips.width, self.flap_inboard, self.flap_outboard)[..., None]
+        )
         pressure = own["chord"] * np.cos(own["sweep"]) / 2 * area
         arm = (own["elastic_axis"] - own["aerodynamic_centre"]) * own["chord"]
         lift = pressure * own["lift_slope"] * effectiveness
