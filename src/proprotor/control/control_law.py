@@ -133,7 +133,7 @@ def _matrix(name: str, given: ArrayLike) -> Array:
 
 def _of_matrix(numerators: Any, denominators: Any) -> ControlLaw:
     """Return the law in a transfer function, or in a matrix of them with a row for each command."""
-    if np.ndim(denominators[0]) == 0:
+    if isinstance(denominators[0], int | float):  # np.float64 is one
         return _of_transfer_function(np.squeeze(np.asarray(numerators)), denominators)
     rows = [
         _beside([_of_transfer_function(*pair) for pair in zip(*row, strict=True)])
@@ -174,7 +174,7 @@ def _of_transfer_function(numerator: ArrayLike, denominator: ArrayLike) -> Contr
     if not len(den):
         raise InputError("denominator", denominator, "must not be zero")
     if len(num) > len(den):
-        raise InputError("numerator", list(num), _IMPROPER)
+        raise InputError("numerator", num.tolist(), _IMPROPER)
     states = len(den) - 1
     num, den = np.pad(num, (len(den) - len(num), 0)) / den[0], den / den[0]
     through = num[0]

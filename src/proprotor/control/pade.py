@@ -2,14 +2,14 @@
 
 The approximation of order n is Q(-x)/Q(x) with x = sτ and Q(x) = Σ (2n - k)! n! / ((2n)! k! (n - k)!) x^k. Each pair of
 roots of Q is a section (x² - a x + b)/(x² + a x + b) = 1 - 2 a x/(x² + a x + b), each real root a section
-(b - x)/(b + x) = 2 b/(x + b) - 1. The magnitude is 1 at all frequencies, and only the phase is off, by
-n!² x^{2n+1}/((2n)! (2n + 1)!) to leading order.
+(b - x)/(b + x) = 2 b/(x + b) - 1. The magnitude is 1 at all frequencies, and only the phase is off: the approximation
+lags less than the delay, the more so the higher the frequency.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from math import factorial, radians
+from math import atan2, factorial, pi, radians
 from typing import NamedTuple
 
 import numpy as np
@@ -45,7 +45,18 @@ def sections(order: int) -> tuple[_Section, ...]:
     return tuple(sorted(pairs, key=lambda one: one.stiffness)) + tuple(real)
 
 
+@lru_cache(maxsize=MOST)
 def phase_limit(order: int) -> float:
     """Return ωτ up to which the phase of an approximation is right to one degree."""
-    share = factorial(order) ** 2 / (factorial(2 * order) * factorial(2 * order + 1))
-    return float((_WRONG / share) ** (1 / (2 * order + 1)))
+    from scipy.optimize import brentq  # here, because it takes long to import
+
+    def wrong(turn: float) -> float:
+        lags = (
+            atan2(turn, one.stiffness)
+            if one.damping is None
+            else atan2(one.damping * turn, one.stiffness - turn**2)
+            for one in sections(order)
+        )
+        return turn - 2 * sum(lags) - _WRONG
+
+    return float(brentq(wrong, 0.0, pi * (order + 1)))

@@ -101,6 +101,6 @@ def _motions(model: LinearModel) -> Mapping[str, Array]:
 
 def _without_displacement(model: LinearModel) -> list[int]:
     """Return the places of coordinates along which nothing has stiffness at some point, so that only rates count."""
-    azimuths = np.asarray(model.azimuths_held.reshape(-1, len(model.azimuths)).all(axis=0))
-    free = {name for name, held in zip(model.azimuths, azimuths.tolist(), strict=True) if not held}
+    held = np.moveaxis(model.azimuths_held, -1, 0)
+    free = {name for name, points in zip(model.azimuths, held, strict=True) if not np.all(points)}
     return [place for place, name in enumerate(model.dofs) if name in free or name in model.rates]
