@@ -12,6 +12,8 @@ from types import ModuleType
 from typing import Any
 
 from proprotor.case import Case, list_cases, load_case
+from proprotor.control.control_law import ControlLaw
+from proprotor.control.control_loop import ControlLoop
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.exchange.dmig import save_dmig
@@ -50,6 +52,8 @@ __all__ = [
     "BladeFrequencies",
     "BladeStations",
     "Case",
+    "ControlLaw",
+    "ControlLoop",
     "DriveTrain",
     "EquationSet",
     "InputError",

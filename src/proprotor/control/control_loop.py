@@ -22,7 +22,7 @@ NUMBERS = {
     "actuator_damping": "",
     "delay": "s",
 }  # with their SI units
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 .-]{0,59}")
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _.-]{0,59}")
 _POSITIVE = ("actuator_bandwidth", "actuator_damping", "delay")
 
 
@@ -83,7 +83,7 @@ class ControlLoop:
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
-            raise InputError("name", self.name, "must be letters, digits, spaces, dots and dashes")
+            raise InputError("name", self.name, "must be letters, digits, spaces, dots, dashes and underscores")
         for field in ("sensors", "inputs"):
             object.__setattr__(self, field, _names(field, getattr(self, field)))
         for field in NUMBERS:

@@ -42,7 +42,7 @@ The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `
 from proprotor.deck.build import load
 from proprotor.deck.file import list_cases, read_tables
 from proprotor.deck.per_revolution import as_one_file
-from proprotor.deck.vary import added_loops, check_input, design_inputs, vary, varied_numbers, with_control
+from proprotor.deck.vary import added_loops, check_input, design_inputs, varied_numbers, vary, with_control
 from proprotor.deck.written import FilePath, PerRevolution
 
 __all__ = [

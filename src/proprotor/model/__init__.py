@@ -37,8 +37,8 @@ configuration, and the stamp that every result has.
     in_notebook          a case and a model as HTML
     options_of_result    options taken back from a result
 
-The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor`, `support` and `control`. One
-deferred import goes down: `LinearModel.modes` calls `stability`.
+The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor`, `support` and
+`control`. One deferred import goes down: `LinearModel.modes` calls `stability`.
 """
 
 from proprotor.model.closed_loop import close_loops
@@ -64,8 +64,8 @@ __all__ = [
     "airload_moments",
     "amount_rules",
     "amounts",
-    "close_loops",
     "blade_comparison",
+    "close_loops",
     "deck_fingerprint",
     "doubts",
     "first_order",
