@@ -13,8 +13,9 @@ from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubts_along
 from proprotor.model.provenance import reservations
+from proprotor.stability.margin_ranges import Kept, Needed, kept_ranges
 from proprotor.tables.csv_text import csv_of
-from proprotor.tables.margin_table import Needed, kept_ranges, margin_cells, margin_records, verdict
+from proprotor.tables.margin_table import margin_cells, margin_records, verdict
 from proprotor.tables.sweep_table import heading
 from proprotor.typing import Dataset
 from proprotor.units import airspeed_unit, speed_factor, speeds, to_si
@@ -65,6 +66,7 @@ def margins(
     airspeeds = speeds(speed, "--speed", case.operation.density)
     with waiting("Analysing"):
         found = case.margins(airspeeds, **request.options)
+        kept = kept_ranges(case, found, needed)
     records = margin_records(found)
 
     def draw() -> Any:
@@ -80,8 +82,8 @@ def margins(
         )
 
     outputs.write(
-        document=lambda: output.about(case, request) | _document(found, records, needed),
-        table=lambda: _print(case, found, records, needed, arguments.unit_of(speed)),
+        document=lambda: output.about(case, request) | _document(found, records, kept, needed),
+        table=lambda: _print(case, found, records, kept, needed, arguments.unit_of(speed)),
         csv=lambda: csv_of(records, list(records[0]), found.attrs),
         plot=draw,
     )
@@ -108,20 +110,24 @@ def _needed(gain: str, phase: str) -> Needed:
     return Needed(*found)
 
 
-def _document(found: Dataset, records: list[dict[str, Any]], needed: Needed) -> dict[str, Any]:
+def _document(
+    found: Dataset, records: list[dict[str, Any]], kept: list[Kept], needed: Needed
+) -> dict[str, Any]:
     return {
         "control": found.attrs["control"],
         "needed": {"gain margin (dB)": needed.gain, "phase margin (deg)": math.degrees(needed.phase)},
-        "kept (m/s, interpolated)": [kept._asdict() for kept in kept_ranges(found, needed)],
+        "kept (m/s)": [one._asdict() for one in kept],
         "margins": records,
     }
 
 
-def _print(case: Case, found: Dataset, records: list[dict[str, Any]], needed: Needed, unit: str) -> None:
+def _print(
+    case: Case, found: Dataset, records: list[dict[str, Any]], kept: list[Kept], needed: Needed, unit: str
+) -> None:
     output.print_head(case, found.attrs)
     unit, factor = airspeed_unit(unit), float(speed_factor(unit, case.operation.density))
     rows = (margin_cells(record, factor) for record in records)
     output.print_table((unit, *_COLUMNS), rows, text=("loop", ""))
     output.print_doubts(doubts_along(found.airspeed.values, found.warning.values), unit, factor)
-    for line in verdict(found, needed, unit, factor):
+    for line in verdict(found, kept, needed, unit, factor):
         output.console().print(line, style="bold")

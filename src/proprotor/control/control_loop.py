@@ -83,7 +83,9 @@ class ControlLoop:
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
-            raise InputError("name", self.name, "must be letters, digits, spaces, dots, dashes and underscores")
+            raise InputError(
+                "name", self.name, "must be letters, digits, spaces, dots, dashes and underscores"
+            )
         for field in ("sensors", "inputs"):
             object.__setattr__(self, field, _names(field, getattr(self, field)))
         for field in NUMBERS:

@@ -12,7 +12,7 @@ from proprotor.plots.canvas import RIGHT, add_footer, grid, note, origin_of
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, axis_of, written
 from proprotor.plots.style import COLOURS, LABEL_SIZE, UNSTABLE
-from proprotor.tables.margin_table import Needed, decibels
+from proprotor.stability.margin_ranges import Needed, decibels
 from proprotor.typing import Array, Axes, Dataset, Figure
 
 _TOPS = (30.0, 180.0)  # of the axes, dB and degrees: more is as good as no limit

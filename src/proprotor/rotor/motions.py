@@ -24,6 +24,7 @@ SECOND = ", second root"
 LAGS = ("slow", "fast")  # states of lift that lags
 LAG_SHAPES = 2  # functions of the radius in which lift lags; tests/model/test_lift_lag.py has their error
 _LIFT = re.compile(r"(^| )(slow|fast) lift( \d+)?$")  # stems of their coordinates
+_OF_LOOP = re.compile(r" (law|delay|actuator)( \d+)?(_[ab])?$")
 _OF_LAW = re.compile(r"(.* law(?: \d+)?)_([ab])")  # two states of a control law, which may swing as one pair
 
 
@@ -86,6 +87,11 @@ def is_lift(name: str) -> bool:
 def is_of_rotor(name: str) -> bool:
     """Return whether a coordinate or mode of a model is one of a rotor, and not of its support."""
     return re.sub(r"\d+", "2", half_of(name)[1]) in _names_of_rotors()
+
+
+def is_of_loop(name: str) -> bool:
+    """Return whether a coordinate or mode of a model has the name of a law, a delay or an actuator of a loop."""
+    return bool(_OF_LOOP.search(name))
 
 
 def motions(dofs: tuple[str, ...]) -> list[Motion]:

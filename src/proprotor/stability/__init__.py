@@ -15,6 +15,7 @@ Modes of one point, or of a batch of points
     loop_transfer           the transfer function of a control loop, cut at its actuator
     margin_search           gain, phase, delay and disk margin of a transfer function
     margins                 margins of the control loops of a case along airspeeds
+    margin_ranges           the airspeeds over which loops keep the margins that are needed
 
 Modes along a line of points
     parameter_lines         lines of airspeeds or of another input, and the approach from the anchor
@@ -59,6 +60,7 @@ from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
+from proprotor.stability.margin_ranges import Kept, Needed, decibels, kept_ranges
 from proprotor.stability.margins import margins
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
@@ -90,8 +92,10 @@ __all__ = [
     "Crossings",
     "Failed",
     "FlutterPoint",
+    "Kept",
     "Modes",
     "NamedStates",
+    "Needed",
     "ParameterLine",
     "Search",
     "Spectrum",
@@ -108,6 +112,7 @@ __all__ = [
     "coordinate_motion",
     "coordinate_shares",
     "damping_rate",
+    "decibels",
     "decomposition",
     "eigenvalue_change",
     "eigenvalues",
@@ -119,6 +124,7 @@ __all__ = [
     "follow",
     "frequency_response",
     "instability",
+    "kept_ranges",
     "kinds",
     "margins",
     "match_modes",

@@ -13,7 +13,7 @@ percentiles           percentiles of a sample as text, with bounds where designs
 csv_text              records of any kind as CSV
 blade_table           the hinged blade of a table of stations: fields, comparison, lines of a deck
 boundary_table        boundaries against an input: records and lines
-margin_table          margins of control loops: records, lines, and the airspeeds up to which they suffice
+margin_table          margins of control loops: records, cells and sentences
 amounts_table         what the inputs of a case amount to, as lines for a terminal and a report
 points                points of a CSV file, to stand on plots beside results
 ====================  =========================================================================

@@ -1,53 +1,18 @@
-"""Margins of control loops as records and cells of a table, and the airspeeds up to which they suffice."""
+"""Margins of control loops as records, as cells of a table, and in sentences."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Any, NamedTuple
-
-import numpy as np
+from collections.abc import Sequence
+from typing import Any
 
 from proprotor.model.doubts import marked
-from proprotor.typing import Array, Dataset
+from proprotor.stability.margin_ranges import Kept, Needed
+from proprotor.typing import Dataset
 from proprotor.units import KNOT, KTAS
 
 _HERTZ = 2 * math.pi
 _NONE = "-"  # in place of a margin that has no limit
-
-
-class Needed(NamedTuple):
-    """What a loop must keep: decibels of gain, either way, and phase in rad."""
-
-    gain: float = 6.0
-    phase: float = math.pi / 4
-
-    @property
-    def text(self) -> str:
-        """The margins in words, such as "6 dB and 45 deg"."""
-        return f"{self.gain:g} dB and {math.degrees(self.phase):g} deg"
-
-
-class _Kept(NamedTuple):
-    """A range of airspeeds of one loop over which the margins suffice, m/s, interpolated.
-
-    open_start, open_stop : whether the range goes on beyond the airspeeds that were analysed; lost_by : the margin that
-    is too small above the range.
-    """
-
-    loop: str
-    start: float
-    stop: float
-    open_start: bool
-    open_stop: bool
-    lost_by: str
-
-
-def decibels(found: Dataset) -> Array:
-    """Return the gain margin (airspeed, loop) in dB: the smaller of what factors above and below 1 allow."""
-    with np.errstate(divide="ignore"):
-        up, down = (20 * np.log10(found[name].values) for name in ("gain_margin", "gain_reduction"))
-    return np.asarray(np.minimum(up, -down))
 
 
 def margin_records(found: Dataset) -> list[dict[str, Any]]:
@@ -115,83 +80,32 @@ def margin_cells(record: dict[str, Any], speed: float) -> tuple[str, ...]:
     return (first, record["loop"], *cells, f"{record['disk margin']:.2f}", "")
 
 
-def kept_ranges(found: Dataset, needed: Needed) -> list[_Kept]:
-    """Return the ranges of airspeeds over which each loop keeps the margins, interpolated between airspeeds.
-
-    Where the closed loop is unstable, or nothing is known, no margin is kept.
-    """
-    return [
-        kept
-        for place, loop in enumerate(found.loop.values.tolist())
-        for kept in _ranges(found, place, loop, needed)
-    ]
-
-
-def _ranges(found: Dataset, place: int, loop: str, needed: Needed) -> Iterator[_Kept]:
-    """Yield the ranges of one loop."""
-    speeds = found.airspeed.values
-    spare = np.stack(
-        [
-            decibels(found)[:, place] / needed.gain - 1,
-            found.phase_margin.values[:, place] / needed.phase - 1,
-        ]
-    )
-    unstable = np.isnan(spare).any(axis=0)
-    least = np.where(
-        unstable, -1.0, np.minimum(spare.min(axis=0), 1e6)
-    )  # a margin without limit is very large
-    good = least >= 0
-    names = ("gain margin", "phase margin")
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]]).astype(int)))
-    for first, last in edges.reshape(-1, 2) - np.array([0, 1]):
-        after = last + 1
-        open_stop = after == len(speeds)
-        lost = "" if open_stop else "instability" if unstable[after] else names[int(spare[:, after].argmin())]
-        yield _Kept(
-            loop,
-            speeds[0] if first == 0 else _between(speeds, least, first - 1),
-            speeds[-1] if open_stop else _between(speeds, least, last),
-            first == 0,
-            bool(open_stop),
-            lost,
-        )
-
-
-def _between(speeds: Array, least: Array, place: int) -> float:
-    """Return the airspeed at which the margins just suffice, between two airspeeds."""
-    low, high = np.clip(least[place : place + 2], -1.0, 1.0)
-    return float(speeds[place] + (speeds[place + 1] - speeds[place]) * low / (low - high))
-
-
-def verdict(found: Dataset, needed: Needed, unit: str, speed: float) -> list[str]:
+def verdict(found: Dataset, every: Sequence[Kept], needed: Needed, unit: str, speed: float) -> list[str]:
     """Return a sentence for each loop: between which airspeeds it keeps the margins, and what is lost then.
 
     Parameters
     ----------
     found : xarray.Dataset
         Of `Case.margins`.
+    every : sequence of Kept
+        The ranges of all loops.
     needed : Needed
     unit : str
         Unit of the airspeeds, as outputs name it.
     speed : float
         That unit in m/s.
     """
-    every, sentences = kept_ranges(found, needed), []
+    sentences = []
     for loop in found.loop.values.tolist():
-        own = [kept for kept in every if kept.loop == loop]
-        parts = [_range_text(kept, unit, speed) for kept in own]
-        text = (
-            f"keeps {needed.text} {', '.join(parts)}"
-            if parts
-            else f"keeps {needed.text} at none of the airspeeds"
-        )
-        sentences.append(f"{loop}: {text}.")
+        ranges = "; ".join(_range_text(kept, unit, speed) for kept in every if kept.loop == loop)
+        sentences.append(f"{loop}: keeps {needed.text} {ranges or 'at none of the airspeeds'}.")
     return sentences
 
 
-def _range_text(kept: _Kept, unit: str, speed: float) -> str:
+def _range_text(kept: Kept, unit: str, speed: float) -> str:
     """Return a range of airspeeds in words."""
-    start, stop = (f"{end / speed:.4g}" for end in (kept.start, kept.stop))
-    lost = f" (interpolated; then lost by {kept.lost_by})" if kept.lost_by else ""
-    first = f"from {start} {unit}" + ("" if kept.open_start else " (interpolated)")
-    return f"{first} to {stop} {unit}{lost}" + (", the highest analysed" if kept.open_stop else "")
+    start, stop = kept.start / speed, kept.stop / speed
+    first = f"from {start:.4g}" if kept.open_start else f"from {start:.2f}"
+    if kept.open_stop:
+        return f"{first} to {stop:.4g} {unit}, the highest that was analysed"
+    return f"{first} to {stop:.2f} {unit}, then lost by {kept.lost_by}"
