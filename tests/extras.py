@@ -23,6 +23,15 @@ STATIONS = """r [m],mass [kg/m],EI_flat [N*m**2],EI_edge [N*m**2],GJ [N*m**2],tw
 0.36,12,2e7,2e7,2e5,27,0.35,0.09
 3.8,12,2e7,2e7,2e5,0,0.35,0.09
 """
+CLOSED = f"""base = "{CASE}"
+[case]
+name = "closed"
+[[control.loops]]
+name = "hold"
+sensors = ["x rate"]
+inputs = ["cyclic_1c"]
+gain = -0.001
+"""
 BLADE = ("--at-rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
 # Each command as it needs no extra.
 PLAIN = {
@@ -32,6 +41,7 @@ PLAIN = {
     "describe": ("rotor.precone",),
     "sweep": (CASE, *SPEED, "--csv", "sweep.csv", "--plot", "sweep.png"),
     "flutter": (CASE, "--scan", "300:400:50kt"),
+    "margins": ("closed.toml", *SPEED, "--csv", "margins.csv", "--plot", "margins.png"),
     "boundary": (CASE, "--against", "rotor.precone=1:2:1 deg", "--scan", "300:400:50kt"),
     "map": (CASE, "--x", "rotor.precone=1:2:1 deg", "--y", "airspeed=300:400:100kt"),
     "sensitivity": (CASE, "--wrt", "rotor.precone", "--scan", "300:400:50kt"),
@@ -78,6 +88,7 @@ def main(folder: str, *hidden: str) -> int:
     assert set(PLAIN) == set(proprotor.commands), set(PLAIN) ^ set(proprotor.commands)
     os.chdir(folder)
     Path("stations.csv").write_text(STATIONS, encoding="utf-8")
+    Path("closed.toml").write_text(CLOSED, encoding="utf-8")
     linearize, computed = Case.linearize, []
     for command, words in PLAIN.items():
         done = CliRunner().invoke(proprotor, [command, *words])

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from proprotor.model.linear_model import LinearModel
 
 Stamp = Mapping[str, str]
+_NO_LOOPS = "none"  # among the control loops of a stamp
 _AIR = ("operation.density", "operation.altitude", "operation.temperature_offset")
 NAMES = (
     *(
@@ -84,10 +85,16 @@ def line(found: Mapping[Any, Any]) -> str:
         return ""
     own = chosen(options_in_result(found))
     options = f"options: {options_text(own)}" if own else "default options"
-    closed = f", control loops closed: {found['control']}" if "control" in found else ""
+    closed = f", control loops closed: {loops}" if (loops := _loops(found)) else ""
     if "case" in found:
         return f"Case {found['case']} ({found['deck']}), {options}{closed}."
     return f"{options.capitalize()}."
+
+
+def _loops(found: Mapping[Any, Any]) -> str:
+    """Return the control loops of a result in words; empty without any."""
+    loops = str(found.get("control", _NO_LOOPS))
+    return "" if loops == _NO_LOOPS else loops
 
 
 def unusual_options(found: Mapping[Any, Any]) -> list[str]:
@@ -96,7 +103,7 @@ def unusual_options(found: Mapping[Any, Any]) -> list[str]:
     The list is empty if all options are defaults and no loop is closed.
     """
     own = chosen(options_in_result(found)) if "options" in found else {}
-    closed = [f"Control loops closed: {found['control']}."] if "control" in found else []
+    closed = [f"Control loops closed: {loops}."] if (loops := _loops(found)) else []
     return [*([f"Options: {options_text(own)}."] if own else []), *closed]
 
 
@@ -108,7 +115,7 @@ def _stamp(origin: Origin, varied: Collection[str] = ()) -> dict[str, str]:
         return own
     density = one_density(case, varied)
     own |= {} if density is None else {"air_density": repr(density)}
-    own |= {"control": "; ".join(map(loop_text, case.loops))} if case.loops else {}
+    own |= {"control": "; ".join(map(loop_text, case.loops)) or _NO_LOOPS}
     return own | {
         "case": case.name,
         "title": case.title or case.name,
