@@ -4,7 +4,6 @@ In come a rotor, its operation and its support (`rotor`, `support`); out go line
 configuration, and the stamp that every result has.
 
     linear_model         the record LinearModel: M q̈ + C q̇ + K q = B u about a trim, over a batch of points
-    kept                 results that are kept as long as the objects live from which they were made
     batches              shapes of batches, and their points a few at a time
     quantities           the numbers of rotor, operation and options by the names of the derivation
     lift_lag             the lag of lift, added to the matrices of a rotor

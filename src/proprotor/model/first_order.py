@@ -9,14 +9,14 @@ other.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.batches import at_rows, few_at_once
+from proprotor.model.batches import Rows, at_rows, few_at_once
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import massless_coordinates
 from proprotor.typing import Array
@@ -54,18 +54,37 @@ def state_matrix(model: LinearModel) -> Array:
 
 def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
-    held, shape = held_coordinates(model), model.M.shape[:-2]
-    rates = _rates(tuple(held), len(model.dofs))
-    matrix = np.empty((*shape, rates.shape[1], rates.shape[1]))
-    for rows in few_at_once(shape):
-        mass, damping, stiffness = (at_rows(part, rows, shape) for part in (model.M, model.C, model.K))
-        loads = np.concatenate([stiffness.take(held, -1), damping], axis=-1)
-        matrix[rows][..., : len(held), :] = rates
-        np.negative(np.linalg.solve(mass, loads), out=matrix[rows][..., len(held) :, :])
+    states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
+    matrix = np.empty((*shape, states, states))
+    for _ in few_first_order(model, matrix):
+        pass
     for state, free in lacking_states(model):
         matrix[free, state, :] = np.nan
         matrix[free, :, state] = np.nan
     return matrix
+
+
+def few_first_order(model: LinearModel, whole: Array | None = None) -> Iterator[tuple[Rows, Array]]:
+    """Yield rows of a batch and A of their points, a few points at a time.
+
+    Who needs each matrix once has no array of all of them, which would not stay in the cache.
+
+    Parameters
+    ----------
+    model : LinearModel
+        All points have the same states, and a mass matrix with an inverse.
+    whole : array (..., states, states), optional
+        Where the matrices are put; by default each part has memory of its own.
+    """
+    held, shape = held_coordinates(model), model.M.shape[:-2]
+    rates = _rates(tuple(held), len(model.dofs))
+    for rows in few_at_once(shape):
+        mass, damping, stiffness = (at_rows(part, rows, shape) for part in (model.M, model.C, model.K))
+        loads = np.concatenate([stiffness.take(held, -1), damping], axis=-1)
+        matrix = np.empty((*loads.shape[:-2], *rates.shape[1:] * 2)) if whole is None else whole[rows]
+        matrix[..., : len(held), :] = rates
+        np.negative(np.linalg.solve(mass, loads), out=matrix[..., len(held) :, :])
+        yield rows, matrix
 
 
 @lru_cache(maxsize=32)
@@ -106,6 +125,20 @@ def some_points(model: LinearModel, points: Any) -> LinearModel:
     shapes = None if model.shapes is None else model.shapes[points]
     none: dict[str, Any] = dict.fromkeys(("B", "hub", "rotor", "left", "left_hub", "feedback"))
     return replace(model, **parts, **none, shapes=shapes)
+
+
+def in_one_axis(model: LinearModel) -> LinearModel:
+    """Return the model with one axis of points, with M, C and K only."""
+    if model.airspeed.ndim == 1:
+        return model
+    n, trim = len(model.dofs), model.trim
+    parts: dict[str, Any] = {name: getattr(model, name).reshape(-1, n, n) for name in "MCK"}
+    shapes = None if model.shapes is None else model.shapes.reshape(-1, *model.shapes.shape[-2:])
+    flat = {one.name: getattr(trim, one.name).reshape(-1) for one in fields(trim)}
+    none: dict[str, Any] = dict.fromkeys(("B", "rotor", "left", "left_hub"))
+    return replace(
+        model, **parts, **none, shapes=shapes, trim=replace(trim, **flat), airspeed=model.airspeed.reshape(-1)
+    )
 
 
 def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]:

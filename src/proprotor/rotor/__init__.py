@@ -30,6 +30,7 @@ How a rotor is used:
     options              modelling options
     generated            calls of the generated equations by names of quantities
     fused                matrices of a whole rotor by the fused functions, batches and one point
+    kept                 results that are kept as long as the objects live from which they were made
     motions              coordinates as motions, and the names of their modes
 
 Loads and trim:
@@ -50,7 +51,8 @@ Loads and trim:
     trim_solver          Newton's method for all points
 
 All public names of the modules `blade_stations`, `elastic_blade`, `element_chain`, `hinged_blade`, `from_stations`,
-`fused`, `generated`, `lift_lag`, `motions`, `options`, `section_loads` and `smooth_table` belong to the face.
+`fused`, `generated`, `kept`, `lift_lag`, `motions`, `options`, `section_loads` and `smooth_table` belong to the
+face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -92,6 +94,7 @@ __all__ = [
     "fused",
     "generated",
     "hinged_blade",
+    "kept",
     "lift_lag",
     "motions",
     "options",
