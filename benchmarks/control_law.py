@@ -18,8 +18,9 @@ from scipy.optimize import differential_evolution
 
 import proprotor as pp
 from proprotor.model.closed_loop import close_loops
+from proprotor.model.provenance import reservations
 from proprotor.model.sensors import sensor
-from proprotor.plots import plot_margins, rests_on
+from proprotor.plots import plot_margins
 from proprotor.stability.modes import eigenvalues
 
 KNOT = 1852 / 3600
@@ -95,8 +96,8 @@ def main() -> None:
     if given.figure:
         case = pp.load_case(given.deck)
         found = case.margins(np.arange(140.0, 401.0, 5.0) * KNOT)
-        figure = plot_margins(found, title=case.title)
-        rests_on(figure.axes[0], case).get_figure().savefig(given.figure, dpi=110)
+        figure = plot_margins(found, title=case.title, footer=" ".join(reservations(case)))
+        figure.savefig(given.figure, dpi=110)
         return
     found = differential_evolution(
         Search(pp.load_case("xv15")),

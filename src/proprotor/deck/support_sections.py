@@ -79,7 +79,7 @@ class WingAerodynamicsSection(Section):
     aerodynamic_centre: fields.Number = optional("Aerodynamic centre, in chords behind the leading edge.")
     downwash_point: fields.Number = optional("Point of the downwash, in chords behind the leading edge.")
     flap_chord: fields.Fraction = optional(
-        "Chord of a flaperon over that of the wing; it is an input of control loops. No flaperon if left out."
+        "Chord of a flaperon over that of the wing, an input of control loops; not of an aircraft. None if left out."
     )
     flap_inboard: fields.Fraction = optional("Inboard end of the flaperon, in parts of the span.")
     flap_outboard: fields.Fraction = optional("Outboard end of the flaperon, in parts of the span.")
