@@ -22,6 +22,7 @@ from proprotor.model.first_order import state_matrix
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.sensors import sensor
 from proprotor.stability.modes import eigenvalues
+from proprotor.stability.origins import model_parts
 
 EXACT = 1e-9
 SLOPE = 1e-6
@@ -325,6 +326,27 @@ def test_sweep_flutter_map_study_and_boundaries_take_the_closed_loop():
     studied = pp.study(case, {path: gains}, speeds, ("flutter",), workers=1)
     assert float(studied.flutter_speed[1]) == pytest.approx(flutter.speed, abs=2e-5)
     assert float(studied.flutter_speed[0]) == pytest.approx(CASE.flutter_point(speeds).speed, abs=2e-5)
+
+
+def test_what_drives_a_mode_counts_the_loops_and_sums_to_the_model():
+    case = CASE.with_control(DAMPER, *LOOPS["several sensors and inputs"])
+    model = case.linearize(SPEED)
+    parts = model_parts(case, model)
+    for name in "MCK":
+        whole = getattr(model, name)
+        np.testing.assert_allclose(
+            sum(getattr(part, name) for part in parts.values()),
+            whole,
+            rtol=1e-9,
+            atol=1e-9 * np.abs(whole).max(),
+        )
+    assert np.any(parts["control loops"].C)
+    found = case.attribution(SPEED, "beam")
+    assert abs(complex(found.contribution.sum("origin").values[0])) < 1e-6
+    assert (
+        "control loops" in found.origin.values
+        and "control loops" not in CASE.attribution(SPEED).origin.values
+    )
 
 
 def test_results_say_which_loops_are_closed():

@@ -33,6 +33,7 @@ class ControlLaw:
     C : array (commands, k)
         Commands u per unit of each state.
     D : array (commands, signals)
+        Commands per unit of each signal.
 
     Raises
     ------
@@ -63,6 +64,15 @@ class ControlLaw:
     def gain(cls, signals: int, commands: int) -> ControlLaw:
         """Return the law without states that leads each signal to one command, or one signal to all commands.
 
+        Parameters
+        ----------
+        signals, commands : int
+            How many there are.
+
+        Returns
+        -------
+        ControlLaw
+
         Raises
         ------
         InputError
@@ -85,6 +95,10 @@ class ControlLaw:
         given : ControlLaw, (numerator, denominator), (A, B, C, D), or object
             Coefficients of powers of s, the highest first. An object has ``A, B, C, D`` or ``num, den``, as those of
             python-control and scipy.signal; its time must be continuous.
+
+        Returns
+        -------
+        ControlLaw
 
         Raises
         ------
@@ -111,7 +125,18 @@ class ControlLaw:
         return np.linalg.eigvals(self.A) if len(self.A) else np.zeros(0, dtype=complex)
 
     def response(self, omega: Array) -> Array:
-        """Return C (iω - A)⁻¹ B + D (frequencies, commands, signals) at frequencies ω (frequencies,), rad/s."""
+        """Return the frequency response C (iω - A)⁻¹ B + D.
+
+        Parameters
+        ----------
+        omega : array (frequencies,)
+            Frequencies ω, rad/s.
+
+        Returns
+        -------
+        array (frequencies, commands, signals)
+            Commands per unit of each signal.
+        """
         turning = 1j * np.asarray(omega)[:, None, None] * np.eye(len(self.A))
         return np.asarray(
             self.C @ np.linalg.solve(turning - self.A, np.asarray(self.B, dtype=complex)) + self.D

@@ -44,8 +44,8 @@ class ControlLoop:
         "collective", "cyclic_1c", "cyclic_1s" (rad at the swashplate), "flaperon" (rad) of a wing that has one; of two
         rotors "symmetric collective" and so on.
     weights : sequence of float, optional
-        Weight of each sensor; the weighted sum is then the one signal of the law. Without weights each sensor is a
-        signal.
+        Weight of each sensor, dimensionless; the weighted sum is then the one signal of the law. Without weights each
+        sensor is a signal.
     law : optional
         A transfer function (numerator, denominator), a state space (A, B, C, D), or an object of python-control or
         scipy.signal, see `ControlLaw.of`: from the signals to a command for each input. Without a law the gain alone.
@@ -56,7 +56,7 @@ class ControlLoop:
     actuator_bandwidth : float or array (...), optional
         rad/s: of a lag 1/(1 + s/ω), or with a damping of ω²/(s² + 2ζωs + ω²). Without it actuators follow at once.
     actuator_damping : float or array (...), optional
-        ζ of an actuator of second order.
+        Damping ratio ζ of an actuator of second order.
     delay : float or array (...), optional
         s, of each command.
     delay_order : int
@@ -147,15 +147,36 @@ class ControlLoop:
         return np.broadcast_shapes(*(np.shape(value) for value in given if value is not None))
 
     def gain_at(self, airspeed: Array) -> Array:
-        """Return the gain (...) at airspeeds (...), m/s."""
+        """Return the gain at airspeeds.
+
+        Parameters
+        ----------
+        airspeed : array (...)
+            m/s.
+
+        Returns
+        -------
+        array (...)
+            rad per unit of the law's command.
+        """
         if self.scheduled_at is None or self.scheduled_gains is None:
             return np.asarray(self.gain)
         return np.asarray(self.gain * smooth_table(self.scheduled_at, self.scheduled_gains, airspeed))
 
     def after_the_law(self, omega: Array, airspeed: float) -> Array:
-        """Return the exact response (frequencies,) of gain, delay and actuator at ω (frequencies,) in rad/s.
+        """Return the exact frequency response of gain, delay and actuator; the delay is e^{-iωτ} itself.
 
-        The delay is e^{-iωτ} itself, and the numbers are those of one design, at an airspeed in m/s.
+        Parameters
+        ----------
+        omega : array (frequencies,)
+            rad/s.
+        airspeed : float
+            m/s.
+
+        Returns
+        -------
+        array (frequencies,)
+            Complex, rad per unit of the law's command. The numbers of the loop must be those of one design.
         """
         s = 1j * np.asarray(omega)
         found = complex(self.gain_at(np.asarray(airspeed))) * np.exp(
@@ -169,7 +190,20 @@ class ControlLoop:
         return np.asarray(found / (1 + 2 * self.actuator_damping * ratio + ratio**2))
 
     def response(self, omega: Array, airspeed: float) -> Array:
-        """Return the exact response (frequencies, inputs, sensors) of the loop from its sensors to its inputs."""
+        """Return the exact frequency response of the loop from its sensors to its inputs.
+
+        Parameters
+        ----------
+        omega : array (frequencies,)
+            rad/s.
+        airspeed : float
+            m/s.
+
+        Returns
+        -------
+        array (frequencies, inputs, sensors)
+            Complex, rad per SI unit of each sensor.
+        """
         law: ControlLaw = self.law
         return np.asarray(
             self.after_the_law(omega, airspeed)[:, None, None] * (law.response(omega) @ self.mixing)
@@ -187,7 +221,7 @@ def loop_text(loop: ControlLoop) -> str:
 
 def _names(field: str, given: str | Sequence[str]) -> tuple[str, ...]:
     """Return one name or more as a tuple."""
-    names = (given,) if isinstance(given, str) else tuple(given)
+    names: tuple[Any, ...] = tuple(given) if isinstance(given, list | tuple) else (given,)
     if not names or not all(isinstance(name, str) and name for name in names):
         raise InputError(field, given, "must be one name or more")
     if len(set(names)) < len(names):

@@ -40,7 +40,7 @@ The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `
 `control`. One deferred import goes down: `LinearModel.modes` calls `stability`.
 """
 
-from proprotor.model.closed_loop import close_loops
+from proprotor.model.closed_loop import close_loops, taken_apart
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.lift_lag import with_lift_lag
@@ -87,6 +87,7 @@ __all__ = [
     "stamp",
     "state_space",
     "structural_damping",
+    "taken_apart",
     "unit_doubts",
     "with_lift_lag",
     "with_mast",

@@ -78,6 +78,27 @@ def _check_loops(model: LinearModel, loops: Sequence[ControlLoop]) -> None:
             sensor(model, name, f"{field}.sensors")
 
 
+def taken_apart(
+    model: LinearModel, loops: Sequence[ControlLoop]
+) -> tuple[tuple[str, ...], tuple[Array, Array, Array]]:
+    """Return the coordinates of a closed loop without those of its loops, and what the loops add to M, C and K.
+
+    Parameters
+    ----------
+    model : LinearModel
+        From `close_loops`.
+    loops : sequence of ControlLoop
+        The same loops.
+    """
+    own = {name for loop in loops for name, _ in _coordinates(loop)}
+    of_loop = np.array([name in own for name in model.dofs])
+    assert model.feedback is not None and model.B is not None
+    parts = []
+    for matrix, command in zip((model.M, model.C, model.K), reversed(model.feedback), strict=True):
+        parts.append(np.where(of_loop[:, None], matrix, -(model.B @ command)))
+    return tuple(name for name in model.dofs if name not in own), (parts[0], parts[1], parts[2])
+
+
 def _control_inputs(model: LinearModel) -> tuple[str, ...]:
     """Return the inputs that a control loop may move: all but the gusts."""
     return () if model.B is None else tuple(name for name in model.inputs if half_of(name)[1] not in GUSTS)

@@ -128,13 +128,18 @@ class Configuration:
         Parameters
         ----------
         airspeed : float, array, text, pint quantity or xarray.DataArray
-            As for `linearize`.
+            m/s, as for `linearize`.
         **options
             See `proprotor.rotor.options.Options`.
 
         Returns
         -------
         LinearModel
+
+        Raises
+        ------
+        InputError
+            As `linearize`.
         """
         own = self.model_options(options)
         rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self)

@@ -35,9 +35,9 @@ def plot_margins(
     margins : xarray.Dataset
         Result of `Case.margins`.
     gain_margin : float
-        dB that are needed, to either side; a line marks them.
+        Needed to either side, in dB, a ratio; a line marks it.
     phase_margin : float
-        rad that are needed.
+        Needed to either side, rad.
     unit : str, optional
         Unit of the airspeed, "ktas" by default.
     title, footer : str
