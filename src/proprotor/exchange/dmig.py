@@ -64,8 +64,8 @@ def save_dmig(
     Raises
     ------
     InputError
-        When the model has more than one airspeed, control loops, failed or has no hub, a number is no point or unit, a component of
-        the hub is missing, or the path does not end in ``.bdf`` or cannot be written.
+        When the model has more than one airspeed, has control loops, failed or has no hub, a number is no point or
+        unit, a component of the hub is missing, or the path does not end in ``.bdf`` or cannot be written.
     OSError
         When the file cannot be written.
     """
