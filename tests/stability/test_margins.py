@@ -6,18 +6,23 @@ Tolerances: `EXACT` for numbers that both sides have by a search to rounding; `G
 from dataclasses import replace
 
 import control
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
 import proprotor as pp
 from proprotor.control.control_loop import ControlLoop
+from proprotor.plots import plot_margins
+from proprotor.stability.margin_ranges import Needed, decibels, kept_ranges
 from proprotor.stability.margin_search import frequencies, margins_of
 from proprotor.stability.modes import eigenvalues
+from tests.documentation import DOCS
 
 EXACT = 1e-7
 GRID = 1e-3
 CASE = pp.load_case("xv15")
 SPEED = 170.0
+KNOT = 1852 / 3600
 DAMPER = ControlLoop(
     name="damper",
     sensors="x acceleration",
@@ -206,6 +211,46 @@ def test_a_loop_of_several_inputs_is_cut_at_each():
     same = CASE.with_control(*apart).margins([120.0])
     for name in ("gain_margin", "phase_margin", "disk_margin"):
         np.testing.assert_allclose(found[name].values, same[name].values, rtol=1e-6)
+
+
+def test_the_airspeeds_over_which_margins_suffice_end_where_they_just_do():
+    case = CASE.with_control(DAMPER, GIMBAL)
+    found = case.margins(np.array([150.0, 175.0, 200.0]))
+    (kept, *more) = [one for one in kept_ranges(case, found, Needed(6.0, np.pi / 4)) if one.loop == "damper"]
+    assert not more and kept.open_start and not kept.open_stop and kept.start == 150.0
+    below, above = (case.margins(np.array([kept.stop + step])).sel(loop="damper") for step in (-0.01, 0.01))
+    assert decibels(below).min() >= 6 and float(below.phase_margin.item()) >= np.pi / 4
+    lost = not above.stable.item() or decibels(above).min() < 6 or above.phase_margin.item() < np.pi / 4
+    assert lost and kept.lost_by in ("gain margin", "phase margin", "instability")
+    nothing = kept_ranges(case, found, Needed(200.0, np.pi / 4))
+    assert not [one for one in nothing if one.loop == "damper"]
+
+
+def test_the_law_of_the_page_keeps_6_db_and_45_degrees_to_115_percent_of_its_target(tmp_path):
+    """One fixed law at all airspeeds; without it the wing flutters below."""
+    page = (DOCS / "howto" / "close-a-loop.md").read_text(encoding="utf-8")
+    (tmp_path / "loop.toml").write_text(page.split("```toml")[1].split("```")[0], encoding="utf-8")
+    case = pp.load_case(tmp_path / "loop.toml")
+    limit = 1.15 * 335
+    found = case.margins(np.append(np.arange(140.0, limit, 15.0), limit) * KNOT)
+    assert (
+        found.stable.all() and (decibels(found) > 6).all() and (found.phase_margin.values > np.pi / 4).all()
+    )
+    assert case.with_control().flutter_point().speed < 340 * KNOT < limit * KNOT < case.flutter_point().speed
+
+
+def test_the_picture_has_both_margins_of_every_loop_and_what_is_needed(found):
+    figure = plot_margins(found, title="a title", unit="m/s")
+    above, below = figure.axes
+    shown = [line for line in above.get_lines() if line.get_label() in ("damper", "gimbal")]
+    assert {line.get_label() for line in shown} == {"damper", "gimbal"}
+    (damper,) = [line for line in above.get_lines() if line.get_label() == "damper"]
+    np.testing.assert_allclose(damper.get_ydata(), np.minimum(decibels(found)[:, 0], 30))
+    assert "needed: 45" in [text.get_text() for text in below.texts]
+    assert "damper: x acceleration to cyclic_1c" in " ".join(
+        text.get_text().replace("\n", " ") for text in figure.texts
+    )
+    plt.close(figure)
 
 
 def test_refusals():
