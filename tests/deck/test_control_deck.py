@@ -106,8 +106,9 @@ def test_a_study_of_a_deck_with_loops_is_repeated_and_one_with_loops_of_python_i
     assert pp.study(str(tmp_path / "study.toml"), workers=1).equals(found)
     case = pp.load_case("xv15-uncoupled").with_control(GIVEN)
     in_python = pp.study(case, plan, speeds, ("least_stable",), workers=1)
-    with pytest.raises(pp.InputError):
-        pp.save_study(in_python, tmp_path / "other.toml")
+    pp.save_study(in_python, tmp_path / "other.toml")
+    with pytest.raises(pp.InputError, match=r"^case: must be given again"):
+        pp.study(str(tmp_path / "other.toml"), workers=1)
     assert pp.study(case, in_python, workers=1).equals(in_python)
 
 
