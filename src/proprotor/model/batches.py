@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import prod
 from types import EllipsisType
 
@@ -39,6 +39,28 @@ def few_at_once(shape: tuple[int, ...]) -> Iterator[Rows]:
     step = max(1, _FEW * shape[0] // count)
     for start in range(0, shape[0], step):
         yield slice(start, start + step)
+
+
+def as_grid(numbers: Mapping[str, Array], positions: Array) -> tuple[dict[str, Array], Array]:
+    """Return numbers (designs, 1) and positions (designs, count) where points are designs at so many positions each.
+
+    What does not depend on the position is then derived once for each design. Other points stay as they are.
+
+    Parameters
+    ----------
+    numbers : mapping of array (points,)
+        What differs from design to design.
+    positions : array (points,)
+        Airspeeds.
+    """
+    points, same = np.shape(positions), dict(numbers)
+    if not same or len(points) != 1 or any(np.shape(one) != points for one in same.values()):
+        return same, positions
+    changes = np.flatnonzero(np.any([one[1:] != one[:-1] for one in same.values()], axis=0)) + 1
+    count = int(changes[0]) if len(changes) else points[0]
+    if count == 1 or points[0] % count or (changes % count).any():
+        return same, positions
+    return {name: one[::count, None] for name, one in same.items()}, positions.reshape(-1, count)
 
 
 def at_rows(matrices: Array, rows: Rows, shape: tuple[int, ...]) -> Array:

@@ -21,8 +21,8 @@ from proprotor.model import stamp
 from proprotor.model.batches import few_at_once
 from proprotor.model.first_order import (
     blocks,
-    few_first_order,
     first_order,
+    first_order_at,
     have_modes,
     held_coordinates,
     lack_azimuths,
@@ -86,8 +86,8 @@ def _eigenvalues(model: LinearModel) -> Array:
     """Return the eigenvalues (..., states) of points with the same states, whose coordinates may all couple."""
     states = len(held_coordinates(model)) + len(model.dofs)
     found = np.empty((*model.M.shape[:-2], states), dtype=complex)
-    for rows, matrix in few_first_order(model):
-        found[rows] = np.linalg.eigvals(matrix)
+    for rows in few_at_once(model.M.shape[:-2]):  # the matrices of all points would not stay in the cache
+        found[rows] = np.linalg.eigvals(first_order_at(model, rows))
     if (noise := _pairs_of_noise(found)).any():
         found[noise] = 0
     return found

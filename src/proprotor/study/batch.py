@@ -16,7 +16,7 @@ import numpy as np
 from proprotor.case import Case
 from proprotor.errors import InputError
 from proprotor.files.source_code import check_code
-from proprotor.model.batches import keep_memory
+from proprotor.model.batches import as_grid, keep_memory
 from proprotor.model.first_order import in_one_axis, missing_roots
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.kinds import flies_free
@@ -121,8 +121,9 @@ class Analysis:
         found["reason"][:], found["flutter_note"][:] = refused[:, None], refused
 
         def models(rows: Array, speeds: Array) -> LinearModel:
-            designs, along = _as_grid(rows, speeds, batch.shape[1])
-            numbers = {name: values[designs, 0] for name, values in batch.numbers.items()}
+            numbers, along = as_grid(
+                {name: values[rows, 0] for name, values in batch.numbers.items()}, speeds
+            )
             return in_one_axis(self._varied(numbers).linearize(along, **self.options))
 
         if len(rows := np.flatnonzero(refused == "")):
@@ -231,16 +232,3 @@ class Analysis:
             return found
         missing: Any = "" if found.dtype == object else np.nan
         return np.pad(found, [*[(0, 0)] * (found.ndim - 1), (0, more)], constant_values=missing)
-
-
-def _as_grid(rows: Array, speeds: Array, count: int) -> tuple[Array, Array]:
-    """Return rows (designs, 1) and airspeeds (designs, count) where the points are designs at so many airspeeds each.
-
-    What does not depend on the airspeed is then derived once for each design. Other points stay as they are.
-    """
-    if count == 1 or len(rows) % count:
-        return rows, speeds
-    by_design = rows.reshape(-1, count)
-    if (by_design != by_design[:, :1]).any():
-        return rows, speeds
-    return by_design[:, :1], speeds.reshape(-1, count)
