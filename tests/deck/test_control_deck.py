@@ -74,7 +74,13 @@ def test_numbers_of_loops_are_inputs_with_status_and_source(deck):
     case = pp.load_case(deck)
     number = pp.design_inputs(case)["control.loops[damper].gain"]
     assert (number.si, number.status, number.source) == (0.01, "derived", "a search")
-    assert "control.loops[both].actuator_bandwidth" in pp.design_inputs(case)
+    per_revolution = pp.design_inputs(case)["control.loops[both].actuator_bandwidth"]
+    assert (
+        per_revolution.si == pytest.approx(1.5 * case.operation.rotor_speed)
+        and per_revolution.unit == "rad/s"
+    )
+    faster = pp.load_case(deck, {"operation.rotor_speed": "500 rpm"})  # a frequency keeps its hertz
+    assert faster.loops[1].actuator_bandwidth == pytest.approx(per_revolution.si)
     set_one = pp.load_case(deck, {"control.loops[damper].gain": "0.02"})
     varied = case.vary({"control.loops[damper].gain": 0.02})
     np.testing.assert_allclose(
