@@ -7,6 +7,8 @@ configuration, and the stamp that every result has.
     batches              shapes of batches, their points a few at a time, designs at many airspeeds, memory kept
     quantities           the numbers of rotor, operation and options by the names of the derivation
     lift_lag             the lag of lift, added to the matrices of a rotor
+    theodorsen           lift that lags by Theodorsen's function, at one frequency after the other
+    wing_lift_lag        the lag of a wing's lift, added to a coupled model
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
     blade_comparison     a hinged blade beside the elastic blade that it stands for
@@ -43,7 +45,7 @@ The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `
 from proprotor.model.closed_loop import close_loops, taken_apart
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
-from proprotor.model.lift_lag import with_lift_lag
+from proprotor.model.lift_lag import lagging_blade, with_lift_lag
 from proprotor.model.linear_model import GUSTS, INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
@@ -52,6 +54,8 @@ from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair, rotors_on, shares
 from proprotor.model.rotor_model import airload_moments, in_closed_form, rotor_model
 from proprotor.model.side import Side
+from proprotor.model.theodorsen import at_frequencies
+from proprotor.model.wing_lift_lag import with_wing_lag
 
 __all__ = [
     "GUSTS",
@@ -63,6 +67,7 @@ __all__ = [
     "airload_moments",
     "amount_rules",
     "amounts",
+    "at_frequencies",
     "batches",
     "blade_comparison",
     "close_loops",
@@ -71,6 +76,7 @@ __all__ = [
     "first_order",
     "html",
     "in_closed_form",
+    "lagging_blade",
     "mass_at_rest",
     "mount",
     "mount_pair",
@@ -93,4 +99,5 @@ __all__ = [
     "with_lift_lag",
     "with_mast",
     "with_reasons",
+    "with_wing_lag",
 ]
