@@ -35,6 +35,15 @@ POINTS = """airspeed [ktas],frequency [Hz],frequency_error,mode
 200,3.2,0.1,beam
 250,3.2,0.1,beam
 """
+CLOSED = f"""base = "{CASE}"
+[case]
+name = "closed"
+[[control.loops]]
+name = "hold"
+sensors = ["x rate"]
+inputs = ["cyclic_1c"]
+gain = -0.001
+"""
 BLADE = ("--at-rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
 # Each command as it needs no extra.
 PLAIN = {
@@ -44,6 +53,7 @@ PLAIN = {
     "describe": ("rotor.precone",),
     "sweep": (CASE, *SPEED, "--csv", "sweep.csv", "--plot", "sweep.png"),
     "flutter": (CASE, "--scan", "300:400:50kt"),
+    "margins": ("closed.toml", *SPEED, "--csv", "margins.csv", "--plot", "margins.png"),
     "boundary": (CASE, "--against", "rotor.precone=1:2:1 deg", "--scan", "300:400:50kt"),
     "envelope": (CASE, *ENVELOPE),
     "map": (CASE, "--x", "rotor.precone=1:2:1 deg", "--y", "airspeed=300:400:100kt"),
@@ -102,7 +112,8 @@ def main(folder: str, *hidden: str) -> int:
 
     assert set(PLAIN) == set(proprotor.commands), set(PLAIN) ^ set(proprotor.commands)
     os.chdir(folder)
-    for name, text in (("stations.csv", STATIONS), ("decay.csv", DECAY), ("points.csv", POINTS)):
+    texts = {"stations.csv": STATIONS, "decay.csv": DECAY, "points.csv": POINTS, "closed.toml": CLOSED}
+    for name, text in texts.items():
         Path(name).write_text(text, encoding="utf-8")
     linearize, computed = Case.linearize, []
     for command, words in PLAIN.items():

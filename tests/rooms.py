@@ -22,7 +22,7 @@ SOURCE = Path(__file__).parents[1] / "src" / "proprotor"
 # From the ground up to the workbench: data flow from the first to the last.
 ROOMS = (
     "errors", "typing", "needs", "units", "datum", "files", "records", "nastran",
-    "rotor", "support", "model",
+    "rotor", "support", "control", "model",
     "deck", "stability", "responses", "case", "study", "exchange", "tables", "calibration",
     "plots", "report", "explore", "commands",
 )  # fmt: skip

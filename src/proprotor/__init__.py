@@ -9,6 +9,7 @@ each room is its map.
     nastran     files of Nastran: modes at a grid point, matrices of a reduced structure
     rotor       a rotor trimmed in its air: section loads, operation, options, the trim
     support     the structure that carries a rotor: normal modes, beam wing, files of other programs
+    control     control loops: laws, delays, actuators
     model       M, C, K, B of a rotor, of a support, and of both; the stamp that every result has
     deck        text to configuration and back
     stability   modes, their names, sweeps, flutter boundaries, sensitivities, stability maps

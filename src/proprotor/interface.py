@@ -15,6 +15,8 @@ from proprotor.calibration.calibrate import calibrate
 from proprotor.calibration.calibrated_deck import calibrated_deck
 from proprotor.calibration.modal_comparison import compare_modes
 from proprotor.case import Case, list_cases, load_case
+from proprotor.control.control_law import ControlLaw
+from proprotor.control.control_loop import ControlLoop
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.exchange.dmig import save_dmig
@@ -64,6 +66,8 @@ __all__ = [
     "BladeFrequencies",
     "BladeStations",
     "Case",
+    "ControlLaw",
+    "ControlLoop",
     "DriveTrain",
     "EquationSet",
     "InputError",

@@ -26,6 +26,7 @@ COMMANDS = {
     "export": ("a.mat", "--speed", "250 kt"),
     "sweep": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
     "flutter": ("--csv", "a.csv"),
+    "margins": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
     "map": (
         "--x",
         "airspeed=200:300:50kt",

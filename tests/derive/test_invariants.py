@@ -181,9 +181,13 @@ def test_blades_hinged_at_the_centre_move_as_yoke_and_shaft_move_them(beside_axi
         turned["pitch_0"] = of_flap * turned["flap_0"] + of_lag * turned["lag_0"] + turn
         matrices.assert_cancel(name, azimuth=1, by_trim=True, **turned)
         pitched = {"pitch_1c": along, "pitch_1s": across}
-        matrices.assert_cancel(name, gimbal_1c=1, flap_1c=-1, flap_1s=-rise, lag_1s=swing, by_trim=True, **pitched)
+        matrices.assert_cancel(
+            name, gimbal_1c=1, flap_1c=-1, flap_1s=-rise, lag_1s=swing, by_trim=True, **pitched
+        )
         pitched = {"pitch_1s": along, "pitch_1c": -across}
-        matrices.assert_cancel(name, gimbal_1s=1, flap_1s=-1, flap_1c=rise, lag_1c=-swing, by_trim=True, **pitched)
+        matrices.assert_cancel(
+            name, gimbal_1s=1, flap_1s=-1, flap_1c=rise, lag_1c=-swing, by_trim=True, **pitched
+        )
 
 
 @any_rotor

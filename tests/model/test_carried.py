@@ -59,6 +59,7 @@ AT = "360 kt"
 # Everything that takes options of the model and returns a result.
 RESULTS = {
     "Case.linearize": lambda case, **o: case.linearize(AT, **o),
+    "Case.open_loop": lambda case, **o: case.open_loop(AT, **o),
     "Case.sweep": lambda case, **o: case.sweep(SPEEDS, **o),
     "Case.boundaries": lambda case, **o: case.boundaries(SPEEDS, **o),
     "Case.flutter_point": lambda case, **o: case.flutter_point(SPEEDS, **o),
@@ -104,6 +105,7 @@ RESULTS = {
 }
 TAKING_A_RESULT = {"boundary_lines.boundary_lines"}
 OF_A_ROTOR = {"rotor_model"}  # alone: the options, and no case
+OF_LOOPS = {"Case.margins"}  # of a case with control loops
 
 
 @cache
@@ -150,7 +152,7 @@ def test_the_list_of_results_is_complete():
             for p in inspect.signature(entry).parameters.values()
         )
     }
-    assert taking - set(RESULTS) == TAKING_A_RESULT | OF_A_ROTOR
+    assert taking - set(RESULTS) == TAKING_A_RESULT | OF_A_ROTOR | OF_LOOPS
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -164,6 +166,25 @@ def test_every_result_says_its_case_and_all_options_in_force(name):
     told = stamp.line(own)
     assert "case xv15-uncoupled" in told.lower() and "locked gimbal" in told and "pitch coupling" in told
     assert "airloads" not in told  # which is as always
+
+
+def test_results_of_a_closed_loop_say_its_loops(tmp_path):
+    loop = pp.ControlLoop(name="hold", sensors="x rate", inputs="cyclic_1c", gain=-1e-3)
+    closed = DOUBTFUL.with_control(loop)
+    result = closed.margins([170.0, 180.0], **GIVEN)
+    own = stamp.of(result.attrs)
+    assert own["control"] == "hold: x rate to cyclic_1c" and own["deck"] == deck_fingerprint(closed)
+    assert options_in_force.options_in_result(own) == expected(closed, **GIVEN)
+    assert "control loops closed: hold" in stamp.line(own) and stamp.unusual_options(own)[-1].startswith(
+        "Control"
+    )
+    assert result.warning.values.tolist() == closed.linearize([170.0, 180.0], **GIVEN).trim.warning.tolist()
+    assert (result.warning.values != "").any()
+    pp.save_results(result, tmp_path / "a.nc")
+    assert stamp.of(pp.load_results(tmp_path / "a.nc").attrs) == own
+    assert stamp.of_case(CASE, {})["control"] == "none" and "control" not in stamp.line(
+        stamp.of_case(CASE, {})
+    )
 
 
 def test_a_rotor_alone_says_its_options():

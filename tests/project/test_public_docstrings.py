@@ -290,8 +290,11 @@ def with_envelope(case: pp.Case) -> pp.Case:
 
 
 # How each function with options of the model is called.
+LOOP = pp.ControlLoop(name="hold", sensors="x rate", inputs="cyclic_1c", gain=-1e-3)
 WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "Case.linearize": lambda case, **more: case.linearize(150.0, **more),
+    "Case.open_loop": lambda case, **more: case.open_loop(150.0, **more),
+    "Case.margins": lambda case, **more: case.with_control(LOOP).margins([150.0], **more),
     "Case.sweep": lambda case, **more: case.sweep(SPEEDS, **more),
     "Case.boundaries": lambda case, **more: case.boundaries(SPEEDS, **more),
     "Case.flutter_point": lambda case, **more: case.flutter_point(SPEEDS, **more),

@@ -12,7 +12,7 @@ and show its result; they compute nothing themselves.
 
     cases new describe                              decks
     blade                                           a blade of a deck from a table of stations
-    sweep flutter boundary envelope stability_map sensitivity attribution study    analyses of a case
+    sweep flutter boundary envelope stability_map margins sensitivity attribution study    analyses of a case
     gust                                            what turbulence and single gusts do to a case
     identify calibrate mac                          records, test points and measured modes beside a case
     report explore                                  a page on a case, as a file and with sliders
@@ -38,6 +38,7 @@ __all__ = [
     "identify",
     "mac",
     "main",
+    "margins",
     "new",
     "report",
     "sensitivity",

@@ -27,6 +27,7 @@ _SUMMARIES = {
     "flutter": "Find flutter and divergence boundaries, and the margin.",
     "boundary": "Follow the boundaries over altitude, rotor speed or another input.",
     "envelope": "Hold the flutter speeds of all conditions against V_D at altitude.",
+    "margins": "Show how much each control loop may change before it is unstable.",
     "map": "Show where in the plane of two inputs a case is stable.",
     "sensitivity": "Show how each input moves the flutter speed or a damping.",
     "blade": "Make a hinged blade of a table of stations.",

@@ -14,10 +14,11 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
+from proprotor.control.control_loop import ControlLoop
+from proprotor.deck import control_sections, support_sections
 from proprotor.deck import sections as deck
-from proprotor.deck import support_sections
 from proprotor.deck.fields import AfterChoice, Reading, Section
-from proprotor.deck.sections import section_places, sections_at, sections_of
+from proprotor.deck.sections import LISTS, section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
@@ -42,7 +43,7 @@ _FORMS = {
     "rising list": "{ value = [...], unit = ... }",
 }
 _NAMED = {
-    "support.modes": "support.modes[NAME]",
+    **{place: f"{place}[NAME]" for place in LISTS},
     "variants": "variants.NAME",
 }  # sections of which there are several
 _PLAIN = {bool: "true or false", str: "text"}
@@ -224,6 +225,7 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
         deck.RotorSection: (Rotor,),
         deck.AirfoilSection: (Airfoil, AirfoilRegions),
         deck.DriveTrainSection: (DriveTrain,),
+        control_sections.ControlLoopSection: (ControlLoop,),
         support_sections.BeamWingSection: (Wing, Pylon),
         support_sections.AircraftSection: (Wing, Pylon),
         support_sections.FuselageSection: (Fuselage,),

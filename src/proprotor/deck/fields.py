@@ -154,6 +154,7 @@ Damping = Annotated[Datum | None, Reading("number", "N*m*s/rad", NOT_NEGATIVE)]
 Slope = Annotated[Datum | None, Reading("number", "1/rad", POSITIVE)]
 RotorSpeed = Annotated[Datum, Reading("number", "rad/s", POSITIVE)]
 Density = Annotated[Datum | None, Reading("number", "kg/m**3", NOT_NEGATIVE)]
+Time = Annotated[Datum | None, Reading("number", "s", POSITIVE)]
 Speed = Annotated[Datum | None, Reading("number", "m/s", POSITIVE)]
 EquivalentSpeed = Annotated[Datum | None, Reading("number", "keas", POSITIVE)]
 Altitudes = Annotated[Datum | None, Reading("rising list", "m")]
@@ -178,6 +179,7 @@ Abscissa = Annotated[
     Datum | None,
     AfterChoice("rising list", "rad", choice="against", usual="collective", other_unit="m/s"),
 ]
+Airspeeds = Annotated[Datum | None, Reading("rising list", "m/s")]
 File = Annotated[Datum | None, Reading("file")]
 Slopes = Annotated[Datum | None, Reading("curve", "1/rad", POSITIVE)]
 Angles = Annotated[Datum | None, Reading("curve", "rad")]

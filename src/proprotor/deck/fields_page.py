@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from proprotor.deck.describe import DeckField, deck_fields, plain_path
-from proprotor.deck.sections import section_places, sections_at
+from proprotor.deck.sections import LISTS, section_places, sections_at
 
 _HEAD = """# Fields of a deck
 
-Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py` and
-`support_sections.py`.
+Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py`,
+`support_sections.py` and `control_sections.py`.
 
 A deck is a TOML file. A number with a dimension is text with its unit, US or SI, `radius = "12.5 ft"`; a number without
 a dimension is plain. Either may be a table that names its source:
@@ -36,7 +36,7 @@ An editor that knows JSON schemas for TOML (Even Better TOML, taplo) completes a
 """
 
 
-_BRACKETS = {"support.modes": "[[support.modes]]", "variants": "[variants.NAME]"}
+_BRACKETS = {place: f"[[{place}]]" for place in LISTS} | {"variants": "[variants.NAME]"}
 
 
 def markdown() -> str:

@@ -46,6 +46,9 @@ hub_mass from anywhere, to the tip, or their table says ``beyond = "nothing"``: 
 ``[drive_train]``
     Optional; the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness, mast_stiffness,
     engine_inertia, engine_damping and, of an aircraft, interconnect_stiffness.
+``[control]``
+    Optional; control loops that every result has closed, a table ``[[control.loops]]`` each:
+    `proprotor.deck.control_sections` lists the fields.
 ``[support]``
     kind and the fields of that kind: `proprotor.deck.support_sections` lists them.
 
@@ -83,6 +86,7 @@ from proprotor.deck.alternatives import (
     ALTERNATIVES,
     TRIM_ALTERNATIVES,
 )
+from proprotor.deck.control_sections import ControlSection
 from proprotor.deck.default_provenance import DEFAULT_SOURCE, DEFAULT_STATUS
 from proprotor.deck.envelope_sections import EnvelopeSection, VariantSection
 from proprotor.deck.fields import Section, Sides, needed, optional
@@ -432,6 +436,7 @@ class Deck(Section):
     operation: OperationSection = needed("The operation of the rotor, and the air.")
     drive_train: DriveTrainSection | None = optional("Engine and shaft; none if left out.")
     support: SupportSection = needed("The support of the rotor.")
+    control: ControlSection | None = optional("Control loops; none if left out.")
     left: LeftSection | None = optional("What differs on the left side of an aircraft; nothing if left out.")
     envelope: EnvelopeSection | None = optional("Speeds and altitudes to be free of flutter.")
     variants: dict[fields.Name, VariantSection] = Field(
@@ -495,6 +500,7 @@ def _places(
 
 
 SECTIONS = dict(_places(Deck))
+LISTS = ("support.modes", "control.loops")  # places of lists of sections, whose entries have names
 SUPPORT_KINDS = tuple(place[1] for place in SECTIONS if place[:1] == ("support",) and len(place) == 2)
 
 

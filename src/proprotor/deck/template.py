@@ -11,7 +11,7 @@ from typing import Any
 
 from proprotor.deck.describe import DeckField, deck_fields
 from proprotor.deck.per_revolution import as_one_file
-from proprotor.deck.sections import section_places
+from proprotor.deck.sections import LISTS, section_places
 from proprotor.deck.written import FileName
 from proprotor.units import meaning
 
@@ -84,17 +84,15 @@ def deck_text(
     if variant:
         parts.append(f"# A variant: each field replaces the same field of the base.\nbase = {toml(base)}\n")
     for section in map(".".join, section_places()):
-        if section not in (
-            "operation.trim",
-            "support.modes",
-            "variants",
-        ):  # the trim is a value, the others follow
+        if section not in ("operation.trim", *LISTS, "variants"):  # the trim is a value, the others follow
             parts.append("\n".join(_section(section, tables, place, variant)))
     for name, given in tables.get("variants", {}).items():
         parts.append("\n".join(_variant(name, given, place, variant)))
-    modes = tables.get("support", {}).get("modes")
-    for mode in modes if isinstance(modes, list) else ():
-        parts.append("\n".join(_mode(mode, place, variant)))
+    for listed in LISTS:
+        outer, _, inner = listed.partition(".")
+        entries = tables.get(outer, {}).get(inner)
+        for entry in entries if isinstance(entries, list) else ():
+            parts.append("\n".join(_of_list(listed, entry, place, variant)))
     return "\n".join(f"{part.rstrip()}\n" for part in parts if part)
 
 
@@ -157,13 +155,13 @@ def _variant(name: str, given: Mapping[str, Any], place: Path, variant: bool) ->
             yield from _entry(field, toml(_from(given[_name(field)], place)), mark)
 
 
-def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
-    """Yield the lines of one normal mode of a support."""
+def _of_list(listed: str, entry: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
+    """Yield the lines of one entry of a list: of a normal mode of a support, or of a control loop."""
     mark = "# " if variant else ""
-    yield f"{mark}[[support.modes]]"
+    yield f"{mark}[[{listed}]]"
     for field in deck_fields():
-        if field.path.startswith("support.modes[NAME].") and _name(field) in mode:
-            yield from _entry(field, toml(_from(mode[_name(field)], place)), mark)
+        if field.path.startswith(f"{listed}[NAME].") and _name(field) in entry:
+            yield from _entry(field, toml(_from(entry[_name(field)], place)), mark)
 
 
 def _entry(field: DeckField, text: str, mark: str) -> Iterator[str]:

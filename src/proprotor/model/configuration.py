@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.control.control_loop import ControlLoop, loop_text
 from proprotor.datum import Datum
 from proprotor.errors import InputError
+from proprotor.model.closed_loop import close_loops
 from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair
@@ -58,6 +60,8 @@ class Configuration:
         The deck of the configuration, from which `proprotor.deck.vary` builds other designs.
     given : mapping of str to Datum
         The numbers of `sources` that the deck gives.
+    loops : tuple of ControlLoop
+        Control loops that every model of the configuration has closed.
     """
 
     name: str
@@ -74,6 +78,7 @@ class Configuration:
     left: Side | None = None
     deck: Any = None
     given: Mapping[str, Datum] = field(default_factory=dict)
+    loops: tuple[ControlLoop, ...] = ()
 
     def __repr__(self) -> str:
         """Return the rotor, its support and the doubtful numbers, in a few lines."""
@@ -85,6 +90,7 @@ class Configuration:
             f"  {rotors}: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
             f"  support: {', '.join(self.support.names) or 'a rigid hub'}{_held(self.support)}",
         ]
+        lines += [f"  control loop {loop_text(loop)}" for loop in self.loops]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
 
     def _repr_html_(self) -> str:
@@ -106,13 +112,35 @@ class Configuration:
         Returns
         -------
         LinearModel
-            M, C, K (..., n, n), SI, on the coordinates of support and rotor; failed points are NaN, with the
-            reason in `trim`. A point whose mass matrix has no inverse has matrices, but no modes.
+            M, C, K (..., n, n), SI, on the coordinates of support and rotor, then of the control loops, which are
+            closed; failed points are NaN, with the reason in `trim`. A point whose mass matrix has no inverse has
+            matrices, but no modes.
 
         Raises
         ------
         InputError
             For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
+        """
+        return close_loops(self.open_loop(airspeed, **options), self.loops)
+
+    def open_loop(self, airspeed: Any, **options: Any) -> LinearModel:
+        """Return the model without its control loops, see `linearize`.
+
+        Parameters
+        ----------
+        airspeed : float, array, text, pint quantity or xarray.DataArray
+            m/s, as for `linearize`.
+        **options
+            See `proprotor.rotor.options.Options`.
+
+        Returns
+        -------
+        LinearModel
+
+        Raises
+        ------
+        InputError
+            As `linearize`.
         """
         own = self.model_options(options)
         rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self)

@@ -7,6 +7,7 @@ round numbers, and the motion of points in a mode.
     attribution tornado stability_map boundary_against study_results      what moves a mode or a boundary
     envelope            onsets of an envelope over equivalent airspeed and altitude
     gust_spectra time_response modal_comparison    responses, and measured modes beside a model
+    margins             margins of control loops over airspeed
     blade_frequencies   a hinged blade beside an elastic one: frequencies over collective and rotor speed
     points              points of a CSV file, with error bars, on plots
     mode_motion         how wing, mast and blades move in a mode, as points in space
@@ -34,6 +35,7 @@ from proprotor.plots.canvas import rests_on
 from proprotor.plots.envelope import plot_envelope
 from proprotor.plots.frequency_and_damping import plot_damping, plot_frequency, plot_sweep
 from proprotor.plots.gust_spectra import plot_gust_spectra
+from proprotor.plots.margins import plot_margins
 from proprotor.plots.modal_comparison import plot_mac
 from proprotor.plots.mode_shape import plot_mode_shape
 from proprotor.plots.participation import plot_participation
@@ -60,6 +62,7 @@ __all__ = [
     "plot_frequency",
     "plot_gust_spectra",
     "plot_mac",
+    "plot_margins",
     "plot_mode_shape",
     "plot_participation",
     "plot_root_locus",

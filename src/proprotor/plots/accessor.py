@@ -35,6 +35,7 @@ _KINDS = {
     "sensitivity": ("derivative", ("plot_sensitivity",)),
     "attribution": ("contribution", ("plot_attribution",)),
     "stability map": ("boundary_eigenvalue", ("plot_stability_map",)),
+    "margins": ("disk_margin", ("plot_margins",)),
     "boundaries": ("first_branch", ("plot_boundary_against",)),
     "sweep": (
         "tracking_quality",

@@ -15,6 +15,7 @@ What a rotor is:
     c81_writer           writing such files
     coefficient_surface  the smooth surface through a table
     drive_train          engine and shaft
+    smooth_table         smooth interpolation of a table, with exact derivatives
     blade_frequencies    frequencies given in tables, in place of springs
 
 A rotor from a blade by stations:
@@ -51,7 +52,8 @@ Loads and trim:
     trim_solver          Newton's method for all points
 
 All public names of the modules `blade_stations`, `elastic_blade`, `element_chain`, `hinged_blade`, `from_stations`,
-`fused`, `generated`, `kept`, `lift_lag`, `motions`, `options` and `section_loads` belong to the face.
+`fused`, `generated`, `kept`, `lift_lag`, `motions`, `options`, `section_loads` and `smooth_table` belong to the
+face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -101,6 +103,7 @@ __all__ = [
     "motions",
     "options",
     "section_loads",
+    "smooth_table",
     "solve_trim",
     "standard_air",
     "trim_target",

@@ -68,7 +68,9 @@ class Slopes(NamedTuple):
         springs, places = self.full - self.airloads, np.flatnonzero(sprung)
         stiffest = np.abs(springs[:, places]).max(axis=(1, 2), initial=0.0)
         own = np.where(stiffest > 0, stiffest, 1.0)[:, None, None] * np.eye(len(sprung))
-        angles = solve(np.where(sprung[:, None], springs, own), np.broadcast_to(np.eye(len(sprung)), springs.shape))
+        angles = solve(
+            np.where(sprung[:, None], springs, own), np.broadcast_to(np.eye(len(sprung)), springs.shape)
+        )
         return Slopes(self.full @ angles, self.airloads @ angles)
 
     def of(self, rows: Array | slice) -> Slopes:

@@ -13,6 +13,10 @@ Modes of one point, or of a batch of points
     named_modes             modes of a case at one airspeed, by name
     transfer                transfer of inputs to outputs at a frequency; their names and units
     frequency_response      response of loads and motions to gusts and swashplate
+    loop_transfer           the transfer function of a control loop, cut at its actuator
+    margin_search           gain, phase, delay and disk margin of a transfer function
+    margins                 margins of the control loops of a case along airspeeds
+    margin_ranges           the airspeeds over which loops keep the margins that are needed
 
 Modes along a line of points
     parameter_lines         lines of airspeeds or of another input, and the approach from the anchor
@@ -65,6 +69,8 @@ from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.growth_constraint import SHARPNESS, growth_constraint
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
+from proprotor.stability.margin_ranges import Kept, Needed, decibels, kept_ranges
+from proprotor.stability.margins import margins
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import (
@@ -111,8 +117,10 @@ __all__ = [
     "Crossings",
     "Failed",
     "FlutterPoint",
+    "Kept",
     "Modes",
     "NamedStates",
+    "Needed",
     "ParameterLine",
     "Search",
     "Spectrum",
@@ -132,6 +140,7 @@ __all__ = [
     "coordinate_shares",
     "damping_rate",
     "decays_everywhere",
+    "decibels",
     "decomposition",
     "eigenvalue_change",
     "eigenvalue_rates",
@@ -149,7 +158,9 @@ __all__ = [
     "growth_constraint",
     "instability",
     "joined",
+    "kept_ranges",
     "kinds",
+    "margins",
     "match_modes",
     "mode_columns",
     "modes",

@@ -14,6 +14,7 @@ csv_text              records of any kind as CSV
 blade_table           the hinged blade of a table of stations: fields, comparison, lines of a deck
 boundary_table        boundaries against an input: records and lines
 envelope_table        an envelope as records, as lines and as sentences
+margin_table          margins of control loops: records, cells and sentences
 amounts_table         what the inputs of a case amount to, as lines for a terminal and a report
 record_table          modes that were identified in a record, as rows of points
 calibration_table     calibrated inputs and the test points, as records
@@ -31,6 +32,7 @@ __all__ = [
     "calibration_table",
     "csv_text",
     "envelope_table",
+    "margin_table",
     "percentiles",
     "points",
     "record_table",
