@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import proprotor as pp
+from proprotor import sampling
 from proprotor.compiled.library import why_not
 from proprotor.model.first_order import state_matrix
 from proprotor.stability.modes import decomposition, eigenvalues
@@ -102,3 +103,22 @@ def test_a_flutter_speed_is_the_same():
     case, scan = pp.load_case("xv15"), np.linspace(50, 400, 36) * KNOT
     one, other = (case.flutter_point(scan, backend=backend) for backend in ("numpy", "compiled"))
     assert abs(one.speed - other.speed) < 1e-9 and one.mode == other.mode
+
+
+def test_a_study_has_the_same_vectors():
+    case, plan = (
+        pp.load_case("xv15-uncoupled"),
+        sampling.latin_hypercube({"airspeed": ("160 kt", "380 kt")}, 40, seed=1),
+    )
+    one, other = (
+        pp.study(case, plan, quantities=("eigenvalue", "vectors"), workers=1, backend=backend)
+        for backend in ("numpy", "compiled")
+    )
+    values = one.eigenvalue.values
+    apart = np.abs(values[..., :, None] - values[..., None, :]) + np.where(
+        np.eye(values.shape[-1]) > 0, np.inf, 0
+    )
+    alone = apart.min(axis=-1) > 1.0  # rad/s: the vectors of roots that are one may be any
+    expected, found = (np.moveaxis(part.vector.values, -1, -2)[alone] for part in (one, other))
+    assert alone.mean() > 0.8
+    assert np.abs(found - expected).max() < 1e-8
