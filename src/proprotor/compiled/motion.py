@@ -28,7 +28,9 @@ def on_support(matrix: Array, hub: Array, addition: Array) -> Array:
     modes = hub.shape[-1]
     n = modes + size - 6
     found, kept = np.empty((points, n, n)), [np.ascontiguousarray(matrix, dtype=float)]
-    columns = [column(part.reshape(*part.shape[:-2], part.shape[-2] * modes), kept) for part in (hub, addition)]
+    columns = [
+        column(part.reshape(*part.shape[:-2], part.shape[-2] * modes), kept) for part in (hub, addition)
+    ]
     library().on_support(
         ctypes.c_ssize_t(points),
         ctypes.c_int(size),
