@@ -29,10 +29,18 @@ class Flight:
         return self.operation.rotor_speed
 
     def model(self, **options):
-        return pp.rotor_model(self.rotor, self.operation, self.airspeed, **options)
+        rotor = self.rotor_for(options)
+        return pp.rotor_model(rotor, self.operation, self.airspeed, **options)
 
     def on(self, support, **options):
-        return pp.Case("random", self.rotor, self.operation, support).linearize(self.airspeed, **options)
+        rotor = self.rotor_for(options)
+        return pp.Case("random", rotor, self.operation, support).linearize(self.airspeed, **options)
+
+    def rotor_for(self, options):
+        """The rotor with one stiffness of its control system where couplings stand for the pitch of all harmonics."""
+        if options.get("pitch") == "coupling":
+            return replace(self.rotor, cyclic_control_stiffness=None)
+        return self.rotor
 
     def with_rotor(self, **fields):
         return replace(self, rotor=replace(self.rotor, **fields))
@@ -82,6 +90,14 @@ airfoils = st.builds(
 )
 
 
+def places_on_the_chord(radius):
+    """Aft of the pitch axis, m: on it, at a place, or by a table from the centre to the tip."""
+    place = between(-0.01, 0.015)
+    table = st.tuples(place, place, place)
+    tables = table.map(lambda share: (radius * np.array([0.0, 0.5, 1.0]), radius * np.array(share)))
+    return st.just(0.0) | place.map(lambda share: share * radius) | tables
+
+
 def hinge_offsets(radius, hinges):
     """(e_β, e_ζ): coincident or apart, on the centre of rotation or off it."""
     flap, gap = between(0.01, 0.12), zero_or(between(0.005, 0.1))
@@ -99,6 +115,9 @@ def limp_rotors(draw, radius, hinges):
     return pp.Rotor.from_mass_distribution(
         station,
         mass,
+        mass_offset=draw(places_on_the_chord(radius)),
+        pitch_inertia=1e3 * mass.max() * radius**3,  # until the springs are there
+        aerodynamic_center=draw(places_on_the_chord(radius)),
         n_blades=draw(st.integers(3, 6)),
         radius=radius,
         root_cutout=radius * draw(between(0.05, 0.3)),
@@ -110,6 +129,8 @@ def limp_rotors(draw, radius, hinges):
         flap_outboard_fraction=draw(fraction),
         lag_outboard_fraction=draw(fraction),
         pitch_gimbal_coupling=draw(zero_or(between(-0.6, 0.6))),
+        kinematic_pitch_flap_coupling=draw(zero_or(between(-0.4, 0.4))),
+        kinematic_pitch_lag_coupling=draw(zero_or(between(-0.3, 0.3))),
         structural_pitch_offset=draw(zero_or(between(-0.5, 0.5))),
         propeller_moment=draw(st.booleans()),
         chord=draw(chords(radius)),
@@ -123,16 +144,20 @@ def rotors(draw, rotor_speed, radius, *, hinges="anywhere", stiff=False):
     """Rotors of a given size, sprung for a given speed; `stiff` ones have each blade motion above 1/rev."""
     limp = draw(limp_rotors(radius, hinges))
     inertia = limp.blade_inertia
-    pitch_inertia = inertia * draw(between(2e-4, 2e-2))
+    pitch_inertia = limp.offset_mass.inertia + inertia * draw(between(2e-4, 2e-2))
     spring_per_rev = between(1.2, 1.6) if stiff else between(0.4, 1.6)
     lag_per_rev = between(1.3, 2.5) if stiff else between(0.4, 2.5)
     gimbal_share = between(0.01, 0.3) if stiff else zero_or(between(0.01, 0.3))
+    control = pitch_inertia * (rotor_speed * draw(between(3.0, 6.0))) ** 2
+    of_tilt = draw(st.none() | between(0.5, 2.0))
     return replace(
         limp,
         flap_stiffness=limp.flap_inertia * (rotor_speed * draw(spring_per_rev)) ** 2,
         lag_stiffness=limp.lag_inertia * (rotor_speed * draw(lag_per_rev)) ** 2,
-        control_stiffness=pitch_inertia * (rotor_speed * draw(between(3.0, 6.0))) ** 2,
+        control_stiffness=control,
+        cyclic_control_stiffness=None if of_tilt is None else of_tilt * control,
         pitch_inertia=pitch_inertia,
+        propeller_inertia=draw(st.none() | between(0.8, 1.0).map(lambda share: share * pitch_inertia)),
         gimbal_stiffness=inertia * rotor_speed**2 * draw(gimbal_share),
         **{name: inertia * rotor_speed * draw(zero_or(between(1e-3, 1e-2))) for name in DAMPERS},
     )

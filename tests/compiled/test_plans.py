@@ -1,5 +1,7 @@
 """The compiled plans beside NumPy's: trims, matrices and roots of random rotors in the air, and what is not served."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -72,6 +74,21 @@ def test_designs_that_differ_have_the_same_models():
         "operation.density": rng.uniform(0.6, 1.2, (25, 1)),
     }
     assert_alike(*both(case.vary(inputs), SPEEDS[::9]))
+
+
+def test_aerodynamic_centres_beside_the_pitch_axis_are_numpys():
+    case = pp.load_case("xv15")
+    beside = replace(case, rotor=replace(case.rotor, aerodynamic_center=0.02))
+    assert_alike(*both(beside, SPEEDS[::9]))
+    alone, moved = (one.linearize(SPEEDS[::9], backend="compiled").K for one in (case, beside))
+    assert np.abs(moved - alone).max() > 1e-3 * np.abs(alone).max()
+
+
+def test_one_point_of_a_batch_is_that_of_the_batch():
+    case = pp.load_case("xv15")
+    alone, batch = (eigenvalues(case.linearize(speed, backend="compiled")) for speed in (SPEEDS[20], SPEEDS))
+    expected, found = in_pairs(batch[20], alone)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-4)
 
 
 def test_vectors_belong_to_their_roots():

@@ -10,6 +10,8 @@ functions hand over. Nothing needs this room: without a compiler everything is c
     plans        trims of blades and matrices of rotors by the plans of the derivation
     bounds       the bound on the path to a trim
     motion       equations of motion on a support, and whether every motion has mass
+    shapes, shapes.c
+                 motion of the coordinates in the modes
     columns, columns.h
                  how vectors of numbers, one lane for each problem, are read and written; their memory
     eigen.h, schur.c, vectors.c, eigenvalues.c
@@ -24,4 +26,4 @@ functions hand over. Nothing needs this room: without a compiler everything is c
 The public names of these modules, but for `columns`, are the room's face.
 """
 
-__all__ = ["bounds", "eigenvalues", "library", "motion", "plans", "single_file"]
+__all__ = ["bounds", "eigenvalues", "library", "motion", "plans", "shapes"]

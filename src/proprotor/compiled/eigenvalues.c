@@ -3,6 +3,8 @@
 #include "eigen.h"
 #include "motion.h"
 
+#include <string.h>
+
 #define LARGEST 1e300 /* matrices with larger or smaller entries are handed over */
 #define SMALLEST 1e-290
 
@@ -17,8 +19,9 @@ static whole miss_traces(int n, const lanes *real, const lanes *imaginary, lanes
     return ~(magnitude(trace) <= allowed) | ~(magnitude(trace_of_square) <= allowed * norm * 4.0);
 }
 
-/* Return whether the matrix times a combination of its vectors is not what the eigenvalues say; `room` for 4 * n. */
-static unsigned char miss_matrix(int n, const double *matrix, const double *values, const double *vectors, double *room)
+/* Return whether the matrix times a combination of its vectors is not what the eigenvalues say; `room` for 4 * n. The
+   entries of the matrix are `stride` apart. */
+static unsigned char miss_matrix(int n, const double *matrix, ptrdiff_t stride, const double *values, const double *vectors, double *room)
 {
     double *sum = room, *expected = room + 2 * n, worst = 0.0, norm = 0.0, size = 0.0;
     for (int i = 0; i < n; i++) {
@@ -36,7 +39,7 @@ static unsigned char miss_matrix(int n, const double *matrix, const double *valu
     for (int i = 0; i < n; i++) {
         double a = 0.0, b = 0.0, row = 0.0;
         for (int j = 0; j < n; j++) {
-            double entry = matrix[(ptrdiff_t)i * n + j];
+            double entry = matrix[stride * ((ptrdiff_t)i * n + j)];
             a += entry * sum[2 * j], b += entry * sum[2 * j + 1];
             row += fabs(entry);
         }
@@ -115,17 +118,20 @@ void eigenvalues(int n, ptrdiff_t count, const double *matrices, double *values,
         if (!vectors) continue;
         store_vectors(n, room.z, room.x, room.v, vectors + 2 * first * size, count - first);
         for (ptrdiff_t k = first; k < first + LANES && k < count; k++)
-            handed_over[k] |= miss_matrix(n, matrices + k * size, values + 2 * k * n, vectors + 2 * k * size, (double *)room.v);
+            handed_over[k] |= miss_matrix(n, matrices + k * size, 1, values + 2 * k * n, vectors + 2 * k * size, (double *)room.v);
     }
 }
 
-/* Find the eigenvalues of equations of motion M, C, K (count, n, n) in first order. `held` are the coordinates whose
-   displacement is a state. A mass matrix that elimination in the order of its rows would not solve well is handed over. */
-void roots_of_motion(int n, int count_held, const int32_t *held, ptrdiff_t count, const double *const *matrices, double *values, unsigned char *handed_over, lanes *work)
+/* Find the eigenvalues of equations of motion M, C, K (count, n, n) in first order, and their right vectors unless
+   `vectors` is null. `held` are the coordinates whose displacement is a state. A mass matrix that elimination in the order
+   of its rows would not solve well is handed over. `work` has room for 5 * states * states + 4 * states vectors of lanes,
+   and for the equations. */
+void roots_of_motion(int n, int count_held, const int32_t *held, ptrdiff_t count, const double *const *matrices, double *values, double *vectors, unsigned char *handed_over, lanes *work)
 {
     int states = n + count_held, wide = 2 * n + count_held;
-    struct room room = room_of(states, work, 0);
-    lanes *h = room.h, *equations = work + 4 * (ptrdiff_t)states * states + 4 * states;
+    ptrdiff_t size = (ptrdiff_t)states * states;
+    struct room room = room_of(states, work, vectors != NULL);
+    lanes *h = room.h, *state_matrix = work + 4 * size + 4 * states, *equations = state_matrix + size;
     for (ptrdiff_t first = 0; first < count; first += LANES) {
         load_equations(n, count_held, held, first, count, matrices, equations);
         whole failed = eliminate(n, wide, equations);
@@ -133,8 +139,15 @@ void roots_of_motion(int n, int count_held, const int32_t *held, ptrdiff_t count
             for (int j = 0; j < states; j++) h[i * states + j] = all(j == count_held + held[i] ? 1.0 : 0.0);
         for (int i = 0; i < n; i++)
             for (int j = 0; j < states; j++) h[(count_held + i) * states + j] = -equations[i * wide + n + j];
+        if (vectors) memcpy(state_matrix, h, size * sizeof(lanes));
         lanes scale;
         failed |= solve(states, room, &scale);
         store_values(states, room, scale, failed, count - first, values + 2 * first * states, handed_over + first);
+        if (!vectors) continue;
+        store_vectors(states, room.z, room.x, room.v, vectors + 2 * first * size, count - first);
+        for (ptrdiff_t k = first; k < first + LANES && k < count; k++) {
+            const double *own = (const double *)state_matrix + (k - first);
+            handed_over[k] |= miss_matrix(states, own, LANES, values + 2 * k * states, vectors + 2 * k * size, (double *)room.v);
+        }
     }
 }

@@ -63,14 +63,30 @@ def roots_of_motion(
     `held` are the coordinates whose displacement is a state. A point without eigenvalues has a mass matrix that takes
     exchanges of rows, or is one that the compiled functions hand over: its numbers mean nothing.
     """
-    count, n, _ = mass.shape
+    values, _, rest = _of_motion((mass, damping, stiffness), held, vectors=False)
+    return values, rest
+
+
+def modes_of_motion(
+    mass: Array, damping: Array, stiffness: Array, held: Sequence[int]
+) -> tuple[Array, Array, Array]:
+    """Return the same with right vectors (points, states, states) of length one between both."""
+    return _of_motion((mass, damping, stiffness), held, vectors=True)
+
+
+def _of_motion(
+    matrices: tuple[Array, Array, Array], held: Sequence[int], vectors: bool
+) -> tuple[Array, Array, Array]:
+    """Return eigenvalues, right vectors or nothing, and which points have none."""
+    count, n, _ = matrices[0].shape
     states, wide = n + len(held), 2 * n + len(held)
-    parts = [np.ascontiguousarray(part, dtype=float) for part in (mass, damping, stiffness)]
+    parts = [np.ascontiguousarray(part, dtype=float) for part in matrices]
     places = np.array(held, dtype=np.int32)
-    values, rest = np.empty((count, states), dtype=complex), np.full(count, states > MOST_STATES)
+    values, rest = np.empty((count, states), dtype=complex), np.zeros(count, dtype=bool)
+    right = np.empty((count, states, states) if vectors else 0, dtype=complex)
     if states > MOST_STATES:
-        return values, rest
-    room = lane_room(4 * states * states + 4 * states + n * wide)
+        return values, right, ~rest
+    room = lane_room(5 * states * states + 4 * states + n * wide)
     library().roots_of_motion(
         ctypes.c_int(n),
         ctypes.c_int(len(held)),
@@ -78,10 +94,11 @@ def roots_of_motion(
         ctypes.c_ssize_t(count),
         (ctypes.c_void_p * 3)(*(part.ctypes.data for part in parts)),
         address(values),
+        address(right) if vectors else None,
         address(rest),
         address(room),
     )
-    return values, rest
+    return values, right, rest
 
 
 def handed_over(matrices: Array, vectors: bool = False) -> Array:

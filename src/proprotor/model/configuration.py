@@ -9,14 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.control.control_loop import ControlLoop, loop_text
 from proprotor.datum import Datum
 from proprotor.errors import InputError
+from proprotor.model.closed_loop import close_loops
 from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair
 from proprotor.model.provenance import reservations
 from proprotor.model.rotor_model import model_of, rotor_model
 from proprotor.model.side import Side
+from proprotor.model.wing_lift_lag import with_wing_lag
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
@@ -57,6 +60,8 @@ class Configuration:
         The deck of the configuration, from which `proprotor.deck.vary` builds other designs.
     given : mapping of str to Datum
         The numbers of `sources` that the deck gives.
+    loops : tuple of ControlLoop
+        Control loops that every model of the configuration has closed.
     """
 
     name: str
@@ -73,6 +78,7 @@ class Configuration:
     left: Side | None = None
     deck: Any = None
     given: Mapping[str, Datum] = field(default_factory=dict)
+    loops: tuple[ControlLoop, ...] = ()
 
     def __repr__(self) -> str:
         """Return the rotor, its support and the doubtful numbers, in a few lines."""
@@ -84,6 +90,7 @@ class Configuration:
             f"  {rotors}: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
             f"  support: {', '.join(self.support.names) or 'a rigid hub'}{_held(self.support)}",
         ]
+        lines += [f"  control loop {loop_text(loop)}" for loop in self.loops]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
 
     def _repr_html_(self) -> str:
@@ -105,21 +112,59 @@ class Configuration:
         Returns
         -------
         LinearModel
-            M, C, K (..., n, n), SI, on the coordinates of support and rotor; failed points are NaN, with the
-            reason in `trim`. A point whose mass matrix has no inverse has matrices, but no modes.
+            M, C, K (..., n, n), SI, on the coordinates of support and rotor, then of the control loops, which are
+            closed; failed points are NaN, with the reason in `trim`. A point whose mass matrix has no inverse has
+            matrices, but no modes.
 
         Raises
         ------
         InputError
             For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
         """
+        return close_loops(self.open_loop(airspeed, **options), self.loops)
+
+    def open_loop(self, airspeed: Any, **options: Any) -> LinearModel:
+        """Return the model without its control loops, see `linearize`.
+
+        Parameters
+        ----------
+        airspeed : float, array, text, pint quantity or xarray.DataArray
+            m/s, as for `linearize`.
+        **options
+            See `proprotor.rotor.options.Options`.
+
+        Returns
+        -------
+        LinearModel
+
+        Raises
+        ------
+        InputError
+            As `linearize`.
+        """
         own = self.model_options(options)
         rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self)
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
         if isinstance(support, Airframe):
-            return self._pair(rotor_alone, support, airspeed, options)
-        self._check_one_rotor(own)
-        return mount(rotor_alone, support)
+            coupled = self._pair(rotor_alone, support, airspeed, options)
+        else:
+            self._check_one_rotor(own)
+            coupled = mount(rotor_alone, support)
+        return self._with_wing_lag(coupled, str(own.get("lift", "")))
+
+    def _with_wing_lag(self, coupled: LinearModel, lift: str) -> LinearModel:
+        """Return the coupled model with the lag of its wing's lift, where the option asks for it."""
+        assert coupled.origin is not None  # of this case
+        if not coupled.origin.options.wing_lags:
+            return coupled
+        found = self.support.wing_circulation(coupled.airspeed, self.operation.density)
+        if found is not None:
+            return with_wing_lag(coupled, found)
+        if not coupled.origin.options.blades_lag:
+            raise InputError(
+                "lift", lift, "goes with a support whose wing has airloads, [support.wing_aerodynamics]"
+            )
+        return coupled
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Return options of the model, completed with the blade frequencies and the drive train of the case.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from proprotor_equations import FIXED_GUSTS
@@ -23,7 +23,23 @@ if TYPE_CHECKING:
 
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
+GUSTS = tuple(FIXED_GUSTS)
 _AZIMUTHS = tuple(in_half(half, ROTOR_SPEED) for half in reversed(HALVES))
+
+
+class Feedback(NamedTuple):
+    """What control loops add to the inputs of a model (..., inputs, n), by the motion of each coordinate.
+
+    displacement, rate, acceleration : in the input's unit per m or rad, per s and per s²
+    """
+
+    displacement: Array
+    rate: Array
+    acceleration: Array
+
+    def at(self, places: list[int]) -> Feedback:
+        """Return the feedback from some of the coordinates."""
+        return Feedback(*(part[..., places] for part in self))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,7 +92,9 @@ class LinearModel:
         Of two rotors: motion of the left hub per unit of each coordinate, m and rad, in the mirrored axes of the left
         rotor.
     inputs : tuple of str
-        Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on.
+        Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on; then the support's.
+    feedback : Feedback, optional
+        Of a model with control loops, which its matrices contain: `proprotor.model.closed_loop`.
     """
 
     M: Array
@@ -99,6 +117,7 @@ class LinearModel:
     left: LinearModel | None = None
     left_hub: Array | None = None
     inputs: tuple[str, ...] = INPUTS
+    feedback: Feedback | None = None
 
     def __repr__(self) -> str:
         """Return the coordinates, the shape of the batch and its failed and doubtful points, in a few lines."""
@@ -232,6 +251,7 @@ class LinearModel:
         apart = (tuple(name for name in group if name in dofs) for group in self.apart)
         more: dict[str, Any] = {"rates": rates, "rigid_body": rigid, "left_hub": left}
         more["apart"] = tuple(group for group in apart if group)
+        more["feedback"] = None if self.feedback is None else self.feedback.at(places)
         if self.symmetry:
             more["symmetry"] = tuple(self.symmetry[place] for place in places)
         return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts, **more)

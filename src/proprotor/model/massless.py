@@ -29,9 +29,10 @@ def massless(mass: Array, compiled: bool = False) -> Array:
     Compiled functions may find those that have one for certain.
     """
     if compiled and not np.iscomplexobj(mass):
-        left = ~have_mass(mass.reshape(-1, *mass.shape[-2:])).reshape(mass.shape[:-2])
-        left[left] = massless(mass[left])
-        return np.asarray(left)
+        flat = mass.reshape(-1, *mass.shape[-2:])
+        left = ~have_mass(flat)
+        left[left] = massless(flat[left])
+        return np.asarray(left.reshape(mass.shape[:-2]))
     mass, found = np.real(mass), np.zeros(mass.shape[:-2], dtype=bool)
     for rows in few_at_once(found.shape):
         if _clearly_positive(some := mass[rows]):  # which matrices with NaN are not

@@ -118,14 +118,12 @@ def _by_block(model: LinearModel) -> Spectrum:
     held = held_coordinates(model)
     places = blocks(model, held)
     if len(places) == 1:
-        return Spectrum(*_solved(first_order(model), model.is_compiled), model.shapes, tuple(held), places)
+        return Spectrum(*_solved(model), model.shapes, tuple(held), places)
     states = len(held) + len(model.dofs)
     values = np.empty((*model.M.shape[:-2], states), dtype=complex)
     right = np.zeros((*values.shape, states), dtype=complex)
     for (rows, columns), own in zip(places, model.blocks, strict=True):
-        values[..., columns], right[..., rows, columns] = _solved(
-            first_order(_of_block(model, own)), model.is_compiled
-        )
+        values[..., columns], right[..., rows, columns] = _solved(_of_block(model, own))
     return Spectrum(values, right, model.shapes, tuple(held), places)
 
 
@@ -180,9 +178,8 @@ def with_azimuths(spectrum: Spectrum, model: LinearModel, states: int) -> Spectr
 
 def _compiled_roots(model: LinearModel) -> Array:
     """Return eigenvalues by the compiled functions, and by LAPACK where they hand over."""
-    n, shape = len(model.dofs), model.M.shape[:-2]
-    mass, damping, stiffness = (part.reshape(-1, n, n) for part in (model.M, model.C, model.K))
-    found, rest = compiled_eigenvalues.roots_of_motion(mass, damping, stiffness, held_coordinates(model))
+    found, rest = compiled_eigenvalues.roots_of_motion(*_in_one_axis(model), held_coordinates(model))
+    shape = model.M.shape[:-2]
     found = found.reshape(*shape, -1)
     if rest.any():
         points = rest.reshape(shape)
@@ -190,9 +187,26 @@ def _compiled_roots(model: LinearModel) -> Array:
     return found
 
 
-def _solved(matrix: Array, compiled: bool) -> tuple[Array, Array]:
+def _in_one_axis(model: LinearModel) -> tuple[Array, Array, Array]:
+    """Return M, C and K (points, n, n)."""
+    mass, damping, stiffness = (part.reshape(-1, *part.shape[-2:]) for part in (model.M, model.C, model.K))
+    return mass, damping, stiffness
+
+
+def _compiled_modes(model: LinearModel) -> tuple[Array, Array]:
+    """Return eigenvalues and right vectors by the compiled functions, and by LAPACK where they hand over."""
+    values, right, rest = compiled_eigenvalues.modes_of_motion(*_in_one_axis(model), held_coordinates(model))
+    shape, states = model.M.shape[:-2], values.shape[-1]
+    values, right = values.reshape(*shape, states), right.reshape(*shape, states, states)
+    if rest.any():
+        points = rest.reshape(shape)
+        values[points], right[points] = np.linalg.eig(first_order(some_points(model, points)))
+    return values, right
+
+
+def _solved(model: LinearModel) -> tuple[Array, Array]:
     """Return eigenvalues and right vectors as complex numbers, also where all of them are real."""
-    values, right = compiled_eigenvalues.eig(matrix) if compiled else np.linalg.eig(matrix)
+    values, right = _compiled_modes(model) if model.is_compiled else np.linalg.eig(first_order(model))
     values, right = values.astype(complex, copy=False), right.astype(complex, copy=False)
     if not (noise := _pairs_of_noise(values)).any():
         return values, right

@@ -16,8 +16,9 @@ from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_trai
 from proprotor_equations import rotor as whole_rotor
 
 from proprotor.errors import InputError
+from proprotor.model.closed_loop import taken_apart
 from proprotor.model.configuration import Configuration
-from proprotor.model.lift_lag import with_lift_lag
+from proprotor.model.lift_lag import lagging_blade, with_lift_lag
 from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
@@ -28,9 +29,10 @@ from proprotor.model.quantities import COUPLINGS, couplings, model_quantities
 from proprotor.model.rotor_model import airload_moments, in_closed_form
 from proprotor.model.rotor_share import without_rotors
 from proprotor.model.stamp import of_model
+from proprotor.model.wing_lift_lag import with_wing_lag
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.motions import MAST_TWIST, lag_coordinates
+from proprotor.rotor.motions import MAST_TWIST, lag_coordinates, wing_lag_names
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -113,6 +115,43 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
         choice = model.origin.options
     if choice.reactionless:
         raise InputError("reactionless", True, "is not taken apart: leave it out")
+    if not case.loops:
+        return _open_parts(case, model, choice)
+    dofs, loops = taken_apart(model, case.loops)
+    places = [model.dofs.index(name) for name in dofs]
+    opened = {
+        name: _wide(part, places, model)
+        for name, part in _open_parts(case, model.submodel(dofs), choice).items()
+    }
+    return opened | {"control loops": _Part(*loops)}
+
+
+def _wide(part: _Part, places: list[int], model: LinearModel) -> _Part:
+    """Return a part on some coordinates of a model as a part on all of them."""
+    found = [np.zeros(model.M.shape) for _ in part]
+    for whole, matrix in zip(found, part, strict=True):
+        whole[..., np.array(places)[:, None], places] = matrix
+    return _Part(*found)
+
+
+def _open_parts(case: Configuration, model: LinearModel, choice: Options) -> dict[str, _Part]:
+    """Return the parts of a model without control loops."""
+    lift = None
+    if choice.wing_lags:
+        lift = case.support.wing_circulation(model.airspeed, case.operation.density)
+    if lift is None:
+        return _parts(case, model, choice)
+    late = wing_lag_names(lift.symmetry)
+    at_once = model.submodel(tuple(name for name in model.dofs if name not in late))
+    parts, n = _parts(case, at_once, choice), len(model.dofs)
+    found = {name: _Part(*(_padded(matrix, n) for matrix in part)) for name, part in parts.items()}
+    nothing: dict[str, Any] = dict.fromkeys("MCK", np.zeros_like(at_once.M))
+    added = with_wing_lag(replace(at_once, **nothing), lift)
+    return found | {"lag of the wing's lift": _Part(added.M, added.C, added.K)}
+
+
+def _parts(case: Configuration, model: LinearModel, choice: Options) -> dict[str, _Part]:
+    """Return M, C and K of a case by origin, with the lift of the wing at once."""
     rotors = [_Rotor(case.rotor, case.operation, choice, model.trim)]
     if case.left is not None and (left := model.left) is not None and left.origin is not None:
         rotors += [_Rotor(case.left.rotor, case.left.operation, left.origin.options, left.trim)]
@@ -151,7 +190,7 @@ def _rotor_parts(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dic
         _airloads(BladeSections.of(own.rotor, shape), quantities, own.choice)
     )
     found = {name: _in_fixed_frame(part, quantities) for name, part in blade.items()}
-    if own.choice.lift == "lagged":
+    if own.choice.blades_lag:
         found["lag of lift"] = _lag_of_lift(BladeSections.of(own.rotor, shape), quantities, own.choice, shape)
     return found | _other_parts(quantities, own.choice)
 
@@ -236,7 +275,7 @@ def _lag_of_lift(
     """Return what the lag of lift adds, on the rotor's coordinates and its own."""
     own, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
     nothing = {name: np.zeros((points, own, len(INPUTS) if name == "B" else own)) for name in "MCKB"}
-    found = with_lift_lag(nothing, sections, quantities, choice)
+    found = with_lift_lag(nothing, lagging_blade(sections, quantities, points, choice), quantities)
     return _Part(*(found[name] for name in "MCK"))
 
 
@@ -287,7 +326,7 @@ def _alone(
     name: str, part: _Part, choice: Options, model: LinearModel, shape: tuple[int, ...]
 ) -> LinearModel:
     """Return a part of a rotor as a rotor alone, with the twist of its mast; the drive train with its engine."""
-    lagging = lag_coordinates() if choice.lift == "lagged" else ()
+    lagging = lag_coordinates() if choice.blades_lag else ()
     dofs = (*FIXED_COORDINATES, *(coordinate.name for coordinate in lagging))
     n, points = len(dofs), int(np.prod(shape, dtype=int))
     matrices: dict[str, Any] = {

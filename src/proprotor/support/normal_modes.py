@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, is_choice, list_choices, nowhere_negative, unknown_name
 from proprotor.rotor.motions import check_support_names
+from proprotor.support.wing_circulation import WingCirculation, WingLift
 from proprotor.typing import Array
 
 HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
@@ -49,6 +50,10 @@ class NormalModes:
         of two designs belong together.
     warning : array of str, shape (...), optional
         Why a design is doubtful, a text for each of many designs.
+    inputs : tuple of str
+        Names of inputs that load the support, such as "flaperon", in rad.
+    loads : array (..., n, inputs), optional
+        Generalised forces per unit of each input, N or N m per rad.
 
     Raises
     ------
@@ -66,8 +71,11 @@ class NormalModes:
     shaft: str = "held"
     shapes: Array | None = None
     warning: Array | None = None
+    inputs: tuple[str, ...] = ()
+    loads: Array | None = None
 
     symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
+    wing: ClassVar[WingLift | None] = None
 
     def __post_init__(self) -> None:
         names = tuple(self.names)
@@ -108,6 +116,22 @@ class NormalModes:
         NormalModes
         """
         return self
+
+    def wing_circulation(self, airspeed: ArrayLike, density: ArrayLike) -> WingCirculation | None:
+        """Return the work of the lift of the support's wing at airspeeds and densities, if it has one with airloads.
+
+        Parameters
+        ----------
+        airspeed : float or array (...)
+            m/s.
+        density : float or array (...)
+            kg/m³.
+
+        Returns
+        -------
+        WingCirculation, or None
+        """
+        return None if self.wing is None else self.wing.at(airspeed, density)
 
     @classmethod
     def from_frequencies(
