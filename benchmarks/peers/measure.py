@@ -50,7 +50,7 @@ def generated() -> Result:
 
 
 def fused() -> Result:
-    """The fused functions without airloads: their operations, and their time in that of lambdify in interleaved rounds."""
+    """The fused functions without airloads: operations, and time in that of lambdify in interleaved rounds."""
     import numpy as np
 
     from benchmarks import fused as rounds

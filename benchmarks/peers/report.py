@@ -285,8 +285,8 @@ What the figures do not show:
   M, C and K, and writes each entry once: {cse_operations} operations against {rotor_operations}. The generated
   functions fill seven arrays of a blade, add them, and fill three of the rotor, entry by entry, so that each
   matrix can be read, tested and replaced by itself, with a name and an equation number beside every entry.
-- The model takes the fused functions beside the readable ones, `proprotor_equations.fused`: {fused_operations} operations from
-  the springs to M, C, K and B. In interleaved rounds of one run they take {fused_ratios} of the time of
+- The model takes the fused functions beside the readable ones, `proprotor_equations.fused`: {fused_operations}
+  operations from the springs to M, C, K and B. In interleaved rounds of one run they take {fused_ratios} of the time of
   `lambdify(cse=True)` ({fused_versions}). {fused_verdict}
 - What it is worth: the whole of `rotor_model` for the XV-15, trim and airloads included, takes {runtime_100} μs a
   point at a batch of 100 and {runtime_10000} μs at 10,000; the matrices of this page are {share} % of the latter.
