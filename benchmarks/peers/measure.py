@@ -1,6 +1,7 @@
 """One measurement in a process of its own, printed as JSON.
 
 python -m benchmarks.peers.measure generated
+python -m benchmarks.peers.measure fused
 python -m benchmarks.peers.measure kane flap lag pitch azimuth
 python -m benchmarks.peers.measure lambdify cse|plain
 python -m benchmarks.peers.measure jax Lagrangian|positions
@@ -46,6 +47,25 @@ def generated() -> Result:
     whole = cost.code_size(generated_rotor.BLADE_FUNCTIONS + generated_rotor.ROTOR_FUNCTIONS)
     found = {"blade code": blade, "code": whole} | cost.per_point(generated_rotor.rotor_matrices)
     return found | {"runtime": runtime()}
+
+
+def fused() -> Result:
+    """The fused functions without airloads: operations, and time in that of lambdify in interleaved rounds."""
+    import numpy as np
+
+    from benchmarks import fused as rounds
+    from benchmarks.peers.lambdified import Lambdified, rotor_expressions
+    from derive.fused import in_vacuum, named_values
+    from derive.plain import PLAIN_ROTORS
+
+    plans = in_vacuum(PLAIN_ROTORS), named_values(PLAIN_ROTORS, "flap_lag_springs", "effective_stiffness")
+    lambdified = Lambdified(rotor_expressions(), cse=True)
+    ratios = {}
+    for count in cost.BATCHES:
+        found = rounds.times(rounds.without_airloads(count, lambdified), count)
+        ratios[str(count)] = float(np.median(found["fused"] / found["lambdify"]))
+    operations = sum(plan.plan.operations for plan in plans)
+    return {"operations": operations, "of lambdify": ratios, "versions": rounds.versions()}
 
 
 def runtime() -> dict[str, float]:
@@ -126,6 +146,7 @@ def jax(form: str) -> Result:
 PARTS: dict[str, Callable[..., Result]] = {
     "regeneration": regeneration,
     "generated": generated,
+    "fused": fused,
     "kane": kane,
     "lambdify": lambdify,
     "jax": jax,

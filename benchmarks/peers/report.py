@@ -79,8 +79,25 @@ def report(found: dict[str, Result]) -> str:
         remarks=remarks(found),
         runtime_100=number(runtime["100"]),
         runtime_10000=number(runtime["10000"]),
+        fused_operations=number(found["fused"]["operations"]),
+        fused_ratios=", ".join(f"{ratio:.2f} at {count}" for count, ratio in _of_lambdify(found).items()),
+        fused_versions=found["fused"]["versions"],
+        fused_verdict=_verdict(_of_lambdify(found)),
         share=number(100 * found["generated"]["microseconds"]["10000"] / runtime["10000"], 2),
     )
+
+
+def _of_lambdify(found: dict[str, Result]) -> dict[str, float]:
+    """Time of the fused functions in that of lambdify, by batch."""
+    return dict(found["fused"]["of lambdify"])
+
+
+def _verdict(ratios: dict[str, float]) -> str:
+    """Where lambdify is as quick as the fused functions or quicker."""
+    equal = [count for count, ratio in ratios.items() if ratio >= 0.95]
+    if not equal:
+        return "`lambdify` is slower at each of these batches."
+    return f"`lambdify` is as quick or quicker at {' and '.join(equal)}."
 
 
 def _kane_total(result: Result) -> float:
@@ -268,10 +285,9 @@ What the figures do not show:
   M, C and K, and writes each entry once: {cse_operations} operations against {rotor_operations}. The generated
   functions fill seven arrays of a blade, add them, and fill three of the rotor, entry by entry, so that each
   matrix can be read, tested and replaced by itself, with a name and an equation number beside every entry.
-- The model takes the fused functions beside the readable ones, `proprotor_equations.fused`: 342 operations from the
-  springs to M, C, K and B. `python -m benchmarks.fused`, interleaved rounds of one run, gives their time in that of
-  `lambdify(cse=True)`: 0.51 at 1, 1.00 at 100, 0.61 at 10,000 (numpy 2.4.6, OpenBLAS 0.3.31 Haswell). So `lambdify` is
-  as fast as the fused functions at 100, where calls of NumPy and the filling of the matrices are the cost of both.
+- The model takes the fused functions beside the readable ones, `proprotor_equations.fused`: {fused_operations}
+  operations from the springs to M, C, K and B. In interleaved rounds of one run they take {fused_ratios} of the time of
+  `lambdify(cse=True)` ({fused_versions}). {fused_verdict}
 - What it is worth: the whole of `rotor_model` for the XV-15, trim and airloads included, takes {runtime_100} μs a
   point at a batch of 100 and {runtime_10000} μs at 10,000; the matrices of this page are {share} % of the latter.
 - `lambdify` starts from the derivation of this project. From Kane's equations, with `cse=True`, one blade of the

@@ -27,6 +27,7 @@ GIMBAL = ("azimuth", "gimbal_flap", "gimbal_roll")
 MEASUREMENTS: dict[str, tuple[str, ...]] = {
     "regeneration": ("regeneration",),
     "generated": ("generated",),
+    "fused": ("fused",),
     "lambdify-cse": ("lambdify", "cse"),
     "lambdify-plain": ("lambdify", "plain"),
     "jax-Lagrangian": ("jax", "Lagrangian"),

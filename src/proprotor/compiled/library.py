@@ -24,8 +24,8 @@ from proprotor_equations import fused
 from proprotor.errors import InputError
 from proprotor.files.output import check_writable, write_whole
 
-_SOURCES = Path(__file__).parent
-_GENERATED = Path(fused.__file__).parent
+SOURCES = Path(__file__).parent
+GENERATED = Path(fused.__file__).parent
 # One product and one sum at a time, as NumPy does: every width of vector has the same bits then.
 _FLAGS = (
     "-O2",
@@ -123,7 +123,7 @@ def _own_processor(compiler: tuple[str, ...]) -> tuple[str, ...]:
 def _key(compiler: tuple[str, ...], flags: tuple[str, ...]) -> str:
     """Return the name of the library: a digest of all that makes it."""
     digest = hashlib.sha256()
-    for source in (*_sources("h"), *_sources("c"), *_GENERATED.glob("*.h")):
+    for source in (*_sources("h"), *_sources("c"), *GENERATED.glob("*.h")):
         digest.update(source.name.encode() + source.read_bytes())
     digest.update(_output_of((*compiler, "--version"), "there is no C compiler"))
     # The compiler's own constants name the instructions that it may use.
@@ -135,14 +135,14 @@ def _key(compiler: tuple[str, ...], flags: tuple[str, ...]) -> str:
 
 def _sources(ending: str) -> list[Path]:
     """Return the files of C with an ending, in their order."""
-    return sorted(_SOURCES.glob(f"*.{ending}"))
+    return sorted(SOURCES.glob(f"*.{ending}"))
 
 
 def _build(compiler: tuple[str, ...], flags: tuple[str, ...], place: Path) -> None:
     """Compile the sources into the cache."""
     with tempfile.TemporaryDirectory(prefix="proprotor-") as folder:
         built = Path(folder) / "library.so"
-        sources = (f"-I{_GENERATED}", f"-I{_SOURCES}", "-o", str(built), *map(str, _sources("c")), "-lm")
+        sources = (f"-I{GENERATED}", f"-I{SOURCES}", "-o", str(built), *map(str, _sources("c")), "-lm")
         _output_of((*compiler, *flags, *sources), "the C compiler fails")
         content = built.read_bytes()
     with _keeping(place):
