@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from proprotor.compiled import eigenvalues
-from proprotor.compiled.library import SOURCES, library, why_not
+from proprotor.compiled.library import GENERATED, SOURCES, library, why_not
 from proprotor.compiled.single_file import write_single_file
 from tests.documentation import DOCS, blocks
 
@@ -37,6 +37,21 @@ def compiled(folder, compiler, *flags):
 def numbers(command):
     printed = subprocess.run([command], check=True, capture_output=True, text=True).stdout
     return [[float(number) for number in re.findall(r"-?\d*\.\d+", line)] for line in printed.splitlines()]
+
+
+@needs_compiler
+def test_the_sources_of_the_library_compile_without_a_warning():
+    command = [
+        *shlex.split(os.environ.get("CC") or "cc"),
+        *FLAGS,
+        "-fsyntax-only",
+        f"-I{SOURCES}",
+        f"-I{GENERATED}",
+    ]
+    done = subprocess.run(
+        [*command, *sorted(SOURCES.glob("*.c"))], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
 
 
 @needs_compiler

@@ -12,6 +12,8 @@ functions hand over. Nothing needs this room: without a compiler everything is c
     motion       equations of motion on a support, and whether every motion has mass
     shapes, shapes.c
                  motion of the coordinates in the modes
+    single_file, interface.c, proprotor.h, proprotor.f90
+                 the solver as one source for programs in C, Fortran or MATLAB
     columns, columns.h
                  how vectors of numbers, one lane for each problem, are read and written; their memory
     eigen.h, schur.c, vectors.c, eigenvalues.c
@@ -26,4 +28,4 @@ functions hand over. Nothing needs this room: without a compiler everything is c
 The public names of these modules, but for `columns`, are the room's face.
 """
 
-__all__ = ["bounds", "eigenvalues", "library", "motion", "plans", "shapes"]
+__all__ = ["bounds", "eigenvalues", "library", "motion", "plans", "shapes", "single_file"]

@@ -20,4 +20,8 @@ void triangular_vectors(int n, const lanes *h, const lanes *real, const lanes *i
 /* Store the vectors z * x, each of length one, as columns of complex matrices; `v` has room for 2 * n. */
 void store_vectors(int n, const lanes *z, const lanes *x, lanes *v, double *vectors, ptrdiff_t matrices);
 
+/* Eigenvalues and right vectors of matrices, and of equations of motion, see eigenvalues.c. */
+void eigenvalues(int n, ptrdiff_t count, const double *matrices, double *values, double *vectors, unsigned char *handed_over, lanes *work);
+void roots_of_motion(int n, int count_held, const int32_t *held, ptrdiff_t count, const double *const *matrices, double *values, double *vectors, unsigned char *handed_over, lanes *work);
+
 #endif

@@ -25,10 +25,10 @@ int proprotor_roots_of_motion(int n, int count_held, const int *held, long long 
     for (int k = 0; k < count_held; k++)
         if (held[k] < 0 || held[k] >= n) return PROPROTOR_BAD_SIZE;
     size_t states = (size_t)(n + count_held);
-    lanes *room = room_for(4 * states * states + 4 * states + (size_t)n * (n + states));
+    lanes *room = room_for(5 * states * states + 4 * states + (size_t)n * (n + states));
     if (!room) return PROPROTOR_NO_MEMORY;
     const double *matrices[] = {mass, damping, stiffness};
-    roots_of_motion(n, count_held, held, (ptrdiff_t)count, matrices, values, handed_over, room);
+    roots_of_motion(n, count_held, held, (ptrdiff_t)count, matrices, values, NULL, handed_over, room);
     free(room);
     return PROPROTOR_DONE;
 }

@@ -173,13 +173,14 @@ def _output_of(command: tuple[str, ...], failure: str) -> bytes:
     Raises
     ------
     Unavailable
-        With the failure and the last line of what the command says of it.
+        With the failure and the first error that the command tells, or its last line.
     """
     try:
         return subprocess.run(command, capture_output=True, check=True, timeout=_PATIENCE).stdout
     except subprocess.CalledProcessError as error:
         lines = error.stderr.decode(errors="replace").strip().splitlines()
-        reason = f": {lines[-1]}" if lines else ""
+        told = [line for line in lines if "error" in line] or lines[-1:]
+        reason = f": {told[0]}" if told else ""
         raise Unavailable(f"{failure} ({command[0]}{reason})") from None
     except (OSError, subprocess.TimeoutExpired) as error:
         raise Unavailable(f"{failure} ({command[0]}: {error})") from None

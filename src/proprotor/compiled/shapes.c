@@ -5,6 +5,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* CMPLX of complex.h, which Clang does not have beside every C library. */
+static inline double complex complex_of(double real, double imaginary)
+{
+    double complex found;
+    __real__ found = real;
+    __imag__ found = imaginary;
+    return found;
+}
+
 /* Divide the motion of the coordinates by its largest component, which is then exactly one; NaN is not the largest. */
 static void make_largest_one(int n, ptrdiff_t stride, double complex *motion)
 {
@@ -21,7 +30,7 @@ static void make_largest_one(int n, ptrdiff_t stride, double complex *motion)
     double c = a / (a * a + b * b) / scale, d = -b / (a * a + b * b) / scale;
     for (int i = 0; i < n; i++) {
         double x = creal(motion[i * stride]), y = cimag(motion[i * stride]);
-        motion[i * stride] = CMPLX(x * c - y * d, x * d + y * c);
+        motion[i * stride] = complex_of(x * c - y * d, x * d + y * c);
     }
     motion[largest * stride] = isnan(creal(one)) ? NAN : 1.0;
 }
@@ -41,7 +50,7 @@ void coordinate_motions(ptrdiff_t points, int n, int states, const int32_t *disp
                 double complex rate = rates[(ptrdiff_t)i * states + column];
                 if (displaced[i] >= 0) motion[i * states] = vectors[(ptrdiff_t)displaced[i] * states + column];
                 else motion[i * states] = square > 0.0 ? rate * conj(value) / square : NAN;
-                if (isnan(square)) motion[i * states] = CMPLX(NAN, 0.0);
+                if (isnan(square)) motion[i * states] = complex_of(NAN, 0.0);
             }
             make_largest_one(n, states, motion);
         }
