@@ -197,12 +197,12 @@ def virtual_motion(rows: Iterable[str], drops: bool = False) -> Line:
     )
 
 
-def trim_velocity(drops: bool = False) -> Line:
+def trim_velocity(derivation: Derivation = airloads.trim_velocity, drops: bool = False) -> Line:
     """Make the velocity of the air along a segment in trim."""
     motions = names(motion for motion in SEGMENT_MOTIONS if motion.argument != "theta")
     return matrix(
         "trim_velocity",
-        airloads.trim_velocity,
+        derivation,
         "u_T and u_P of Eqs. 14-15 at trim",
         motions,
         ("trim",),
@@ -225,6 +225,21 @@ def motion_matrix(
         return plus(MOTION[motion].dimension, per_time(order), minus=coordinate_dimension(column))
 
     return matrix(name, derivation, origin, names(SEGMENT_MOTIONS), columns, dimension, drops=drops)
+
+
+def geometry_matrix(
+    name: str,
+    derivation: Derivation,
+    origin: str,
+    rows: Iterable[str],
+    columns: Iterable[str] = (*kin.COORDINATES, "value"),
+) -> Line:
+    """Make numbers at trim, such as directions and angles, and their change with each coordinate."""
+
+    def dimension(_: str, column: str) -> Dimension:
+        return NUMBER if column == "value" else plus(NUMBER, minus=coordinate_dimension(column))
+
+    return matrix(name, derivation, origin, rows, columns, dimension)
 
 
 def work_matrix(
