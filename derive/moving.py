@@ -12,8 +12,7 @@ their values around the turn, so what is derived here is geometry at one instant
 how both change with the coordinates, and what steady forces do on displacements of second order. The same goes for
 the airloads, with v = D p + V the velocity of a section.
 
-The tilt of the yoke is finite. As exp([g]x) = 1 + a [g]x + b [g]x [g]x, with a and b functions of g . g alone, it is
-expanded about the trim tilt with the values and derivatives of a and b by name.
+The tilt of the yoke is finite: the rotation by it and its changes with it stand by name.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from derive import airloads, flap_lag_springs, pitch
 from derive import kinematics as kin
 from derive import symbols as s
 from derive.coordinates import MOTION, SECTION_AXES
-from derive.expansion import Expansion, Vector, cross, dot
+from derive.expansion import Along, Expansion, Vector, cross, dot
 from derive.polynomials import SEGMENT_ANGLES, WHOLE_BLADE_ANGLES, PolynomialRing, name_trigonometry, temporaries
 
 AXES = "ijk"
@@ -44,18 +43,37 @@ cyclic_slope = s.quantity(
 )
 
 
+tilt_squared = s.quantity("tilt_squared", r"g\cdot g", "", "square of the yoke's trim tilt")
+
+
 def _of_tilt(name: str, latex: str, meaning: str) -> tuple[sp.Symbol, ...]:
-    orders = (("", ""), ("_slope", "'"), ("_curvature", "''"))
-    told = ("", ", its derivative with g . g", ", its second derivative with g . g")
+    """Return the symbols of a function of the squared tilt and of two derivatives."""
+    orders = (("", "", ""), ("_slope", "'", ", derivative"), ("_curvature", "''", ", second derivative"))
     return tuple(
-        s.quantity(f"tilt_{name}{suffix}", latex + prime, "", meaning + more)
-        for (suffix, prime), more in zip(orders, told, strict=True)
+        s.quantity(f"tilt_{name}{suffix}", latex + prime, "", f"{meaning}{told}") for suffix, prime, told in orders
     )
 
 
-tilt_sine = _of_tilt("sine", "a", "sine of the yoke's tilt over the tilt")
-tilt_versine = _of_tilt("versine", "b", "1 less the cosine of the yoke's tilt, over the tilt squared")
-_TERMS = 10  # of the power series: exact to rounding for tilts of up to a radian
+tilt_sine = _of_tilt("sine", "a", "sine of the yoke's tilt over the tilt, by its square")
+tilt_versine = _of_tilt("versine", "b", "1 less the cosine of the yoke's tilt over its square, by its square")
+# The rotation of the yoke at its trim tilt and its derivatives with the tilt, by components.
+_TURNS: dict[Along, tuple[str, str, str]] = {
+    (): ("yoke", "R", "rotation of the yoke"),
+    ("gimbal_flap",): ("yoke_flap", r"R_{,\beta}", "its change with gimbal flap"),
+    ("gimbal_roll",): ("yoke_roll", r"R_{,\gamma}", "its change with gimbal roll"),
+    ("gimbal_flap", "gimbal_flap"): ("yoke_flap_flap", r"R_{,\beta\beta}", "its second change with gimbal flap"),
+    ("gimbal_flap", "gimbal_roll"): ("yoke_flap_roll", r"R_{,\beta\gamma}", "its change with both"),
+    ("gimbal_roll", "gimbal_roll"): ("yoke_roll_roll", r"R_{,\gamma\gamma}", "its second change with gimbal roll"),
+}
+TURN = {
+    (along, row, column): s.quantity(
+        f"{name}_{row}{column}", f"{latex}{{}}_{{{row}{column}}}", "", f"{meaning}, row {row} and column {column}"
+    )
+    for along, (name, latex, meaning) in _TURNS.items()
+    for row in AXES
+    for column in AXES
+}
+_TERMS = 10  # of the power series of sine and versine: exact to rounding for tilts of up to a radian
 
 FORCE = {
     (arm, axis): s.quantity(
@@ -74,6 +92,10 @@ POINT_VELOCITY = {
     for power in (0, 1)
     for axis in AXES
 }
+CHORDWISE = {
+    axis: s.quantity(f"chordwise_{axis}", f"i'_{axis}", "", f"axis i' of the sections at trim, along {axis}")
+    for axis in AXES
+}
 trim_spin = s.quantity("trim_spin", r"\bar\omega_d", "rad/s", "rotation of the section about d along the trim")
 shaft_pitch_moment = s.quantity(
     "shaft_pitch_moment", r"\bar M_s", "N m", "moment of pitch inertia on the pitch relative to the shaft"
@@ -83,29 +105,40 @@ yoke_pitch_moment = s.quantity(
 )
 
 
+@functools.cache
 def tilt_of_yoke() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Sine and versine of the yoke's trim tilt, over the tilt and its square, and derivatives, as power series."""
-    square = sp.Symbol("square")
-    steps = []
+    """Rotation of the yoke by its trim tilt, and its first and second changes with the tilt.
+
+    exp([g]x) = 1 + a [g]x + b [g]x [g]x, with a and b power series of g . g.
+    """
+    square = sp.Symbol("square", real=True)
+    tilt = sp.Matrix([gimbal_flap, gimbal_roll, 0])
+    of = {"gimbal_flap": gimbal_flap, "gimbal_roll": gimbal_roll}
+    steps = [(tilt_squared, tilt.dot(tilt))]
+    functions = []
     for symbols, first in ((tilt_sine, 1), (tilt_versine, 2)):
         series = sum((-square) ** n / sp.factorial(2 * n + first) for n in range(_TERMS))
-        steps += [(symbol, sp.diff(series, square, order)) for order, symbol in enumerate(symbols)]
-    squared = gimbal_flap**2 + gimbal_roll**2
-    return [(symbol, sp.horner(value, square).subs(square, squared)) for symbol, value in steps]
+        for order, symbol in enumerate(symbols):
+            steps.append((symbol, sp.horner(sp.diff(series, square, order), square).subs(square, tilt_squared)))
+        change = tilt.dot(tilt) - square
+        functions.append(sum(symbol * change**n / sp.factorial(n) for n, symbol in enumerate(symbols)))
+    spin = kin.cross_matrix(tilt)
+    rotation = sp.eye(3) + functions[0] * spin + functions[1] * spin * spin
+    for along in _TURNS:
+        changed = sp.diff(rotation, *(of[name] for name in along)) if along else rotation
+        changed = changed.subs(square, tilt.dot(tilt))
+        steps += [
+            (TURN[along, row, column], sp.factor_terms(sp.expand(changed[i, j])))
+            for i, row in enumerate(AXES)
+            for j, column in enumerate(AXES)
+        ]
+    return steps
 
 
-def _about_trim(symbols: tuple[sp.Symbol, ...], change: sp.Expr) -> sp.Expr:
-    """Return a function of g . g to second order in its change."""
-    return sum(symbol * change**order / sp.factorial(order) for order, symbol in enumerate(symbols))
-
-
-@functools.cache
-def yoke_tilt() -> sp.Matrix:
-    """Rotation of the yoke about its trim tilt, polynomial in the perturbations; right to second order in these."""
-    moved = sp.Matrix([gimbal_flap + kin.q["gimbal_flap"], gimbal_roll + kin.q["gimbal_roll"], 0])
-    change = moved.dot(moved) - gimbal_flap**2 - gimbal_roll**2
-    spin = kin.cross_matrix(moved)
-    return sp.eye(3) + _about_trim(tilt_sine, change) * spin + _about_trim(tilt_versine, change) * spin * spin
+def _yoke(row: str, ring: PolynomialRing) -> Expansion:
+    """Return a row of the yoke's rotation about its trim tilt."""
+    parts = {along: ring.vector(TURN[along, row, column] for column in AXES) for along in _TURNS}
+    return Expansion(ring, parts | {along[::-1]: vector for along, vector in parts.items()})
 
 
 def _seen(along_i: sp.Expr, along_j: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
@@ -129,11 +162,10 @@ class MovingBlade:
     def __init__(self) -> None:
         trig = {symbol for pair in WHOLE_BLADE_ANGLES.values() for symbol in pair}
         steps = (kin.beyond_flap_hinge, kin.beyond_lag_hinge)
-        tilt = (gimbal_flap, gimbal_roll, *tilt_sine, *tilt_versine)
-        turns = (s.pitch, cyclic, cyclic_slope, s.pitch_gimbal_coupling, *s.HINGE_LINKAGES)
-        given = (*FORCE.values(), *POINT_VELOCITY.values())
+        turns = (gimbal_flap, gimbal_roll, s.pitch, cyclic, cyclic_slope, s.pitch_gimbal_coupling, *s.HINGE_LINKAGES)
+        given = (*FORCE.values(), *POINT_VELOCITY.values(), *CHORDWISE.values())
         self.ring = PolynomialRing(
-            [*trig, *steps, *tilt, *turns, *given], "the generators of `MovingBlade` in derive/moving.py"
+            [*trig, *steps, *TURN.values(), *turns, *given], "the generators of `MovingBlade` in derive/moving.py"
         )
         self.pitch = {to: Expansion.of(self.ring, sp.Matrix([angle])) for to, angle in pitch_angles().items()}
         self.points = {arm: self._turned(line) for arm, line in self._lines().items()}
@@ -164,10 +196,11 @@ class MovingBlade:
 
     def _turned(self, vector: sp.Matrix) -> Expansion:
         """Return a vector of the yoke in rotating axes: turned by azimuth, yoke and hub."""
-        found = Expansion.of(self.ring, vector)
-        for turn in (kin.rotation(kin.q["azimuth"] * kin.K_AXIS), yoke_tilt(), kin.HUB_TURN):
-            found = found.turned([Expansion.of(self.ring, turn[place, :].expand()) for place in range(3)])
-        return found
+        in_yoke = Expansion.of(self.ring, vector).turned(self._rows(kin.rotation(kin.q["azimuth"] * kin.K_AXIS)))
+        return in_yoke.turned([_yoke(row, self.ring) for row in AXES]).turned(self._rows(kin.HUB_TURN))
+
+    def _rows(self, turn: sp.Matrix) -> list[Expansion]:
+        return [Expansion.of(self.ring, turn[place, :].expand()) for place in range(3)]
 
     def work_of(self, arm: str, row: str, *along: str) -> Vector:
         """Return the virtual displacement of a row per unit of an arm, or its derivative.
@@ -179,14 +212,14 @@ class MovingBlade:
         return self.points[arm].along(row, *along)
 
     def rotation(self, row: str, *along: str) -> PolyElement:
-        """Return the virtual rotation of a section about d, or its derivative: n,i . i' and the change of pitch."""
-        normal, chordwise = self.axes["n"], self.axes["x"]
+        """Return the virtual rotation of a section about d, or its derivative: n,i . i' and the change of pitch.
+
+        The derivative has i' as it is at trim; n,i . i',j is left to whoever has both as numbers.
+        """
         if row in kin.HUB_ROTATION:
             turned = dot(self._fixed_axis(row), self.axes["d"].along(*along))
         else:
-            turned = dot(normal.along(row, *along), chordwise.along())
-            if along:
-                turned += dot(normal.along(row), chordwise.along(*along))
+            turned = dot(self.axes["n"].along(row, *along), self.ring.vector(CHORDWISE.values()))
         return turned + self.pitch["yoke"].along(row, *along)[0]
 
     def _fixed_axis(self, row: str) -> Vector:
@@ -266,7 +299,7 @@ def force_stiffness(row: str, column: str) -> sp.Expr:
 
 
 def moment_stiffness(row: str, column: str) -> sp.Expr:
-    """Work of a segment's steady moment on the rotations of second order."""
+    """Work of a segment's steady moment on the rotations of second order, by the changes of n alone."""
     blade = moving_blade()
     return airloads.MOMENTS["m", 0] * blade.expression(blade.rotation(row, column))
 
