@@ -13,7 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive import airloads, beam, blade_element, function, multiblade
+from derive import airloads, beam, blade_element, function, moving, multiblade
 from derive import kinematics as kin
 from derive.coordinates import (
     LOAD,
@@ -240,6 +240,20 @@ def geometry_matrix(
         return NUMBER if column == "value" else plus(NUMBER, minus=coordinate_dimension(column))
 
     return matrix(name, derivation, origin, rows, columns, dimension)
+
+
+def arms_matrix(
+    name: str, derivation: Derivation, origin: str, rows: tuple[str, ...], mass: int = 0
+) -> Line:
+    """Make what is linear in the arms of a blade, or with `mass` integrals of the mass times two arms."""
+
+    def length(name: str) -> int:
+        return {"hub_arm": 0, "at_center": 0, "per_radius": -1}.get(name, 1)
+
+    def dimension(row: str, column: str) -> Dimension:
+        return mass, length(row) + length(column), 0
+
+    return matrix(name, derivation, origin, rows, moving.ARM_NAMES, dimension)
 
 
 def work_matrix(

@@ -23,7 +23,7 @@ from collections.abc import Mapping
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from derive import airloads, flap_lag_springs, pitch
+from derive import airloads, flap_lag_springs, inertia, pitch
 from derive import kinematics as kin
 from derive import symbols as s
 from derive.coordinates import MOTION, SECTION_AXES
@@ -317,6 +317,22 @@ def rotation_of_section(_: str, row: str) -> sp.Expr:
     """Virtual rotation of a segment's sections about d, by each row."""
     blade = moving_blade()
     return blade.expression(blade.rotation(row))
+
+
+ARM_NAMES = ("inboard_arm", "outboard_arm", "lag_arm", "hub_arm")  # of the points, and 1 for the hub itself
+_OF_ARM = dict(zip(ARM_NAMES, (kin.inboard_arm, kin.outboard_arm, kin.lag_arm, sp.Integer(1)), strict=True))
+LINE_ROWS = ("at_center", "per_radius")
+
+
+def arm_inertia(row: str, column: str) -> sp.Expr:
+    """Integrals over the undeflected blade of the mass times two of its arms, of which the hub's is 1."""
+    return inertia.integrate_mass(_OF_ARM[row] * _OF_ARM[column], inertia.MASS_INTEGRALS)
+
+
+def arms_of_segment(row: str, arm: str) -> sp.Expr:
+    """Arms of a segment's points, at r = 0 and per unit radius."""
+    whole = airloads.on_segment(_OF_ARM[arm])
+    return sp.expand(whole).coeff(s.radial_station, LINE_ROWS.index(row))
 
 
 # Springs know the blade by flap, lag and pitch relative to the yoke alone; its coordinates reach them through these.
