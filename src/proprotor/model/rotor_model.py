@@ -21,6 +21,7 @@ from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
 from proprotor.model.quantities import batch_shape, couplings, flat, model_quantities, shape_of
 from proprotor.model.stamp import Origin
+from proprotor.model.tilted_rotor import TiltedRotor, number_of_blades, tilted_rotor
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
@@ -85,12 +86,16 @@ def model_of(
     airspeed: Any,
     options: Mapping[str, Any],
     case: Configuration | None = None,
+    around: bool = False,
 ) -> LinearModel:
-    """Return the rotor alone as `rotor_model` does, with the case to which the rotor belongs, if there is one."""
+    """Return the rotor alone as `rotor_model` does, with the case to which the rotor belongs, if there is one.
+
+    With `around` the model of a rotor with a periodic trim has a last axis of the batch for azimuths, and no averages.
+    """
     choice = parse_options(options)
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed, operation.density)
-    shape = batch_shape(rotor, operation, speed, choice.drive_train)
+    shape = batch_shape(rotor, operation, speed, choice)
     points = prod(shape)
     _check_memory(rotor, choice, points)
     quantities = model_quantities(rotor, operation, choice, speed, shape)
@@ -103,14 +108,24 @@ def model_of(
     apart = reactionless_groups(reactionless) if reactionless else []
     lagging = lag_coordinates() if choice.lift == "lagged" else ()
     coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
-    found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
+    trim = settled.trim
+    if choice.is_tilted:
+        flight = {"airspeed": speed} | {name: getattr(choice, name) for name in ("shaft_angle", "load_factor")}
+        flight = {name: np.broadcast_to(value, shape).reshape(-1) for name, value in flight.items()}
+        tilted = tilted_rotor(sections, settled, choice, target, flight, number_of_blades(rotor))
+        found, trim = _tilted_matrices(tilted, choice, points, around), tilted.trim
+        if around:
+            trim = Trim(**{name: value[:, None] for name, value in vars(trim).items()}).broadcast(found["M"].shape[:2])
+            speed, shape = speed[..., None], (*shape, found["M"].shape[1])
+    else:
+        found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
     matrices: dict[str, Any] = {
         name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in found.items()
     }
     model = LinearModel(
         **matrices,
         dofs=tuple(coordinate.name for coordinate in coordinates),
-        trim=Trim(**{name: value.reshape(shape) for name, value in vars(settled.trim).items()}),
+        trim=Trim(**{name: value.reshape(shape) for name, value in vars(trim).items()}),
         airspeed=speed if speed.shape == shape else np.broadcast_to(speed, shape),
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
@@ -221,6 +236,21 @@ def _matrices(
         name: _at_all_points(found.get(name), points, rows, (n, columns))
         for name, columns in (dict.fromkeys("MCK", n) | {"B": len(INPUTS)}).items()
     }
+
+
+def _tilted_matrices(
+    tilted: TiltedRotor, options: Options, points: int, around: bool
+) -> dict[str, Array]:
+    """Return M, C, K and B of all points, means around the turn or with an axis of azimuths; failed points are NaN."""
+    found = dict(tilted.matrices if around else tilted.mean())
+    if not options.pitch_is_free:
+        found["B"] = _without_pitch_equations(found["K"], found["B"])
+    whole = {
+        name: np.full((points, *matrix.shape[1:]), np.nan, dtype=matrix.dtype) for name, matrix in found.items()
+    }
+    for name, matrix in found.items():
+        whole[name][tilted.rows] = matrix
+    return whole
 
 
 def _without_pitch_equations(stiffness: Array, inputs: Array) -> Array:
