@@ -11,6 +11,7 @@ import numpy as np
 
 from proprotor.datum import Datum
 from proprotor.errors import InputError
+from proprotor.model.floquet import checked
 from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair
@@ -20,6 +21,7 @@ from proprotor.model.side import Side
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
+from proprotor.rotor.options import parse_options
 from proprotor.rotor.rotor import Rotor
 from proprotor.support.airframe import Airframe
 from proprotor.support.normal_modes import NormalModes
@@ -113,8 +115,43 @@ class Configuration:
         InputError
             For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
         """
+        if parse_options(self.model_options(options)).is_tilted:
+            return checked(self.around(airspeed, **options), self.passage, int(self.rotor.n_blades))
+        return self._linearized(airspeed, options)
+
+    def around(self, airspeed: Any, **options: Any) -> LinearModel:
+        """Return the equations of motion about a periodic trim, with a last axis of the batch for azimuth.
+
+        Parameters
+        ----------
+        airspeed : as `linearize`
+        **options
+            See `proprotor.rotor.options.Options`, with a shaft angle or a load factor.
+
+        Returns
+        -------
+        LinearModel
+            M, C, K (..., azimuths, n, n) at equal steps of one Nth of a turn.
+
+        Raises
+        ------
+        InputError
+            As `linearize`; without a shaft angle and a load factor, and for an aircraft whose sides differ.
+        """
+        if not parse_options(self.model_options(options)).is_tilted:
+            raise InputError("load_factor", 1, "or shaft_angle must be another than in straight axial flight")
+        if self.left is not None:
+            raise InputError("shaft_angle", options.get("shaft_angle", 0), "goes with rotors that are alike")
+        return self._linearized(airspeed, options, around=True)
+
+    @property
+    def passage(self) -> Any:
+        """Blade passage frequency NΩ, rad/s."""
+        return np.asarray(self.rotor.n_blades) * np.asarray(self.operation.rotor_speed)
+
+    def _linearized(self, airspeed: Any, options: Mapping[str, Any], around: bool = False) -> LinearModel:
         own = self.model_options(options)
-        rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self)
+        rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self, around=around)
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
         if isinstance(support, Airframe):
             return self._pair(rotor_alone, support, airspeed, options)

@@ -14,6 +14,7 @@ from proprotor.model import stamp
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.model.massless import massless
 from proprotor.model.stamp import Origin
+from proprotor.rotor.moving_blade import Motion
 from proprotor.rotor.motions import HALVES, ROTOR_SPEED, in_half
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array, Dataset
@@ -75,6 +76,9 @@ class LinearModel:
     left_hub : array (..., 6, n), optional
         Of two rotors: motion of the left hub per unit of each coordinate, m and rad, in the mirrored axes of the left
         rotor.
+    swing : Motion, optional
+        Of a rotor alone at an angle or in a pull-up: what its blades and its gimbal do around the turn, see
+        `proprotor.rotor.moving_blade`.
     inputs : tuple of str
         Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on.
     """
@@ -99,6 +103,7 @@ class LinearModel:
     left: LinearModel | None = None
     left_hub: Array | None = None
     inputs: tuple[str, ...] = INPUTS
+    swing: Motion | None = None
 
     def __repr__(self) -> str:
         """Return the coordinates, the shape of the batch and its failed and doubtful points, in a few lines."""

@@ -108,12 +108,13 @@ def model_of(
     apart = reactionless_groups(reactionless) if reactionless else []
     lagging = lag_coordinates() if choice.lift == "lagged" else ()
     coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
-    trim = settled.trim
+    trim, swing = settled.trim, None
     if choice.is_tilted:
         flight = {"airspeed": speed} | {name: getattr(choice, name) for name in ("shaft_angle", "load_factor")}
         flight = {name: np.broadcast_to(value, shape).reshape(-1) for name, value in flight.items()}
         tilted = tilted_rotor(sections, settled, choice, target, flight, number_of_blades(rotor))
         found, trim = _tilted_matrices(tilted, choice, points, around), tilted.trim
+        swing = tilted.motion.reshaped(shape)
         if around:
             trim = Trim(**{name: value[:, None] for name, value in vars(trim).items()}).broadcast(found["M"].shape[:2])
             speed, shape = speed[..., None], (*shape, found["M"].shape[1])
@@ -131,6 +132,7 @@ def model_of(
         origin=Origin(choice, case),
         rates=tuple(coordinate.name for coordinate in lagging),
         apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
+        swing=swing,
     )
     if choice.drive_train is not None and choice.drive_train.mast_stiffness is not None:
         model = with_mast(model, choice.drive_train)

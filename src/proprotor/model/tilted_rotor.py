@@ -21,7 +21,7 @@ from proprotor_equations.coordinates import BLADE
 from proprotor.errors import InputError
 from proprotor.rotor.around_the_turn import azimuths, derivative, harmonics, number_of_azimuths
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.moving_blade import BladeAround, Flight
+from proprotor.rotor.moving_blade import BladeAround, Flight, Motion
 from proprotor.rotor.options import Options
 from proprotor.rotor.periodic_trim import HarmonicBalance, PeriodicTrim, periodic_trim
 from proprotor.rotor.rotor import Rotor
@@ -46,14 +46,14 @@ class TiltedRotor(NamedTuple):
         Of all points, by means around the turn.
     rows : array (n,)
         Places of the points that converged.
-    periodic : PeriodicTrim
-        Of the points that converged in axial flight.
+    motion : Motion
+        Of all points, NaN at those that failed.
     """
 
     matrices: dict[str, Array]
     trim: Trim
     rows: Array
-    periodic: PeriodicTrim
+    motion: Motion
 
     def mean(self) -> dict[str, Array]:
         """Return M, C, K and B averaged over azimuth."""
@@ -109,8 +109,17 @@ def tilted_rotor(
     trim = _trim(settled, periodic, own)
     good = np.flatnonzero(periodic.reason == "")
     good = good[np.asarray(trim.converged[rows][good], dtype=bool)]
-    matrices = _fixed_frame(balance, periodic)
-    return TiltedRotor({name: matrix[good] for name, matrix in matrices.items()}, trim, rows[good], periodic)
+    matrices = {name: matrix[good] for name, matrix in _fixed_frame(balance, periodic).items()}
+    return TiltedRotor(matrices, trim, rows[good], _of_all(periodic.motion, good, rows[good], len(trim.reason)))
+
+
+def _of_all(motion: Motion, good: Array, rows: Array, points: int) -> Motion:
+    """Return the motion of some points among all points, NaN at the others."""
+    parts = {}
+    for name, part in vars(motion).items():
+        parts[name] = np.full((points, *part.shape[1:]), np.nan, dtype=part.dtype)
+        parts[name][rows] = part[good]
+    return Motion(**parts)
 
 
 def _flight(airspeed: Array, shaft_angle: Array, load_factor: Array) -> Flight:

@@ -67,7 +67,17 @@ class Motion:
     @property
     def azimuths(self) -> int:
         """Number of azimuths."""
-        return int(self.angles.shape[1])
+        return int(self.angles.shape[-2])
+
+    def reshaped(self, shape: tuple[int, ...]) -> Motion:
+        """Return the motion with the axes of a batch in place of the points."""
+        parts = {"angles": 2, "tilt": 2, "cyclic": 1, "collective": 0}
+        return Motion(
+            **{
+                name: (value := getattr(self, name)).reshape((*shape, *value.shape[value.ndim - own :]))
+                for name, own in parts.items()
+            }
+        )
 
 
 class BladeAround(NamedTuple):

@@ -124,8 +124,8 @@ def _check_points(field: str, points: int) -> None:
 
 def _is_batch(case: Configuration, options: Mapping[str, Any]) -> bool:
     """Return whether a case or its options hold arrays, so that one airspeed has many models."""
-    train = case.model_options(options).get("drive_train")
-    return batch_shape(case.rotor, case.operation, np.zeros(()), train) != () or any(
+    choice = parse_options(case.model_options(options))
+    return batch_shape(case.rotor, case.operation, np.zeros(()), choice) != () or any(
         np.ndim(value) > 0 for name, value in options.items() if name.endswith("_coupling")
     )
 
