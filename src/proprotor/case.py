@@ -12,6 +12,7 @@ from proprotor.model.configuration import Configuration
 from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary_against import boundary_against
+from proprotor.stability.floquet import floquet
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.map import stability_map
 from proprotor.stability.sensitivity import sensitivity
@@ -35,6 +36,7 @@ class Case(Configuration):
     sensitivity = sensitivity
     attribution = attribution
     stability_map = stability_map
+    floquet = floquet
 
 
 def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] | None = None) -> Case:

@@ -116,7 +116,7 @@ class Configuration:
             For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
         """
         if parse_options(self.model_options(options)).is_tilted:
-            return checked(self.around(airspeed, **options), self.passage, int(self.rotor.n_blades))
+            return checked(self.around(airspeed, **options), self.passage)
         return self._linearized(airspeed, options)
 
     def around(self, airspeed: Any, **options: Any) -> LinearModel:

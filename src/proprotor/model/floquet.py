@@ -18,11 +18,11 @@ from proprotor.rotor.trim import Trim
 from proprotor.typing import Array
 
 LIMIT = 0.005
-"""Change of a root, as a share of its size, from which results are doubtful: half a per cent of critical damping."""
+"""Change of a damping ratio from which results are doubtful: half a per cent of critical damping."""
 
 _STEP = 0.1  # of the integration, times the largest root
-_SMALLEST = 0.05  # of the rotor speed: roots below count as of this size
-DOUBT = "averaging over azimuth moves a root by {:.0%} of its size, by the Floquet exponents"
+_DAMPED = 0.1  # of critical damping
+DOUBT = "averaging over azimuth moves the damping of a root by {:.0f}% of critical, by the Floquet exponents"
 
 
 def averaged(model: LinearModel) -> LinearModel:
@@ -48,27 +48,36 @@ def averaged(model: LinearModel) -> LinearModel:
     return replace(model, **matrices, **parts, trim=trim, airspeed=model.airspeed[..., 0])
 
 
-def exponents(model: LinearModel, passage: Array) -> tuple[Array, Array]:
-    """Return the roots (..., states) of the average, and beside each the Floquet exponent nearest to it, rad/s.
+def exponents(model: LinearModel, roots: Array, passage: Array) -> Array:
+    """Return the Floquet exponent nearest to each root (..., roots) of the average, rad/s; NaN where a root is NaN.
 
     Parameters
     ----------
     model : LinearModel
         Batch (..., azimuths) at equal steps of one Nth of a turn.
+    roots : array (..., roots)
+        rad/s.
     passage : array (...)
         Blade passage frequency NΩ, rad/s.
     """
-    mean = np.real(state_matrix(averaged(_real(model))))
-    around = np.real(state_matrix(_real(model)))
-    shape, states = mean.shape[:-2], mean.shape[-1]
-    roots = np.full((*shape, states), complex(np.nan, np.nan))
-    found = roots.copy()
-    periods = 2 * np.pi / np.broadcast_to(np.real(passage), shape)
-    for point in np.ndindex(shape):
-        if np.isfinite(mean[point]).all() and np.isfinite(around[point]).all():
-            roots[point] = np.linalg.eigvals(mean[point])
-            found[point] = _nearest(roots[point], transition(around[point], periods[point]), periods[point])
-    return roots, found
+    around = state_matrix(_real(model))
+    found = np.full(roots.shape, complex(np.nan, np.nan))
+    periods = 2 * np.pi / np.broadcast_to(np.real(passage), roots.shape[:-1])
+    for point in np.ndindex(roots.shape[:-1]):
+        known = np.isfinite(roots[point])
+        if known.any() and np.isfinite(around[point]).all():
+            carried = transition(around[point], periods[point])
+            found[point][known] = _nearest(roots[point][known], carried, periods[point])
+    return found
+
+
+def roots_of_average(mean: LinearModel) -> Array:
+    """Return the roots (..., states) of an averaged model, rad/s, in no order; NaN at failed points."""
+    matrices = state_matrix(_real(mean))
+    found = np.full(matrices.shape[:-1], complex(np.nan, np.nan))
+    good = np.isfinite(matrices).all(axis=(-2, -1))
+    found[good] = np.linalg.eigvals(matrices[good])
+    return found
 
 
 def _real(model: LinearModel) -> LinearModel:
@@ -121,10 +130,15 @@ def _nearest(roots: Array, carried: Array, period: float) -> Array:
     return np.asarray(roots + change[np.arange(len(roots)), np.abs(change).argmin(axis=1)])
 
 
-def change_by_average(roots: Array, found: Array, rotor_speed: Array) -> Array:
-    """Return the largest change of a root by the average (...), as a share of its size; NaN at failed points."""
-    size = np.maximum(np.abs(roots), _SMALLEST * np.real(rotor_speed)[..., None])
-    return np.asarray((np.abs(found - roots) / size).max(axis=-1))
+def change_by_average(roots: Array, found: Array) -> Array:
+    """Return the largest change of a damping ratio by the average (...); NaN at failed points.
+
+    Roots with more than a tenth of critical damping are left out: no instability is near them.
+    """
+    before, after = (-np.real(part) / np.where(part == 0, np.inf, np.abs(part)) for part in (roots, found))
+    near = np.isfinite(found) & (np.minimum(before, after) < _DAMPED) & (np.imag(roots) != 0)
+    change = np.where(near, np.abs(after - before), 0.0).max(axis=-1)
+    return np.asarray(np.where(np.isnan(roots).all(axis=-1), np.nan, change))
 
 
 def with_doubts(model: LinearModel, change: Array) -> LinearModel:
@@ -132,12 +146,12 @@ def with_doubts(model: LinearModel, change: Array) -> LinearModel:
     warning = model.trim.warning.copy()
     for point in np.argwhere(change > LIMIT):
         place = tuple(point)
-        warning[place] = "; ".join(filter(None, (warning[place], DOUBT.format(change[place]))))
+        warning[place] = "; ".join(filter(None, (warning[place], DOUBT.format(np.ceil(100 * change[place])))))
     return replace(model, trim=replace(model.trim, warning=warning))
 
 
-def checked(model: LinearModel, passage: Array, n_blades: int) -> LinearModel:
+def checked(model: LinearModel, passage: Array) -> LinearModel:
     """Return a model with azimuths averaged over azimuth, with a warning where the average is doubtful."""
     mean = averaged(model)
-    roots, found = exponents(model, passage)
-    return with_doubts(mean, change_by_average(roots, found, np.broadcast_to(passage, roots.shape[:-1]) / n_blades))
+    roots = roots_of_average(mean)
+    return with_doubts(mean, change_by_average(roots, exponents(model, roots, passage)))

@@ -23,7 +23,7 @@ from proprotor.rotor.trim_balance import is_last
 from proprotor.rotor.trim_reasons import LARGEST_ANGLE
 from proprotor.typing import Array
 
-HIGHEST = 6  # harmonic of the blade's angles
+HIGHEST = 8  # harmonic of the blade's angles
 _ITERATIONS = 20
 _LARGEST_STEP = 0.2  # rad
 _ANGLES = (("coning", moving.FLAP), ("lag", moving.LAG), ("elastic_pitch", moving.PITCH))

@@ -113,6 +113,10 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
         choice = model.origin.options
     if choice.reactionless:
         raise InputError("reactionless", True, "is not taken apart: leave it out")
+    if choice.is_tilted:
+        name = "load_factor" if np.all(np.equal(choice.shaft_angle, 0)) else "shaft_angle"
+        rule = "is not taken apart: the airloads of a periodic trim have no parts of their own"
+        raise InputError(name, getattr(choice, name), rule)
     rotors = [_Rotor(case.rotor, case.operation, choice, model.trim)]
     if case.left is not None and (left := model.left) is not None and left.origin is not None:
         rotors += [_Rotor(case.left.rotor, case.left.operation, left.origin.options, left.trim)]

@@ -22,6 +22,7 @@ from proprotor.model.first_order import some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.quantities import batch_shape
 from proprotor.needs import check_memory
+from proprotor.rotor.options import parse_options
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second, values_in_si
