@@ -140,8 +140,13 @@ class Configuration:
         """
         if not parse_options(self.model_options(options)).is_tilted:
             raise InputError("load_factor", 1, "or shaft_angle must be another than in straight axial flight")
-        if self.left is not None:
-            raise InputError("shaft_angle", options.get("shaft_angle", 0), "goes with rotors that are alike")
+        if isinstance(self.support, Airframe):
+            rule = (
+                "goes with a rotor on a support that stands still: an aircraft that is free and flies at an angle turns "
+                "its weight and the lift of its wing as it rolls, which the model leaves out"
+            )
+            name = "load_factor" if np.all(np.equal(options.get("shaft_angle", 0), 0)) else "shaft_angle"
+            raise InputError(name, options.get(name), rule)
         return self._linearized(airspeed, options, around=True)
 
     @property
