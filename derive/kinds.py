@@ -242,9 +242,7 @@ def geometry_matrix(
     return matrix(name, derivation, origin, rows, columns, dimension)
 
 
-def arms_matrix(
-    name: str, derivation: Derivation, origin: str, rows: tuple[str, ...], mass: int = 0
-) -> Line:
+def arms_matrix(name: str, derivation: Derivation, origin: str, rows: tuple[str, ...], mass: int = 0) -> Line:
     """Make what is linear in the arms of a blade, or with `mass` integrals of the mass times two arms."""
 
     def length(name: str) -> int:

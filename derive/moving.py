@@ -28,15 +28,25 @@ from derive import kinematics as kin
 from derive import symbols as s
 from derive.coordinates import MOTION, SECTION_AXES
 from derive.expansion import Along, Expansion, Vector, cross, dot
-from derive.polynomials import SEGMENT_ANGLES, WHOLE_BLADE_ANGLES, PolynomialRing, name_trigonometry, temporaries
+from derive.polynomials import (
+    SEGMENT_ANGLES,
+    WHOLE_BLADE_ANGLES,
+    PolynomialRing,
+    name_trigonometry,
+    temporaries,
+)
 
 AXES = "ijk"
 VALUE = "value"  # the column of what is at trim, beside those of the changes
 ARMS = {"inboard": kin.inboard_arm, "outboard": kin.outboard_arm, "lag": kin.lag_arm}
 SPRUNG = ("flap", "lag", "pitch")  # what the springs of a blade depend on
 
-gimbal_flap = s.quantity("trim_gimbal_flap", r"\bar\beta_G", "rad", "trim tilt of the yoke as the blade's flap")
-gimbal_roll = s.quantity("trim_gimbal_roll", r"\bar\gamma", "rad", "trim tilt of the yoke as the blade's roll")
+gimbal_flap = s.quantity(
+    "trim_gimbal_flap", r"\bar\beta_G", "rad", "trim tilt of the yoke as the blade's flap"
+)
+gimbal_roll = s.quantity(
+    "trim_gimbal_roll", r"\bar\gamma", "rad", "trim tilt of the yoke as the blade's roll"
+)
 cyclic = s.quantity("trim_cyclic", r"\bar\theta_c", "rad", "trim pitch of the tilted swashplate at the blade")
 cyclic_slope = s.quantity(
     "trim_cyclic_slope", r"\bar\theta_c'", "", "trim pitch of the tilted swashplate a quarter turn later"
@@ -50,7 +60,8 @@ def _of_tilt(name: str, latex: str, meaning: str) -> tuple[sp.Symbol, ...]:
     """Return the symbols of a function of the squared tilt and of two derivatives."""
     orders = (("", "", ""), ("_slope", "'", ", derivative"), ("_curvature", "''", ", second derivative"))
     return tuple(
-        s.quantity(f"tilt_{name}{suffix}", latex + prime, "", f"{meaning}{told}") for suffix, prime, told in orders
+        s.quantity(f"tilt_{name}{suffix}", latex + prime, "", f"{meaning}{told}")
+        for suffix, prime, told in orders
     )
 
 
@@ -61,13 +72,24 @@ _TURNS: dict[Along, tuple[str, str, str]] = {
     (): ("yoke", "R", "rotation of the yoke"),
     ("gimbal_flap",): ("yoke_flap", r"R_{,\beta}", "its change with gimbal flap"),
     ("gimbal_roll",): ("yoke_roll", r"R_{,\gamma}", "its change with gimbal roll"),
-    ("gimbal_flap", "gimbal_flap"): ("yoke_flap_flap", r"R_{,\beta\beta}", "its second change with gimbal flap"),
+    ("gimbal_flap", "gimbal_flap"): (
+        "yoke_flap_flap",
+        r"R_{,\beta\beta}",
+        "its second change with gimbal flap",
+    ),
     ("gimbal_flap", "gimbal_roll"): ("yoke_flap_roll", r"R_{,\beta\gamma}", "its change with both"),
-    ("gimbal_roll", "gimbal_roll"): ("yoke_roll_roll", r"R_{,\gamma\gamma}", "its second change with gimbal roll"),
+    ("gimbal_roll", "gimbal_roll"): (
+        "yoke_roll_roll",
+        r"R_{,\gamma\gamma}",
+        "its second change with gimbal roll",
+    ),
 }
 TURN = {
     (along, row, column): s.quantity(
-        f"{name}_{row}{column}", f"{latex}{{}}_{{{row}{column}}}", "", f"{meaning}, row {row} and column {column}"
+        f"{name}_{row}{column}",
+        f"{latex}{{}}_{{{row}{column}}}",
+        "",
+        f"{meaning}, row {row} and column {column}",
     )
     for along, (name, latex, meaning) in _TURNS.items()
     for row in AXES
@@ -77,7 +99,10 @@ _TERMS = 10  # of the power series of sine and versine: exact to rounding for ti
 
 FORCE = {
     (arm, axis): s.quantity(
-        f"{arm}_force_{axis}", f"F_{{{arm},{axis}}}", "N m", f"steady forces times the {arm} arm, along {axis}"
+        f"{arm}_force_{axis}",
+        f"F_{{{arm},{axis}}}",
+        "N m",
+        f"steady forces times the {arm} arm, along {axis}",
     )
     for arm in ARMS
     for axis in AXES
@@ -96,12 +121,17 @@ CHORDWISE = {
     axis: s.quantity(f"chordwise_{axis}", f"i'_{axis}", "", f"axis i' of the sections at trim, along {axis}")
     for axis in AXES
 }
-trim_spin = s.quantity("trim_spin", r"\bar\omega_d", "rad/s", "rotation of the section about d along the trim")
+trim_spin = s.quantity(
+    "trim_spin", r"\bar\omega_d", "rad/s", "rotation of the section about d along the trim"
+)
 shaft_pitch_moment = s.quantity(
     "shaft_pitch_moment", r"\bar M_s", "N m", "moment of pitch inertia on the pitch relative to the shaft"
 )
 yoke_pitch_moment = s.quantity(
-    "yoke_pitch_moment", r"\bar M_y", "N m", "moment of springs and propeller moment on the pitch relative to the yoke"
+    "yoke_pitch_moment",
+    r"\bar M_y",
+    "N m",
+    "moment of springs and propeller moment on the pitch relative to the yoke",
 )
 
 
@@ -119,7 +149,9 @@ def tilt_of_yoke() -> list[tuple[sp.Symbol, sp.Expr]]:
     for symbols, first in ((tilt_sine, 1), (tilt_versine, 2)):
         series = sum((-square) ** n / sp.factorial(2 * n + first) for n in range(_TERMS))
         for order, symbol in enumerate(symbols):
-            steps.append((symbol, sp.horner(sp.diff(series, square, order), square).subs(square, tilt_squared)))
+            steps.append(
+                (symbol, sp.horner(sp.diff(series, square, order), square).subs(square, tilt_squared))
+            )
         change = tilt.dot(tilt) - square
         functions.append(sum(symbol * change**n / sp.factorial(n) for n, symbol in enumerate(symbols)))
     spin = kin.cross_matrix(tilt)
@@ -151,7 +183,9 @@ def pitch_angles() -> dict[str, sp.Expr]:
     """Blade pitch relative to the shaft and to the yoke, about a tilted yoke and a tilted swashplate."""
     flap, roll = _seen(gimbal_flap + kin.q["gimbal_flap"], gimbal_roll + kin.q["gimbal_roll"])
     by_swashplate, _ = _seen(cyclic, cyclic_slope)
-    of_hinges = s.kinematic_pitch_flap_coupling * kin.q["flap"] + s.kinematic_pitch_lag_coupling * kin.q["lag"]
+    of_hinges = (
+        s.kinematic_pitch_flap_coupling * kin.q["flap"] + s.kinematic_pitch_lag_coupling * kin.q["lag"]
+    )
     to_shaft = s.pitch + kin.q["pitch"] + by_swashplate - s.pitch_gimbal_coupling * flap - of_hinges
     return {"shaft": to_shaft, "yoke": to_shaft - roll}
 
@@ -162,11 +196,21 @@ class MovingBlade:
     def __init__(self) -> None:
         trig = {symbol for pair in WHOLE_BLADE_ANGLES.values() for symbol in pair}
         steps = (kin.beyond_flap_hinge, kin.beyond_lag_hinge)
-        turns = (gimbal_flap, gimbal_roll, s.pitch, cyclic, cyclic_slope, s.pitch_gimbal_coupling, *s.HINGE_LINKAGES)
+        turns = (
+            gimbal_flap,
+            gimbal_roll,
+            s.pitch,
+            cyclic,
+            cyclic_slope,
+            s.pitch_gimbal_coupling,
+            *s.HINGE_LINKAGES,
+        )
         given = (*FORCE.values(), *POINT_VELOCITY.values(), *CHORDWISE.values())
         self.ring = PolynomialRing(
-            [*trig, *steps, *TURN.values(), *turns, *given], "the generators of `MovingBlade` in derive/moving.py"
+            [*trig, *steps, *TURN.values(), *turns, *given],
+            "the generators of `MovingBlade` in derive/moving.py",
         )
+        self.zero = self.ring.ring.zero
         self.pitch = {to: Expansion.of(self.ring, sp.Matrix([angle])) for to, angle in pitch_angles().items()}
         self.points = {arm: self._turned(line) for arm, line in self._lines().items()}
         self.axes = {axis: self._turned(direction) for axis, direction in self._directions().items()}
@@ -196,7 +240,9 @@ class MovingBlade:
 
     def _turned(self, vector: sp.Matrix) -> Expansion:
         """Return a vector of the yoke in rotating axes: turned by azimuth, yoke and hub."""
-        in_yoke = Expansion.of(self.ring, vector).turned(self._rows(kin.rotation(kin.q["azimuth"] * kin.K_AXIS)))
+        in_yoke = Expansion.of(self.ring, vector).turned(
+            self._rows(kin.rotation(kin.q["azimuth"] * kin.K_AXIS))
+        )
         return in_yoke.turned([_yoke(row, self.ring) for row in AXES]).turned(self._rows(kin.HUB_TURN))
 
     def _rows(self, turn: sp.Matrix) -> list[Expansion]:
@@ -219,8 +265,15 @@ class MovingBlade:
         if row in kin.HUB_ROTATION:
             turned = dot(self._fixed_axis(row), self.axes["d"].along(*along))
         else:
-            turned = dot(self.axes["n"].along(row, *along), self.ring.vector(CHORDWISE.values()))
+            turned = dot(
+                self._across(self.axes["n"].along(row, *along)), self.ring.vector(CHORDWISE.values())
+            )
         return turned + self.pitch["yoke"].along(row, *along)[0]
+
+    def _across(self, change: Vector) -> Vector:
+        """Return a change of n, or nothing of one along n itself, across which i' stands."""
+        parts = cross(change, self.axes["n"].along())
+        return change if any(self.ring.reduced(part) for part in parts) else [self.zero] * 3
 
     def _fixed_axis(self, row: str) -> Vector:
         return self.ring.vector((kin.I_AXIS, kin.J_AXIS, kin.K_AXIS)[kin.HUB_ROTATION.index(row)])
@@ -291,7 +344,7 @@ def trim_velocity(motion: str, _: str = "trim") -> sp.Expr:
 def force_stiffness(row: str, column: str) -> sp.Expr:
     """Work of steady forces on the displacements of second order."""
     blade = moving_blade()
-    total = blade.ring.ring.zero
+    total = blade.zero
     for arm in ARMS:
         force = blade.ring.vector(FORCE[arm, axis] for axis in AXES)
         total += dot(blade.work_of(arm, row, column), force)

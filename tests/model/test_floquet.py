@@ -9,7 +9,14 @@ import scipy.linalg
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.model.floquet import LIMIT, averaged, change_by_average, exponents, roots_of_average, transition
+from proprotor.model.floquet import (
+    LIMIT,
+    averaged,
+    change_by_average,
+    exponents,
+    roots_of_average,
+    transition,
+)
 from proprotor.stability.floquet import floquet
 
 CASE = pp.load_case("xv15")
@@ -66,7 +73,9 @@ def test_a_doubtful_average_says_so():
     assert change[0] < LIMIT < change[1]
     assert "averaging" not in found.warning.values[0]
     assert "averaging over azimuth moves the damping" in found.warning.values[1]
-    assert np.array_equal(CASE.linearize(speeds, shaft_angle=np.radians(12)).trim.warning, found.warning.values)
+    assert np.array_equal(
+        CASE.linearize(speeds, shaft_angle=np.radians(12)).trim.warning, found.warning.values
+    )
 
 
 def test_changes_of_damping_leave_out_what_is_well_damped():

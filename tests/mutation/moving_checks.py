@@ -156,7 +156,9 @@ def _quantities() -> Quantities:
         own = {"trim_gimbal_flap": m.tilt[0], "trim_gimbal_roll": m.tilt[1]}
         own |= {"trim_cyclic": m.cyclic[0], "trim_cyclic_slope": m.cyclic[1]}
         own |= {
-            f"{arm}_force_{axis}": m.force[i, j] for i, arm in enumerate(_ARMS) for j, axis in enumerate("ijk")
+            f"{arm}_force_{axis}": m.force[i, j]
+            for i, arm in enumerate(_ARMS)
+            for j, axis in enumerate("ijk")
         }
         own |= {"shaft_pitch_moment": m.moments[0], "yoke_pitch_moment": m.moments[1], "trim_spin": m.spin}
         own |= {
@@ -173,9 +175,7 @@ def _of_segments() -> Quantities:
     whole = {name: value[:, None] for name, value in _quantities().items()}
     whole |= {"beyond_flap_hinge": BEYOND_FLAP[None], "beyond_lag_hinge": BEYOND_LAG[None]}
     whole |= {"m_0": np.array([m.section_moment for m in _moving()])} | _section_waves()
-    chordwise = np.array(
-        [[_axes(m, _NONE, s)[0] for s in range(len(BEYOND_FLAP))] for m in _moving()]
-    )
+    chordwise = np.array([[_axes(m, _NONE, s)[0] for s in range(len(BEYOND_FLAP))] for m in _moving()])
     return whole | {f"chordwise_{axis}": chordwise[..., place] for place, axis in enumerate("ijk")}
 
 
@@ -208,9 +208,7 @@ def _arms() -> Iterator[Check]:
         flap, hinge = p.rotor.flap_hinge_offset, p.rotor.lag_hinge_offset
         by_segment = []
         for out, lagged in zip(BEYOND_FLAP, BEYOND_LAG, strict=True):
-            ends = [
-                [r - out * (r - flap), out * (r - flap), lagged * (r - hinge), 1.0] for r in (0.0, 1.0)
-            ]
+            ends = [[r - out * (r - flap), out * (r - flap), lagged * (r - hinge), 1.0] for r in (0.0, 1.0)]
             by_segment.append([ends[0], np.subtract(ends[1], ends[0])])
         lines.append(by_segment)
     sums = np.array(expected)
@@ -274,12 +272,16 @@ def _tilt() -> Iterator[Check]:
     for tilt in tilts:
         found = {"tilt_squared": float(tilt @ tilt)}
         for name, values in _series(float(tilt @ tilt)).items():
-            found |= dict(zip((f"tilt_{name}{end}" for end in ("", "_slope", "_curvature")), values, strict=True))
+            found |= dict(
+                zip((f"tilt_{name}{end}" for end in ("", "_slope", "_curvature")), values, strict=True)
+            )
         expected.append(found | _turns(_rotation_of(tilt)))
     quantities = {"trim_gimbal_flap": tilts[:, 0], "trim_gimbal_roll": tilts[:, 1]}
     values = stacked(expected)
     sees = ("moving", "tilt_of_yoke")
-    yield values_check(sees, "Rodrigues' rotation by power series", quantities, values, dict.fromkeys(values, 1e2))
+    yield values_check(
+        sees, "Rodrigues' rotation by power series", quantities, values, dict.fromkeys(values, 1e2)
+    )
 
 
 def _geometry() -> Iterator[Check]:
@@ -379,7 +381,7 @@ def _springs() -> Iterator[Check]:
             return _changes(lambda moved: _energy(p, moved), angles)
 
         moments[number, places, 0] = gradient(at)
-        columns = [central_difference(lambda h, u=u: gradient(at + h * u), 0.02) for u in np.eye(3)]
+        columns = [central_difference(lambda h, u=u, at=at: gradient(at + h * u), 0.02) for u in np.eye(3)]
         stiffness[number][np.ix_(places, places)] = np.stack(columns, axis=-1)
     given = blade_quantities() | {
         name: 0.0 for name in ("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling")

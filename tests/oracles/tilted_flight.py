@@ -17,7 +17,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from tests.oracles.motion import Motion
-from tests.oracles.nonlinear_rotor import FLAP, GIMBAL_C, HUB_FORCE, HUB_MOMENT, LAG, PITCH, UNIT, rows_in_vacuum
+from tests.oracles.nonlinear_rotor import (
+    FLAP,
+    GIMBAL_C,
+    HUB_FORCE,
+    HUB_MOMENT,
+    LAG,
+    PITCH,
+    UNIT,
+    rows_in_vacuum,
+)
 from tests.oracles.virtual_work import airload_rows
 
 GRAVITY = 9.80665
@@ -41,7 +50,9 @@ class TiltedFlight:
 
     def seen(self, q):
         """Coordinates of a frame that turns with the hub, as the oracle's own."""
-        value, rate, acceleration = (np.array(part, dtype=complex) for part in (q.value, q.rate, q.acceleration))
+        value, rate, acceleration = (
+            np.array(part, dtype=complex) for part in (q.value, q.rate, q.acceleration)
+        )
         value, rate, acceleration = np.broadcast_arrays(value, rate, acceleration)
         rate, acceleration = rate.copy(), acceleration.copy()
         w = self.turn

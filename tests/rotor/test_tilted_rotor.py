@@ -67,7 +67,9 @@ def test_the_trim_is_in_balance(flight):
 @pytest.mark.parametrize("flight", FLIGHTS)
 def test_matrices_at_each_azimuth(flight):
     case = Case(*flight)
-    others = np.delete(np.arange(18), AZIMUTH)  # the package's azimuth carries the swing of the blades with it
+    others = np.delete(
+        np.arange(18), AZIMUTH
+    )  # the package's azimuth carries the swing of the blades with it
     for step in range(0, case.steps, 3):
         time = case.time(step)
         found = case.flight.linearised(case.air, case.rotor, case.trim(time), time)
@@ -221,7 +223,9 @@ def test_a_march_repeats_itself_and_carries_a_disturbance_as_the_transition_does
 
 def test_axial_oracle_is_the_flight_without_angle():
     pair = random_rotor(5, n_blades=3)
-    rotor, trim = pair.oracle(type("T", (), {"collective": 0.7, "coning": -0.02, "lag": 0.03, "elastic_pitch": -0.04}))
+    rotor, trim = pair.oracle(
+        type("T", (), {"collective": 0.7, "coning": -0.02, "lag": 0.03, "elastic_pitch": -0.04})
+    )
     air, flight = pair.air(110.0, DENSITY), TiltedFlight.of(110.0, 0.0, 1.0)
     axial = linearised(lambda q, t: rows_in_vacuum(rotor, q, t) + airload_rows(air, rotor, q, t), trim, 0.0)
     still = Motion(trim, np.zeros(18), np.zeros(18))
@@ -232,7 +236,9 @@ def test_axial_oracle_is_the_flight_without_angle():
 def test_a_wind_from_the_side_is_the_tilt_of_a_shaft():
     """The frame that turns, against a rotation of the hub itself: the wind in its axes and the loads are the same."""
     pair = random_rotor(5, n_blades=3)
-    rotor, trim = pair.oracle(type("T", (), {"collective": 0.7, "coning": -0.02, "lag": 0.03, "elastic_pitch": -0.04}))
+    rotor, trim = pair.oracle(
+        type("T", (), {"collective": 0.7, "coning": -0.02, "lag": 0.03, "elastic_pitch": -0.04})
+    )
     angle = 0.1
     flight = TiltedFlight.of(110.0, angle, 1.0)
     tilted = trim.copy()

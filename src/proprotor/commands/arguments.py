@@ -34,7 +34,12 @@ DAMPING = Quantity("damping", "", 1.0)
 
 _NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
 _FLIGHT = ("shaft_angle", "load_factor")  # the angle with a unit, and a plain number
-_MODEL = (*CHOICES, *_NUMBERS, *_FLIGHT, "locked")  # the options of the model, in the order in which results list them
+_MODEL = (
+    *CHOICES,
+    *_NUMBERS,
+    *_FLIGHT,
+    "locked",
+)  # the options of the model, in the order in which results list them
 _RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # the characters of a range; the unit follows them
 
 

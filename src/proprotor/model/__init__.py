@@ -9,6 +9,8 @@ configuration, and the stamp that every result has.
     quantities           the numbers of rotor, operation and options by the names of the derivation
     lift_lag             the lag of lift, added to the matrices of a rotor
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
+    tilted_rotor         the rotor alone about a periodic trim, around the turn and averaged
+    floquet              Floquet exponents beside the roots of the average
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
     blade_comparison     a hinged blade beside the elastic blade that it stands for
     mass_at_rest         the rotor's mass matrix at rest with locked blades
@@ -64,6 +66,7 @@ __all__ = [
     "deck_fingerprint",
     "doubts",
     "first_order",
+    "floquet",
     "html",
     "in_closed_form",
     "mass_at_rest",

@@ -142,8 +142,8 @@ class Configuration:
             raise InputError("load_factor", 1, "or shaft_angle must be another than in straight axial flight")
         if isinstance(self.support, Airframe):
             rule = (
-                "goes with a rotor on a support that stands still: an aircraft that is free and flies at an angle turns "
-                "its weight and the lift of its wing as it rolls, which the model leaves out"
+                "goes with a rotor on a support that stands still: a free aircraft that flies at an angle turns its "
+                "weight and the lift of its wing as it rolls, which the model leaves out"
             )
             name = "load_factor" if np.all(np.equal(options.get("shaft_angle", 0), 0)) else "shaft_angle"
             raise InputError(name, options.get(name), rule)

@@ -22,7 +22,7 @@ LIMIT = 0.005
 
 _STEP = 0.1  # of the integration, times the largest root
 _DAMPED = 0.1  # of critical damping
-DOUBT = "averaging over azimuth moves the damping of a root by {:.0f}% of critical, by the Floquet exponents"
+_DOUBT = "averaging over azimuth moves the damping of a root by {:.0f}% of critical, by the Floquet exponents"
 
 
 def averaged(model: LinearModel) -> LinearModel:
@@ -146,7 +146,9 @@ def with_doubts(model: LinearModel, change: Array) -> LinearModel:
     warning = model.trim.warning.copy()
     for point in np.argwhere(change > LIMIT):
         place = tuple(point)
-        warning[place] = "; ".join(filter(None, (warning[place], DOUBT.format(np.ceil(100 * change[place])))))
+        warning[place] = "; ".join(
+            filter(None, (warning[place], _DOUBT.format(np.ceil(100 * change[place]))))
+        )
     return replace(model, trim=replace(model.trim, warning=warning))
 
 

@@ -14,13 +14,13 @@ from proprotor.model import stamp
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.model.massless import massless
 from proprotor.model.stamp import Origin
-from proprotor.rotor.moving_blade import Motion
 from proprotor.rotor.motions import HALVES, ROTOR_SPEED, in_half
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array, Dataset
 
 if TYPE_CHECKING:
     from proprotor.model.state_space import StateSpace
+    from proprotor.rotor.moving_blade import Motion
 
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)

@@ -26,9 +26,7 @@ _HINGE_INERTIAS = ("flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")
 _SOFTEST_SPRING = 1e-100  # relative to the other spring: a free hinge, without a division by zero in series
 
 
-def batch_shape(
-    rotor: Rotor, operation: Operation, airspeed: Array, options: Options
-) -> tuple[int, ...]:
+def batch_shape(rotor: Rotor, operation: Operation, airspeed: Array, options: Options) -> tuple[int, ...]:
     """Return the shape of all arrays among the inputs, broadcast together."""
     inputs = [airspeed, *(getattr(operation, name) for name in _AIR)]
     inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())

@@ -30,14 +30,14 @@ from proprotor.rotor.trim import Target, Trim
 from proprotor.rotor.trim_solver import Settled
 from proprotor.typing import Array
 
-GRAVITY = 9.80665  # m/s²
+_GRAVITY = 9.80665  # m/s²
 _STILL = "load_factor: without airspeed there is no pull-up"
 _GIMBAL = [coordinates.GIMBAL_1C, coordinates.GIMBAL_1S]
 _TILT = (moving.GIMBAL_FLAP, moving.GIMBAL_ROLL)
 _ANGLES = [moving.FLAP, moving.LAG, moving.PITCH]
 
 
-class TiltedRotor(NamedTuple):
+class _TiltedRotor(NamedTuple):
     """A rotor about its periodic trim at n points.
 
     matrices : mapping of str to array
@@ -78,7 +78,7 @@ def tilted_rotor(
     target: Target,
     flight: Mapping[str, Array],
     n_blades: int,
-) -> TiltedRotor:
+) -> _TiltedRotor:
     """Return a rotor about its periodic trim.
 
     Parameters
@@ -110,7 +110,9 @@ def tilted_rotor(
     good = np.flatnonzero(periodic.reason == "")
     good = good[np.asarray(trim.converged[rows][good], dtype=bool)]
     matrices = {name: matrix[good] for name, matrix in _fixed_frame(balance, periodic).items()}
-    return TiltedRotor(matrices, trim, rows[good], _of_all(periodic.motion, good, rows[good], len(trim.reason)))
+    return _TiltedRotor(
+        matrices, trim, rows[good], _of_all(periodic.motion, good, rows[good], len(trim.reason))
+    )
 
 
 def _of_all(motion: Motion, good: Array, rows: Array, points: int) -> Motion:
@@ -126,7 +128,7 @@ def _flight(airspeed: Array, shaft_angle: Array, load_factor: Array) -> Flight:
     """Return how a hub flies: up is I, forward K; the hub turns nose up about J."""
     zero = 0 * airspeed
     moving_speed = np.where(np.real(airspeed) > 0, airspeed, np.inf)
-    turn = GRAVITY * (load_factor - 1) / moving_speed
+    turn = _GRAVITY * (load_factor - 1) / moving_speed
     velocity = np.stack([-airspeed * np.sin(shaft_angle), zero, airspeed * np.cos(shaft_angle)], axis=-1)
     return Flight(velocity, np.stack([zero, turn, zero], axis=-1))
 

@@ -54,9 +54,9 @@ def harmonics(count: int, highest: int, step: int = 1) -> Array:
 
 
 def along_blade(vector: Array, count: int) -> Array:
-    """Return a steady vector (..., 3) of the fixed frame along the blade's axes i, j, k at each azimuth (..., count, 3).
+    """Return a steady vector (..., 3) of the fixed frame along the blade's axes at each azimuth, (..., count, 3).
 
-    The axes are those of AIAA-2002-1604: i = (sin ψ, -cos ψ, 0) and j = (cos ψ, sin ψ, 0).
+    The axes i, j, k are those of AIAA-2002-1604: i = (sin ψ, -cos ψ, 0) and j = (cos ψ, sin ψ, 0).
     """
     psi = azimuths(count)
     sine, cosine = np.sin(psi), np.cos(psi)

@@ -203,7 +203,7 @@ class _Around:
         return BladeAround(balance, work, M, C, K, damping[..., _HUB], doubts)
 
     def virtual_displacements(self) -> Array:
-        """Return virtual displacements (points, azimuths, arm, coordinate, 3); rows of hub rotation turn about fixed axes."""
+        """Return virtual displacements (points, azimuths, arm, coordinate, 3); hub rotations are about fixed axes."""
         virtual = self.points[..., :_N, :].copy()
         for place in range(3):
             axis = np.eye(3)[place]
@@ -232,7 +232,9 @@ class _Around:
         K += row * acceleration[..., None, :_N]
         balance += row[..., 0] * acceleration[..., _N, None]
         moment = self.around(evaluate(moving.spring_moment, self.given)[..., moving.TRIM], 1)[..., _SPRUNG]
-        stiffness = self.around(evaluate(moving.spring_stiffness, self.given), 2)[..., _SPRUNG, :][..., _SPRUNG]
+        stiffness = self.around(evaluate(moving.spring_stiffness, self.given), 2)[..., _SPRUNG, :][
+            ..., _SPRUNG
+        ]
         angles = np.zeros((*self.shape, len(_SPRUNG), _N), dtype=shaft.dtype)
         angles[..., 0, moving.FLAP] = angles[..., 1, moving.LAG] = 1.0
         angles[..., 2, :] = self.pitch[..., moving.YOKE, :_N]
@@ -250,7 +252,7 @@ class _Around:
             balance[..., place] += damper * self.rate_of_number(angle)
 
     def of_forces(self, forces: Array) -> Array:
-        """Return the work of steady forces times the arms, (points, azimuths, arm, 3), on displacements of second order."""
+        """Return the work of steady forces times arms, (points, azimuths, arm, 3), on displacements of second order."""
         named = {
             f"{arm}_force_{axis}": forces[..., place, component].reshape(-1)
             for place, arm in enumerate(("inboard", "outboard", "lag"))
@@ -258,9 +260,7 @@ class _Around:
         }
         return self.around(evaluate(moving.force_stiffness, self.given | named), 2)
 
-    def of_airloads(
-        self, virtual: Array, doubts: dict[str, Array]
-    ) -> tuple[Array, Array, Array, Array]:
+    def of_airloads(self, virtual: Array, doubts: dict[str, Array]) -> tuple[Array, Array, Array, Array]:
         """Return damping, stiffness and work of the airloads, and the forces of the air times the arms."""
         air = _Air.of(self, virtual)
         return air.loads(doubts)
@@ -340,7 +340,9 @@ class _Air:
         }
         turning = (self.turning[..., _NORMAL, _N, :] * value[..., _X, :]).sum(axis=-1)
         yoke = blade.rate_of_number(blade.pitch[..., moving.YOKE, _N])[..., None]
-        named |= {f"chordwise_{axis}": value[..., _X, place].reshape(flat) for place, axis in enumerate("ijk")}
+        named |= {
+            f"chordwise_{axis}": value[..., _X, place].reshape(flat) for place, axis in enumerate("ijk")
+        }
         return named | {"trim_spin": (turning + yoke).reshape(flat)}
 
     def _motions(self, rotation: Array) -> tuple[Array, Array, Array]:
@@ -370,9 +372,7 @@ class _Air:
     def _of_moments(self, segments: Mapping[str, Any]) -> Array:
         """Return the work of the steady pitching moments on rotations of second order, of all segments."""
         total = self.blade.of_segments(evaluate(moving.moment_stiffness, segments), 2).sum(axis=2)
-        turned = np.einsum(
-            "pnsix,pnsjx->pnsij", self.axes[..., _NORMAL, :_N, :], self.axes[..., _X, :_N, :]
-        )
+        turned = np.einsum("pnsix,pnsjx->pnsij", self.axes[..., _NORMAL, :_N, :], self.axes[..., _X, :_N, :])
         turned[..., _TURN, :] = 0.0  # moments about fixed axes
         moment = self.blade.of_segments(segments["m_0"])
         return np.asarray(total + np.einsum("pnsij,pns->pnij", turned, moment))

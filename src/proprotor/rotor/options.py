@@ -88,7 +88,8 @@ class Options:
     reactionless : bool
         Keep the blade motions that make no load at the hub, for more than three blades.
     shaft_angle : float or array that broadcasts with the airspeeds
-        Angle of the shaft above the direction of flight, nose up, rad: the rotor meets the air at this angle. Up to 15°.
+        Angle of the shaft above the direction of flight, nose up, rad: the rotor meets the air at this angle. Up to
+        15°.
     load_factor : float or array that broadcasts with the airspeeds
         Load factor n of a steady pull-up, whose turn at g(n - 1)/V the rotor follows; 1 in straight flight.
     cyclic : "none" or "level"

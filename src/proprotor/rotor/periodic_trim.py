@@ -23,13 +23,13 @@ from proprotor.rotor.trim_balance import is_last
 from proprotor.rotor.trim_reasons import LARGEST_ANGLE
 from proprotor.typing import Array
 
-HIGHEST = 8  # harmonic of the blade's angles
+_HIGHEST = 8  # harmonic of the blade's angles
 _ITERATIONS = 20
 _LARGEST_STEP = 0.2  # rad
 _ANGLES = (("coning", moving.FLAP), ("lag", moving.LAG), ("elastic_pitch", moving.PITCH))
 _TILTS = (coordinates.GIMBAL_1C, coordinates.GIMBAL_1S)
 _CUT = 1e-4  # rad, of the highest harmonic that is kept
-NOT_FOUND = "no periodic trim found near the trim in axial flight: Newton did not converge"
+_NOT_FOUND = "no periodic trim found near the trim in axial flight: Newton did not converge"
 
 
 class PeriodicTrim(NamedTuple):
@@ -51,7 +51,7 @@ class PeriodicTrim(NamedTuple):
     iterations: Array
 
 
-class Unknown(NamedTuple):
+class _Unknown(NamedTuple):
     """One number of the trim: the motion of the blade that it stands for, and the balance that it closes.
 
     motion : array (azimuths, 12)
@@ -82,7 +82,7 @@ class HarmonicBalance:
     target: Target
     flight: Flight
     n_blades: int
-    unknowns: tuple[Unknown, ...]
+    unknowns: tuple[_Unknown, ...]
 
     @classmethod
     def of(
@@ -99,7 +99,7 @@ class HarmonicBalance:
         return cls(sections, quantities, options, target, flight, n_blades, unknowns)
 
     def blade(self, motion: Motion) -> BladeAround:
-        """Return balance and matrices of a blade along a motion, with control system, pitch damper and gimbal spring."""
+        """Return balance and matrices of a blade along a motion."""
         return blade_around(self.sections, self.quantities, self.options, self.flight, motion)
 
     def step(self, motion: Motion, blade: BladeAround) -> Array:
@@ -138,10 +138,12 @@ class HarmonicBalance:
             for j, other in enumerate(self.unknowns):
                 if (other.part, other.place) == (row.part, row.place):
                     of_rate = row.wave @ (derivative(count) @ other.wave) / count
-                    slopes[:, i, j] = spring * (row.wave @ other.wave) / count + damper * rotor_speed * of_rate
+                    slopes[:, i, j] = (
+                        spring * (row.wave @ other.wave) / count + damper * rotor_speed * of_rate
+                    )
         return slopes, loads
 
-    def _spring_and_damper(self, unknown: Unknown) -> tuple[Array, Array]:
+    def _spring_and_damper(self, unknown: _Unknown) -> tuple[Array, Array]:
         """Return what holds one motion of a blade, or of the gimbal by one blade's share, (points,) or ()."""
         q = {name: np.asarray(value) for name, value in self.quantities.items()}
         none = np.asarray(0.0)
@@ -168,7 +170,7 @@ class HarmonicBalance:
 _PITCH = [name for name, _ in _ANGLES].index("elastic_pitch")
 
 
-def _unknowns(options: Options, target: Target, n_blades: int) -> tuple[Unknown, ...]:
+def _unknowns(options: Options, target: Target, n_blades: int) -> tuple[_Unknown, ...]:
     """Return the unknowns of the trim, each with the balance that closes it."""
     count = number_of_azimuths(n_blades)
     free = {"coning": "flap" not in options.locked, "lag": "lag" not in options.locked}
@@ -176,27 +178,27 @@ def _unknowns(options: Options, target: Target, n_blades: int) -> tuple[Unknown,
     found = []
     unit = np.eye(moving.VALUE)
     for place, (name, coordinate) in enumerate(_ANGLES):
-        for wave in harmonics(count, HIGHEST).T if free[name] else ():
+        for wave in harmonics(count, _HIGHEST).T if free[name] else ():
             moved = wave[:, None] * unit[coordinate]
-            found.append(Unknown(moved, moved, False, "angles", place, wave))
+            found.append(_Unknown(moved, moved, False, "angles", place, wave))
     if "gimbal" not in options.locked:
         seen = coordinates.transform(psi=azimuths(count))[..., _TILTS]
         for place in range(2):
-            for wave in harmonics(count, HIGHEST, n_blades).T:
+            for wave in harmonics(count, _HIGHEST, n_blades).T:
                 moved = wave[:, None] * seen[..., place]
-                found.append(Unknown(moved, moved, False, "tilt", place, wave))
+                found.append(_Unknown(moved, moved, False, "tilt", place, wave))
     if options.cyclic == "level":
         found = _levelled(found, options)
     if target.finds_collective:
         coordinate = moving.AZIMUTH if target.row == TORQUE else moving.HUB_K
         wave = np.ones(count)
         pitch, row = (wave[:, None] * unit[place] for place in (moving.PITCH, coordinate))
-        found.append(Unknown(pitch, row, True, "collective", 0, wave))
+        found.append(_Unknown(pitch, row, True, "collective", 0, wave))
     return tuple(found)
 
 
-def _levelled(unknowns: list[Unknown], options: Options) -> list[Unknown]:
-    """Return unknowns with the cyclic pitch of the swashplate in place of the steady tilt, or of flapping once a turn."""
+def _levelled(unknowns: list[_Unknown], options: Options) -> list[_Unknown]:
+    """Return unknowns with cyclic pitch of the swashplate in place of the steady tilt, or of flapping once a turn."""
     waves = harmonics(len(unknowns[0].wave), 1).T[1:]
     pitch = np.eye(moving.VALUE)[moving.PITCH]
     found = []
@@ -208,7 +210,7 @@ def _levelled(unknowns: list[Unknown], options: Options) -> list[Unknown]:
             level, place = bool(alike), alike[0] if alike else 0
         if level:
             wave = waves[place]
-            unknown = Unknown(wave[:, None] * pitch, unknown.row, True, "cyclic", place, wave)
+            unknown = _Unknown(wave[:, None] * pitch, unknown.row, True, "cyclic", place, wave)
         found.append(unknown)
     return found
 
@@ -237,7 +239,7 @@ def periodic_trim(balance: HarmonicBalance, axial: Trim) -> PeriodicTrim:
         if (converged | np.isnan(size)).all():
             break
     blade = balance.blade(motion)
-    reason = np.where(converged & np.isfinite(before), "", NOT_FOUND).astype(object)
+    reason = np.where(converged & np.isfinite(before), "", _NOT_FOUND).astype(object)
     loads = blade.work.mean(axis=1) * balance.n_blades
     warning = _warnings(balance, motion, blade.doubts)
     return PeriodicTrim(
@@ -278,7 +280,7 @@ def _warnings(balance: HarmonicBalance, motion: Motion, doubts: Mapping[str, Arr
         > LARGEST_ANGLE
         for place, (name, _) in enumerate(_ANGLES)
     }
-    waves = harmonics(motion.azimuths, HIGHEST)[:, -2:]
+    waves = harmonics(motion.azimuths, _HIGHEST)[:, -2:]
     highest = np.abs(np.einsum("pka,kw->paw", np.real(motion.angles), waves)).max(axis=(1, 2))
     masks["the blades move in more harmonics than the trim has"] = highest * 2 / motion.azimuths > _CUT
     masks |= doubts

@@ -129,7 +129,10 @@ def _air(
     stations |= {"chord": sections.along.chord, "section_pitch": segments["pitch"] + sections.along.twist}
     if sections.tapers:  # the lift of the turn has the chord squared
         stations["section_damping"] = segments["section_damping"] * sections.along.square
-    return {**stations, **_in_front_and_behind(stations, evaluate(section.air_at_section, stations)._asdict())}
+    return {
+        **stations,
+        **_in_front_and_behind(stations, evaluate(section.air_at_section, stations)._asdict()),
+    }
 
 
 def _in_front_and_behind(stations: _Quantities, air: dict[str, Any]) -> dict[str, Any]:

@@ -29,6 +29,7 @@ Boundaries: where damping passes a level
     crossings, brackets     the search for steps with crossings; each crossing found by Newton's method
     boundary, boundaries    records of boundaries; the search along a line of a case
     kinds                   divergence, instability of the rigid body, flutter
+    floquet                 Floquet exponents about a periodic trim
     flutter                 the flutter point: the lowest onset
     in_notebook             boundaries as HTML, for notebooks
     flutter_messages        records and sentences for people
@@ -51,6 +52,7 @@ from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.branches import BranchLabels, NamedStates, branch_labels, by_branch, named_at
 from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
+from proprotor.stability.floquet import floquet
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
@@ -110,6 +112,7 @@ __all__ = [
     "error_near_zero",
     "find_crossings",
     "flies_free",
+    "floquet",
     "flutter_messages",
     "flutter_point",
     "follow",

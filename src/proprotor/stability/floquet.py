@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from proprotor.model.floquet import LIMIT, averaged, change_by_average, exponents, with_doubts
 from proprotor.model.configuration import Configuration
+from proprotor.model.floquet import LIMIT, averaged, change_by_average, exponents, with_doubts
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.modes import leading_dims, modes
 
